@@ -9,9 +9,8 @@ An overview::
     graph = rulec.navigation_graph("s2", step_s=0.5)  # cells, adjacency; graph.to_networkx()
     found = rulec.find_maneuvers("s2", rules)         # counts, and the cheapest ones lazily
 
-A ``rulec.Session`` has the same verbs with a search path and a day of its own. Whatever goes wrong
-with an input is a ``rulec.RulecError`` with the diagnostics as data. Nothing is imported before it
-is used.
+A ``rulec.Session`` has the same verbs with its own search path and day of law. Errors in inputs are
+raised as ``rulec.RulecError``, with the diagnostics as data. Modules are imported on first use.
 """
 
 from __future__ import annotations

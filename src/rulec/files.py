@@ -377,7 +377,7 @@ def without_null(source: Source) -> Source:
     if null >= 0:
         place = Span(source, null, null + 1).place
         raise NOT_UTF8.error(
-            # The file may be anything, such as a process's environment, so its content is not shown.
+            # No excerpt: the file may be anything, such as a process's environment.
             replace(place, excerpt=""),
             "the file holds a null character and is not a text",
             help="give a file of plain text in UTF-8",

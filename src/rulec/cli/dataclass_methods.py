@@ -1,10 +1,10 @@
-"""Dataclasses whose methods are written when they are first called, for the program `rulec` alone.
+"""Dataclasses whose methods are written when first called, only for the program `rulec`.
 
 A command imports hundreds of dataclasses and makes objects of few. Python writes and compiles six
-methods of each when it is imported, which is a fifth of what a short command takes. Here each is
-written when somebody first looks it up; from then on it is a function as any other. The first few
-objects of a class are made without its `__init__`, which takes longer to write than to do without.
-Whoever imports rulec as a library gets what Python makes.
+methods for each on import, which is a fifth of the time of a short command. Here each method is
+written on first access; from then on it is an ordinary function. The first few objects of a class
+are made without its `__init__`, because writing one takes longer. Programs that import rulec as a
+library get ordinary dataclasses.
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, FrozenInstanceError, fields
 from functools import partial
-from inspect import get_annotations  # which `dataclasses` imports, too
+from inspect import get_annotations  # also imported by `dataclasses`
 from reprlib import recursive_repr
 from typing import Any
 
 _AS_PYTHON_DOES = dataclasses.dataclass
 _KNOWN = {"frozen", "slots", "eq", "kw_only"}
-"""The options of rulec's dataclasses; others are left to Python."""
+"""The options that rulec's dataclasses use; classes with others are left to Python."""
 
 
 def write_when_called() -> None:
-    """Have the dataclasses of rulec that are imported from now on write their methods late."""
+    """Make the dataclasses of rulec that are imported from now on write their methods late."""
     dataclasses.dataclass = dataclass
 
 
@@ -55,9 +55,9 @@ def _late(
 ) -> type:
     own = {**given.__dict__}
     if own.get("__hash__") is None:
-        own.pop("__hash__", None)  # Python puts it there beside an `__eq__`
+        own.pop("__hash__", None)  # Python adds it to classes with an `__eq__`
     if given.__doc__ is None:
-        given.__doc__ = given.__name__  # Python would look for a signature
+        given.__doc__ = given.__name__  # otherwise Python would compute a signature
     make = _AS_PYTHON_DOES(init=False, repr=False, eq=False, slots=slots, kw_only=kw_only)
     cls: type = make(given)
     methods: dict[str, object] = {
@@ -80,7 +80,7 @@ def _late(
 
 @dataclasses.dataclass(slots=True)
 class _Unwritten:
-    """A method that is not written yet: whoever looks it up has it written first."""
+    """A method that is not written yet; the first access writes it."""
 
     cls: type
     name: str
@@ -90,7 +90,7 @@ class _Unwritten:
         return self.written().__get__(item, owner)
 
     def written(self) -> Any:
-        """The method, which from now on is in its place."""
+        """The method, which replaces this object from now on."""
         names: dict[str, object] = {"_MISSING": MISSING, "_set": object.__setattr__}
         exec(self.text(self.cls, names), names)
         method: Any = names[self.name]
@@ -103,7 +103,7 @@ class _Unwritten:
 
 
 _FEW = 8
-"""Without an `__init__` of their own these take as long as it takes to write one."""
+"""Making this many objects without an `__init__` takes as long as writing one."""
 
 
 @dataclasses.dataclass(slots=True)
@@ -122,7 +122,7 @@ class _UnwrittenInit(_Unwritten):
     def _fill(self, item: Any, /, *given: object, **named: object) -> None:
         values = self._values(given, named)
         if values is None:
-            self.written()(item, *given, **named)  # which says what does not fit
+            self.written()(item, *given, **named)  # raises the error about the arguments
             return
         for name, value in values.items():
             object.__setattr__(item, name, value)
@@ -132,7 +132,7 @@ class _UnwrittenInit(_Unwritten):
     def _values(
         self, given: Sequence[object], named: Mapping[str, object]
     ) -> dict[str, object] | None:
-        """What the fields get; None for arguments that are not the method's."""
+        """The values of the fields; None for arguments that do not fit the method."""
         self._fields = self._fields or fields(self.cls)
         places = [item.name for item in self._fields if item.init and item.kw_only is not True]
         arguments = {**dict(zip(places, given, strict=False)), **named}
@@ -153,7 +153,7 @@ class _UnwrittenInit(_Unwritten):
 
 
 def _init_text(cls: type, names: dict[str, object], *, frozen: bool) -> str:
-    """The method's text; ``names`` gets the defaults that it speaks of."""
+    """The method's source text; ``names`` receives the defaults that it refers to."""
     parameters: dict[bool, list[str]] = {False: [], True: []}
     lines = []
     for field in fields(cls):
@@ -205,7 +205,7 @@ def _function(name: str, parameters: Sequence[str], lines: Sequence[str]) -> str
 
 
 def _refusing(cls: type, deed: str, method: str) -> Callable[..., None]:
-    """What keeps a frozen object as it is; classes derived from it may have more attributes."""
+    """A method that protects a frozen object; derived classes may have more attributes."""
 
     def refuse(self: object, name: str, *value: object) -> None:
         if type(self) is cls or any(field.name == name for field in fields(cls)):

@@ -6,22 +6,22 @@ from enum import IntEnum
 
 
 class ExitStatus(IntEnum):
-    """The exit status of every command, as docs/commands.md lists them."""
+    """The exit statuses of all commands, as listed in docs/commands.md."""
 
     OK = 0
     """Done; what was judged is satisfied."""
     VIOLATED = 1
     """A hard rule is violated, or no maneuver satisfies all of them."""
     FOUND = 1
-    """There are mistakes in a rulebook, or its examples come out otherwise than they say."""
+    """A rulebook has mistakes, or an example's verdict is not the stated one."""
     NOT_ANSWERED = 2
     """The question could not be answered: wrong usage, bad input, output that cannot be written."""
     BUG = 70
-    """A mistake in rulec itself."""
+    """A bug in rulec."""
     INTERRUPTED = 130
     """Ctrl-C."""
     READER_GONE = 141
-    """Who read the output, such as ``head``, has left: no verdict either way."""
+    """The reader of the output, such as ``head``, is gone: no verdict either way."""
 
     @classmethod
     def after(cls, *, answered: bool = True, failed: bool) -> ExitStatus:

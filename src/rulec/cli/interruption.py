@@ -1,6 +1,6 @@
-"""Ctrl-C, remembered: whatever becomes of it on its way up, the program was interrupted.
+"""Remembers Ctrl-C: the program was interrupted, whatever happens to the exception.
 
-Libraries turn an interrupt into errors of their own while they are imported, such as ImportError.
+Libraries turn an interrupt during their import into errors of their own, such as ImportError.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ _seen: list[int] = []
 
 
 def interrupt(number: int, frame: FrameType | None) -> None:
-    """Handle a signal as Python does. Raises KeyboardInterrupt."""
+    """Handle a signal like Python. Raises KeyboardInterrupt."""
     _seen.append(number)
     signal.default_int_handler(number, frame)
 
 
 def is_interrupted() -> bool:
-    """True if there was such a signal."""
+    """Whether there was such a signal."""
     return bool(_seen)

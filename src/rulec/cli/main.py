@@ -21,7 +21,7 @@ from rulec.version import __version__
 
 def _require_signed(context: click.Context, _: click.Parameter, key: str | None) -> None:
     if key:
-        # 20 ms: only where a key is given.
+        # Late import, only if a key is given (20 ms).
         from rulec.automata.bundle.required_signature import in_force
 
         context.with_resource(in_force(key))
@@ -39,7 +39,7 @@ _REQUIRE_SIGNED = click.Option(
 
 def _color(context: click.Context, _: click.Parameter, choice: str | None) -> None:
     if choice is not None:
-        # 7 ms: only where it is said.
+        # Late import, only if it is printed (7 ms).
         from rulec.report.text.terminal_text import colored
 
         context.with_resource(colored(choice))
@@ -53,11 +53,11 @@ COLOR = click.Option(
     is_eager=True,
     callback=_color,
 )
-"""What every verb takes, and what may stand before the verb, too."""
+"""Options of every verb, which may also be given before the verb."""
 
 
 class _Verbs(click.Group):
-    """Imports a verb's file only when that verb is called."""
+    """A group that imports a verb's file only when that verb is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(VERBS)
@@ -67,8 +67,8 @@ class _Verbs(click.Group):
             return None
         module = cmd_name.replace("-", "_")
         command: click.Command = import_module(f"rulec.cli.commands.{module}").command
-        command.short_help = VERBS[cmd_name]  # a shell that completes shows it, too
-        command.name = cmd_name  # in the files all of them are called `command`
+        command.short_help = VERBS[cmd_name]  # also shown by shell completion
+        command.name = cmd_name  # in the files every command is called `command`
         if cmd_name in WITH_COMPILED:
             kinds = command.commands.values() if isinstance(command, click.Group) else (command,)
             for verb in kinds:
@@ -82,7 +82,7 @@ class _Verbs(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if args[0] not in VERBS and not args[0].startswith("-"):
-            # Examples, 2 ms: only where something is wrong.
+            # Late import, only after an error: examples (2 ms).
             from rulec.cli.usage_help import unknown_verb
 
             ctx.fail(unknown_verb(args[0]))
@@ -117,7 +117,7 @@ def rulec(context: click.Context, limits: Sequence[str]) -> None:
     """Compile traffic law into automata, and judge traces and maneuvers with them."""
     context.with_resource(keeping())
     if limits:
-        # 2 ms: only where limits are set.
+        # Late import, only if limits are set (2 ms).
         from rulec.resource_limits import in_force
 
         context.with_resource(in_force(limits))
@@ -143,7 +143,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _status_after(problem: BaseException) -> int:
-    """Say what ended a command, and return its exit status."""
+    """Print the reason why a command ended, and return its exit status."""
     if is_interrupted() or isinstance(problem, click.Abort | KeyboardInterrupt):
         _say("interrupted")
         return ExitStatus.INTERRUPTED
@@ -152,13 +152,13 @@ def _status_after(problem: BaseException) -> int:
             _say_misuse(problem)
             return ExitStatus.NOT_ANSWERED
         case RulecError():
-            # Its text and colours, 7 ms: not for `rulec --help`.
+            # Late import, not for `rulec --help`: its text and colours (7 ms).
             from rulec.report.findings.diagnostics_text import print_diagnostics
 
             print_diagnostics(problem.diagnostics)
             return ExitStatus.NOT_ANSWERED
         case SystemExit():
-            # 1 is click's word for a reader that has left; signals bring their own status.
+            # click exits with 1 if the reader is gone; signals set their own status.
             return ExitStatus.READER_GONE if problem.code == 1 else int(problem.code or 0)
         case OSError():
             return _refused(problem)
@@ -180,11 +180,11 @@ def _bug(problem: Exception) -> int:
 
 
 def _refused(problem: OSError) -> int:
-    # What is still buffered must not fail again when Python exits.
+    # Discard buffered output, so that it does not fail again when Python exits.
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     if isinstance(problem, BrokenPipeError):
         return ExitStatus.READER_GONE
-    # Messages, their text and colours, 7 ms: only where something went wrong.
+    # Late import, only after an error: messages, their text and colours (7 ms).
     from rulec.file_messages import refused
     from rulec.report.findings.diagnostics_text import print_diagnostics
 
@@ -201,7 +201,7 @@ def _has_working_folder() -> bool:
 
 
 def _visible(text: str) -> str:
-    # 3 ms, and only where something went wrong.
+    # Late import, only after an error (3 ms).
     from rulec.report.text.outgoing import outgoing
     from rulec.report.text.terminal_text import visible
 
@@ -214,8 +214,8 @@ def _say(text: str) -> None:
 
 
 def _say_misuse(problem: click.ClickException) -> None:
-    """Say what is wrong with a command as it is said of sources, with how it is meant."""
-    # Colours and examples, 9 ms: only where something is wrong.
+    """Print a usage error in the format of other diagnostics, with advice."""
+    # Late import, only after an error: colours and examples (9 ms).
     from rulec.cli.usage_help import reworded, ways_out
     from rulec.report.text.terminal_text import styled, wants_color
 

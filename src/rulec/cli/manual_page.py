@@ -1,4 +1,4 @@
-"""The manual page rulec(1), from what the commands say of themselves."""
+"""The manual page rulec(1), from the commands' help texts."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from rulec.version import __version__
 
 
 def manual_page(root: click.Context) -> str:
-    """The page of a program's group of commands, in the macros of man(7).
+    """The manual page of a program's group of commands, in the macros of man(7).
 
-    It has no date: the same program has the same page.
+    It has no date, so that the same program always has the same page.
     """
     assert isinstance(root.command, click.Group), "the program has verbs"
     lines = [f'.TH RULEC 1 "" "rulec {__version__}" "User Commands"', ".SH NAME"]
@@ -50,7 +50,7 @@ _ENVIRONMENT = {
 
 
 def _command(context: click.Context) -> Iterator[str]:
-    """A command, and the commands in it."""
+    """A command, and its subcommands."""
     yield f'.SS "{_plain(context.command_path)} {_plain(_usage(context))}"'
     for number, paragraph in enumerate(cleandoc(context.command.help or "").split("\n\n")):
         if number:
@@ -70,7 +70,7 @@ def _command(context: click.Context) -> Iterator[str]:
 def _options(context: click.Context) -> Iterator[str]:
     for parameter in context.command.get_params(context):
         record = parameter.get_help_record(context)
-        # Of arguments the words above speak.
+        # Arguments are described in the text above.
         if record is not None and isinstance(parameter, click.Option):
             option, meaning = record
             yield f".TP\n.B {_plain(option)}\n{_plain(meaning)}"
@@ -85,7 +85,7 @@ def _first_line(command: click.Command) -> str:
 
 
 def _plain(text: str) -> str:
-    """A text in which nothing is taken for a request of roff."""
+    """A text with everything escaped that roff would take for a request."""
     escaped = text.replace("\\", r"\e").replace("-", r"\-").replace('"', r"\(dq")
     return "\n".join(
         rf"\&{line}" if line[:1] in (".", "'") else line for line in escaped.split("\n")

@@ -38,10 +38,10 @@ if TYPE_CHECKING:
 
 
 _REPORTS = ("html", "junit", "sarif", "svg", "xqar")
-"""Formats that people and other programs show."""
+"""Formats for people and for display in other programs."""
 
 _DATA = ("csv", "jsonl")
-"""Formats that are read again: files have names as they are, a log has them made visible."""
+"""Formats that are read again: files keep names unchanged, a log shows them escaped."""
 
 
 def open_session(at: str = "") -> rulec.Session:
@@ -51,7 +51,7 @@ def open_session(at: str = "") -> rulec.Session:
 
 def read_machines(rulebook: str, at: str = "") -> CompiledRulebook:
     """Compile a rulebook for any step; print warnings. Raises RulecError."""
-    # The tables of automata, 20 ms: not for --help.
+    # Late import, not for --help: the tables of automata (20 ms).
     from rulec.api.rulebook_compilation import machines
 
     return machines(rulebook, search_path(), print_diagnostics, at, recalls=True)
@@ -61,7 +61,7 @@ def read_machines(rulebook: str, at: str = "") -> CompiledRulebook:
 def errors_told(
     tell: Callable[[Sequence[Diagnostic]], object] = print_diagnostics,
 ) -> Iterator[None]:
-    """Run a block and tell its errors instead of raising them."""
+    """Run a block, and pass its errors to ``tell`` instead of raising them."""
     try:
         yield
     except RulecError as error:
@@ -84,7 +84,7 @@ def output_stream(to: Output) -> Iterator[tuple[IO[bytes], str]]:
 
 @contextmanager
 def _gate(stream: IO[bytes], to: Output) -> Iterator[IO[bytes]]:
-    """A stream from which nothing goes out that drives a terminal or a runner."""
+    """A stream that blocks control sequences for terminals and commands for runners."""
     if to.form in _REPORTS or (to.form in _DATA and not to.is_file):
         lines = OutgoingLines(stream, to.form)
         yield cast("IO[bytes]", lines)
@@ -109,7 +109,7 @@ def put_answer(text: str, to: Output) -> None:
 
 @contextmanager
 def answer_lines(to: Output) -> Iterator[Callable[[str], None]]:
-    """A function that takes lines: for standard output at once, for a file that appears whole.
+    """A function that takes lines: printed at once, or written to a file as a whole.
 
     Raises RulecError R0702.
     """
@@ -131,7 +131,7 @@ def line_writer(stream: IO[bytes], form: str) -> Callable[[str], None]:
 
 
 def width_of(to: Output) -> int:
-    """How wide a text may be, in characters: on a terminal that of its window."""
+    """The width of a text in characters; on a terminal that of its window."""
     return PAGE_WIDTH if to.is_file else page_width()
 
 
@@ -144,34 +144,34 @@ def print_lost(deed: str, subject: str, signal_number: int | None) -> None:
 
 
 def print_left_alone(left_alone: Sequence[LeftAlone], *, verbose: bool) -> None:
-    """Say what was not looked into: each thing by itself, or how many of each kind."""
+    """Print what was skipped: each item, or the number of each kind."""
     if verbose:
         for file in left_alone:
             print_remark(f"left alone: {file.path}: {file.why}")
     elif left_alone:
-        # Sources below folders, 5 ms: verbs without folders do without.
+        # Late import, only for verbs with folders: sources below folders (5 ms).
         from rulec.rulebook.files.source_walk import in_words
 
         print_remark(f"left alone: {in_words(left_alone)}")
 
 
 def sources_of_rulebooks(references: Sequence[str], lack: str) -> tuple[str, ...]:
-    """Rulebooks as ``rulebooks_named`` has them, none of which may be compiled.
+    """Rulebooks as from ``rulebooks_named``, refusing compiled ones.
 
-    ``lack`` is why, such as ``"cannot be audited"``.
+    ``lack`` is the reason, such as ``"cannot be audited"``.
     """
     only_sources(references, lack)
     return rulebooks_named(references)
 
 
 def rulebooks_named(references: Sequence[str]) -> tuple[str, ...]:
-    """Rulebooks by name or path, those in folders and of patterns in place of these.
+    """Rulebooks by name or path, with folders and patterns replaced by their rulebooks.
 
-    Raises RulecError R0733 where a folder has none.
+    Raises RulecError R0733 for a folder without any.
     """
     if not any(has_magic(reference) or os.path.isdir(reference) for reference in references):  # noqa: PTH112
         return tuple(references)
-    # Sources below folders, 10 ms: not for --help.
+    # Late import, not for --help: sources below folders (10 ms).
     from rulec.rulebook.batch.batch_check import named_rulebooks
 
     names, on_the_way = named_rulebooks(references, search_path(), exclusion())
@@ -182,10 +182,10 @@ def rulebooks_named(references: Sequence[str]) -> tuple[str, ...]:
 
 
 def told_apart(references: Sequence[str]) -> dict[str, str]:
-    """Rulebooks by the names that their files have without endings.
+    """Rulebooks by their files' names without extensions.
 
     Raises:
-        click.UsageError: two of them are called the same.
+        click.UsageError: two of them have the same name.
     """
     named: dict[str, str] = {}
     for reference in references:
@@ -206,10 +206,9 @@ def print_findings(
     to: Output,
     fail_on: str,
 ) -> ExitStatus:
-    """Print findings in sources, then why some could not be read; the exit status.
+    """Print findings in sources, then the errors of sources not read; returns the exit status.
 
-    ``nothing`` is what to say in full text if there are neither; ``fail_on`` is ``error`` or
-    ``warning``.
+    ``nothing`` is the text if there are neither; ``fail_on`` is ``error`` or ``warning``.
     """
     text = render(
         findings,

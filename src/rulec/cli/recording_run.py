@@ -1,4 +1,4 @@
-"""Files of recorded traffic, judged one after the other or side by side."""
+"""Files of recorded traffic, judged one after the other or in parallel."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from rulec.report.verdicts.recording_table import summary
 
 @dataclass
 class RecordingRun:
-    """Judges files of recorded traffic, and adds up what comes out."""
+    """Judges files of recorded traffic, and sums up the results."""
 
     settings: JudgeSettings
     to: VerdictOutputs
@@ -43,7 +43,7 @@ class RecordingRun:
 
     def files(self, paths: Sequence[str], jobs: Jobs) -> None:
         """Judge files, with one table for all of them if there are several."""
-        # Modules and rules stay: they need not be looked through with what is to come.
+        # Modules and rules are permanent, so later garbage collections need not visit them.
         gc.freeze()
         with _without_standard_input(paths) as (files, labels):
             self.settings = replace(self.settings, labels=labels)
@@ -54,7 +54,7 @@ class RecordingRun:
             self.to.text(f"\n{as_text(self.total, self.settings.rules, self.unread)}")
 
     def not_read(self, error: RulecError, file: str = "") -> None:
-        """Note that a file, by default the one that the error is about, could not be read."""
+        """Record that a file, by default the one that the error is about, could not be read."""
         self.complete = False
         self.complaints.add(error)
         place = error.diagnostics[0].place
@@ -62,7 +62,7 @@ class RecordingRun:
         if file not in self.unread:
             self.unread.append(file)
             if self.to.wants_findings:
-                # Findings, 20 ms: only where they are wanted.
+                # Late import, only if wanted: findings (20 ms).
                 from rulec.report.verdict_findings.findings_of_drives import not_judged_file
 
                 recording = not_judged_file(file, error, self.settings.rules.name)
@@ -72,9 +72,9 @@ class RecordingRun:
                 self.to.add(recording)
 
     def _aloud(self, files: Sequence[str], jobs: Jobs) -> Iterator[tuple[str, Piece]]:
-        """The pieces of all files, and how far it is."""
+        """The pieces of all files, with progress messages."""
         if len(files) > 1:
-            # Processes, 15 ms: not for one file.
+            # Late import, not for one file: processes (15 ms).
             from rulec.batch.recording_batch import judged_files
 
             with progress(f"judging {len(files):,} files", len(files)) as tell:
@@ -120,7 +120,7 @@ class RecordingRun:
 def _without_standard_input(
     paths: Sequence[str],
 ) -> Iterator[tuple[list[str], dict[str, str]]]:
-    """The files, standard input being written to one, and what that is called."""
+    """The files, with standard input copied to one, and the names to show for copies."""
     if STANDARD_INPUT not in paths:
         yield list(paths), {}
         return

@@ -1,4 +1,4 @@
-"""Standard input where a file is meant, which may be read more than once, or from its middle."""
+"""Standard input in place of a file, which may be read more than once, or from its middle."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from rulec.files import STANDARD_INPUT_COPY, opened
 STANDARD_INPUT = "-"
 
 _OUTPUTS = frozenset({"-o", "--output", "--save", "--witness"})
-"""Options with which ``-`` is standard output."""
+"""Options for which ``-`` means standard output."""
 
 
 def standard_input() -> IO[bytes]:
-    """Standard input, of which it is said if it cannot be read.
+    """Standard input, with an error message if it cannot be read.
 
     Raises RulecError, while it is read: R0721.
     """
@@ -52,7 +52,7 @@ class _StandardInput(io.RawIOBase):
 
 
 def file_named(argument: str) -> str:
-    """The path that an argument is; for ``-`` that of a copy, kept as long as the command runs."""
+    """The path for an argument; for ``-`` that of a copy, which exists until the command ends."""
     if argument != STANDARD_INPUT:
         return argument
     return str(click.get_current_context().with_resource(copied()))
@@ -61,13 +61,13 @@ def file_named(argument: str) -> str:
 def read_as_file(
     context: click.Context, _: click.Parameter, value: Any, ending: str = ".rules"
 ) -> Any:
-    """A callback of click: names of files, of which ``-`` is a copy of standard input.
+    """A click callback for file names, with ``-`` replaced by a copy of standard input.
 
-    Files that it refers to are looked for in the working folder. Its name has an ``ending`` unless
-    it is JSON.
+    Files that it refers to are looked up in the working folder. The copy's name has this ``ending``
+    unless it is JSON.
 
     Raises:
-        click.UsageError: standard input is asked for twice.
+        click.UsageError: standard input is requested twice.
     """
     several = value if isinstance(value, tuple) else (value,)
     if STANDARD_INPUT not in several or context.resilient_parsing:
@@ -79,7 +79,10 @@ def read_as_file(
 
 
 def not_standard_input(why: str) -> Callable[[click.Context, click.Parameter, Any], Any]:
-    """A callback of click that refuses ``-`` where standard input cannot be, saying why."""
+    """A click callback that refuses ``-`` where standard input is not possible.
+
+    ``why`` is shown.
+    """
 
     def refused(_: click.Context, __: click.Parameter, value: Any) -> Any:
         if STANDARD_INPUT in (value if isinstance(value, tuple) else (value,)):
@@ -107,7 +110,7 @@ def refuse_twice(context: click.Context) -> None:
 
 @contextmanager
 def _in_place_of_a_file(usual: str) -> Iterator[str]:
-    """The name of a file of the working folder that stands for a copy of standard input."""
+    """The name of a file in the working folder that represents a copy of standard input."""
     with copied() as copy:
         with opened(copy) as stream:
             ending = ".json" if stream.read(1 << 10).lstrip().startswith(b"{") else usual
@@ -126,7 +129,7 @@ def _in_place_of_a_file(usual: str) -> Iterator[str]:
 @contextmanager
 def copied() -> Iterator[Path]:
     """A copy of standard input, which may be read more than once, and from its middle."""
-    # Archives and random names, 4 ms: not for files.
+    # Late import, not for files: archives and random names (4 ms).
     import shutil
     from tempfile import TemporaryDirectory
 

@@ -36,18 +36,18 @@ if TYPE_CHECKING:
     from rulec.monitoring.moments.drive_facts import DriveFacts
 
 Answer = tuple[Sequence[Trace | RulecError], int, Verdict | NotJudged]
-"""Traces, which of them, and its verdict, or why there is none."""
+"""A sequence of traces, an index in it, and that trace's verdict or why there is none."""
 
 AnswerWithFacts = tuple[Answer, "DriveFacts | None"]
-"""Beside an answer what rows of drives say, if they are wanted."""
+"""An answer with the facts for rows of drives, if they are wanted."""
 
 
 @dataclass
 class TraceRun:
-    """Judges the traces of files, and adds up what comes out.
+    """Judges the traces of files, and sums up the results.
 
-    The first ``to_explain`` violations of each file are explained. ``engine`` judges instead of
-    Python's engines, and each verdict says which one did.
+    The first ``to_explain`` violations of each file are explained. ``engine`` replaces Python's
+    engines; each verdict names the one that judged it.
     """
 
     rules: CompiledRulebook
@@ -89,7 +89,7 @@ class TraceRun:
             self.to.text(verdict_report.judged_by(self.engine.judged, self.engine.compiled_by))
 
     def _ids(self, ids: set[str] | None, file: str, answer: Answer) -> set[str] | None:
-        """A file's ids so far; none once it has been said that two of its traces share one."""
+        """A file's ids so far; None once a duplicate has been reported."""
         traces, place, verdict = answer
         if ids is None or verdict.trace is None:
             return ids
@@ -113,7 +113,7 @@ class TraceRun:
         facts: DriveFacts | None,
         findings: Sequence[VerdictFinding],
     ) -> Iterator[Mapping[str, object]]:
-        """The rows of a trace, and of what was found of it, if they are wanted."""
+        """The rows of a trace and of its findings, if they are wanted."""
         own = {"file": file, "vehicle": answer.trace or ""}
         if self.to.to_rows is None:
             return
@@ -126,18 +126,18 @@ class TraceRun:
         self.total.not_judged += 1
         self.complaints.add(answer.error)
         if self.to.wants_lines:
-            # Evidence and sentences, 8 ms: only where they are wanted.
+            # Late import, only if wanted: evidence and sentences (8 ms).
             from rulec.report.verdicts import verdict_json
 
             self.to.line(verdict_json.not_judged_as_json(answer, self.rules.name))
         if self.to.wants_findings:
-            # As above: only where they are wanted.
+            # Late import, as above.
             from rulec.report.verdict_findings.findings_of_traces import not_judged_trace
 
             findings.append(not_judged_trace(file, answer, self.rules.name))
 
     def _judged(self, file: str, answer: Any, left: int, findings: list[VerdictFinding]) -> int:
-        """Say a verdict; how many violations have been explained."""
+        """Print a verdict; returns the number of violations explained."""
         traces, place, verdict = answer
         self.total.add_trace(verdict, self._names)
         self.open_hard |= any(result.strength == "hard" for result in verdict.open)
@@ -147,15 +147,15 @@ class TraceRun:
             return 0
         used = rulebook_for(traces, place, self.rules)
         explained: list[Explanation] = []
-        # A trace of a table is made only if it is looked at.
+        # Traces of a table are only made on access.
         if left and verdict.violations:
-            # As above: only where they are wanted.
+            # Late import, as above.
             from rulec.monitoring.explain.explanation import explain
 
             trace = cast("Trace", traces[place])
             explained = [explain(violation, trace, used) for violation in verdict.violations[:left]]
         if self.to.wants_lines:
-            # As above: only where they are wanted.
+            # Late import, as above.
             from rulec.report.verdicts import verdict_json
 
             says_engine = self.engine is not None
@@ -171,7 +171,7 @@ class TraceRun:
             )
             self.to.text(text)
         if self.to.wants_findings:
-            # As above: only where they are wanted.
+            # Late import, as above.
             from rulec.report.verdict_findings.findings_of_traces import trace_findings
 
             findings += trace_findings(file, traces[place], verdict, used, explained)
@@ -214,7 +214,7 @@ class TraceRun:
         for traces, answers in (judge if self.engine is None else self.engine.verify_items)(items):
             facts: Iterator[DriveFacts] = iter(())
             if self.to.to_rows is not None:
-                # What counts opportunities, 10 ms: only where rows of drives are wanted.
+                # Late import, only for rows of drives: counting opportunities (10 ms).
                 from rulec.monitoring.moments.drive_facts import facts_of_many
 
                 answers = list(answers)
@@ -226,7 +226,7 @@ class TraceRun:
 
 
 def _size(stream: IO[bytes]) -> int | None:
-    """Bytes of a file; None of what is packed."""
+    """The size of a file in bytes; None if it is compressed."""
     try:
         about = os.fstat(stream.fileno())
     except UnsupportedOperation:

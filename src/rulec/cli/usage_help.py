@@ -38,7 +38,7 @@ EXAMPLES = {
     "verify": ("rulec verify traces.jsonl -r de", _TRACES, _RECORDINGS),
     "verify-compiled": ("rulec verify-compiled build/de/de.json", "`rulec compile` writes one"),
 }
-"""By verb: a command as it may be given, and where what it reads comes from."""
+"""For each verb an example command, and where its input comes from."""
 
 _EACH_SCENARIO = "`for s in s2 s3; do rulec {} $s -r de -o $s.{}; done`"
 _ONE_EACH = {
@@ -50,7 +50,7 @@ _ONE_EACH = {
     "monitor": "give each the states: `tee >(rulec monitor fr) < states.jsonl | rulec monitor de`",
     "traces": _EACH_SCENARIO.format("traces", "jsonl"),
 }
-"""By verb that answers one question with one file: how several are asked."""
+"""For each verb with one question and one output file, how to ask several questions."""
 
 _OF_OTHER_VERBS = {
     "--coverage": "`rulec test` has it",
@@ -58,7 +58,7 @@ _OF_OTHER_VERBS = {
     "--lock": "`rulec check` has it",
     "--watch": "`rulec check` and `rulec test` have it",
 }
-"""Options that somebody may look for at another verb."""
+"""Options that users may look for at the wrong verb."""
 
 _NO_CHOICE = re.compile(r"'(?P<given>.*)' is not one of ")
 _NO_NUMBER = re.compile(r"'(?P<given>.*)' is not a valid integer")
@@ -68,7 +68,7 @@ _NO_COMMAND = re.compile(r"No such command '(?P<given>.*?)'\.")
 
 
 def reworded(problem: click.ClickException) -> str:
-    """The message, in the words that are used for sources, with what may be meant."""
+    """The message, in the words used for sources, with a suggestion."""
     message = problem.format_message()
     if isinstance(problem, click.NoSuchOption) and problem.ctx is not None:
         known = [option for parameter in problem.ctx.command.params for option in parameter.opts]
@@ -82,7 +82,7 @@ def reworded(problem: click.ClickException) -> str:
                 path = problem.ctx.command_path
                 return f"the rulebook stands without `{problem.option_name}`, as in `{path} de`"
         fitting = [option for option in known if option.startswith(problem.option_name)]
-        # Without their dashes, which all have and which say nothing of what is meant.
+        # Compared without dashes, which all options have.
         by_name = {option.lstrip("-"): option for option in known}
         near = nearest_name(problem.option_name.lstrip("-"), by_name)
         likely = fitting[0] if fitting else by_name.get(near or "")
@@ -139,7 +139,7 @@ def reworded(problem: click.ClickException) -> str:
 
 
 def _as_typed(param: click.Parameter, problem: click.ClickException) -> str:
-    """The name of an option that the command line has, of those that it goes by."""
+    """The name of an option as it was typed, among its names."""
     context = getattr(problem, "ctx", None)
     given: tuple[str, ...] = () if context is None else context.find_root().obj or ()
     typed = {word.partition("=")[0] for word in given}
@@ -148,7 +148,7 @@ def _as_typed(param: click.Parameter, problem: click.ClickException) -> str:
 
 
 def ways_out(problem: click.UsageError) -> Iterator[str]:
-    """Examples of the command, where it lacks something."""
+    """Examples of the command, if it lacks an argument."""
     context = problem.ctx
     if context is None:
         return
@@ -173,8 +173,8 @@ def ways_out(problem: click.UsageError) -> Iterator[str]:
 
 
 def _rulebook_hint(context: click.Context) -> tuple[str, ...]:
-    """The argument that may be the rulebook, given without ``-r``."""
-    # Looking for files and its messages, 3 ms: only where something is wrong.
+    """A hint naming the argument that may be the rulebook, given without ``-r``."""
+    # Late import, only after an error: file search and its messages (3 ms).
     from rulec.rulebook.files.search_path import available_rulebooks
 
     given: tuple[str, ...] = context.find_root().obj or ()
@@ -183,10 +183,10 @@ def _rulebook_hint(context: click.Context) -> tuple[str, ...]:
 
 
 def unknown_verb(name: str) -> str:
-    """What is said of a verb that there is not."""
+    """The message for an unknown verb."""
     verb = _OTHER_WORDS.get(name.casefold()) or nearest_name(name, VERBS)
     way_out = f"did you mean `{verb}`?" if verb else "`rulec help` lists them"
-    # Looking for files and its messages, 3 ms: only where something is wrong.
+    # Late import, only after an error: file search and its messages (3 ms).
     from rulec.rulebook.files.search_path import available_rulebooks
 
     if name.endswith(".rules") or name in available_rulebooks():
@@ -201,7 +201,7 @@ _OTHER_VALUES = {
     **dict.fromkeys(("c++", "cpp", "cxx"), "c"),
     **dict.fromkeys(("nusmv", "nuxmv", "prism", "smv"), "ltl"),
 }
-"""What may be given for a value of an option or an argument, where it is one of its values."""
+"""Words that users may type instead of a valid value of an option or argument."""
 
 _OTHER_WORDS = {
     "analyse": "analyze",
@@ -221,4 +221,4 @@ _OTHER_WORDS = {
     "validate": "check",
     "version": "--version",
 }
-"""What other programs call what a verb does."""
+"""Names in other programs for what a verb does."""

@@ -1,4 +1,4 @@
-"""The verbs in groups, as the help shows them, and what each does in a line."""
+"""The verbs in groups, as in the help text, each with a one-line description."""
 
 from __future__ import annotations
 
@@ -49,4 +49,4 @@ WITH_COMPILED = (
     *("draw", "envelopes", "fleet", "maneuvers", "monitor", "show", "traces", "verify"),
     "verify-compiled",
 )
-"""The verbs that take compiled rulebooks."""
+"""The verbs that accept compiled rulebooks."""

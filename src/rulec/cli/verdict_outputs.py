@@ -19,18 +19,18 @@ if TYPE_CHECKING:
     from rulec.report.verdict_findings.verdict_finding import RecordingFindings
 
 FORMATS: Endings = {**endings_of("text", "json"), **ENDINGS}
-"""Text, verdicts as a line of JSON for each trace or drive, or findings in many formats."""
+"""Text, verdicts as one line of JSON per trace or drive, or findings in many formats."""
 
 
 class VerdictOutputs:
-    """Takes what there is to say, and writes what each output wants of it.
+    """Takes everything to be written, and passes to each output its part.
 
-    Where no output is standard output, that shows the text, but for what a file has of it.
+    If no output is standard output, text not written to a file is printed there.
     """
 
     def __init__(self) -> None:
         self.to_rows: DriveRows | None = None
-        """What makes rows of drives and rules, if tables of findings are to have them."""
+        """The builder of rows of drives and rules, if tables of findings include them."""
         self._text: list[Callable[[str], None]] = []
         self._lines: list[Callable[[str], None]] = []
         self._writers: list[tuple[FindingWriter, str]] = []
@@ -38,17 +38,17 @@ class VerdictOutputs:
 
     @property
     def wants_text(self) -> bool:
-        """True if somebody reads the text."""
+        """Whether an output needs the text."""
         return bool(self._text)
 
     @property
     def wants_lines(self) -> bool:
-        """True if somebody reads JSON."""
+        """Whether an output needs JSON lines."""
         return bool(self._lines)
 
     @property
     def wants_findings(self) -> bool:
-        """True if somebody reads findings."""
+        """Whether an output needs findings."""
         return bool(self._writers)
 
     def text(self, text: str) -> None:
@@ -72,15 +72,15 @@ class VerdictOutputs:
 def verdict_outputs(
     to: Sequence[Output], rules: CompiledRulebook, *, with_rows: bool = False
 ) -> Iterator[VerdictOutputs]:
-    """Outputs that are written whole when the block succeeds, and not at all else.
+    """Outputs that are written completely when the block succeeds, and otherwise not at all.
 
-    ``with_rows``: tables of findings have rows of drives and rules, too.
+    ``with_rows``: whether tables of findings also have rows of drives and rules.
 
     Raises RulecError R0702 if a file cannot be written, R0706.
     """
     columns: Mapping[str, type] | None = None
     if with_rows:
-        # Arrow: not for --help.
+        # Late import, not for --help: Arrow.
         from rulec.fleet.finding_columns import COLUMNS
 
         columns = COLUMNS
@@ -94,7 +94,7 @@ def verdict_outputs(
                 lines = outputs._text if output.form == "text" else outputs._lines
                 lines.append(files.enter_context(answer_lines(output)))
             else:
-                # Documents in JSON, 12 ms: only where there are findings to be written.
+                # Late import, only if there are findings to write: JSON documents (12 ms).
                 from rulec.report.verdict_findings.verdict_finding import FindingContext
 
                 stream, name = files.enter_context(output_stream(output))

@@ -20,7 +20,7 @@ from rulec.settings import FILE_NAME, exclusion, search_path
 _LOOK_EVERY_S = 0.5
 
 _CLEAR = "\x1b[2J\x1b[3J\x1b[H"
-"""Empties a terminal and what has scrolled away, and begins at its top."""
+"""Clears a terminal and its scrollback, and moves the cursor to the top."""
 
 watch_option = click.option(
     "--watch",
@@ -30,7 +30,7 @@ watch_option = click.option(
 
 
 def watch(run: Callable[[], object], references: Sequence[str]) -> NoReturn:
-    """Run something now, and again after each change of what the references may depend on.
+    """Run something now, and again after each change of files that the references depend on.
 
     Raises:
         click.UsageError: standard input is among them.
@@ -49,7 +49,7 @@ def watch(run: Callable[[], object], references: Sequence[str]) -> NoReturn:
 
 
 def _state(references: Sequence[str]) -> dict[Path, tuple[int, int]]:
-    """The files that count, each with the time of its last change (ns) and its size."""
+    """The relevant files, each with the time of its last change (ns) and its size."""
     state: dict[Path, tuple[int, int]] = {}
     for path in _files(references):
         with suppress(OSError):
@@ -59,8 +59,8 @@ def _state(references: Sequence[str]) -> dict[Path, tuple[int, int]]:
 
 
 def _files(references: Sequence[str]) -> Iterable[Path]:
-    """The sources that are meant, those beside them and on the search path, and the settings."""
-    # Sources below folders, 10 ms: not for --help.
+    """The sources referred to, those beside them and on the search path, and the settings."""
+    # Late import, not for --help: sources below folders (10 ms).
     from rulec.rulebook.batch.batch_check import find_sources
     from rulec.rulebook.files.source_walk import rules_files
 

@@ -1,4 +1,4 @@
-"""``rulec analyze``: what the automata of rules tell about rulebooks."""
+"""``rulec analyze``: defects of rulebooks, found by their rules' automata."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from rulec.report.text.terminal_text import counted
 from rulec.settings import search_path
 
 _LONG_S = 20
-"""After so many seconds without a terminal it is said that the analysis goes on."""
+"""Without a terminal, a message says after this many seconds that the analysis goes on."""
 
 
 @click.command(cls=Verb)
@@ -55,7 +55,7 @@ def command(
 
     Exit status: 0 no mistakes found, 1 mistakes found, 2 a question could not be answered.
     """
-    # Automata and their analysis, 150 ms: not for --help.
+    # Late import, not for --help: automata and their analysis (150 ms).
     from rulec.analysis.lint.finding_messages import NOT_DECIDED
     from rulec.batch.spreading import spreading
     from rulec.rulebook.batch.answer_cache import AnswerQuestion
@@ -91,7 +91,7 @@ def command(
 
 
 def _patience(rulebook: str, tell: Callable[[float], object]) -> Callable[[float], object]:
-    """Tell a terminal how far one is; elsewhere say it once, if it takes long."""
+    """A listener that shows progress on a terminal, elsewhere one message if it takes long."""
     if sys.stderr.isatty():
         return tell
     until = monotonic() + _LONG_S

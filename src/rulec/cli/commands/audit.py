@@ -1,4 +1,4 @@
-"""``rulec audit``: what rulebooks rest on."""
+"""``rulec audit``: the basis of rulebooks."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def command(
 
     Exit status: 0 done, 1 a finding named by --fail-on, 2 a rulebook could not be read.
     """
-    # Rulebooks and their automata, 180 ms: not for --help.
+    # Late import, not for --help: rulebooks and their automata (180 ms).
     from rulec.analysis.audit.rulebook_audit import compare_audits
     from rulec.analysis.audit.saved_audit import read_audits
     from rulec.report.rulebooks.audit_report import render

@@ -73,13 +73,13 @@ def command(
     if lock and "-" in sources:
         raise click.UsageError("`-` is standard input; a lock is of files")
 
-    # Rulebooks and what is remembered of them, 10 ms: not for --help.
+    # Late import, not for --help: rulebooks and the cache (10 ms).
     from rulec.rulebook.batch.shipped_lock import not_as_locked, write_lock
 
     def run() -> int:
         done = _checked(sources, at, recalls=not no_cache)
         if fix and any(finding.fix for finding in done.findings):
-            # The formatter, 20 ms: only where something is to be written.
+            # Late import, only if something is written: the formatter (20 ms).
             from rulec.rulebook.batch.batch_fix import write_fixes
 
             number, changed = write_fixes(done.files, done.findings)
@@ -119,7 +119,7 @@ def _nothing_found(done: Checked) -> str:
 
 
 def _checked(sources: tuple[str, ...], at: str, *, recalls: bool) -> Checked:
-    # Rulebooks and what is remembered of them, 10 ms: not for --help.
+    # Late import, not for --help: rulebooks and the cache (10 ms).
     from rulec.rulebook.batch.batch_check import check
 
     return check(sources, _standard_input, search_path(), at, recalls=recalls, excluded=exclusion())

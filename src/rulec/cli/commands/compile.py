@@ -1,4 +1,4 @@
-"""``rulec compile``: a rulebook into automata files."""
+"""``rulec compile``: compile a rulebook into automata files."""
 
 from __future__ import annotations
 
@@ -106,16 +106,16 @@ def command(
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
     refuse_standard_output(output)
     _refuse_file(output)
-    # Compiling may take minutes.
+    # Checked first, since compiling may take minutes.
     refuse_unwritable(Path(output), is_folder=True)
     for rulebook in rulebooks:
         if "/" in rulebook and Path(rulebook).suffix in _WRITTEN:
-            # What is written is called after rules, which are not known yet.
+            # Output files are named after rules, which are not known yet.
             refuse_overwriting([Output(str(Path(output, Path(rulebook).name)), "")], [rulebook])
     session = open_session(at)
     step_s = steps_s[0] if steps_s else None
     books = rulebooks_named(rulebooks)
-    # Several call their rules the same.
+    # Several rulebooks may have rules of the same name.
     folders = {book: Path(output, name) for name, book in told_apart(books).items()}
     if books == rulebooks and len(books) == 1:
         folders = dict.fromkeys(books, Path(output))
@@ -147,7 +147,7 @@ def command(
 
 
 def _refuse_file(output: str) -> None:
-    """Refuse what names one of the files that are written, where it would be a folder for them."""
+    """Refuse the name of one of the files to be written, where it would become their folder."""
     path = Path(output)
     if path.suffix in _FILES and not path.is_dir():
         raise click.UsageError(
@@ -157,7 +157,7 @@ def _refuse_file(output: str) -> None:
 
 
 def _tell_others(folder: Path, written: Sequence[Path]) -> None:
-    """Say which other automata a folder has, which who reads it could not tell from these."""
+    """Warn about other automata in the folder, which a reader could not distinguish from these."""
     others = sorted({path.name for path in folder.glob("*.hoa")} - {path.name for path in written})
     if others:
         print_remark(
@@ -166,8 +166,8 @@ def _tell_others(folder: Path, written: Sequence[Path]) -> None:
 
 
 def _tell_step(compiled: CompiledRulebook) -> None:
-    """Say which step a monitor has that nobody has asked for, where a rule depends on it."""
-    # Rules, 100 ms: not for --help.
+    """Name the step of a monitor if a rule depends on it and the user did not give it."""
+    # Late import, not for --help: rules (100 ms).
     from rulec.logic.printing import number_in_words
 
     steps = [rule.step_s for rule in compiled.at_one_step().rules if rule.step_s is not None]

@@ -23,8 +23,8 @@ def command(context: click.Context, shell: str) -> None:
     kind = get_completion_class(shell)
     assert kind is not None, "these shells are click's own"
     program = kind(context.find_root().command, {}, "rulec", "_RULEC_COMPLETE")
-    # Not `source`, which for bash asks the bash of this machine for its version first.
+    # Not `source()`, which for bash first runs this machine's bash to get its version.
     script = (program.source_template % program.source_vars()).strip()
-    # Of an answer such as `plain,check<tab>Check rulebooks, and …` only the first comma separates;
-    # click's script for fish drops what is behind the second.
+    # In an answer such as `plain,check<tab>Check rulebooks, and …` only the first comma separates;
+    # click's script for fish would drop the text after the second.
     print_result(script.replace('string split ","', 'string split --max 1 ","'))

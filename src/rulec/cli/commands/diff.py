@@ -108,7 +108,7 @@ def command(
             if len(rulebooks) > 2
             else f"with which rulebook is it to be compared? As in `rulec diff {books or 'de'} nl`"
         )
-    # Files and what is known of them, 10 ms: not for --help.
+    # Late import, not for --help: files and the cache (10 ms).
     from rulec.rulebook.batch.answer_cache import AnswerQuestion
 
     two = TwoBooks(patterns, paired, step_s, n_witnesses)
@@ -135,8 +135,8 @@ def _difference(
     at: str,
     warned: list[Diagnostic],
 ) -> RulebookDiff:
-    """The differences of two rulebooks; what is odd in these is printed, and ``warned`` of."""
-    # Rulebooks and their automata, 140 ms: not for what is known.
+    """The differences of two rulebooks; their warnings are printed, and added to ``warned``."""
+    # Late import, not for cached results: rulebooks and their automata (140 ms).
     from rulec.rulebook.loader import load_rulebook
 
     def warn(diagnostics: Sequence[Diagnostic]) -> None:
@@ -161,14 +161,14 @@ def _difference(
 
 
 def _text_of(difference: RulebookDiff, form: str) -> str:
-    # Rulebooks and their automata, 140 ms: not for what is known.
+    # Late import, not for cached results: rulebooks and their automata (140 ms).
     from rulec.report.rulebooks import diff_formats
 
     return diff_formats.render(difference, form)
 
 
 def _write_witnesses(difference: RulebookDiff, path: str) -> None:
-    # Traces' formats, 30 ms: not for what is known.
+    # Late import, not for cached results: traces' formats (30 ms).
     from rulec.trace.formats.json_lines import write_traces
 
     with output_stream(Output(path, "jsonl")) as (stream, name):
@@ -177,7 +177,7 @@ def _write_witnesses(difference: RulebookDiff, path: str) -> None:
 
 
 class TwoBooks(NamedTuple):
-    """What a comparison of two rulebooks is asked for."""
+    """The request for a comparison of two rulebooks."""
 
     patterns: tuple[str, ...]
     paired: tuple[str, ...]
@@ -186,7 +186,7 @@ class TwoBooks(NamedTuple):
 
 
 class AllPairs(NamedTuple):
-    """What an overview of many rulebooks is asked for."""
+    """The request for an overview of many rulebooks."""
 
     patterns: tuple[str, ...]
     step_s: Fraction | None
@@ -196,7 +196,7 @@ class AllPairs(NamedTuple):
 
 def _compared(rulebooks: Sequence[str], pairs: AllPairs, to: Output, *, recalls: bool) -> int:
     """Write the overview of these rulebooks, or of all, and return the status."""
-    # Files and what is known of them, 10 ms: not for two.
+    # Late import, not for two rulebooks: files and the cache (10 ms).
     from rulec.rulebook.batch.answer_cache import AnswerQuestion
     from rulec.rulebook.files.search_path import available_rulebooks
 
@@ -223,11 +223,11 @@ def _compared(rulebooks: Sequence[str], pairs: AllPairs, to: Output, *, recalls:
 def _matrix(
     names: Sequence[str], pairs: AllPairs, *, is_all: bool
 ) -> tuple[str | None, list[str], bool, bool, list[str]]:
-    """The overview, who was left out, whether it is complete and uniform, and the files read.
+    """The overview, the rulebooks left out, whether it is complete and uniform, and the files read.
 
-    There is none of fewer than two rulebooks.
+    The overview is None for fewer than two rulebooks.
     """
-    # Rulebooks and their automata, 140 ms: not for what is known.
+    # Late import, not for cached results: rulebooks and their automata (140 ms).
     from rulec.analysis.diff.comparison_matrix import comparison_matrix, steps
     from rulec.report.rulebooks import matrix_report
     from rulec.rulebook.loader import read_rulebook
@@ -238,7 +238,7 @@ def _matrix(
             read.append(read_rulebook(name, search_path(), pairs.at))
     books = [loaded.rulebook for loaded in read]
     _refuse_unmatched(pairs.patterns, books)
-    # Treaties before those that build upon them, so that theirs is law A.
+    # Treaties before the rulebooks that extend them, so that the treaty is law A.
     books.sort(key=lambda book: len(book.extends))
     alone = []
     if is_all:
@@ -256,7 +256,7 @@ def _matrix(
 
 
 def _refuse_unmatched(patterns: Sequence[str], books: Sequence[Rulebook]) -> None:
-    """Refuse a pattern like which no rule is called: that nothing differs is no answer to it."""
+    """Refuse a pattern that matches no rule: reporting no difference would be misleading."""
     known = {rule.name for book in books for rule in book.rules}
     for pattern in patterns:
         if not any(fnmatchcase(name, pattern) for name in known):
@@ -268,7 +268,7 @@ def _refuse_unmatched(patterns: Sequence[str], books: Sequence[Rulebook]) -> Non
 
 
 def _pairs(texts: Sequence[str], books: Sequence[Rulebook]) -> dict[str, str]:
-    """Names of rules of the first by those of the second, from ``A=B``."""
+    """Pairs of rule names from texts ``A=B``: a rule of the first, one of the second rulebook."""
     pairs: dict[str, str] = {}
     for text in texts:
         names = tuple(name.strip() for name in text.split("="))

@@ -122,7 +122,7 @@ def trace(
     If no rule is violated, the values that any rule reads are drawn. A violation is marked at the
     state where it is decided, with the rule and its article.
     """
-    # Verdicts and pictures, 150 ms: not for --help.
+    # Late import, not for --help: verdicts and pictures (150 ms).
     from rulec.api.pictures import trace_drawing
     from rulec.monitoring.verify import rulebook_for_trace
 
@@ -183,7 +183,7 @@ def drive(
     FILE is recorded traffic, in one of `rulec formats`. A picture shows the moment of the first
     violation; an HTML page plays the whole drive and lists all violations.
     """
-    # Recordings, verdicts and pictures, 400 ms: not for --help.
+    # Late import, not for --help: recordings, verdicts and pictures (400 ms).
     from rulec.api.pictures import drive_drawing
     from rulec.recordings.recording_files import read_recording
 
@@ -213,7 +213,7 @@ def scene(layers: tuple[int, ...], to: Output, **options: Any) -> None:
     With a rulebook, the cells of the cheapest satisfying maneuver are highlighted; their bounds are
     its envelope. An HTML page has a time slider.
     """
-    # Cells, maneuvers and pictures, 150 ms: not for --help.
+    # Late import, not for --help: cells, maneuvers and pictures (150 ms).
     from rulec.api.pictures import scene_drawing
 
     graph, maneuvers, maneuver = _judged(**options)
@@ -234,14 +234,14 @@ def graph(to: Output, **options: Any) -> None:
     With a rulebook, the edges of satisfying maneuvers are drawn differently from those of rejected
     ones, and the cheapest satisfying maneuver is highlighted.
     """
-    # As for ``scene``.
+    # Late import, as for ``scene``.
     from rulec.api.pictures import graph_drawing
 
     _write(graph_drawing(*_judged(**options)), to)
 
 
 def _trace(file: str, trace_id: str | None, form: Format | None) -> Trace:
-    # The formats of traces, 20 ms: not for --help.
+    # Late import, not for --help: the formats of traces (20 ms).
     from rulec.trace.formats.trace_files import read_traces
 
     names: list[str] = []
@@ -270,7 +270,7 @@ def _only(rules: CompiledRulebook, patterns: tuple[str, ...]) -> CompiledRuleboo
 def _judged(
     scenario: str, rulebook: str | None, number: int | None, at: str, **options: Any
 ) -> Judged:
-    """The graph, with a rulebook its maneuvers, and the one shown."""
+    """The graph, its maneuvers if there is a rulebook, and the maneuver shown."""
     if rulebook is None:
         if number is not None:
             raise click.UsageError("`--maneuver` takes a rulebook: give one with `-r R`.")
@@ -288,7 +288,7 @@ def _judged(
     maneuver = None
     legal = maneuvers.satisfying + maneuvers.open
     if place <= min(legal, sys.maxsize):
-        # As `maneuvers --list` has them: where ego's motion has bounds those that it can drive
+        # As in `maneuvers --list`: if ego's motion has bounds, only drivable maneuvers
         maneuver = next(islice(maneuvers.cheapest(place, perhaps=True), place - 1, None), None)
     if maneuver is None and number is not None:
         why = f"{shown_count(legal)} satisfy the rulebook{', or may' if maneuvers.open else ''}"
@@ -299,7 +299,7 @@ def _judged(
 
 
 def _write(drawing: Drawing, to: Output, theme: Theme = "auto") -> None:
-    # Fonts and layout, 5 ms: not for --help.
+    # Late import, not for --help: fonts and layout (5 ms).
     from rulec.report.pictures.drawing.picture_formats import as_bytes
 
     data = as_bytes(drawing, to.form, to.path, theme)

@@ -54,7 +54,7 @@ def command(
     Exit status: 0 there is a satisfying or open maneuver, 1 there is none, 2 the scenario could not
     be evaluated.
     """
-    # Maneuvers and the formats of tables, 100 ms: not for --help.
+    # Late import, not for --help: maneuvers and the formats of tables (100 ms).
     from rulec.report.maneuvers.envelope_table import write_envelopes
 
     rules = read_machines(rulebook, at)

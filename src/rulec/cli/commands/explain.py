@@ -1,4 +1,4 @@
-"""``rulec explain``: what the code of a message, or a word of a vocabulary, means."""
+"""``rulec explain``: the meaning of a message's code, or of a word of a vocabulary."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rulec.rulebook.word_search import FoundWord
 
 _ALIKE = 0.75
-"""As of names in formulas: what is less alike is seldom a slip, such as `trikk` of `truck`."""
+"""As for names in formulas: less similar words are seldom slips, such as `trikk` for `truck`."""
 
 
 @click.command(cls=Verb)
@@ -61,7 +61,7 @@ def command(names: tuple[str, ...], every: bool, to: Output) -> None:
 
 
 def _words(name: str) -> Sequence[FoundWord]:
-    # Parsing vocabularies, 60 ms: only for what is no code.
+    # Late import, only for names that are not codes: parsing vocabularies (60 ms).
     from rulec.rulebook.word_search import find_word
 
     words = find_word(name, search_path())
@@ -73,7 +73,7 @@ def _words(name: str) -> Sequence[FoundWord]:
 def _texts(words: Sequence[FoundWord], form: str) -> list[str]:
     if not words:
         return []
-    # The same: codes alone need none of it.
+    # Late import, as above: not needed for codes.
     from rulec.report.rulebooks import word_texts
 
     return [*map(word_texts.as_text if form == "text" else word_texts.as_markdown, words)]
@@ -83,19 +83,19 @@ def _as_json(codes: Sequence[Code], words: Sequence[FoundWord]) -> str:
     if words:
         if codes:
             raise click.UsageError("as JSON codes and words are two lists; ask for either")
-        # As above.
+        # Late import, as above.
         from rulec.report.rulebooks.word_texts import words_as_json
 
         return words_as_json(words)
-    # Only this format needs msgspec, 8 of the 54 ms that the command takes.
+    # Late import, only for this format: msgspec (8 of the command's 54 ms).
     from rulec.report.findings.diagnostics_json import codes_as_json
 
     return codes_as_json(codes)
 
 
 def _way_out(name: str) -> str:
-    """Where something else of this name is explained, or a code or a word that may be meant."""
-    # Looking for files and their rules, 60 ms: only for what is neither a code nor a word.
+    """Where another thing of this name is explained, or a code or word that may be meant."""
+    # Late import, only for unknown names: file search and their rules (60 ms).
     from rulec.rulebook.files.catalogue import rulebooks_with_rule
     from rulec.rulebook.files.search_path import available_rulebooks
     from rulec.rulebook.files.words_in_files import words_of_vocabularies

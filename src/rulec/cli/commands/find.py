@@ -90,7 +90,7 @@ def command(
 
     Exit status: 0, or 2 if a file or a trace could not be read.
     """
-    # Formats of recordings, the language and what shows moments, 300 ms: not for --help.
+    # Late import, not for --help: formats, the language and display of moments (300 ms).
     from rulec.recordings.recording_inputs import input_files
     from rulec.report.moments import moment_rows
     from rulec.report.verdict_findings.finding_tables import RowWriter
@@ -151,8 +151,8 @@ def command(
 def _moments(
     query: FormulaQuery, paths: tuple[str, ...], egos: tuple[str, ...], options: dict[str, Any]
 ) -> Iterator[DriveMoments | RulecError]:
-    """The moments of all drives of all files, and why some could not be read."""
-    # As above: not for --help.
+    """The moments of all drives of all files, and the errors of those that could not be read."""
+    # Late import, as above.
     from rulec.extraction.moment_search import in_recordings, in_traces
     from rulec.recordings.recording_files import is_recording, read_recordings
     from rulec.trace.formats.trace_files import format_of, read_chunks

@@ -1,4 +1,4 @@
-"""``rulec fleet``: all drives of many files judged, on an engine that there is."""
+"""``rulec fleet``: judge all drives of many files, on a chosen engine."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def command(
     Exit status: 0 no hard rule is violated, 1 some are, 2 a file, recording or trace could not be
     judged, or no drive could.
     """
-    # numpy, shapely and formats of recordings, 250 ms: not for --help.
+    # Late import, not for --help: NumPy, shapely and formats of recordings (250 ms).
     from rulec.fleet.runs.fleet_run import FleetSettings, run_fleet
     from rulec.fleet.runs.fleet_summary import as_text, compared
 

@@ -1,4 +1,4 @@
-"""``rulec fmt``: rulebooks and vocabularies in their one canonical form."""
+"""``rulec fmt``: rulebooks and vocabularies in their canonical form."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -
     Exit status: 0 done, 1 --check or --diff found something to change, 2 a file could not be
     formatted.
     """
-    # The parser of rulebooks, 75 ms: not for --help.
+    # Late import, not for --help: the parser of rulebooks (75 ms).
     from rulec.rulebook.batch.batch_format import format_files, formatted, replace_files
 
     writes = not (check or diff)
@@ -53,7 +53,7 @@ def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -
             raise click.UsageError("`-` is standard input and stands alone")
         file = formatted("standard input", None, standard_input().read(MAX_SOURCE_BYTES + 1))
         if writes:
-            # Not as text: in the terminal's encoding it might be another one.
+            # Written as bytes: the terminal's encoding might change the text.
             sys.stdout.buffer.write(file.after)
             return ExitStatus.OK
         _show([file] if file.changed else [], diff=diff)

@@ -1,4 +1,4 @@
-"""``rulec formats``: the formats of recordings and maps, and what each can tell."""
+"""``rulec formats``: the formats of recordings and maps, and the signals they can provide."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def command(
     With --words also the words that each format can provide to a rulebook. A particular file may
     provide fewer; `rulec audit R --source FILE` lists those.
     """
-    # Words that are derived from recordings, and msgspec, 250 ms: not for --help.
+    # Late import, not for --help: signals derived from recordings, and msgspec (250 ms).
     from rulec.report.recordings import format_listing
 
     every = rulec.formats()

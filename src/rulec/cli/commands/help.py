@@ -1,4 +1,4 @@
-"""``rulec help``: what `--help` shows, asked for by a verb's name."""
+"""``rulec help``: the text of `--help` for a verb given by name."""
 
 from __future__ import annotations
 

@@ -29,11 +29,11 @@ def command(*, editor: str | None, stdio: bool) -> int:  # noqa: ARG001 - it doe
     if editor is not None:
         click.echo(editor_settings(editor), nl=False)
         return ExitStatus.OK
-    # The message, 5 ms: not for --help.
+    # Late import, not for --help: the message (5 ms).
     from rulec.language_server.language_server_messages import no_pygls
 
     try:
-        # The server and the protocol's types, 200 ms: not for --help.
+        # Late import, not for --help: the server and the protocol's types (200 ms).
         from rulec.language_server.server import serve
     except ModuleNotFoundError as problem:
         if (problem.name or "").partition(".")[0] not in ("pygls", "lsprotocol", "cattrs"):

@@ -19,7 +19,7 @@ def command(context: click.Context, to: Output) -> None:
     rulec man -o ~/.local/share/man/man1/rulec.1    for `man rulec`
     rulec man | man -l -                            to read it at once
     """  # noqa: D301 - click reads the backspace
-    # Only for the page itself.
+    # Late import, only for the page itself.
     from rulec.cli.manual_page import manual_page
 
     put_answer(manual_page(context.find_root()), to)

@@ -102,7 +102,7 @@ def command(
     Exit status: 0 each scenario has a satisfying or open maneuver, 1 some scenario has none, 2 a
     scenario could not be evaluated, or no hard rule could be judged.
     """
-    # Maneuvers, 130 ms: not for --help.
+    # Late import, not for --help: maneuvers (130 ms).
     from rulec.report.maneuvers.maneuver_table import ManeuverCounts
     from rulec.report.maneuvers.maneuver_table import as_text as table_of
 
@@ -113,7 +113,7 @@ def command(
     machines = [read_machines(book, at) for book in dict.fromkeys(books)]
     past = None
     if after is not None:
-        # Monitors and formats of traces, 40 ms: only where there is a past.
+        # Late import, only with a past: monitors and formats of traces (40 ms).
         from rulec.planning.trace_history import read_past
 
         past = read_past(after)
@@ -137,7 +137,7 @@ def command(
                 counts.append(ManeuverCounts.of(path, maneuvers))
                 failed |= not (maneuvers.satisfying + (0 if strict else maneuvers.open))
         if not counts:
-            # No file is written.
+            # Raised so that no file is written.
             raise click.exceptions.Exit(ExitStatus.NOT_ANSWERED)
         if several and to.form == "text":
             write(table_of(counts))
@@ -149,8 +149,8 @@ def command(
 
 
 def _inputs(scenarios: Sequence[str]) -> InputFiles:
-    """The scenarios that are meant by names, files, folders and patterns."""
-    # Scenarios' formats and those of recordings, 80 ms: not for --help.
+    """The scenarios given by names, files, folders and patterns."""
+    # Late import, not for --help: scenarios' formats and those of recordings (80 ms).
     from rulec.recordings.recording_inputs import InputFiles, input_files
     from rulec.scenario import available_scenarios
 
@@ -171,11 +171,11 @@ def _shown(
     maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float, form: str, *, several: bool
 ) -> str:
     if form == "json":
-        # Its types take 2 ms to make, for which a text need not wait.
+        # Late import, not for text: creating its types takes 2 ms.
         from rulec.report.maneuvers.maneuver_json import as_json
 
         return as_json(maneuvers, answers, seconds)
-    # Maneuvers, 130 ms: they have been found.
+    # Late import, already loaded here: maneuvers (130 ms).
     from rulec.report.maneuvers.maneuver_report import as_text
 
     return as_text(maneuvers, answers, seconds) + ("\n" if several else "")
@@ -183,7 +183,7 @@ def _shown(
 
 @dataclass(frozen=True, slots=True)
 class ManeuverQuestions:
-    """What is asked about the maneuvers of a scenario besides their numbers."""
+    """The questions about a scenario's maneuvers besides their numbers."""
 
     n_listed: int | None
     n_ranked: int | None
@@ -192,8 +192,11 @@ class ManeuverQuestions:
     worlds: bool
 
     def answered(self, maneuvers: Maneuvers, form: str) -> ManeuverAnswers:
-        """The answers, in JSON also what only uncertain scenes have in text."""
-        # Maneuvers, 130 ms: they have been found.
+        """The answers.
+
+        In JSON also those that a text only has for scenes with several predictions.
+        """
+        # Late import, already loaded here: maneuvers (130 ms).
         from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
 
         listed = None if self.n_listed is None else maneuvers.cheapest(self.n_listed, perhaps=True)
@@ -229,7 +232,7 @@ class ManeuverQuestions:
 def _chances(
     maneuvers: Maneuvers, shown: Iterable[Maneuver]
 ) -> dict[tuple[int, ...], RuleProbabilities]:
-    # Probabilities, 15 ms: only where others may go on in several ways.
+    # Late import, only if obstacles have several predictions: probabilities (15 ms).
     from rulec.planning.probability.rule_probability import rule_probabilities
 
     return {maneuver.nodes: rule_probabilities(maneuvers, maneuver) for maneuver in shown}

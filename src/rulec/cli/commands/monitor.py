@@ -1,4 +1,4 @@
-"""``rulec monitor``: a running trace judged state by state."""
+"""``rulec monitor``: judge a running trace state by state."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def command(
     state could not be judged, or none arrived. With --save the trace is taken to continue, so
     pending rules do not count as violated.
     """
-    # Monitors and the reader of states, 60 ms: not for --help.
+    # Late import, not for --help: monitors and the reader of states (60 ms).
     from rulec.monitoring.online import monitor_sources
     from rulec.monitoring.online.running_monitor import Monitor
     from rulec.report.verdicts import running_verdicts
@@ -120,8 +120,8 @@ def command(
 
 
 def _saved(restore: str | None, given: IO[bytes]) -> Any:
-    """What a saved monitor's file holds, or the first line of standard input; None for none."""
-    # As above: not for --help.
+    """The content of a saved monitor's file, or the first line of standard input, or None."""
+    # Late import, as above.
     from rulec.monitoring.online import monitor_sources
     from rulec.trace.formats.json_line_problems import LONGEST_LINE_BYTES
 

@@ -48,7 +48,7 @@ def command(name: str, output: str, base: str | None) -> None:
         )
     folders = () if base is None else (Path(output), *search_path())
     text = rulec.Session(folders).new_rulebook(name, base)
-    # Looking for files and its messages, 3 ms: not for --help.
+    # Late import, not for --help: file search and its messages (3 ms).
     from rulec.rulebook.files.search_path import available_rulebooks
 
     if name in available_rulebooks():

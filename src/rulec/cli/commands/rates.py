@@ -78,7 +78,7 @@ def command(
     bootstrap over drives. This needs the extra `rates`: in a checkout
     `.venv/bin/python -m pip install -e '.[rates]'`.
     """
-    # numpy, Arrow and what shows rates, 150 ms: not for --help.
+    # Late import, not for --help: NumPy, Arrow and display of rates (150 ms).
     from rulec.rates.rates_of_findings import rates_of_findings
     from rulec.report.pictures.drawing.picture_formats import as_bytes
     from rulec.report.rates import rates_json, rates_table

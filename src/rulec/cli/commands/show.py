@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 _MOST_NAMED = 6
-"""So many rules are named where one is asked for."""
+"""The most rules listed where one has to be chosen."""
 
 
 @click.command(cls=Verb)
@@ -81,7 +81,7 @@ def command(
     put_answer("\n".join(shown), to)
     for problem in missing:
         print_remark(f"rulec: {problem.format_message()}")
-    # That a law has no such rule is an answer, too.
+    # That a rulebook has no such rule is also an answer.
     return ExitStatus.after(answered=len(shown) + len(missing) == len(books), failed=False)
 
 
@@ -94,10 +94,10 @@ def _collected(problems: list[click.UsageError]) -> Iterator[None]:
 
 
 def _books_and_rule(arguments: Sequence[str]) -> tuple[tuple[str, ...], str | None]:
-    """The rulebooks and the rule that are asked for; the last argument may be a rule."""
+    """The rulebooks and the rule in the arguments; the last argument may be a rule."""
     *before, last = arguments
     if not before and not _is_rulebook(last):
-        # Looking for files and their rules, 60 ms: only for what may be a rule.
+        # Late import, only if an argument may be a rule: file search and their rules (60 ms).
         from rulec.rulebook.files.catalogue import rulebooks_with_rule
 
         if books := rulebooks_with_rule(last, search_path()):
@@ -110,7 +110,7 @@ def _books_and_rule(arguments: Sequence[str]) -> tuple[tuple[str, ...], str | No
 
 
 def _is_rulebook(argument: str) -> bool:
-    # Looking for files and its messages, 3 ms: not for --help.
+    # Late import, not for --help: file search and its messages (3 ms).
     from rulec.rulebook.files.search_path import available_rulebooks
 
     is_path = "/" in argument or argument.endswith((".rules", ".json")) or has_magic(argument)
@@ -118,8 +118,8 @@ def _is_rulebook(argument: str) -> bool:
 
 
 def _shown(reference: str, name: str | None, to: Output, at: str, *, several: bool) -> str:
-    """A rule as text or JSON, or all in brief; of several rulebooks JSON is a line for each."""
-    # Rules and automata, 60 ms: not for --help.
+    """A rule as text or JSON, or all rules in brief; one JSON line each if ``several``."""
+    # Late import, not for --help: rules and automata (60 ms).
     from rulec.report.json_document import as_indented, as_line
     from rulec.report.rulebooks import rule_json, rule_page
     from rulec.report.rulebooks.spoken_rules import spoken_book
@@ -144,7 +144,7 @@ def _shown(reference: str, name: str | None, to: Output, at: str, *, several: bo
 
 
 def _automaton_of(reference: str, name: str | None, to: Output, at: str) -> str:
-    """The automaton of a rule, in the format that is wanted."""
+    """The automaton of a rule, in the requested format."""
     book, compiled = _read(reference, at)
     chosen = _chosen(book, name, reference)
     if chosen is None:
@@ -154,8 +154,8 @@ def _automaton_of(reference: str, name: str | None, to: Output, at: str) -> str:
 
 
 def _page(book: Rulebook, compiled: CompiledRulebook | None, chosen: Rule) -> RulePage:
-    """All that there is to show of a rule."""
-    # Rules and automata, 60 ms: not for --help.
+    """All data about a rule for display."""
+    # Late import, not for --help: rules and automata (60 ms).
     from rulec.report.rulebooks.rule_page import page_of
 
     if compiled is None:
@@ -165,7 +165,7 @@ def _page(book: Rulebook, compiled: CompiledRulebook | None, chosen: Rule) -> Ru
 
 
 def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
-    # Rulebooks, 130 ms: not for --help.
+    # Late import, not for --help: rulebooks (130 ms).
     from rulec.automata.bundle.bundle_file import read_compiled
     from rulec.automata.bundle.compiled_rulebook import CompiledRule
     from rulec.automata.bundle.required_signature import refuse_source
@@ -175,7 +175,7 @@ def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
         refuse_source(reference)
         return rulec.Session(search_path(), at).load_rulebook(reference), None
     compiled = read_compiled(Path(reference))
-    # What a compiled rule has besides is what it was compiled into.
+    # The other fields of a compiled rule are its compiled form.
     names = {field.name for field in fields(CompiledRule)} & {field.name for field in fields(Rule)}
     rules = [Rule(**{name: getattr(rule, name) for name in names}) for rule in compiled.rules]
     in_books = tuple(replace(rule, book=rule.book or compiled.name) for rule in rules)
@@ -194,8 +194,8 @@ def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:
 
 
 def _way_out(book: Rulebook, name: str) -> str:
-    """The rule that may be meant, here or in another rulebook."""
-    # Looking for files and their rules, 60 ms: only for what is no rule.
+    """A suggestion of the rule that may be meant, here or in another rulebook."""
+    # Late import, only for unknown rules: file search and their rules (60 ms).
     from rulec.rulebook.files.catalogue import rulebooks_with_rule
 
     if near := nearest_name(name, {rule.name for rule in book.rules}):
@@ -211,7 +211,7 @@ def _way_out(book: Rulebook, name: str) -> str:
 
 
 def _why_absent(book: Rulebook, name: str, reference: str) -> str:
-    # Only for this message: the printer of rulebooks, 60 ms.
+    # Late import, only for this message: the printer of rulebooks (60 ms).
     from rulec.syntax.tree_printer import print_in_force
 
     if Path(reference).suffix == ".json":
@@ -233,7 +233,7 @@ def _names(book: Rulebook) -> str:
 
 
 def _automaton(automaton: Automaton, output_format: str, name: str, width: int) -> str:
-    # Pictures of automata, 40 ms: only with --automaton.
+    # Late import, only with --automaton: pictures of automata (40 ms).
     from rulec.report.automata.automaton_layout import is_too_large
     from rulec.report.automata.automaton_picture import as_picture
     from rulec.report.automata.automaton_text import as_dot, as_text

@@ -1,4 +1,4 @@
-"""``rulec test``: the examples of rulebooks, run."""
+"""``rulec test``: run the examples of rulebooks."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def command(
 
 @dataclass(frozen=True, slots=True)
 class WantedExamples:
-    """Which examples are run, on which day, and what is asked of them."""
+    """The examples to run, the day of law, and the reports wanted."""
 
     patterns: tuple[str, ...]
     at: str
@@ -103,7 +103,7 @@ def _tested(
     to: Output,
     jobs: Jobs,
 ) -> int:
-    # Rulebooks and their automata, 130 ms: not for --help.
+    # Late import, not for --help: rulebooks and their automata (130 ms).
     from rulec.batch.example_batch import ExampleRequest, measured_runs
     from rulec.book_tests.book_test_messages import nothing_to_run
     from rulec.book_tests.example_coverage import uncovered_verdicts

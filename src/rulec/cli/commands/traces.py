@@ -1,4 +1,4 @@
-"""``rulec traces``: maneuvers of a scenario, or recorded drives, as traces."""
+"""``rulec traces``: write maneuvers of a scenario, or recorded drives, as traces."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 MOST_TRACES = 10_000_000
 _ALOUD = 100
-"""After so many traces it is said how many there are."""
+"""Progress is reported every so many traces."""
 
 Piece = TypeVar("Piece")
 
@@ -82,7 +82,7 @@ def command(
         option = "-j"
     if option:
         raise click.UsageError(f"{option} is for drives: add --recorded.")
-    # Maneuvers and the formats of traces, 130 ms: not for --help, and not for recordings.
+    # Late import, not for --help and recordings: maneuvers and formats of traces (130 ms).
     from rulec.monitoring.state_validation import partial_names
     from rulec.planning.product.graph_product import count_paths
     from rulec.trace.formats.trace_files import kinds_in, write_traces
@@ -114,7 +114,7 @@ def command(
 
 _OF_DRIVES = {"ego", "thresholds", "assumed", "as_recorded"}
 _OF_DRIVES |= {"map_path", "input_format", "scenario_id"}
-"""The options that mean something for drives."""
+"""The options that have a meaning for drives."""
 
 
 def _write_drives(
@@ -126,7 +126,7 @@ def _write_drives(
     first: int | None,
     options: dict[str, Any],
 ) -> None:
-    # numpy and shapely, 200 ms: only for recordings.
+    # Late import, only for recordings: NumPy and shapely (200 ms).
     from rulec.batch.drive_batch import WrittenDrives, in_vehicle_order
     from rulec.trace.formats.trace_files import write_traces
 
@@ -157,7 +157,7 @@ def _write_drives(
         output_stream(to) as (stream, name),
     ):
         if to.form == "parquet":
-            # Its rows have to be together.
+            # In Parquet the rows of a vehicle have to be contiguous.
             with closing(in_vehicle_order(drives.traces, drives, jobs, tell, lost)) as traces:
                 write_traces(counted(traces), stream, name, "parquet", kinds, partial=True)
         else:
@@ -169,7 +169,7 @@ def _write_drives(
 
 
 def _given_maneuvers_option(options: Mapping[str, Any]) -> str | None:
-    """A given option that means nothing for recorded drives, if any."""
+    """A given option, if any, that has no meaning for recorded drives."""
     context = click.get_current_context()
     names = options.keys() - _OF_DRIVES
     return next(

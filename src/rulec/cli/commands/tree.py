@@ -1,4 +1,4 @@
-"""``rulec tree``: inheritance of a rulebook's items, and the forest of extensions."""
+"""``rulec tree``: the inheritance of a rulebook's items, and which rulebooks extend which."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def command(rulebooks: tuple[str, ...], patterns: tuple[str, ...], to: Output, a
     RULEBOOK is a name or the path of a source. With several RULEBOOKs, or none for all available
     ones, show which one extends which.
     """
-    # Rulebooks and their colours, 80 ms: not for --help.
+    # Late import, not for --help: rulebooks and their colours (80 ms).
     from rulec.analysis.lineage.book_lineage import book_header
     from rulec.analysis.lineage.rule_lineage import extension_forest
     from rulec.report.rulebooks import lineage_tree

@@ -1,4 +1,4 @@
-"""``rulec verify``: traces and recorded traffic judged by a rulebook."""
+"""``rulec verify``: judge traces and recorded traffic by a rulebook."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from rulec.trace.trace_model import Ending
 
 _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
-"""The formats in which every line says by which rulebook."""
+"""The formats in which every line names its rulebook."""
 
 
 @click.command(cls=Verb)
@@ -129,7 +129,7 @@ def command(
     Exit status: 0 no hard rule is violated, 1 some are, 2 a trace, or every rule, could not be
     judged.
     """
-    # Formats of recordings, 80 ms: not for --help.
+    # Late import, not for --help: formats of recordings (80 ms).
     from rulec.recordings.recording_inputs import input_files
 
     inputs = input_files(files)
@@ -173,7 +173,7 @@ def command(
                 outputs.to_rows = _to_rows(rules, egos, options, ends)
             results.append(_judge(request, rules, outputs, complaints))
         if len(books) > 1:
-            # Verdicts and recordings: only where there are some.
+            # Late import, only if there are recordings: verdicts and recordings.
             from rulec.report.verdicts import side_by_side
 
             tallies = [(rules, result.total) for rules, result in zip(books, results, strict=True)]
@@ -187,7 +187,7 @@ def command(
 
 @dataclass(frozen=True, kw_only=True)
 class VerifyRequest:
-    """Files of recordings and of traces, and how they are to be judged."""
+    """Files of recordings and of traces, and how to judge them."""
 
     inputs: InputFiles
     recordings: Sequence[str]
@@ -208,8 +208,8 @@ class VerifyRequest:
 class VerifyResult:
     """Sums over files judged by one rulebook.
 
-    ``judged``: was any, or is there no rule? ``complete``: was each? ``violated``: hard rules are,
-    or, with ``--strict``, are open.
+    ``judged``: whether any trace was judged, or there is no rule; ``complete``: whether each was
+    judged; ``violated``: whether hard rules are violated or, with ``--strict``, open.
     """
 
     total: BatchTally
@@ -219,12 +219,12 @@ class VerifyResult:
 
 
 def _check_inputs(request: VerifyRequest) -> None:
-    """Refuse options that the files are not for. Raises click.UsageError, RulecError."""
+    """Refuse options that do not apply to the files. Raises click.UsageError, RulecError."""
     about = {name: value for name, value in request.options.items() if name != "assumed"}
     about["input_format"] = None
     option = scenario_options.given_drives_option({"egos": request.egos, **about})
     if option and not request.recordings and not request.inputs.problems:
-        # Formats of recordings, 80 ms: not for --help.
+        # Late import, not for --help: formats of recordings (80 ms).
         from rulec.recordings.recording_files import check_readable
         from rulec.recordings.recording_inputs import STANDARD_INPUT
 
@@ -247,7 +247,7 @@ def _check_inputs(request: VerifyRequest) -> None:
 
 
 def _check_outputs(request: VerifyRequest, to: Sequence[Output], *, n_books: int) -> None:
-    """Refuse formats that cannot hold all that is asked for. Raises click.UsageError."""
+    """Refuse formats that cannot hold all that is requested. Raises click.UsageError."""
     for output in to if n_books > 1 else ():
         if output.form not in _OF_SEVERAL_BOOKS:
             raise click.UsageError(
@@ -265,7 +265,7 @@ def _judge(
     complaints: Complaints,
 ) -> VerifyResult:
     """Judge all files by one rulebook."""
-    # Formats of recordings, 80 ms: not for --help.
+    # Late import, not for --help: formats of recordings (80 ms).
     from rulec.report.verdicts.batch_table import BatchTally
 
     result = VerifyResult(BatchTally())
@@ -286,7 +286,7 @@ def _judge_recordings(
     outputs: VerdictOutputs,
     complaints: Complaints,
 ) -> RecordingRun:
-    # numpy and shapely, 250 ms: only for recordings.
+    # Late import, only for recordings: NumPy and shapely (250 ms).
     from rulec.batch.recording_judge import JudgeSettings
     from rulec.cli.recording_run import RecordingRun
 
@@ -317,7 +317,7 @@ def _judge_traces(
     outputs: VerdictOutputs,
     complaints: Complaints,
 ) -> TraceRun:
-    # Formats of traces, 30 ms: not for recordings.
+    # Late import, not for recordings: formats of traces (30 ms).
     from rulec.cli.trace_run import TraceRun
 
     assumed = scenario_options.assumptions(
@@ -339,7 +339,7 @@ def _include(result: VerifyResult, run: RecordingRun | TraceRun, *, strict: bool
 
 def _c_engine(rules: CompiledRulebook) -> CEngine:
     """The engine in C. Raises RulecError R0751 if there is no compiler."""
-    # numpy and what writes C, 100 ms: only for those who ask for it.
+    # Late import, only if requested: NumPy and the writer of C (100 ms).
     from rulec.code_generation.compiled_c.c_engine import CEngine
 
     return CEngine(rules)
@@ -351,8 +351,8 @@ def _to_rows(
     options: Mapping[str, Any],
     ends: Ending | None,
 ) -> DriveRows:
-    """What makes rows of drives and of rules."""
-    # Verdicts, evidence and Arrow, 200 ms: only for those who ask for them.
+    """The builder of rows of drives and rules."""
+    # Late import, only if requested: verdicts, evidence and Arrow (200 ms).
     from rulec.fleet.drive_rows import DriveRows
     from rulec.fleet.judged_by import judged_by
 
@@ -361,8 +361,8 @@ def _to_rows(
 
 
 def _recordings(inputs: InputFiles, form: Format | None, *, named: bool) -> list[str]:
-    """The files that are recorded traffic; with a format that is named, all or none of them."""
-    # Formats of recordings, 80 ms: not for --help.
+    """The files that are recorded traffic; if the format is ``named``, all or none of them."""
+    # Late import, not for --help: formats of recordings (80 ms).
     from rulec.recordings.recording_files import is_recording
     from rulec.recordings.recording_inputs import STANDARD_INPUT
 

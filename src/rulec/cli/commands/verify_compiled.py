@@ -1,4 +1,4 @@
-"""``rulec verify-compiled``: whether compiled tables do what their formulas say."""
+"""``rulec verify-compiled``: prove that compiled tables do what their formulas say."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def command(files: tuple[str, ...], to: Output) -> int:
 
     Exit status: 0 all rules are proved, 1 some are not, 2 a file could not be read.
     """
-    # Compiled files and the checker, 60 ms: not for --help.
+    # Late import, not for --help: compiled files and the checker (60 ms).
     from rulec.automata.bundle.bundle_proof import compiled_files, proofs_of_file
     from rulec.report.rulebooks.proof_report import render
 

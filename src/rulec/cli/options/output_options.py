@@ -1,7 +1,7 @@
 """Options for the output's destination and format, the same for all verbs.
 
-The ending of the file decides, `--output-format` where it says nothing, whose short form is
-`--json`. What is unclear is refused before the verb begins.
+The file's extension determines the format, or `--output-format` (short form `--json`) if it does
+not. Ambiguous options are refused before the verb begins.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from rulec.work_trees import is_ordinary
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 Endings = Mapping[str, Sequence[str]]
-"""Name of a format -> how its files end. The first is what is written where nothing says."""
+"""Format -> its file extensions. The first format is the default."""
 
 _TEXT = (".txt",)
 
@@ -47,13 +47,13 @@ _ENDINGS: Endings = {
 }
 
 _BINARY = frozenset({"mcap", "parquet", "pdf", "png"})
-"""Formats that no terminal can show."""
+"""Formats that a terminal cannot show."""
 
 STANDARD_OUTPUT = "-"
 
 
 def endings_of(*formats: str) -> Endings:
-    """How files of these formats end; the first is what is written where nothing says."""
+    """The file extensions of these formats; the first format is the default."""
     return {form: _ENDINGS[form] for form in formats}
 
 
@@ -63,31 +63,31 @@ TABLES = endings_of("jsonl", "csv", "parquet")
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """The path of a file, or `-` for standard output, and the format to write there."""
+    """The path of a file, or `-` for standard output, and the format to write."""
 
     path: str
     form: str
 
     @property
     def is_file(self) -> bool:
-        """True unless it is standard output."""
+        """Whether it is a file, not standard output."""
         return self.path != STANDARD_OUTPUT
 
     @property
     def is_folder(self) -> bool:
-        """True for the path of a folder, there or to be made: one that ends with ``/``."""
+        """Whether the path is a folder: an existing one, or one that ends with ``/``."""
         return self.path.endswith("/") or os.path.isdir(self.path)  # noqa: PTH112
 
 
 class RenamedOption(click.Option):
-    """An option that is still taken by its ``former`` names, which nothing shows any more."""
+    """An option that also accepts its ``former`` names, which are no longer shown."""
 
     def __init__(self, *declared: Any, former: Sequence[str] = (), **settings: Any) -> None:
         super().__init__(*declared, **settings)
         self.former = [*former]
 
     def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
-        """Let the parser know all the names."""
+        """Register all names with the parser."""
         shown, self.opts = self.opts, [*self.opts, *self.former]
         try:
             super().add_to_parser(parser, ctx)
@@ -98,7 +98,7 @@ class RenamedOption(click.Option):
 def input_format_option(
     names: Sequence[str], content: str, former: Sequence[str] = ()
 ) -> Callable[[Decorated], Decorated]:
-    """``--input-format NAME``, which had these ``former`` names."""
+    """``--input-format NAME``, which formerly had the names ``former``."""
     return click.option(
         "--input-format",
         "input_format",
@@ -121,19 +121,19 @@ def output_options(
     instead: str = "",
     folders: bool = False,
 ) -> Callable[[Decorated], Decorated]:
-    """``-o FILE``, ``--output-format NAME`` and, where that may be ``json``, ``--json``.
+    """``-o FILE``, ``--output-format NAME`` and, if ``json`` is a format, ``--json``.
 
     The verb is given ``to``, an Output; with ``multiple`` a tuple of them.
 
     Args:
         endings: the formats.
-        content: what is written, for the help.
-        required: it goes to a file; standard output has to be asked for.
-        multiple: it may go to several files.
-        former: what ``--output-format`` was called.
+        content: what is written, for the help text.
+        required: a file is needed; standard output has to be requested.
+        multiple: several files are allowed.
+        former: former names of ``--output-format``.
         alias: the parameter of a further option that may name a format.
-        instead: what to do where none of the formats is the one that is wanted.
-        folders: FILE may be a folder, for a file of each thing that is asked for.
+        instead: advice if none of the formats is the wanted one.
+        folders: FILE may be a folder, with one file for each item.
     """
     default = next(iter(endings))
     has_json = "json" in endings
@@ -200,12 +200,12 @@ def output_options(
 def chosen_format(
     endings: Endings, path: str, named: str | None = None, *, instead: str = ""
 ) -> str:
-    """The format that a file's ending says, else the one that is named.
+    """The format given by a file's extension, else the one ``named``.
 
-    On standard output, and on devices, which end in nothing, it is the first.
+    On standard output, and on devices, which have no extension, the default is the first.
 
     Raises:
-        click.UsageError: a file that ends in none of these, or in another one than is named.
+        click.UsageError: the extension is unknown, or contradicts the named format.
     """
     name = Path(path).name.lower()
     fitting = {
@@ -241,10 +241,10 @@ def _one_format(named: Mapping[str, str]) -> str | None:
 
 
 def _refuse_doubtful(to: Sequence[Output], values: Mapping[str, Any]) -> None:
-    """Refuse outputs that a terminal cannot show, or that would take the place of something.
+    """Refuse outputs that a terminal cannot show, or that would overwrite another file.
 
     Raises:
-        click.UsageError: one of them is like that.
+        click.UsageError: one of them would.
         RulecError: R0702 or R0730, one of them cannot be written.
     """
     if sum(not output.is_file for output in to) > 1:
@@ -266,17 +266,17 @@ def _refuse_doubtful(to: Sequence[Output], values: Mapping[str, Any]) -> None:
 
 
 _ALSO_WRITTEN = {"save": "restore", "witness": ""}
-"""Parameters with which a verb writes beside its answer, and what it may go on in."""
+"""Parameters for files written besides the answer -> the input that may be the same file."""
 
 
 def refuse_overwriting(to: Sequence[Output], paths: Iterable[str]) -> None:
-    """Refuse outputs that are also named elsewhere, such as what is read, and sources that exist.
+    """Refuse outputs that are also given elsewhere, such as inputs, and existing sources.
 
-    Links and other spellings of a path lead to the same file.
+    Links and other spellings of a path count as the same file.
 
     Raises:
-        RulecError: R0735, one of them is among these paths, or a source, settings, a map, or what
-            is read along with recordings.
+        RulecError: R0735, one of them is among these paths, or a source, settings, a map, or a file
+            that is read along with recordings.
     """
     files = {_identity(output.path): output.path for output in to if output.is_file}
     for path in paths if files else ():
@@ -289,7 +289,7 @@ def refuse_overwriting(to: Sequence[Output], paths: Iterable[str]) -> None:
         if Path(path).name in _OF_PROJECTS and os.path.lexists(path):
             raise _overwrites(path, f"`{path}` is a project's own, and would be overwritten")
         if is_ordinary(Path(path)):
-            # Formats of recordings, 80 ms: only for what would be replaced.
+            # Late import, only if a file would be replaced: formats of recordings (80 ms).
             from rulec.recordings.recording_files import is_beside_recordings
 
             if is_beside_recordings(path):
@@ -303,10 +303,10 @@ _OF_PROJECTS = ("rulec.toml", "rulec.lock")
 
 
 def refuse_standard_output(folder: str) -> None:
-    """Refuse ``-`` for a folder.
+    """Refuse ``-`` as a folder.
 
     Raises:
-        click.UsageError: it is that.
+        click.UsageError: the folder is ``-``.
     """
     if folder == STANDARD_OUTPUT:
         raise click.UsageError("`-` is standard output, and no folder; one of that name is `./-`.")
@@ -317,7 +317,7 @@ def _overwrites(path: str, message: str) -> RulecError:
 
 
 def _identity(path: str) -> object:
-    """What is the same for all paths and names of a file, also of one that is not there yet."""
+    """A value that is the same for all paths of a file, even one that does not exist yet."""
     try:
         status = Path(path).stat()
     except (OSError, ValueError):
@@ -326,7 +326,7 @@ def _identity(path: str) -> object:
 
 
 def _texts(values: Iterable[Any]) -> Iterator[str]:
-    """What the other parameters may name as a path."""
+    """Texts in other parameters that may be paths."""
     for value in values:
         for choice in value if isinstance(value, tuple) else (value,):
             if isinstance(choice, str | Path):
@@ -334,7 +334,7 @@ def _texts(values: Iterable[Any]) -> Iterator[str]:
 
 
 def _is_device(path: Path) -> bool:
-    """True for a pipe or a device such as /dev/null."""
+    """Whether a path is a pipe or a device such as /dev/null."""
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError):  # ValueError: a null character in the name

@@ -1,4 +1,4 @@
-"""Arguments for a scenario's partition, for recorded scenes and for recorded drives."""
+"""Options for a scenario's partition, for recorded scenes and for recorded drives."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rulec.vocabulary import Vocabulary
 
 TRACE_FORMATS: tuple[Format, ...] = ("jsonl", "csv", "parquet")
-"""The formats of traces, which are not imported for --help."""
+"""The formats of traces, listed here to avoid an import for --help."""
 
 _WEIGHT = re.compile(r"[01]|0?\.[0-9]{1,9}")
 
@@ -35,7 +35,7 @@ _WEIGHT = re.compile(r"[01]|0?\.[0-9]{1,9}")
 def _prediction(
     context: click.Context, parameter: click.Parameter, value: str
 ) -> str | dict[str, Fraction]:
-    # Scenarios' formats, 30 ms: not for --help.
+    # Late import, not for --help: scenarios' formats (30 ms).
     from rulec.scenario.scenario_model import PREDICTIONS, is_distribution
 
     known = " or ".join(f"`{kind}`" for kind in PREDICTIONS)
@@ -86,7 +86,7 @@ recording_options = combined(
         ),
     ]
 )
-"""Where recorded traffic is read from; ``recording_source`` takes their values out."""
+"""Options for the source of recorded traffic, consumed by ``recording_source``."""
 
 recording_or_trace_options = combined(
     [
@@ -99,27 +99,27 @@ recording_or_trace_options = combined(
         ),
     ]
 )
-"""The same, for files that may also be traces."""
+"""The same for files that may also be traces."""
 
 
 def trace_format(options: Mapping[str, Any]) -> Format | None:
-    """The format of traces that ``--input-format`` names, if it names one."""
+    """The format of traces given by ``--input-format``, if any."""
     name = options["input_format"]
     return name if name in TRACE_FORMATS else None
 
 
 def recording_source(file: str | Path, options: dict[str, Any]) -> RecordingSource:
-    """The source of a file, with the values of ``recording_options``, taken out."""
+    """The source of a file; consumes the values of ``recording_options``."""
     names = ("map_path", "input_format", "scenario_id")
     return RecordingSource(Path(file), *(options.pop(name) for name in names))
 
 
 def read_scene(scenario: str, options: dict[str, Any]) -> Scenario:
-    """Load the scenario, consuming the options that only recorded ones take.
+    """Load the scenario; consumes the options for recorded scenarios.
 
     Raises RulecError.
     """
-    # Scenarios' formats, 30 ms: not for --help.
+    # Late import, not for --help: scenarios' formats (30 ms).
     from rulec.scenario import Choice, load_scenario
 
     choice = Choice(**{field: options.pop(field) for field in Choice.__dataclass_fields__})
@@ -162,7 +162,7 @@ cell_options = combined(
             "all paths through cells.  [default: the scenario's own; in recorded scenes those of "
             "ego's vehicle type]",
         ),
-        # What can be chosen about a recorded scene; the keywords are those of `Choice`.
+        # The options that choose from a recorded scene, named like the fields of `Choice`.
         click.option(
             "--ego",
             metavar="ID",
@@ -216,12 +216,12 @@ cell_options = combined(
         recording_options,
     ]
 )
-"""How scenarios are cut into cells; the rest is what ``read_scene`` takes out again."""
+"""Options for cutting scenarios into cells, and those that ``read_scene`` consumes."""
 
 graph_options = combined(
     [click.argument("scenario", shell_complete=complete_scenarios), cell_options]
 )
-"""One scenario, and how it is cut into cells."""
+"""The argument for one scenario, and how it is cut into cells."""
 
 scenarios_argument = click.argument(
     "scenarios",
@@ -249,7 +249,7 @@ reading_options = combined(
         ),
     ]
 )
-"""What holds where a scenario does not tell; ``scene_reading`` takes their values."""
+"""Options for values missing in a scenario, consumed by ``scene_reading``."""
 
 egos_option = click.option(
     "--ego",
@@ -285,11 +285,11 @@ drives_options = combined(
         ),
     ]
 )
-"""How the drives of a recording become traces; ``requested_drives`` takes their values."""
+"""Options for turning a recording's drives into traces, consumed by ``requested_drives``."""
 
 
 def given_drives_option(options: Mapping[str, Any]) -> str | None:
-    """The first of these options for drives that has been given, if any."""
+    """The first option for drives that is given, if any."""
     names = {"egos": "--ego", "assumed": "--assume", "thresholds": "--threshold"}
     names |= {"map_path": "--map", "scenario_id": "--scenario"}
     given = (names.get(name) or f"--{name.replace('_', '-')}" for name in options if options[name])
@@ -297,9 +297,9 @@ def given_drives_option(options: Mapping[str, Any]) -> str | None:
 
 
 def check_thresholds(texts: Sequence[str]) -> None:
-    """Say what is wrong with thresholds, before any work. Raises click.UsageError."""
+    """Check thresholds before any work. Raises click.UsageError."""
     if texts:
-        # numpy and shapely, 150 ms: only for recordings.
+        # Late import, only for recordings: NumPy and shapely (150 ms).
         from rulec.extraction.traffic_thresholds import threshold_options
 
         try:
@@ -311,12 +311,12 @@ def check_thresholds(texts: Sequence[str]) -> None:
 def requested_drives(
     egos: tuple[str, ...], options: Mapping[str, Any], vocabulary: Vocabulary | None
 ) -> RequestedDrives:
-    """The drives of these vehicles, with the values of ``drives_options``.
+    """The drives of these vehicles; consumes the values of ``drives_options``.
 
     Raises:
-        click.UsageError: an assumption or a threshold is none.
+        click.UsageError: an assumption or a threshold is invalid.
     """
-    # numpy and shapely, 150 ms: only for recordings.
+    # Late import, only for recordings: NumPy and shapely (150 ms).
     from rulec.extraction.selection import RequestedDrives, assumption_options
     from rulec.extraction.traffic_thresholds import threshold_options
 
@@ -336,10 +336,10 @@ def requested_drives(
 
 
 def scene_reading(options: dict[str, Any], vocabulary: Vocabulary | None) -> dict[str, Any]:
-    """The keywords of ``find_maneuvers`` for these values of ``reading_options``, taken out.
+    """Keyword arguments of ``find_maneuvers``; consumes the values of ``reading_options``.
 
     Raises:
-        click.UsageError: an assumption is none, they contradict each other, or have no rulebook.
+        click.UsageError: an assumption is invalid, contradicts another, or lacks a rulebook.
     """
     assumed, told_only = options.pop("assumed"), options.pop("told_only")
     if told_only and "defaults" in assumed:
@@ -353,13 +353,13 @@ def scene_reading(options: dict[str, Any], vocabulary: Vocabulary | None) -> dic
 
 
 def assumptions(ends: Ending | None, texts: Sequence[str], vocabulary: Vocabulary) -> Assumptions:
-    """What traces are assumed to say. Raises click.UsageError."""
-    # Tables of automata, 160 ms: not for --help.
+    """Assumptions about traces. Raises click.UsageError."""
+    # Late import, not for --help: tables of automata (160 ms).
     from rulec.monitoring.assumptions import Assumptions
 
     values: Mapping[str, Value] = {}
     if named := [text for text in texts if text != "defaults"]:
-        # numpy and shapely, 150 ms: only where values are assumed.
+        # Late import, only if values are assumed: NumPy and shapely (150 ms).
         from rulec.extraction.selection import assumption_options
 
         try:
@@ -370,6 +370,6 @@ def assumptions(ends: Ending | None, texts: Sequence[str], vocabulary: Vocabular
 
 
 def _sentence(problem: ValueError) -> str:
-    """What is wrong; what ends in a question has its sign already."""
+    """The message of an error as a sentence, without a second mark after a question mark."""
     text = str(problem)
     return text if text.endswith("?") else f"{text}."

@@ -1,4 +1,4 @@
-"""Arguments that several verbs share, with the same words everywhere."""
+"""Options and arguments that several verbs share, with the same texts everywhere."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/(?!0+$)[0-9]{1,9})?")
 
 
 def combined(options: Sequence[Callable[[Any], Any]]) -> Callable[[Decorated], Decorated]:
-    """Combine several options into one decorator, in the order of the help."""
+    """Combine several options into one decorator, in the order of the help text."""
 
     def decorate(function: Decorated) -> Decorated:
         for option in reversed(options):
@@ -47,7 +47,7 @@ def combined(options: Sequence[Callable[[Any], Any]]) -> Callable[[Decorated], D
 def choice_option(
     name: str, choices: Sequence[str], help_text: str, former: Sequence[str] = ()
 ) -> Callable[[Decorated], Decorated]:
-    """One of several words, of which the first is the default."""
+    """An option with one of several words, of which the first is the default."""
     return click.option(
         name,
         cls=RenamedOption,
@@ -62,14 +62,14 @@ def choice_option(
 def number_option(
     name: str, field: str, help_text: str, least: int = 0, most: int | None = None, **settings: Any
 ) -> Callable[[Decorated], Decorated]:
-    """A whole number from ``least`` to ``most``, with further settings of click."""
+    """An option for an integer from ``least`` to ``most``, with further settings of click."""
     kind = click.IntRange(least, most)
     settings = {"metavar": "N", "cls": RenamedOption, **settings}
     return click.option(name, field, type=kind, show_default=True, help=help_text, **settings)
 
 
 def file_option(name: str, help_text: str) -> Callable[[Decorated], Decorated]:
-    """The path of a file that is read beside the main ones."""
+    """An option for the path of a file that is read besides the main ones."""
     kind = click.Path(dir_okay=False)
     return click.option(name, metavar="FILE", type=kind, callback=_beside, help=help_text)
 
@@ -79,7 +79,7 @@ def _beside(context: click.Context, parameter: click.Parameter, value: str | Non
 
 
 def finite(_: click.Context, parameter: click.Parameter, value: float | None) -> float | None:
-    """A number of an option, if it is given: click lets NaN pass every range."""
+    """Refuse infinity and NaN for an option: click accepts NaN in every range."""
     if value is not None and not isfinite(value):
         raise click.BadParameter(f"it has to be a number, not `{value}`", param=parameter)
     return value
@@ -111,7 +111,7 @@ def _day(context: click.Context, parameter: click.Parameter, value: str) -> str:
     """A date in ISO form; empty if none is given."""
     if not value:
         return ""
-    # The parser of rulebooks, 60 ms: only if a day is given.
+    # Late import, only if a day is given: the parser of rulebooks (60 ms).
     from rulec.syntax.messages.literals import why_not_a_day
 
     wrong = why_not_a_day(value)
@@ -142,7 +142,7 @@ rulebook_argument = click.argument(
 def rulebooks_argument(
     metavar: str = "RULEBOOK...", *, required: bool = True
 ) -> Callable[[Decorated], Decorated]:
-    """``RULEBOOK...``."""
+    """The argument ``RULEBOOK...``."""
     return click.argument(
         "rulebooks",
         nargs=-1,
@@ -154,14 +154,14 @@ def rulebooks_argument(
 
 
 def rulebooks_option(help_text: str) -> Callable[[Decorated], Decorated]:
-    """``--rulebook R``, any number of them: ``rulebooks``."""
+    """``--rulebook R``, repeatable, as the parameter ``rulebooks``."""
     return _rulebook_option("rulebooks", help_text, required=True, callback=read_as_file)
 
 
 def rulebook_option(
     why_one: str, help_text: str = RULEBOOK_HELP, *, required: bool = True
 ) -> Callable[[Decorated], Decorated]:
-    """``--rulebook R``; of several, and of a folder, it is said ``why_one`` only is taken."""
+    """``--rulebook R``; for several or a folder the error says ``why_one`` is required."""
 
     def only(context: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> Any:
         several = len(values) > 1 or any(stands_for_several(value) for value in values)
@@ -173,9 +173,9 @@ def rulebook_option(
 
 
 def stands_for_several(reference: str) -> bool:
-    """True for a folder that no rulebook is called, and a pattern that no file is called."""
+    """Whether a reference is a folder or pattern, not the name of a rulebook or file."""
     if "/" not in reference and os.path.isdir(reference):  # noqa: PTH112
-        # Reading the names takes 10 ms
+        # Late import: reading the names takes 10 ms
         from rulec.rulebook.files.search_path import available_rulebooks
         from rulec.settings import search_path
 
@@ -199,19 +199,19 @@ def _rulebook_option(
 
 
 def step_option(help_text: str) -> Callable[[Decorated], Decorated]:
-    """The option ``--step S``, read exactly, with the verb's own help."""
+    """The option ``--step S``, read exactly, with the verb's own help text."""
     return click.option("--step", "step_s", callback=_seconds, metavar="S", help=help_text)
 
 
 def steps_option(help_text: str) -> Callable[[Decorated], Decorated]:
-    """The option ``--step S``, any number of them."""
+    """The option ``--step S``, repeatable."""
     return click.option(
         "--step", "steps_s", multiple=True, callback=_each_seconds, metavar="S", help=help_text
     )
 
 
 def rules_option(help_text: str, former: Sequence[str] = ()) -> Callable[[Decorated], Decorated]:
-    """``--rule PATTERN``, any number of them, which had these ``former`` names."""
+    """``--rule PATTERN``, repeatable, which formerly had the names ``former``."""
     return click.option(
         "--rule",
         "patterns",
@@ -245,7 +245,7 @@ def _jobs(context: click.Context, parameter: click.Parameter, value: str | None)
 
 
 def is_from(context: click.Context, field: str, source: ParameterSource) -> bool:
-    """Whether the value of a parameter comes from the command line, or from elsewhere."""
+    """Whether the value of a parameter comes from this source, such as the command line."""
     return context.get_parameter_source(field) is source
 
 
@@ -303,4 +303,4 @@ findings_options = combined(
         ),
     ]
 )
-"""How findings are written, and which of them make the exit status 1."""
+"""How findings are written, and which of them set the exit status to 1."""

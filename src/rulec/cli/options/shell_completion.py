@@ -33,7 +33,7 @@ def complete_rules(
     ctx: click.Context, param: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """Complete rule names of the given rulebook, with their titles."""
-    # Rulebooks and automata, 170 ms: only to complete rules.
+    # Late import, only to complete rules: rulebooks and automata (170 ms).
     from rulec.automata.bundle.bundle_file import read_compiled
     from rulec.rulebook.loader import load_rulebook
 
@@ -56,7 +56,7 @@ def complete_scenarios(
     ctx: click.Context, param: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
     """Names of scenarios, and files."""
-    # Scenarios' formats, 30 ms: only to complete their names.
+    # Late import, only to complete their names: scenarios' formats (30 ms).
     from rulec.scenario import available_scenarios
 
     return _named(available_scenarios(), incomplete)
@@ -65,8 +65,8 @@ def complete_scenarios(
 def complete_codes(
     ctx: click.Context, param: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
-    """Codes of messages, with what they are about."""
-    # 4 ms: only to complete codes.
+    """Codes of messages, with their titles."""
+    # Late import, only to complete codes (4 ms).
     from rulec.report.findings.code_registry import all_codes
 
     return [
@@ -85,7 +85,7 @@ def _folders() -> tuple[Path, ...]:
 
 
 def _book_names(*, vocabularies: bool = False) -> list[str]:
-    # Looking for files and its messages, 3 ms: not for --help.
+    # Late import, not for --help: file search and its messages (3 ms).
     from rulec.rulebook.files.search_path import available_rulebooks, available_vocabularies
 
     names = list(available_rulebooks(_folders()))
@@ -96,12 +96,12 @@ def _book_names(*, vocabularies: bool = False) -> list[str]:
 
 def _named(names: Iterable[str], incomplete: str) -> list[CompletionItem]:
     fitting = [_item(name) for name in names if name.startswith(incomplete)]
-    # The first has the shell offer files as well, whose paths begin so.
+    # The first item makes the shell also offer files whose paths begin so.
     return [_item(incomplete, kind="file"), *fitting]
 
 
 def _item(value: str, about: str | None = None, kind: str = "plain") -> CompletionItem:
-    # 0.5 ms: only for shells that ask.
+    # Late import, only for shell completion (0.5 ms).
     from click.shell_completion import CompletionItem
 
     return CompletionItem(value, type=kind, help=about)

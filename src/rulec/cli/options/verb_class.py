@@ -1,4 +1,4 @@
-"""The class of all verbs: what is given twice, or too much, is refused and not passed over."""
+"""The class of all verbs, which refuses repeated options and surplus arguments."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import click
 
 
 class Verb(click.Command):
-    """A command of which an option is given once, unless it may be given several times."""
+    """A command that accepts an option only once, unless it is repeatable."""
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Read the arguments. Raises click.UsageError."""
@@ -19,13 +19,13 @@ class Verb(click.Command):
 
 
 class VerbGroup(click.Group):
-    """Verbs of one name, such as ``draw``."""
+    """A group of verbs, such as ``draw``."""
 
     command_class = Verb
 
 
 def _refuse_one_dash(verb: Verb, context: click.Context, arguments: list[str]) -> None:
-    """Refuse ``-rulebook``, which would be ``-r ulebook``."""
+    """Refuse ``-rulebook``, which would mean ``-r ulebook``."""
     known = {name for option in verb.params for name in option.opts if name.startswith("--")}
     for word in arguments:
         if word == "--":
@@ -39,7 +39,7 @@ def _refuse_one_dash(verb: Verb, context: click.Context, arguments: list[str]) -
 def _refuse_repeated(verb: Verb, context: click.Context, arguments: list[str]) -> None:
     *_, order = verb.make_parser(context).parse_args(args=[*arguments])
     for parameter, times in Counter(order).items():
-        # A flag that is given twice says the same twice.
+        # Repeating a flag is harmless.
         once = isinstance(parameter, click.Option) and not (
             parameter.multiple or parameter.is_flag or parameter.count
         )
