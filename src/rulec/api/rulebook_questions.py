@@ -1,6 +1,6 @@
 """Verbs of a session about rulebooks: explain, diff, analyze, audit, show."""
 
-# Imports are within functions: all that these verbs need takes 340 ms, a session alone 25 ms.
+# Imports within functions: all that these verbs need takes 340 ms, a session alone 25 ms.
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Verbs about traces and recorded traffic: read, write, verify."""
 
-# Imports are within functions: all that these verbs need takes 150 ms, a session alone 25 ms.
+# Imports within functions: all that these verbs need takes 150 ms, a session alone 25 ms.
 
 from __future__ import annotations
 
