@@ -1,4 +1,4 @@
-"""Drives of many vehicles that are not there together: what one might do among the same others."""
+"""Drives of many candidates that do not coexist: what one vehicle may do among the same others."""
 
 from __future__ import annotations
 
@@ -26,15 +26,16 @@ from rulec.recordings.recording import Participant, Recording, Side
 from rulec.trace.end_to_end import UnlikeDrivesError
 
 MOST_CELLS = 1 << 18
-"""Drives are laid end to end up to so many cells; fewer at a time take more calls, more memory."""
+"""Drives are laid end to end up to this many cells; fewer take more calls, more take more
+memory."""
 
 Block: TypeAlias = list[tuple[int, tuple[Drive | NoDrive, ...]]]
-"""The numbers of some candidates, and the drives of each."""
+"""Pairs of a candidate's number and its drives."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Matched:
-    """The lanelets of others, and behind them of one more."""
+    """The matched lanelets of the other participants and, as the last row, of one candidate."""
 
     others: MapMatching
     candidates: MapMatching
@@ -51,7 +52,7 @@ class _Matched:
 
 
 class _DrivesOfOne(Drives):
-    """The drives of a candidate among others, whose places on roads are known."""
+    """The drives of one candidate among the others, whose places on roads are already known."""
 
     def __init__(self, among: CandidateDrives, batch: _Batch, row: int) -> None:
         super().__init__(
@@ -74,7 +75,7 @@ class _DrivesOfOne(Drives):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Stretch:
-    """A stretch of a candidate's, which is that of a row, and of its drives the one of a number."""
+    """Stretch ``number`` of the candidate in ``row``, with the name and columns of its drive."""
 
     row: int
     number: int
@@ -83,7 +84,7 @@ class _Stretch:
 
 
 class _Batch:
-    """Candidates that are looked at together."""
+    """Candidates that are processed together."""
 
     def __init__(
         self, among: CandidateDrives, candidates: Sequence[Participant], writer: TraceWriter
@@ -120,7 +121,7 @@ class _Batch:
         return None if isinstance(found, str) else found[0]
 
     def places(self, road: DrivenRoad, row: int) -> tuple[RoadPlaces, int]:
-        """The places on a road of all that drive there, and a candidate's row among them."""
+        """The places on a road of all candidates that drive there, and a candidate's row there."""
         rows = self._rows[road]
         if road not in self._places:
             members = np.fromiter(rows, dtype=intp, count=len(rows))
@@ -128,9 +129,9 @@ class _Batch:
         return self._places[road], rows[row]
 
     def drives(self, *, bare: bool) -> Iterator[Block]:
-        """The drives of each candidate, those along one road one after the other.
+        """The drives of each candidate, ordered by road, in blocks.
 
-        They are ``bare`` if this is asked for, unless all are in one block.
+        With ``bare`` the drives are bare, unless one block holds all candidates.
         """
         known: dict[DrivenRoad | None, int] = {}
         roads = [
@@ -151,7 +152,7 @@ class _Batch:
             yield self._block(rows, bare=bare and len(rows) < len(order))
 
     def _block(self, rows: Sequence[int], *, bare: bool) -> Block:
-        """The drives of some candidates."""
+        """The drives of the candidates in ``rows``."""
         writer = replace(self.writer, bare=bare)
         together: dict[DrivenRoad, list[_Stretch]] = defaultdict(list)
         apart = set()
@@ -178,7 +179,7 @@ class _Batch:
     def _together(
         self, row: int, number: int, stretch: RouteStretch
     ) -> tuple[DrivenRoad, _Stretch] | None:
-        """The road of a stretch that can be looked at with others, and what it is called."""
+        """The road of a stretch that can be processed with others, and the stretch; or None."""
         road = self._road(stretch)
         if road is None or road.meets_itself or stretch.against:
             return None
@@ -191,7 +192,7 @@ class _Batch:
         return road, _Stretch(row, number, name, columns)
 
     def _by_itself(self, row: int) -> tuple[Drive | NoDrive, ...]:
-        """The drives of a candidate that is looked at by itself."""
+        """The drives of a candidate that is processed by itself."""
         drives_of_one = _DrivesOfOne(self._among, self, row)
         return tuple(
             drives_of_one.along(
@@ -202,7 +203,7 @@ class _Batch:
     def _end_to_end(
         self, road: DrivenRoad, stretches: Sequence[_Stretch], writer: TraceWriter
     ) -> dict[tuple[int, int], Drive]:
-        """Drives along one road, by candidate and number; none if not all say the same names."""
+        """Drives along one road by candidate and number; empty if their traces' names differ."""
         among = self._among
         egos = EgosOnRoad(
             self.places(road, stretches[0].row)[0],
@@ -222,7 +223,7 @@ class _Batch:
         }
 
     def _surroundings_of(self, row: int) -> tuple[Surroundings, int]:
-        """A candidate's surroundings, in which it is the last participant, and its row."""
+        """The surroundings with a candidate as last participant, and its row in them."""
         among = self._among
         joined = among.surroundings.and_one(self.surroundings, row, among.types)
         return joined, len(among.surroundings.tracks.participants)
@@ -231,9 +232,9 @@ class _Batch:
 class CandidateDrives:
     """The drives of candidates for one vehicle, the last participant of a ``recording``.
 
-    Others do not see the candidates, nor do these see each other: each drive is the one of the
-    recording in which the candidate is in that vehicle's place. All arrays are of the steps of a
-    ``span``, from the first to the last one of anybody who moves.
+    The others do not see the candidates, nor do candidates see each other: each drive is the one of
+    the recording with the candidate in that vehicle's place. All arrays cover the steps of
+    ``span``, from the first to the last step of any moving participant.
     """
 
     def __init__(
@@ -269,8 +270,8 @@ class CandidateDrives:
         return [found[row] for row in range(len(candidates))]
 
     def in_blocks(self, candidates: Sequence[Participant], writer: TraceWriter) -> Iterator[Block]:
-        """The drives of some candidates at a time, of which the first one is the first.
+        """The drives of candidates, block by block; the first block contains the first candidate.
 
-        They are bare if there are several blocks.
+        Drives are bare if there are several blocks.
         """
         yield from _Batch(self, candidates, writer).drives(bare=True)

@@ -1,4 +1,4 @@
-"""Arrays of a recording cut to one drive, or to several end to end, and to who is near ego."""
+"""Arrays of a recording cut to one drive, or to several end to end, and to objects near ego."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from rulec.trace.plain_arrays import keep_freed_memory
 def drive_context(
     surroundings: Surroundings, places: RoadPlaces, side: Side, ego: int, columns: slice
 ) -> DriveContext:
-    """The part of a recording that one drive is about: ``ego``'s row, in a range of columns."""
+    """The part of a recording that concerns one drive: row ``ego`` in a range of columns."""
     own = np.array([ego])
     tracks, extents = places.tracks.part(own, columns), places.extents.part(own, columns)
     relevant, in_sight = _near(places, (columns,), extents)
@@ -57,9 +57,10 @@ def drive_context(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class EgosOnRoad:
-    """Drives along one road: rows of ``places``, and the columns in which each is.
+    """Drives along one road: their rows in ``places`` and the columns of each.
 
-    ``own`` are the egos' surroundings, ``alone`` those of one of them by the number of its drive.
+    ``own`` are the egos' surroundings; ``alone`` returns the surroundings of a single ego, and its
+    row in them, by the number of its drive.
     """
 
     places: RoadPlaces
@@ -72,9 +73,9 @@ class EgosOnRoad:
 def drives_context(
     surroundings: Surroundings, places: RoadPlaces, side: Side, egos: EgosOnRoad
 ) -> DriveContext:
-    """The parts of a recording that several drives along one road are about.
+    """The parts of a recording that concern several drives along one road, end to end.
 
-    Egos with surroundings of their ``own`` are not among the others.
+    Egos that have surroundings of their ``own`` are not among the other participants.
     """
     keep_freed_memory()
     lengths = [columns.stop - columns.start for columns in egos.columns]
@@ -114,9 +115,9 @@ def drives_context(
 
 
 def _near(places: RoadPlaces, ranges: Sequence[slice], ego: RoadExtents) -> tuple[Flags, Flags]:
-    """Flags of participants (rows) that count for ego, and that are in its sight.
+    """Masks of the participants (rows) that count for ego and of those in its sight, by state.
 
-    By state, those of several ``ranges`` end to end.
+    The states of several ``ranges`` are laid end to end.
     """
     limits, extents = places.thresholds, places.extents
 
@@ -129,7 +130,7 @@ def _near(places: RoadPlaces, ranges: Sequence[slice], ego: RoadExtents) -> tupl
 
     gap = laid(extents.s_min) - ego.s_max
     np.maximum(gap, ego.s_min - laid(extents.s_max), out=gap)
-    # A little farther, since speeds are known to some tolerance
+    # A little farther, since speeds are only known to within a tolerance
     reach = ego.along - laid(extents.along)
     reach += 1.0
     np.maximum(reach, 0.0, out=reach)

@@ -1,4 +1,4 @@
-"""A drive, or several along one road, state by state: ego, its road and the other participants."""
+"""One drive, or several along one road, by state: ego, its road and the other participants."""
 
 from __future__ import annotations
 
@@ -33,18 +33,19 @@ _LEAST_OFFSET_M = 0.15
 class DriveContext:
     """Arrays of one drive, or of several end to end: a row per participant, a column per state.
 
-    ``spans`` are the columns of each drive, ``steps`` the recording's time steps by column. The
+    ``spans`` are the columns of each drive, ``steps`` the recording's time step of each column. The
     rows are the participants that are ever relevant or in sight, NaN in drives in which they never
-    are; ``ego`` and ``ego_extents`` have one, and ``ego`` a participant for each drive, whose rows
-    are those of its ``own`` surroundings, in which its whole track is.
+    are. ``ego`` and ``ego_extents`` have one row; ``ego`` has one participant per drive, and its
+    ``rows`` refer to the ``own`` surroundings, which contain its whole track.
 
-    ``relevant``: whether a participant counts for ego; ``in_sight``: is it on ego's lanes, so near
-    that ego could reach it within ``catching_up_s``? ``lanes_there``: the set of lanes that exist
-    where it is; ``lanes_within``: the sets of those of them that it reaches into, as it is, farther
-    out and farther in by the tolerance of places; ``elsewhere``: does it drive on lanelets of
-    another road? ``surroundings`` are the recording's; ``alone`` gives those of one of several
-    drives by its number, if each has others, and ego's row in them. ``wrong_way``: does ego drive
-    against the road? ``computed`` holds what functions have found ``once``.
+    ``relevant``: whether a participant counts for ego. ``in_sight``: whether it is on ego's lanes
+    and so near that ego could reach it within ``catching_up_s``. ``lanes_there``: the set of lanes
+    that exist at its place. ``lanes_within``: the sets of those lanes that it reaches into, as
+    measured, and moved farther out and farther in by the tolerance of places. ``elsewhere``:
+    whether it drives on lanelets of another road. ``surroundings`` are the recording's; if each
+    drive has its own, ``alone`` returns them by the drive's number, with ego's row in them.
+    ``wrong_way``: whether ego drives against the road. ``computed`` holds the results of functions
+    wrapped in ``once``.
     """
 
     recording: Recording
@@ -70,7 +71,7 @@ class DriveContext:
 
     @cached_property
     def tolerances(self) -> Tolerances:
-        """How well the source knows places and speeds."""
+        """The errors of places and speeds in this source."""
         return self.surroundings.tolerances
 
     @cached_property
@@ -85,12 +86,12 @@ class DriveContext:
 
     @cached_property
     def columns(self) -> NDArray[intp]:
-        """The columns of the states in arrays of the whole recording."""
+        """The states' columns in arrays of the whole recording."""
         return self.steps - self.surroundings.tracks.first
 
     @property
     def is_one(self) -> bool:
-        """Whether there is one drive, all that it is about being in its ``surroundings``."""
+        """Whether this is a single drive whose ``surroundings`` contain all that concerns it."""
         return self.spans.n_drives == 1 and self.alone is None
 
     def one(self, number: int) -> DriveContext:
@@ -132,13 +133,13 @@ class DriveContext:
         return {}
 
     def ego_is(self, kind: str) -> Flags:
-        """Flags of states in which ego is of an object type or its subtypes."""
+        """Mask of the states in which ego has an object type or one of its subtypes."""
         flags: Flags = self.spans.spread(self.ego.of_type(kind))
         return flags
 
     @cached_property
     def ego_lane(self) -> NDArray[intp]:
-        """The lane of ego's middle by state, numbered from the right, or the nearest that is."""
+        """The lane of ego's middle by state, from the right; the nearest if it does not exist."""
         lane: NDArray[intp] = self.ego_extents.lane[0]
         lanes = np.arange(self.existing_lanes.shape[1])
         away = np.where(self.existing_lanes, abs(lanes - lane[:, None]), len(lanes))
@@ -146,9 +147,10 @@ class DriveContext:
 
     @cached_property
     def limit_mps(self) -> Floats:
-        """The limit of the lane of ego's middle by state, infinity if the map tells none there.
+        """The speed limit in the lane of ego's middle by state; infinity where the map has none.
 
-        That of its front where one may be faster there: who drives past a sign speeds up by then.
+        Where the limit at ego's front is higher, that one: drivers who pass a sign speed up by
+        then.
         """
         front = self.places_at(self.ego_extents.s_max[0], self.ego_lane)
         own, ahead = (self._limits_at(*places) for places in (self.ego_places, front))
@@ -161,13 +163,13 @@ class DriveContext:
 
     @cached_property
     def ego_places(self) -> tuple[tuple[tuple[int, int], ...], NDArray[intp]]:
-        """The pieces and lanes of ego's middle, each once, and by state which of them it is."""
+        """The distinct (piece, lane) pairs of ego's middle, and by state the pair's index."""
         return self.places_at(self.ego_extents.s[0], self.ego_lane)
 
     def places_at(
         self, middle: Floats, lanes: NDArray[intp]
     ) -> tuple[tuple[tuple[int, int], ...], NDArray[intp]]:
-        """The pieces and lanes so far along the road, in a lane, each once, and by state which."""
+        """The distinct (piece, lane) pairs at places along the road; by state the pair's index."""
         width = self.existing_lanes.shape[1]
         codes = self.road.piece(middle) * width + lanes
         different = distinct(codes)
@@ -176,12 +178,12 @@ class DriveContext:
 
     @cached_property
     def existing_lanes(self) -> Flags:
-        """Flags of the lanes (second axis) that exist beside ego, by state."""
+        """Mask of the lanes (second axis) that exist beside ego, by state."""
         return self.road.lanes.existing_at(self.ego_extents.s[0])
 
     @cached_property
     def steady_lane(self) -> NDArray[intp]:
-        """Ego's lane with hysteresis: it is left only ``changed_m`` beyond its mark."""
+        """Ego's lane with hysteresis: ego leaves a lane only ``changed_m`` beyond its mark."""
         changes = self.spans.changes(self.ego_lane)
         if not changes.any():
             return self.ego_lane
@@ -192,7 +194,7 @@ class DriveContext:
 
     @cached_property
     def steady_lane_from_beside(self) -> NDArray[intp]:
-        """The same if ego, so near a mark when its drive begins, has come over that just before."""
+        """``steady_lane``, assuming that ego, if near a mark at first, had just crossed it."""
         begins = self.spans.begins
         near = self._stays[begins]
         near[np.arange(len(begins)), self.ego_lane[begins]] = False
@@ -205,7 +207,7 @@ class DriveContext:
 
     @cached_property
     def _stays(self) -> Flags:
-        """Flags of lanes (second axis) that ego, if it comes from there, has not left yet."""
+        """Mask of the lanes (second axis) that ego, if it came from there, has not left yet."""
         left_of = self.ego_extents.left_of[0]
         beyond = np.maximum(-left_of[:, :-1], left_of[:, 1:])
         stays: Flags = (beyond < self.thresholds.changed_m) & self.existing_lanes
@@ -213,13 +215,13 @@ class DriveContext:
 
     @cached_property
     def _leaves(self) -> NDArray[intp]:
-        """For each lane the first state from each on in which ego has left it."""
+        """For each lane and state the first state from there on in which ego has left the lane."""
         others = self.ego_lane[:, None] != np.arange(self.existing_lanes.shape[1])
         leaves: NDArray[intp] = self.spans.next_state((others & ~self._stays).T)
         return leaves
 
     def _keep_lanes(self, steady: NDArray[intp], columns: slice, own: int) -> None:
-        """Write the lanes that ego keeps to in a drive that begins in its ``own``."""
+        """Write the lanes that ego keeps in a drive that begins in lane ``own``."""
         state, last = columns.start, columns.stop - 1
         while state <= last:
             end = int(self._leaves[own, state + 1]) if state < last else columns.stop
@@ -228,44 +230,44 @@ class DriveContext:
 
     @cached_property
     def going_along(self) -> Flags:
-        """Flags of participants that are vehicles going ego's way on its lanes."""
+        """Mask of participants that are vehicles driving ego's way on its lanes."""
         return self.relevant & self.driving_along
 
     @cached_property
     def driving_along(self) -> Flags:
-        """The same of those in sight, however far away."""
+        """``going_along`` for all vehicles in sight, however far away."""
         drives = self.tracks.of_type("vehicle")[:, None]
         turned = abs(self.extents.turned)
         return self.in_sight & drives & (turned < 1.0) & self.on_lanes
 
     @cached_property
     def there(self) -> Flags:
-        """Flags of the lanes (last axis) that exist where participants are."""
+        """Mask of the lanes (last axis) that exist where participants are."""
         lanes = range(self.existing_lanes.shape[1])
         return np.moveaxis(np.stack([is_in(self.lanes_there, lane) for lane in lanes]), 0, -1)
 
     @cached_property
     def on_lanes(self) -> Flags:
-        """Flags of who reaches into a lane of the road."""
+        """Mask of participants that reach into some lane of the road."""
         flags: Flags = self.lanes_within[0] != 0
         return flags
 
     @cached_property
     def in_ego_lane(self) -> Flags:
-        """Flags of who reaches into ego's lane."""
+        """Mask of participants that reach into ego's lane."""
         return self.in_lane(self.ego_lane)
 
     def in_lane(self, lane: NDArray[intp] | int) -> Flags:
-        """Flags of who reaches into a lane, by state."""
+        """Mask of participants that reach into a lane, given by state or for all states."""
         return is_in(self.lanes_within[0], lane)
 
     @cached_property
     def map_offset_m(self) -> Floats:
-        """How far (m) left of their lanes' middles others drive, by state, if that is telling.
+        """How far (m) left of the middle of their lanes others drive, by state, if enough do so.
 
-        The median of ``_ENOUGH_IN_LANE`` vehicles or more in ego's lane there, or else of
-        ``_ENOUGH_TRACKS`` in all lanes, 0 up to ``_LEAST_OFFSET_M``. Drivers keep to the middle on
-        the whole: by so much the map may be off the tracks.
+        The median over at least ``_ENOUGH_IN_LANE`` vehicles in ego's lane there, or else over at
+        least ``_ENOUGH_TRACKS`` in all lanes; 0 if not above ``_LEAST_OFFSET_M``. Drivers on the
+        whole keep to the middle, so the map may be displaced from the tracks by this much.
         """
         by_state = np.zeros(self.states)
         if self.extents.most_off_middle <= _LEAST_OFFSET_M:
@@ -292,10 +294,10 @@ class DriveContext:
     def _may_be_off(
         self, rows: NDArray[intp], drive: NDArray[intp], lane: NDArray[intp], away: Floats
     ) -> bool:
-        """Whether such a median of medians may be greater than ``_LEAST_OFFSET_M`` to some side.
+        """Whether a median of medians may exceed ``_LEAST_OFFSET_M`` to either side.
 
-        For that at least half of the values have to be, of half of the participants: in all lanes
-        or in one. That is sooner counted than medians are found.
+        For that, at least half of the values of at least half of the participants have to, in all
+        lanes or in one. Counting them is faster than computing medians.
         """
         n_drives, lanes = self.spans.n_drives, self.existing_lanes.shape[1]
         sides = [(away * way > _LEAST_OFFSET_M).nonzero()[0] for way in (-1, 1)]
@@ -314,7 +316,7 @@ class DriveContext:
     def _offsets(
         self, rows: NDArray[intp], drive: NDArray[intp], away: Floats
     ) -> tuple[Floats, NDArray[intp]]:
-        """For each drive the median of participants' medians, and of how many."""
+        """For each drive the median of the participants' medians, and how many these are."""
         n_drives = self.spans.n_drives
         own, count = medians(rows * n_drives + drive, away, len(self.relevant) * n_drives)
         of_drive = np.arange(len(own)) % n_drives
@@ -322,7 +324,7 @@ class DriveContext:
         return medians(of_drive[there], own[there], n_drives)
 
     def zero_if_standing(self, speed_kmh: Floats) -> Floats:
-        """Speeds (km/h), exactly 0 below the threshold of standing."""
+        """Speeds (km/h), set to exactly 0 below the threshold of standing."""
         return speed_kmh * (abs(speed_kmh) >= self.thresholds.standing_kmh)
 
 
@@ -330,9 +332,9 @@ Found = TypeVar("Found")
 
 
 def once(compute: Callable[[DriveContext], Found]) -> Callable[[DriveContext], Found]:
-    """Let a function of a drive's context compute what it does once for each drive.
+    """Make a function of a drive's context compute its result only once per context.
 
-    What it finds is shared: nobody changes it.
+    The result is shared, so callers must not change it.
     """
 
     @wraps(compute)

@@ -1,4 +1,4 @@
-"""The drives of a recording: vehicles along the roads they drove."""
+"""The drives of a recording: its vehicles along the roads that they drove."""
 
 from __future__ import annotations
 
@@ -37,33 +37,34 @@ from rulec.trace.end_to_end import UnlikeDrivesError
 FEWEST_STATES = 2
 
 MOST_CELLS = 1 << 18
-"""So many states of all participants, in several drives, are looked at by the same calls."""
+"""Most cells (participants × states) of several drives that are processed together."""
 
 FEWEST_TOGETHER = 2
-"""Fewer drives are looked at one by one."""
+"""Fewer drives than this are processed one by one."""
 
 MOST_PLACES = 1 << 17
-"""Of a recording with more participants times steps a part is looked at at a time."""
+"""Recordings with more cells (participants × steps) than this are processed in parts."""
 
 MOST_OF_ALL = 0.75
-"""Instead of so much of all places all are computed, since what bodies look like is known then."""
+"""If at least this share of all places is needed, all are computed: the outlines are known then."""
 
 PART = 4
-"""A part lasts so many times as long as the drive that it begins with, for those that end in it."""
+"""A part lasts this many times its first drive; other drives that end within it share its
+places."""
 
 MOST_KEPT = 1 << 22
-"""So many participants times steps are kept, of all roads; each takes some 150 bytes."""
+"""Most cells (participants × steps) that are kept for all roads; each takes some 150 bytes."""
 
 _Key: TypeAlias = tuple[int, int]
-"""A drive: whose row, and from which column on."""
+"""A drive: its participant's row and its first column."""
 
 _LONGEST_M = 50.0
-"""Bodies whose ends count are shorter."""
+"""Upper bound (m) on the length of bodies whose ends count."""
 
 
 @dataclass(frozen=True, slots=True)
 class NoDrive:
-    """A vehicle ``ego`` without a drive, and the reason."""
+    """A vehicle ``ego`` that has no drive, and why."""
 
     ego: str
     why: str
@@ -71,14 +72,14 @@ class NoDrive:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _PlacesInPart:
-    """Places on a road, kept for drives that are ``awaited``."""
+    """Places on a road, kept for the drives that are still ``awaited``."""
 
     places: RoadPlaces
     awaited: set[_Key]
 
 
 class LaidOutMap:
-    """What is known of a map: its graph of lanelets, and the roads along them, once laid out."""
+    """A map prepared for drives: its lanelet graph, and the roads already laid out along routes."""
 
     def __init__(self, recording: Recording) -> None:
         self.graph = LaneletGraph(recording)
@@ -87,7 +88,7 @@ class LaidOutMap:
         self._roads: dict[tuple[str, ...], tuple[DrivenRoad, int] | str] = {}
 
     def road(self, route: tuple[str, ...]) -> tuple[DrivenRoad, int] | str:
-        """The road of a route and the piece that this begins in, or why it makes no sense."""
+        """The road of a route and the piece in which the route begins, or why there is none."""
         if route not in self._roads:
             try:
                 self._roads[route] = self._driven_roads.along(route)
@@ -97,22 +98,22 @@ class LaidOutMap:
 
 
 class Matching(Protocol):
-    """The lanelets that participants, who are rows, drove."""
+    """The lanelets that participants drove, by row."""
 
     @property
     def lanelets(self) -> NDArray[intp]:
         """Their numbers in the file's order, by participant and column; -1 for none."""
 
     def of(self, row: int) -> tuple[MatchedStretch, ...]:
-        """The stretches of a participant."""
+        """The matched stretches of a participant."""
 
 
 class Drives:
     """The drives of a recording, with a shared layout of each road.
 
-    ``prepared`` are its map, who drove where on it and its surroundings, if they are known. Of
-    egos that are ``expected``, which will be asked for one after the other, those who drive along
-    one road are looked at together.
+    ``prepared`` are the map, the matched lanelets and the surroundings, if already known.
+    ``expected`` are egos that will be asked for one after the other; those along one road are
+    processed together.
     """
 
     def __init__(
@@ -145,7 +146,7 @@ class Drives:
         return egos_of(self.recording)
 
     def kinds(self) -> dict[str, type]:
-        """The Python type of each signal of all drives, empty if there is no drive."""
+        """The Python type of each signal, the same for all drives; empty if there is no drive."""
         drives = (x for ego in self.egos() for x in self.of(ego) if isinstance(x, Drive))
         first = next(drives, None)
         return {} if first is None else dict(first.kinds)
@@ -157,7 +158,7 @@ class Drives:
         if 2 * len(body.states) < len(body.outlines):
             yield NoDrive(ego, "it has no track: its places are sets that it may be in")
             return
-        # Whom the file says to be ego drives itself, however near to another one
+        # The vehicle that the file names as ego drives itself, however close to another one
         is_ego = ego == self.recording.ego
         towing = None if is_ego else towed_by(self._tracks, row, self.recording.step_s)
         if towing is not None:
@@ -178,7 +179,7 @@ class Drives:
 
     @cached_property
     def _against(self) -> dict[int, list[RouteStretch]]:
-        """The stretches of who drove the wrong way, by row."""
+        """The stretches that participants drove the wrong way, by row."""
 
         def is_one_way(lanelet: Lanelet) -> bool:
             return self._surroundings.is_surely_one_way(lanelet, self._side)
@@ -222,13 +223,13 @@ class Drives:
 
     @cached_property
     def _planned(self) -> dict[int, list[RouteStretch]]:
-        """The stretches of those who are expected, by row, in their order."""
+        """The stretches of the expected egos by row, in their order."""
         rows = {body.id: row for row, body in enumerate(self._tracks.participants)}
         return {rows[ego]: self.stretches(rows[ego]) for ego in self._expected}
 
     @cached_property
     def _plans(self) -> dict[DrivenRoad, list[tuple[int, str, slice]]]:
-        """The drives of those who are expected, by road: the row, the name and the columns."""
+        """The drives of the expected egos by road: row, name and columns of each."""
         plans: dict[DrivenRoad, list[tuple[int, str, slice]]] = defaultdict(list)
         for row, stretches in self._planned.items():
             ego = self._tracks.participants[row].id
@@ -241,7 +242,7 @@ class Drives:
         return plans
 
     def _look_ahead(self, road: DrivenRoad, places: RoadPlaces, asked: _Key) -> None:
-        """Make a drive, and of those along its road that await its places about ``MOST_CELLS``."""
+        """Make the drive ``asked`` and others awaiting these places, up to about ``MOST_CELLS``."""
         part = self._parts.get(road)
         awaited = {asked} if part is None else part.awaited | {asked}
         members: dict[_Key, tuple[str, int, slice]] = {}
@@ -262,7 +263,7 @@ class Drives:
     def _made_together(
         self, places: RoadPlaces, members: Mapping[_Key, tuple[str, int, slice]]
     ) -> dict[_Key, Drive]:
-        """Drives along one road, of names, rows and columns; none if not all say the same names."""
+        """Drives along one road, from names, rows and columns; empty if their signals differ."""
         names, rows, columns = zip(*members.values(), strict=True)
         egos = EgosOnRoad(places, rows, columns, own=self._surroundings)
         context = drives_context(self._surroundings, places, self._side, egos)
@@ -273,7 +274,7 @@ class Drives:
             return {}
 
     def _there(self, places: RoadPlaces, row: int, columns: slice) -> tuple[int, slice] | None:
-        """A drive's row and columns among places; None if they lack it, or it leaves the road."""
+        """A drive's row and columns in ``places``; None if they lack it or it leaves the road."""
         rows, before = places.tracks.rows, places.tracks.first - self._tracks.first
         own = slice(columns.start - before, columns.stop - before)
         at = int(rows.searchsorted(row))
@@ -291,11 +292,11 @@ class Drives:
         return self._road_places(road, tracks, road_extents(tracks, road), elsewhere)
 
     def _present(self, columns: slice) -> NDArray[intp]:
-        """The rows of who is there in some columns."""
+        """The rows of the participants that are present in some of the columns."""
         return self._tracks.present[:, columns].any(axis=1).nonzero()[0]
 
     def _places_along(self, road: DrivenRoad, row: int, columns: slice) -> RoadPlaces:
-        """The places on a road during a drive and those on it that are expected, or come soon."""
+        """The places on a road during a drive and the expected drives on it that follow soon."""
         known = self._parts.get(road)
         if known is not None and (row, columns.start) in known.awaited:
             return known.places
@@ -312,8 +313,8 @@ class Drives:
         if soon:
             awaited = {(ego, own.start) for ego, own in soon}
             self._parts[road] = _PlacesInPart(places, awaited)
-        # The latest goes: drives take turns on their roads, and who drops the road that was asked
-        # about longest ago drops the one that is asked about next.
+        # Drop the newest: drives alternate between their roads, so the road that was used longest
+        # ago is the one that is needed next.
         if len(self._parts) > 1 and self._n_kept() > MOST_KEPT:
             self._parts.pop(road, None)
         return places
@@ -322,7 +323,7 @@ class Drives:
         return sum(part.places.tracks.present.size for part in self._parts.values())
 
     def _places_during(self, road: DrivenRoad, egos: Sequence[tuple[int, slice]]) -> RoadPlaces:
-        """The places on a road, during drives along it, of all who may count for one of them."""
+        """The places on a road, during drives along it, of all that may count for them."""
         begin, end = min(own.start for _, own in egos), max(own.stop for _, own in egos)
         columns = slice(begin, end)
         tracks, limits, step_s = self._tracks, self._thresholds, self.recording.step_s
@@ -340,16 +341,16 @@ class Drives:
         if not are_on_road(extents, road, own_rows, limits):
             rows = self._present(columns)
             extents = road_extents(tracks.part(rows, columns), road)
-        # Without the arrays that extents were computed from, which are many times as large
+        # Without the arrays that the extents were computed from, which are many times as large
         part = tracks.part(rows, columns)
         return self._road_places(road, part, extents, self._elsewhere(road, rows, columns))
 
     def _places_of_one(
         self, road: DrivenRoad, first_piece: int, row: int, stretch: RouteStretch
     ) -> RoadPlaces:
-        """The places of all during one drive on a road that meets itself, or against it.
+        """The places of all during one drive against a road, or on a road that meets itself.
 
-        ``first_piece`` is the road's that the drive begins in.
+        ``first_piece`` is the piece of the road in which the drive begins.
         """
         columns = slice(stretch.first, stretch.last + 1)
         near = rows_in_reach(self._tracks, road, row, columns, self._thresholds)
@@ -376,12 +377,13 @@ class Drives:
         return RoadPlaces(road, tracks, extents, limits, elsewhere=elsewhere, fastest=fastest)
 
     def _elsewhere(self, road: DrivenRoad, rows: NDArray[intp], columns: slice) -> Flags:
-        """Flags of who of some rows drives on lanelets that are not of a road, in some columns."""
+        """Mask of the participants in ``rows`` on lanelets outside the road, in some columns."""
         first = int(self._first[rows].min(initial=columns.start))
         lanelets = self._matching.lanelets[rows, first : columns.stop]
         own = np.zeros(len(self._map.numbers) + 1, dtype=bool)
         own[self._numbers_along(road)] = True
-        # Who turns off is still ahead until it has left, unlike who comes from elsewhere
+        # A participant that turns off counts as ahead until it has left; one coming from elsewhere
+        # does not
         flags = (lanelets >= 0) & ~np.logical_or.accumulate(own[lanelets], axis=1)
         return flags[:, columns.start - first :]
 

@@ -23,9 +23,9 @@ from rulec.value_display import short_repr
 
 @dataclass(frozen=True, slots=True)
 class DriveMoments:
-    """The moments of a drive: of a file, a recording in it, and a vehicle or a trace.
+    """The moments of one vehicle or trace in a recording of a file.
 
-    State 0 is ``start_s`` (s), states are ``step_s`` (s) apart.
+    State 0 is at ``start_s`` (s); states are ``step_s`` (s) apart.
     """
 
     __repr__ = short_repr
@@ -38,14 +38,14 @@ class DriveMoments:
     moments: Sequence[Moment]
 
     def time_s(self, state: int) -> float:
-        """The time of a state."""
+        """The time (s) of a state."""
         return round(self.start_s + state * self.step_s, 9)
 
 
 def in_recordings(
     recordings: Iterable[Recording], query: FormulaQuery, wanted: RequestedDrives, file: str
 ) -> Iterator[DriveMoments]:
-    """The moments of each drive of recordings, as ``in_recording``."""
+    """The moments of each drive of several recordings; see ``in_recording``."""
     for recording in recordings:
         yield from in_recording(recording, query, wanted, file)
 
@@ -53,9 +53,9 @@ def in_recordings(
 def in_recording(
     recording: Recording, query: FormulaQuery, request: RequestedDrives, file: str
 ) -> Iterator[DriveMoments]:
-    """The moments of each drive, each vehicle in turn as ego.
+    """The moments of each drive, with each requested vehicle as ego in turn.
 
-    Raises RulecError R0612 for a vehicle that is not there.
+    Raises RulecError R0612 for a vehicle that the recording does not contain.
     """
     selected = selected_drives(
         recording,
@@ -84,7 +84,7 @@ def in_recording(
 def in_traces(
     traces: Iterable[Trace | RulecError], query: FormulaQuery, assumed: Assumptions, file: str
 ) -> Iterator[DriveMoments | RulecError]:
-    """The moments of each trace; in place of one that cannot be asked there is the reason."""
+    """The moments of each trace, or the error where a trace cannot be searched."""
     for item in traces:
         if isinstance(item, RulecError):
             yield item
@@ -100,7 +100,8 @@ def in_traces(
 def in_trace(trace: Trace, query: FormulaQuery, assumed: Assumptions, file: str) -> DriveMoments:
     """The moments of a trace.
 
-    Raises RulecError R0501 to R0506 if it is none, NotAMultipleError for a bound that does not fit.
+    Raises RulecError R0501 to R0506 if the trace is invalid, NotAMultipleError if a bound is no
+    multiple of its step.
     """
     trace = assumed.applied(trace) if assumed else trace
     check_trace(trace)

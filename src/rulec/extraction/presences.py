@@ -1,4 +1,4 @@
-"""Stretches of states in which participants count for ego, with their names."""
+"""Stretches of states in which participants count for ego, and their names."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from rulec.trace.plain_arrays import distinct, in_order
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PresenceRuns:
-    """Presences, drive by drive, and those of a row together.
+    """Presences ordered by drive, those of a row together.
 
-    The drive, the row, the first and the last state of each, counted from where its drive begins.
+    For each: its drive, its row, and its first and last state, counted from the start of its drive.
     """
 
     drives: NDArray[intp]
@@ -31,9 +31,9 @@ class PresenceRuns:
 
 @once
 def presence_runs(context: DriveContext) -> PresenceRuns:
-    """For how long each participant counts in each drive, absences up to ``away_s`` bridged.
+    """When each participant counts in each drive, with absences up to ``away_s`` bridged.
 
-    Who is in sight only, too far away to count, is not present.
+    Participants that are in sight but too far away to count are not present.
     """
     longest, spans = round(context.thresholds.away_s / context.recording.step_s), context.spans
     counting, s = Cells.at(context.relevant), context.extents.s
@@ -56,7 +56,7 @@ def presence_runs(context: DriveContext) -> PresenceRuns:
 
 @once
 def presence_cells(context: DriveContext) -> Cells:
-    """The cells of presences, one after the other: only there numbers are measured."""
+    """The cells of all presences, one after the other; numbers are measured only there."""
     runs = presence_runs(context)
     shift = context.spans.begins[runs.drives]
     shape = context.relevant.shape
@@ -65,7 +65,7 @@ def presence_cells(context: DriveContext) -> Cells:
 
 @once
 def _presence_numbers(context: DriveContext) -> NDArray[intp]:
-    """Which of the presence cells each cell of the arrays is; behind all of them for none."""
+    """For each cell of the arrays its number among the presence cells, or their count."""
     cells = presence_cells(context)
     return cells.laid(np.arange(len(cells)), len(cells)).ravel()
 
@@ -73,16 +73,16 @@ def _presence_numbers(context: DriveContext) -> NDArray[intp]:
 def in_presences(
     context: DriveContext, cells: Cells, values: NDArray[Any], elsewhere: float
 ) -> NDArray[Any]:
-    """Values of some cells, one for each of the presence cells; something else for the others."""
+    """Values of ``cells`` spread over the presence cells; ``elsewhere`` in those without one."""
     found = np.full(len(presence_cells(context)) + 1, elsewhere)
     found[_presence_numbers(context).take(cells.places)] = values
     return found[:-1]
 
 
 def presence_names(context: DriveContext) -> list[str]:
-    """What the objects of the presence runs are called in their drives.
+    """The object names of the presence runs in their drives.
 
-    Who comes again after it was away, or not beside the road, has a name of its own.
+    A participant that returns after being away, or not beside the road, gets a new name.
     """
     runs = presence_runs(context)
     names = list(map(context.ids.__getitem__, runs.rows.tolist()))
@@ -95,7 +95,7 @@ def presence_names(context: DriveContext) -> list[str]:
 
 
 def _renamed(names: Sequence[str], comes_again: Sequence[bool], ids: frozenset[str]) -> list[str]:
-    """The names in a drive, in which each but the first may be that of the one before again."""
+    """The names in a drive; ``comes_again`` marks those after the first that repeat the last."""
     found = list(names[:1])
     for name, again in zip(names[1:], comes_again, strict=True):
         if again:
@@ -106,7 +106,7 @@ def _renamed(names: Sequence[str], comes_again: Sequence[bool], ids: frozenset[s
 
 
 def _ids_in(context: DriveContext, drive: int) -> frozenset[str]:
-    """The names of the participants that a drive is about."""
+    """The ids of the participants that count or are in sight in a drive."""
     columns = context.spans.slices[drive]
     rows = (context.relevant | context.in_sight)[:, columns].any(axis=1)
     bodies = context.tracks.participants

@@ -1,8 +1,8 @@
-"""Parts of a long recording: successive drives, with participants present meanwhile.
+"""Parts of a long recording: successive drives, with the participants present meanwhile.
 
-Arrays of participants by time steps grow with the square of a recording's length. A part has whole
-tracks, of all who are there while one of its egos is, or so shortly before or after that ego might
-have had to think of them, and it knows what the recording is as a whole.
+Arrays of participants by time steps grow with the square of a recording's length. A part has the
+whole tracks of all participants that are present while one of its egos is, or so shortly before or
+after that they might still matter to ego. It also keeps what is known of the whole recording.
 """
 
 from __future__ import annotations
@@ -23,33 +23,36 @@ from rulec.trace.plain_arrays import median
 from rulec.value_display import short_repr
 
 MOST_CELLS = 3 << 17
-"""A part has about so many participants times steps, unless drives take nearly as many alone."""
+"""About the most cells (participants × steps) of a part, unless single drives take nearly as
+many."""
 
 MOST_TIMES_ALONE = 2
-"""Then it has up to so many times what one of its drives takes alone: in a crowd nearly all are
-there for each other's drives, and parts for few egos would look at the same ones again."""
+"""In that case, up to this many times the cells of one of its drives alone. In a crowd nearly all
+participants are present for each other's drives, and small parts would process the same ones
+again."""
 
 _ORDERS = ((0.2, 3), (0.5, 5))
-"""Steps (s) up to which differences of so high an order hardly tell of motion.
+"""Pairs (s, order): up to this step, differences of this order hardly show motion.
 
 Within 0.2 s vehicles do not change their acceleration; over half a second they change it smoothly.
 """
 
 _TRACKS, _STATES, _ENOUGH = 32, 128, 20
-"""So much is looked at of a recording's noise, and so many differences are needed for it."""
+"""To estimate noise: most tracks, most states of each, and fewest differences."""
 
 _MOVES_M = 0.3
-"""Who has moved so far in so many steps is not one whose place has been held."""
+"""A participant that moved farther than this (m) over the differences' steps is not held in
+place."""
 
 _OF_MEDIAN = 1.4826
-"""The standard deviation of normal errors is so many times the median of their sizes."""
+"""The standard deviation of normal errors, divided by the median of their absolute values."""
 
 _DRIVERS = frozenset({"vehicle", "light_rider"})
 
 
 @dataclass(frozen=True, slots=True)
 class RecordingPart:
-    """Some ``egos``, and of the ``recording`` those who are there while they are."""
+    """Some ``egos``, and the ``recording`` reduced to participants present while they are."""
 
     __repr__ = short_repr
 
@@ -69,7 +72,7 @@ def egos_of(recording: Recording) -> tuple[str, ...]:
 def recording_parts(
     recording: Recording, egos: Sequence[str], thresholds: Thresholds
 ) -> tuple[RecordingPart, ...]:
-    """A recording in parts of about ``MOST_CELLS``, in the order of ``egos``; often it is one."""
+    """A recording in parts of about ``MOST_CELLS``, in the order of ``egos``; often just one."""
     bodies = [body for body in recording.participants if body.outlines]
     first, last = _first_and_last(recording)
     if len(bodies) * (last - first + 1) <= MOST_CELLS:
@@ -107,29 +110,30 @@ def recording_parts(
 
 
 def _farthest_steps(thresholds: Thresholds, step_s: float) -> int:
-    """How many steps before or after it anybody may matter to a drive: all waits together."""
+    """How many steps from a drive participants may matter: the sum of all waiting times."""
     names = [field.name for field in fields(thresholds) if field.name.endswith("_s")]
     return int(sum(getattr(thresholds, name) for name in names) / step_s) + 1
 
 
 class _Attendance:
-    """Who is there during some steps, and how large the arrays of their tracks are."""
+    """The participants present during some steps, and the size of the arrays of their tracks."""
 
     def __init__(self, first: NDArray[intp], last: NDArray[intp], farthest: int) -> None:
         self._first, self._last, self._farthest = first, last, farthest
         self._firsts, self._lasts = np.sort(first), np.sort(last)
-        # Of those that last until a step or longer, when the first one begins; and the reverse
+        # First step of any track that lasts until a step or longer, and last step of any that has
+        # begun
         by_last, by_first = last.argsort(), first.argsort()
         self._earliest = np.minimum.accumulate(first[by_last][::-1])[::-1]
         self._latest = np.maximum.accumulate(last[by_first])
 
     def rows_during(self, low: int, high: int) -> NDArray[intp]:
-        """The rows of all who are there during some steps, or shortly before or after."""
+        """The rows of all participants present during some steps, or shortly before or after."""
         low, high = low - self._farthest, high + self._farthest
         return ((self._first <= high) & (self._last >= low)).nonzero()[0]
 
     def cells_during(self, low: int, high: int) -> int:
-        """How many participants times steps their tracks take."""
+        """How many cells (participants × steps) the tracks take."""
         low, high = low - self._farthest, high + self._farthest
         gone, come = self._lasts.searchsorted(low), self._firsts.searchsorted(high, "right")
         steps = self._latest[come - 1] - self._earliest[gone] + 1
@@ -137,7 +141,7 @@ class _Attendance:
 
 
 def whole_recording(recording: Recording) -> WholeRecording:
-    """What is known of all of a recording, or of that which one is a part of."""
+    """Facts about a whole recording; for a part, about the recording that it is from."""
     if recording.whole is not None:
         return recording.whole
     spans = [span_of(body) for body in _moving(recording)]
@@ -158,12 +162,13 @@ def whole_recording(recording: Recording) -> WholeRecording:
 
 
 def _noise_m(recording: Recording) -> float:
-    """The standard deviation (m) of places along or across ways, as their differences tell it.
+    """The standard deviation (m) of places along or across their ways, estimated from differences.
 
-    Those of an order at which motion hardly shows, whose standard deviation is that of normal
-    errors times the root of the sum of the squares of binomials, which is a binomial. Of some
-    vehicles while they move, by the median: what a few do in a hurry does not count. None where
-    states are so far apart that all differences tell of motion. The axes of a file do not matter.
+    Uses differences of an order at which motion hardly shows. For normal errors their standard
+    deviation is that of the errors times the root of the sum of squared binomials, which is itself
+    a binomial. Takes the median over some vehicles while they move, so that a few abrupt motions do
+    not count. 0 where states are so far apart that all differences show motion, or differences are
+    too few. Independent of the axes of the file.
     """
     orders = [order for step_s, order in _ORDERS if recording.step_s <= step_s + 1e-9]
     if not orders:
@@ -178,7 +183,7 @@ def _noise_m(recording: Recording) -> float:
 
 
 def _differences(body: Participant, order: int) -> NDArray[np.float64]:
-    """The sizes of the differences of a participant's first places, along and across."""
+    """The absolute differences of a participant's first places, along and across its way."""
     steps, places = _first_places(body)
     way = places[order:] - places[:-order]
     length = np.hypot(*way.T)
@@ -189,7 +194,7 @@ def _differences(body: Participant, order: int) -> NDArray[np.float64]:
 
 
 def _first_places(body: Participant) -> tuple[NDArray[intp], NDArray[np.float64]]:
-    """A participant's first steps, and where it is in each (m, a row each)."""
+    """A participant's first steps, and its place (m) in each, one row per step."""
     if isinstance(body.states, TrackStates):
         track = body.states.track
         return track.steps[:_STATES], track.rows[:_STATES, :2]
@@ -207,7 +212,7 @@ def _in_the_middle(stated: Iterable[StatedError]) -> StatedError:
 
 
 def _first_and_last(recording: Recording) -> tuple[int, int]:
-    """The first and the last time step of all of a recording, or of that which one is a part of."""
+    """The first and last time step of a recording; for a part, of the recording that it is from."""
     whole = recording.whole
     return _span_of_all(recording) if whole is None else (whole.first, whole.last)
 
@@ -219,10 +224,10 @@ def _span_of_all(recording: Recording) -> tuple[int, int]:
 
 
 def looked_at(recording: Recording) -> tuple[int, int]:
-    """The first and the last time step of a recording's arrays.
+    """The first and last time step of a recording's arrays.
 
-    Those of a part have one more on each side, if the recording has: who is there in an array's
-    last step may go on, unlike others.
+    Those of a part have one more step on each side, if the recording has: a participant present in
+    the last step of a part may go on, unlike in the last step of a recording.
     """
     first, last = _span_of_all(recording)
     if recording.whole is None:
@@ -231,7 +236,7 @@ def looked_at(recording: Recording) -> tuple[int, int]:
 
 
 def span_of(body: Participant) -> tuple[int, int]:
-    """The first and the last time step of a participant, which is somewhere."""
+    """The first and last time step of a participant that has some place."""
     if isinstance(body.outlines, TrackOutlines):
         steps = body.outlines.track.steps
         return int(steps[0]), int(steps[-1])
@@ -239,5 +244,5 @@ def span_of(body: Participant) -> tuple[int, int]:
 
 
 def _moving(recording: Recording) -> Iterable[Participant]:
-    """Those who are somewhere, and do not stand for good."""
+    """The participants that have some place and do not stand for good."""
     return (body for body in recording.participants if body.outlines and not body.standing)

@@ -1,4 +1,4 @@
-"""The verdicts on recorded drives, each vehicle being ego in turn, and their sums."""
+"""The verdicts on recorded drives, each vehicle being ego in turn, and their tallies."""
 
 from __future__ import annotations
 
@@ -26,30 +26,31 @@ if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation
 
 _MOST_KEPT = 1 << 6
-"""Choices of rules that are kept before all are forgotten."""
+"""Most selections of rules that are kept; beyond this all are dropped."""
 
 MOST_STATES = 1 << 13
-"""Drives are verified together once they have this many states; more take more memory."""
+"""Drives are verified together once they have this many states; more would take more memory."""
 
 
 def rounded_rulebooks(rulebook: CompiledRulebook, step_s: float) -> tuple[CompiledRulebook, ...]:
-    """A rulebook for a recording's step, with bounds that are no multiples rounded down and up.
+    """A rulebook at a recording's step, with bounds that are no multiples rounded down and up.
 
-    Rules whose automata are too large for so short a step are left out: others can be judged.
+    Rules whose automata are too large at so short a step are left out, so that the others can be
+    judged.
     """
     try:
         return rulebook.judgeable_at(step_s)
     except RulecError as error:
         if any(problem.code != OTHER_STEP.code for problem in error.diagnostics):
             raise
-        # Of each drive it is said that it cannot be judged.
+        # Each drive will report that it cannot be judged.
         return (rulebook,)
 
 
 def explain_drive(violation: Violation, drive: Drive, rules: CompiledRulebook) -> Explanation:
-    """Explain a violation by a drive, with the numbers by which its words were decided.
+    """Explain a violation in a drive, with the numbers that decided its words.
 
-    ``rules`` may be of any step that its recording's verdicts can be of.
+    ``rules`` may have any step that the recording's verdicts may have.
     """
     # Explanations, 20 ms: only where something is violated.
     from rulec.monitoring.explain.explanation import explain
@@ -70,7 +71,7 @@ class DriveVerdict:
 
 @dataclass(frozen=True, slots=True)
 class JudgedDrive:
-    """A drive of which it is known what it does not keep, or the answer to it."""
+    """A drive with what is known of its verdict, which is built on demand."""
 
     drive: Drive
     judged: JudgedTrace | Verdict | NotJudged
@@ -84,7 +85,8 @@ class RecordingVerdicts(Rows):
     """The verdicts of a rulebook on a recording's drives, computed on demand.
 
     Bounds that are no multiples of the recording's step are rounded down and up. Raises RulecError
-    R0507 if the rulebook was compiled for another step, R0612 for a vehicle that is not there.
+    R0507 if the rulebook was compiled for another step, R0612 for a vehicle that the recording does
+    not contain.
     """
 
     def __init__(
@@ -122,9 +124,9 @@ class RecordingVerdicts(Rows):
         yield from verified(waiting, self._roundings)
 
     def by_default(self, words: frozenset[str]) -> dict[str, tuple[str, ...]]:
-        """Rule -> names beyond ``words`` that it reads, which have their defaults in all states.
+        """Rule -> names that it reads, that are not in ``words`` and take defaults in all states.
 
-        Only what is presumed has, unless defaults have been asked for.
+        Only presumed names do, unless defaults have been requested.
         """
         declared = self.rules.vocabulary.declarations.items()
         have = [name for name, item in declared if self.defaults or item.presumed]
@@ -134,7 +136,7 @@ class RecordingVerdicts(Rows):
         }
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row a drive; ``why`` says what there is no verdict for."""
+        """One row per drive; ``why`` says why a drive has no verdict."""
         return [_row(answer) for answer in self.answers()]
 
     def __repr__(self) -> str:
@@ -142,7 +144,7 @@ class RecordingVerdicts(Rows):
 
 
 def names_read(rulebook: CompiledRulebook) -> frozenset[str]:
-    """The names that rules and facts read."""
+    """The names that the rules and facts of a rulebook read."""
     known: frozenset[str] | None = rulebook.prepared.get(names_read)
     if known is None:
         formulas = [rule.formula for rule in rulebook.rules]
@@ -155,7 +157,7 @@ def names_read(rulebook: CompiledRulebook) -> frozenset[str]:
 class SomeRules(NamedTuple):
     """Rulebooks with some of their rules, and the names that these and facts about them read.
 
-    What traces say by these names is enough to judge them, unless it contradicts other facts.
+    Traces with these names are enough to judge the rules, unless they contradict other facts.
     """
 
     roundings: Sequence[CompiledRulebook]
@@ -163,7 +165,7 @@ class SomeRules(NamedTuple):
 
 
 def some_rules(names: frozenset[str], roundings: Sequence[CompiledRulebook]) -> SomeRules:
-    """The rules of these names, of a rulebook that is rounded; they are mostly the same again."""
+    """The rules with these names from a rounded rulebook; cached, as names mostly repeat."""
     known: dict[frozenset[str], SomeRules] = roundings[0].prepared.setdefault(SomeRules, {})
     if names not in known:
         if len(known) >= _MOST_KEPT:
@@ -181,7 +183,7 @@ def some_rules(names: frozenset[str], roundings: Sequence[CompiledRulebook]) -> 
 def verified(
     drives: Sequence[Drive | NoDrive], roundings: Sequence[CompiledRulebook]
 ) -> Iterator[DriveVerdict | NoDrive]:
-    """The verdicts of a rulebook, rounded to their step, on drives together."""
+    """The verdicts of a rulebook, rounded to the drives' step, on drives verified together."""
     for drive in judged_drives(drives, roundings):
         yield drive.with_verdict() if isinstance(drive, JudgedDrive) else drive
 
@@ -189,7 +191,7 @@ def verified(
 def judged_drives(
     drives: Sequence[Drive | NoDrive], roundings: Sequence[CompiledRulebook]
 ) -> Iterator[JudgedDrive | NoDrive]:
-    """The same drives, whose verdicts are made when they are asked for."""
+    """The judged drives, whose verdicts are built on demand, in the same order."""
     traces = [drive.arrays for drive in drives if isinstance(drive, Drive)]
     judged = iter(_judged(traces, roundings))
     for drive in drives:
@@ -199,7 +201,7 @@ def judged_drives(
 def agreed_answers(
     traces: Sequence[TraceArrays], roundings: Sequence[CompiledRulebook]
 ) -> list[Verdict | NotJudged]:
-    """What a rulebook, rounded to their step, says of each trace."""
+    """The answer of a rulebook, rounded to the traces' step, to each trace."""
     judged = _judged(traces, roundings)
     return [answer_to(own, trace) for own, trace in zip(judged, traces, strict=True)]
 
@@ -236,11 +238,12 @@ class ViolationTally:
     """Verdicts, counted drive by drive.
 
     ``first_s``: rule -> drive -> time of its first violation (s of the recording). ``open_rules``
-    are open in some drive, and ``open_on`` has all names on which open ones depend. ``untold``:
-    rule -> the names for want of which it is not judged in some drive; ``reasons``: or why else.
-    ``causes``: rule -> the objects that it is violated about -> the drives: many who pass one
-    standing car are one finding. ``judged_in``: rule -> the number of drives in which it is neither
-    open nor not judged. ``words`` are the names of the signals that every drive supplies.
+    are open in some drive; ``open_on`` has all names on which open rules depend. ``untold``: rule
+    -> the missing names because of which it is not judged in some drive; ``reasons``: rule ->
+    another reason. ``causes``: rule -> the objects that its violation is about -> the drives, so
+    that many drives past one standing car are one finding. ``judged_in``: rule -> the number of
+    drives in which it is neither open nor not judged. ``words`` are the names of the signals that
+    every drive supplies.
     """
 
     satisfied: list[str] = field(default_factory=list)
@@ -263,7 +266,7 @@ class ViolationTally:
         return len(self.satisfied) + len(self.violated) + len(self.doubtful)
 
     def include(self, later: ViolationTally) -> None:
-        """Count those of later drives, too."""
+        """Add the counts of later drives."""
         self.satisfied += later.satisfied
         self.violated += later.violated
         self.doubtful += later.doubtful

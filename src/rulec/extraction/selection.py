@@ -1,4 +1,4 @@
-"""The drives that a user requests: egos, thresholds and assumptions, from texts too."""
+"""The drives that a user requests: egos, thresholds and assumptions, also parsed from texts."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ _NUMBER = re.compile(r"(-?[0-9]{1,15}(?:\.[0-9]{1,15})?)\s*(\S*)")
 class RequestedDrives:
     """A choice of egos and thresholds, and what is assumed.
 
-    No ``egos`` are all vehicles. ``assumed`` holds in every state. ``as_recorded``: a recording of
-    traffic on the other side than the rulebook's is not mirrored. ``defaults``: what is unknown has
-    its default, and the recording's end is taken for the end of what happened.
+    Empty ``egos`` means all vehicles. ``assumed`` values hold in every state. ``as_recorded``: do
+    not mirror a recording of traffic on the other side than the rulebook's. ``defaults``: unknown
+    values take their defaults, and the trace is complete where the recording ends.
     """
 
     __repr__ = short_repr
@@ -46,7 +46,7 @@ class RequestedDrives:
     defaults: bool = False
 
     def __post_init__(self) -> None:
-        # One alone, and ids that are numbers in the file
+        # A single ego is allowed, and so are ids that are numbers in the file
         given: object = expected("egos", "str | int | Iterable[str | int]", self.egos)
         expected("thresholds", "Thresholds", self.thresholds)
         expected("assumed", "Mapping", self.assumed)
@@ -56,9 +56,9 @@ class RequestedDrives:
 
 @dataclass(slots=True)
 class SelectedDrives:
-    """The drives of ``egos`` and the ``recording`` they are from, perhaps mirrored.
+    """The drives of ``egos`` and the ``recording`` that they are from, perhaps mirrored.
 
-    A long recording is looked at in ``parts``, as recorded, one at a time.
+    A long recording is processed in ``parts``, kept as recorded, one at a time.
     """
 
     recording: Recording
@@ -76,7 +76,7 @@ class SelectedDrives:
         """The drives of one vehicle, computed when they are asked for."""
         if self._looked_at is None or ego not in self._looked_at[0].egos:
             part = next(part for part in self.parts if ego in part.egos)
-            # Not both at once
+            # Free the old part first, so that there are never two in memory
             self._looked_at = None
             if part.recording.whole is None:
                 seen = self.recording
@@ -87,15 +87,15 @@ class SelectedDrives:
         return map(_where_recorded, found) if self.mirrored else found
 
     def kinds(self) -> dict[str, type]:
-        """The Python type of each signal of all drives, empty if nobody has a drive."""
+        """The Python type of each signal, the same for all drives; empty if there is no drive."""
         drives = (drive for drive in self if isinstance(drive, Drive))
         first = next(drives, None)
-        # Others than those asked for have the same
+        # Drives of vehicles that were not requested have the same types
         return self._drives_of(self.recording).kinds() if first is None else dict(first.kinds)
 
 
 def _where_recorded(drive: Drive | NoDrive) -> Drive | NoDrive:
-    """A drive of a mirrored recording, its places as in the file: only words are mirrored."""
+    """A drive of a mirrored recording, with its places as in the file: only words are mirrored."""
     if isinstance(drive, NoDrive) or not isinstance(drive.places, DrivePlaces):
         return drive
     return replace(drive, places=drive.places.mirrored())
@@ -104,7 +104,7 @@ def _where_recorded(drive: Drive | NoDrive) -> Drive | NoDrive:
 def chosen_side(
     recording: Recording, request: RequestedDrives, traffic: Traffic
 ) -> tuple[Side, bool]:
-    """The side that rules are read for, and whether a recording is mirrored for them."""
+    """The side of traffic for which rules are read, and whether the recording is mirrored to it."""
     side = traffic or recording.side or "right"
     return side, recording.side not in (None, side) and not request.as_recorded
 
@@ -118,10 +118,10 @@ def selected_drives(
     *,
     names: frozenset[str] | None = None,
 ) -> SelectedDrives:
-    """The drives of a recording, in a vocabulary's words, for rules of a side of ``traffic``.
+    """The drives of a recording in a vocabulary's words, for rules for a side of ``traffic``.
 
-    Raises RulecError R0612 for a vehicle that is not there, or if nobody drives; R0502 or R0503 for
-    what is assumed and does not fit the vocabulary.
+    Raises RulecError R0612 for a vehicle that the recording does not contain, or if it has no
+    vehicle that drives; R0502 or R0503 for an assumption that does not fit the vocabulary.
     """
     side, mirrored = chosen_side(recording, request, traffic)
     writer = TraceWriter(vocabulary, names, request.assumed, request.defaults)
@@ -166,7 +166,7 @@ def _examples(known: tuple[str, ...]) -> str:
 def assumption_options(texts: Iterable[str], vocabulary: Vocabulary) -> dict[str, Value]:
     """Name -> value, from texts such as ``built_up=true`` and ``limit=30 mph``.
 
-    Raises ValueError: with what is wrong, for people.
+    Raises ValueError with a message for users.
     """
     values: dict[str, Value] = {}
     for text in texts:
@@ -198,7 +198,7 @@ def _value(text: str, declaration: Declaration) -> Value:
 
 
 def _measure(text: str, name: str, unit: str) -> float:
-    """A number in its unit, from any unit of its dimension; 0 needs none."""
+    """A number in its own unit, converted from any unit of its dimension; 0 needs no unit."""
     match = _NUMBER.fullmatch(text)
     own = parse_unit(unit)
     given = own if match is None or not match[2] else parse_unit(match[2])

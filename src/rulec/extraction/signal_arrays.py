@@ -1,4 +1,4 @@
-"""The signals of a drive in the words of a vocabulary, as a trace in arrays."""
+"""The signals of a drive in the words of a vocabulary, as traces in arrays."""
 
 from __future__ import annotations
 
@@ -25,11 +25,12 @@ _KINDS: Mapping[str, type] = {"b": bool, "f": float, "i": float, "u": float}
 
 @dataclass(frozen=True, eq=False, slots=True)
 class WrittenPresences:
-    """The presences that traces tell of, drive by drive, and of these where each begins and ends.
+    """The presences that traces contain, ordered by drive.
 
-    ``bounds`` are where those of each drive begin, and where the last ones end. Each has its row,
-    and its first and last state in its drive as ``ranges``. ``cells`` are where all of them stand
-    in rows of all states, ``kept`` which these are of the ``presence_cells``, None for all.
+    ``bounds`` are the numbers at which those of each drive begin, and the end of the last. Each
+    presence has a row, and its first and last state in its drive as ``ranges``. ``cells`` are the
+    flat indices of all their cells in arrays with a row per participant; ``kept`` are their numbers
+    among the ``presence_cells``, None for all.
     """
 
     bounds: Sequence[int]
@@ -41,7 +42,7 @@ class WrittenPresences:
 
 @dataclass(frozen=True, slots=True)
 class WrittenSignals:
-    """Signals in columns in which texts are places among the ``texts`` of their names."""
+    """Signals in columns; values that are texts are stored as indices into their ``texts``."""
 
     columns: SignalColumns
     texts: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -64,12 +65,12 @@ def written(
 ) -> WrittenSignals:
     """The signals that a vocabulary declares, optionally only those in ``names``.
 
-    ``types`` are those of the objects, a row each, the most specific first. Raises
-    UnlikeDrivesError for drives of which not all say the same.
+    ``types`` are the objects' types, one row per object, the most specific first. Raises
+    UnlikeDrivesError if the drives do not all supply the same signals.
     """
     if vocabulary is None:
         return _all(signals)
-    # Of many objects there are few types
+    # Many objects share few types
     known = {own: known_type(own, vocabulary) for own in {tuple(row) for row in types}}
     own_types = [known[tuple(row)] for row in types]
     suits_of: dict[tuple[str, ...], Flags] = {}
@@ -122,12 +123,12 @@ def _numbers(
     declaration: Declaration,
     spans: EndToEnd,
 ) -> SignalColumn | None:
-    """A column, texts as places among a declaration's; None if it says anything else."""
+    """A column, with texts as indices into the declared values; None if some value does not fit."""
     texts = signals.texts.get(name)
     if isinstance(declaration, Signal) and texts is None and column.dtype == bool:
         return column
     if not isinstance(declaration, Enumeration) or (texts is None and column.dtype.kind != "U"):
-        # All values but texts are alike
+        # All values that are not texts have the same type
         fit = texts is None and fits(name, column.flat[:1].tolist(), declaration)
         return column if fit else None
     n_values = len(declaration.values)
@@ -144,7 +145,7 @@ def _numbers(
     if strange.any():
         unknown = signals.unknown.get(name, np.zeros_like(strange))
         if spans.n_drives > 1 and strange.ndim > 1:
-            raise UnlikeDrivesError  # perhaps: who is nowhere near in a drive says nothing in it
+            raise UnlikeDrivesError  # perhaps: objects far away in a drive have no values in it
         told = [_is_told(strange[..., own], unknown[..., own]) for own in spans.slices]
         if not spans.agreed(told):
             return None
@@ -153,11 +154,11 @@ def _numbers(
 
 
 def _places_of_texts(column: SignalColumn, values: Sequence[str]) -> NDArray[intp]:
-    """The places of texts among values, behind them for others."""
+    """The indices of texts among ``values``; their number for any other text."""
     every = column.ravel()
     if not len(every):
         return np.zeros(column.shape, dtype=intp)
-    # They seldom change, and are slow to compare
+    # Texts seldom change, and comparing them is slow
     changes = (every[1:] != every[:-1]).nonzero()[0] + 1
     edges = np.concatenate(((0,), changes, (len(every),)))
     known = {value: place for place, value in enumerate(values)}
@@ -166,12 +167,12 @@ def _places_of_texts(column: SignalColumn, values: Sequence[str]) -> NDArray[int
 
 
 def _is_told(strange: Flags, unknown: Flags) -> bool:
-    """Whether there is nothing strange, or only where values are unknown, which not all are."""
+    """Whether no value is strange, or only some unknown ones are while others are known."""
     return not strange.any() or not (unknown.all() or (strange & ~unknown).any())
 
 
 def _in_paper_words(name: str, column: SignalColumn, declaration: Declaration) -> SignalColumn:
-    """Surfaces in the paper's two words, for vocabularies with only those."""
+    """Surfaces in the paper's two words, for vocabularies that declare only these."""
     if name != "surface" or not isinstance(declaration, Enumeration):
         return column
     if not set(PAPER_SURFACE.values()).issuperset(declaration.values):
@@ -182,7 +183,7 @@ def _in_paper_words(name: str, column: SignalColumn, declaration: Declaration) -
 def with_assumed(
     signals: WrittenSignals, assumed: Mapping[str, Value], states: int
 ) -> WrittenSignals:
-    """The signals with these values in every state, whatever the recording says."""
+    """The signals with the assumed values in every state, whatever the recording contains."""
     if not assumed:
         return signals
     columns = signals.columns
@@ -201,7 +202,7 @@ def with_assumed(
 
 
 def with_likeliest(signals: WrittenSignals, vocabulary: Vocabulary) -> WrittenSignals:
-    """The signals with measured values for what is unknown and has no default."""
+    """The signals with measured values in place of unknown ones that have no default."""
     declared = vocabulary.declarations
     unknown = {
         name: own
@@ -214,9 +215,9 @@ def with_likeliest(signals: WrittenSignals, vocabulary: Vocabulary) -> WrittenSi
 def signal_parts(
     signals: WrittenSignals, present: WrittenPresences, spans: EndToEnd, *, defaults: bool
 ) -> list[dict[str, Any]]:
-    """What traces in arrays have of signals, a part for each drive.
+    """The arguments for traces in arrays that depend on signals, one mapping per drive.
 
-    With ``defaults`` what is unknown is left out, and numbers are as measured.
+    With ``defaults`` unknown values are left out, and numbers are as measured.
     """
     columns, ranges = signals.columns, present.ranges
     lengths = ranges[:, 1] - ranges[:, 0] + 1
@@ -224,12 +225,12 @@ def signal_parts(
     never = np.zeros(len(present.cells), dtype=bool)
 
     def gathered(name: str, column: SignalColumn) -> SignalColumn:
-        """A signal's values end to end: of the world, or of who is present."""
+        """A signal's values end to end: of the world, or of the objects present."""
         if name in columns.world:
             return column
         if column.ndim == 1:
             return column if present.kept is None else column.take(present.kept)
-        # Much is true of nobody, which is seen sooner than it is gathered
+        # Many signals are true of no object: checking this is faster than gathering values
         is_never = column.dtype == bool and not np.count_nonzero(column)
         return never if is_never else column.take(present.cells)
 

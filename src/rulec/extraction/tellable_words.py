@@ -1,4 +1,4 @@
-"""The words that files of a format can tell, and those that a recording's drives do tell."""
+"""The words that files of a format can supply, and those that a recording's drives do supply."""
 
 from __future__ import annotations
 
@@ -75,7 +75,8 @@ _OWN_LAMPS = frozenset(("front_fog_lamps", "headlamps", "rear_fog_lamps"))
 _ROAD_KINDS = frozenset(("built_up", "lane_kind", "road_class"))
 _ROAD_KINDS_OF_123D = _ROAD_KINDS - {"lane_kind"}
 _ARGOVERSE = _EITHER - _SIGNED - _LAMPS - _ROAD_KINDS
-"""Its maps have lanes, marks and crossings; of its objects there are places, kinds and sizes."""
+"""Argoverse maps have lanes, marks and crossings; of objects the places, kinds and sizes are
+known."""
 
 _NOT_BY_LANE_CENTRES = frozenset(
     (
@@ -83,7 +84,7 @@ _NOT_BY_LANE_CENTRES = frozenset(
         *_LAMPS,
     )
 )
-"""Other signs than to stop, lamps, and kinds of lanes of a motorway."""
+"""Signs other than stop signs, lamps, and the kinds of a motorway's lanes."""
 _ON_ANY_MAP = frozenset(
     (
         *("minimum_limit", "no_overtaking_sign", "no_turn_on_red_sign", "conflict_with_rail"),
@@ -91,7 +92,7 @@ _ON_ANY_MAP = frozenset(
         *("tracks_at_kerb", "tunnel"),
     )
 )
-"""Tables take nets of SUMO's, too, which have every sign and track."""
+"""Tables also accept SUMO nets as maps, which have every sign and track."""
 
 _BY_LAMPS = _LAMPS
 _BY_SIGNS_AND_LINES = frozenset(
@@ -100,7 +101,7 @@ _BY_SIGNS_AND_LINES = frozenset(
         *("all_way_stop", "distance_to_stop_line", "time_to_stop_line", "turn_on_red_sign"),
     )
 )
-"""highD has neither signs nor stop lines, and no more of its ramps than their marks."""
+"""highD has neither signs nor stop lines, and only the marks of its ramps."""
 
 TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     "commonroad": _EITHER | _COMMONROAD_ONLY,
@@ -120,12 +121,13 @@ TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     "argoverse-sensor": _ARGOVERSE,
     "123d": _ARGOVERSE | (_SIGNED - {"on_priority_road", "turn_on_red_sign"}) | _ROAD_KINDS_OF_123D,
 }
-"""Format -> what some file of it can tell: a particular one may lack signs, lamps, or weather."""
+"""Format -> words that some file of it can supply; a single file may lack signs, lamps or
+weather."""
 
 
 def told_words(drives: SelectedDrives) -> frozenset[str]:
-    """The words that some of these drives tell."""
-    # Extraction and its arrays, 250 ms: not for the tables above.
+    """The words that at least one of these drives supplies."""
+    # Extraction and its arrays take 250 ms to import: not needed for the tables above.
     from rulec.extraction.to_trace import Drive
 
     return frozenset().union(*(drive.words for drive in drives if isinstance(drive, Drive)))

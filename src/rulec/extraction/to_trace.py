@@ -114,16 +114,16 @@ _WITHOUT_DIRECTION = frozenset(
         *("night", "raining", "wet", "icy", "visibility", "tunnel"),
     )
 )
-"""What has a meaning for who drives against its road; ahead and behind, and left and right, are
-others there than for the road."""
+"""The signals that keep their meaning when ego drives against its road. There, ahead and behind,
+left and right differ from the road's."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DecidedBy:
     """The numbers by which a signal about objects was decided: whether a value reaches a limit.
 
-    ``quantity`` is the value's, ``rows`` are the objects' in the arrays of which those in the
-    ``cells`` were compared, the drive being in their ``columns``. The errors of values and limits
+    ``quantity`` names the value. ``rows`` has the objects' rows in arrays of which only ``cells``
+    were compared; the drive has the ``columns`` of these arrays. The errors of values and limits
     are independent.
     """
 
@@ -138,7 +138,7 @@ class DecidedBy:
     limit_errors: Floats
 
     def margin(self, item: str, state: int) -> Margin | None:
-        """The margin for an object in a state, if there is one."""
+        """The margin for an object in a state; None if its numbers were not compared there."""
         row = self.rows.get(item)
         at = None if row is None else self.cells.number(row, self.columns.start + state)
         if at is None or np.isnan(self.values[at]):
@@ -168,9 +168,9 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DrivePlaces(Sequence[Place]):
-    """Places state by state, which are made when they are asked for.
+    """Places by state, built on demand.
 
-    ``lanelets`` are those that ``numbers`` name by state.
+    ``numbers`` has for each state the index of its lanelet in ``lanelets``.
     """
 
     x: Floats
@@ -179,11 +179,11 @@ class DrivePlaces(Sequence[Place]):
     lanelets: tuple[str, ...]
 
     def part(self, states: slice) -> DrivePlaces:
-        """Those of some states."""
+        """The places of some states."""
         return DrivePlaces(self.x[states], self.y[states], self.numbers[states], self.lanelets)
 
     def mirrored(self) -> DrivePlaces:
-        """The same places in the mirror that ``mirrored_recording`` looks into."""
+        """The same places in the coordinates of ``mirrored_recording``, or back."""
         return DrivePlaces(self.x, 0.0 - self.y, self.numbers, self.lanelets)
 
     def __len__(self) -> int:
@@ -210,12 +210,12 @@ class DrivePlaces(Sequence[Place]):
 
 @dataclass(frozen=True)
 class Drive:
-    """A drive of ``ego`` as a trace from ``start_s`` (s of the recording) on.
+    """A drive of ``ego`` as a trace that starts at ``start_s`` (s of the recording).
 
-    Its states are made of ``arrays`` when they are first asked for. ``kinds`` are the Python types
-    of the signals that the recording supplies, whether or not any object is there to have them;
-    ``decided_by`` has the numbers behind Boolean ones. ``places`` are where ego's middle is in each
-    state, ``whom`` has the ids of those because of whom a signal of the world is as it is there.
+    Its states are built from ``arrays`` on first use. ``kinds`` are the Python types of the signals
+    that the recording supplies, whether or not there is any object to have them; ``decided_by`` has
+    the numbers behind Boolean signals. ``places`` are where ego's middle is in each state. ``whom``
+    has, for signals of the world, the ids of the participants that cause their value in each state.
     """
 
     __repr__ = short_repr
@@ -240,11 +240,11 @@ class Drive:
 
     @property
     def first_step(self) -> int:
-        """The time step of the recording of the first state."""
+        """The recording's time step at the first state."""
         return round(self.start_s / self.arrays.step_s)
 
     def time_s(self, state: int | None) -> float:
-        """The time of a state (s of the recording), None being the last state."""
+        """The time (s of the recording) of a state; None means the last state."""
         number = self.arrays.n_states - 1 if state is None else state
         return round(self.start_s + number * self.arrays.step_s, 9)
 
@@ -253,13 +253,13 @@ class Drive:
 class TraceWriter:
     """The choice of signals to write: a vocabulary's, optionally only ``names``.
 
-    ``assumed`` are values that hold in every state, whatever the recording says. With ``defaults``
-    what is unknown is left out, so that it takes its default, and the trace is over when it ends.
-    Drives that are ``bare`` are judged and looked at no more: they lack places, and the numbers and
-    ids behind signals.
+    ``assumed`` values hold in every state, whatever the recording contains. With ``defaults``
+    unknown values are left out, so that they take their defaults, and the trace is complete where
+    it ends. ``bare`` drives serve only to be judged: they lack places and the numbers and ids
+    behind signals.
 
-    Raises RulecError R0502 or R0503 if what is assumed does not fit the vocabulary: no drive could
-    be judged, and each would be refused as if it had said so itself.
+    Raises RulecError R0502 or R0503 if an assumed value does not fit the vocabulary. Otherwise
+    every drive would be refused, as if its own values were wrong.
     """
 
     vocabulary: Vocabulary | None = None
@@ -279,9 +279,9 @@ ALL_SIGNALS = TraceWriter()
 def to_traces(
     context: DriveContext, egos: Sequence[str], names: Sequence[str], writer: TraceWriter
 ) -> list[Drive]:
-    """The drives of ``egos`` as traces of these names, one each.
+    """The drives of ``egos`` as traces with these names, one each.
 
-    Raises UnlikeDrivesError for several that say different names.
+    Raises UnlikeDrivesError if several drives supply different signals.
     """
     read, spans = _names_written(writer), context.spans
     known = ~np.isnan(context.extents.s_min)
@@ -340,7 +340,7 @@ def to_traces(
 def _with_types(
     told: frozenset[str], objects: Sequence[Mapping[str, str]], vocabulary: Vocabulary
 ) -> list[frozenset[str] | None]:
-    """What is told of each drive, with the types that its objects may be where that is in doubt."""
+    """The names told in each drive, with those that depend on types that its objects have."""
     types = [frozenset(own.values()) for own in objects]
     known = {own: told | told_types(own, vocabulary) for own in set(types)}
     return [known[own] for own in types]
@@ -349,7 +349,7 @@ def _with_types(
 def _objects(
     context: DriveContext, kind_of: Sequence[str | None]
 ) -> tuple[WrittenPresences, list[dict[str, str]]]:
-    """The presences of those that have a kind, and the objects of each drive with theirs."""
+    """The presences of participants of known kind, and each drive's objects with their kinds."""
     runs, cells, kept = presence_runs(context), presence_cells(context), None
     drives, rows, ranges = runs.drives, runs.rows, np.array((runs.first, runs.last)).T
     names = presence_names(context)
@@ -373,7 +373,7 @@ def _decided_by(
     present: WrittenPresences,
     objects: Sequence[Mapping[str, str]],
 ) -> list[dict[str, DecidedBy]]:
-    """The numbers by which signals of each drive were decided."""
+    """For each drive the numbers that decided its signals."""
     if "safe_gap" not in chosen.columns.about:
         return [{} for _ in objects]
     followed, place = safe_gaps(context), context.tolerances.place_m
@@ -397,7 +397,7 @@ def _decided_by(
 
 
 def _names_written(writer: TraceWriter) -> SignalNames:
-    """The names of the signals that will be written, None for all."""
+    """The names of the signals that will be written; None means all."""
     if writer.vocabulary is None:
         return None
     declared = frozenset(writer.vocabulary.declarations)

@@ -1,4 +1,4 @@
-"""The numbers that decide what recorded traffic is called. ``docs/recordings.md`` explains them."""
+"""The thresholds that classify recorded traffic. ``docs/recordings.md`` explains them."""
 
 from __future__ import annotations
 
@@ -12,107 +12,113 @@ from rulec.scenario.recorded.lane_coordinates import TOUCHING_M
 from rulec.value_display import brief, short_repr
 
 LARGEST = 1_000_000.0
-"""A threshold in m, s or km/h that is larger means nothing on a road, and overflows."""
+"""Largest threshold (m, s or km/h): larger ones mean nothing on a road, and overflow."""
 
 
 @dataclass(frozen=True, slots=True)
 class Thresholds:
-    """The thresholds that turn positions into words; units end their names.
+    """The thresholds that turn positions into words; the suffix of a name is its unit.
 
-    Speeds and accelerations are taken from positions, over ``smoothing_s`` around each moment:
-    positions are noisy, and what some files say of speeds is another matter than where their
-    vehicles are. Below ``standing_kmh`` a vehicle stands.
+    Speeds and accelerations are derived from positions, over ``smoothing_s`` around each moment:
+    positions are noisy, and the speeds that some files state do not agree with their positions.
+    Below ``standing_kmh`` a vehicle stands.
     """
 
     __repr__ = short_repr
 
     place_error_m: float = 0.0
-    """So far each place may be wrong, if that is more than its source is known to be."""
+    """Least error of each place; larger if the source is known to be less accurate."""
     speed_error_mps: float = 0.0
-    """And so far speeds, be they stated or from places."""
+    """Least error of speeds, whether stated or derived from places."""
     smoothing_s: float = 1.0
     standing_kmh: float = 1.0
     accelerating_mps2: float = 0.5
     braking_hard_mps2: float = 4.0
     stops_at_once_kmh: float = 20.0
-    """So slow a vehicle can stop at once."""
+    """A vehicle up to this speed can stop at once."""
     touching_m: float = TOUCHING_M
-    """Who reaches into a lane by less is not in it: positions are no better than that."""
+    """A participant that reaches into a lane by less is not in it: positions are no more
+    accurate."""
     changed_m: float = 0.3
-    """A lane has been changed when the middle of the vehicle is so far beyond the mark."""
+    """A lane change is done when the vehicle's middle is this far beyond the mark."""
     at_edge_m: float = 0.4
-    """A vehicle whose side is nearer to its lane's bound keeps at the edge."""
+    """A vehicle whose side is nearer than this to its lane's bound keeps at the edge."""
     near_m: float = 150.0
-    """Who is farther away along the road is not there."""
+    """Participants farther away than this along the road do not count."""
     beside_road_m: float = 8.0
-    """Who walks or comes towards ego beside its lanes is there up to this distance from them."""
+    """Pedestrians and oncoming traffic beside ego's lanes count up to this distance from them."""
     away_s: float = LONGEST_HOLE_S
-    """Who is away for no longer was there all the time."""
+    """A participant that is absent for no longer than this counts as present throughout."""
     reaction_s: float = 1.0
     braking_mps2: float = 8.0
-    """As hard as a vehicle brakes that has to; but for cycles and rails everybody does alike."""
-    # Who brakes harder on a cycle goes over its front wheel.
+    """Deceleration of a vehicle that must brake: the same for all but cycles and rail vehicles."""
+    # A cyclist who brakes harder goes over the front wheel.
     cycle_braking_mps2: float = 6.0
     rail_braking_mps2: float = 3.0
     disturbing_mps2: float = 2.0
-    """Who has to brake harder for one who changes lanes is in its way."""
+    """A vehicle that changes lanes is in the way of one that has to brake harder than this for
+    it."""
     cutting_in_mps2: float = 2.0
-    """Who comes into ego's lane slows down sideways by no more than this."""
+    """Largest lateral deceleration of a vehicle that moves into ego's lane."""
     parting_s: float = 4.0
-    """Who is in another lane than ego so soon is being overtaken, or leaves: the gap is moot."""
+    """A vehicle in another lane than ego within this time is overtaken or leaves: its gap is
+    moot."""
     catching_up_s: float = 10.0
-    """Ego is overtaking when it will be beside a slower vehicle so soon."""
+    """Ego is overtaking when it will be beside a slower vehicle within this time."""
     obstacle_m: float = 30.0
-    """Ego goes round one that stands from so far before it on, or from ``parting_s`` before it."""
+    """Ego goes round a standing vehicle from this distance before it on, or ``parting_s`` before
+    it."""
     passed_s: float = 2.0
-    """And until it is so far ahead of it, by time."""
+    """And until ego is this far ahead of it, by time."""
     clearly_faster_kmh: float = 5.0
-    """One that is faster by less does not overtake ego."""
+    """A vehicle whose speed exceeds ego's by less does not overtake ego."""
     congested_kmh: float = 30.0
     walking_pace_kmh: float = 10.0
     slow_queue_kmh: float = 60.0
     """A queue on the lane beside is slow below this speed."""
     fewest: int = 3
-    """So many vehicles make a queue, and so many can be congested."""
+    """Least number of vehicles that make a queue or can be congested."""
     flow_reach_m: float = 100.0
-    """Traffic is what there is up to this distance ahead and behind."""
+    """Traffic flow is judged from vehicles up to this distance ahead and behind."""
     queue_headway_s: float = 2.0
     queue_gap_m: float = 20.0
-    """In a queue neighbours are no farther apart than either of these two."""
+    """Neighbours in a queue are no farther apart than either of these two."""
     loose_headway_s: float = 3.0
-    """Up to this some still speak of one who follows: HCM 2000; the seventh edition has 2.5 s."""
+    """Largest headway that some still call following: HCM 2000; the seventh edition has 2.5 s."""
     zone_m: float = 5.0
-    """Immediately before a crossing or a junction is so near."""
+    """Up to this distance ego is immediately before a crossing or a junction."""
     kerb_m: float = 2.0
-    """Who stands at the kerb is no farther from the lanes."""
+    """A pedestrian at the kerb is at most this far from the lanes."""
     about_to_s: float = 2.0
-    """Who walks is about to cross if it will be on the crossing so soon."""
+    """A pedestrian is about to cross if it will be on the crossing within this time."""
     entering_s: float = 0.5
-    """And it sets foot on it if it will be there so soon."""
+    """And it steps onto the crossing if it will be there within this time."""
     side_road_m: float = 15.0
-    """Who crosses the road into which ego turns is so near behind the junction."""
+    """Pedestrians crossing the road into which ego turns are at most this far behind the
+    junction."""
     turned_deg: float = 45.0
-    """Ego turns at a junction if its road does by more than this."""
+    """Ego turns at a junction if its road changes direction by more than this."""
     preparing_s: float = 10.0
-    """Ego prepares to turn for so long."""
+    """A vehicle prepares to turn, or a bus to leave its stop, up to this long before."""
     light_reach_m: float = 50.0
-    """A light farther ahead is not ego's yet."""
+    """A traffic light farther ahead does not concern ego yet."""
     approach_m: float = 50.0
-    """Ego nears a junction, a narrowing or a level crossing from so far before it on."""
+    """Ego nears a junction, a narrowing or a level crossing from this distance before it on."""
     yielding_s: float = 1.0
-    """Who gets to a place at least so long after ego has left it is not in conflict with it."""
+    """A participant reaching a place at least this long after ego left it is not in conflict with
+    ego."""
     held_up_s: float = 3.0
-    """Who was held up by ego gets there at most so long after it."""
+    """A participant held up by ego gets there at most this long after ego."""
     signalling_s: float = 5.0
-    """Who pulls out to overtake signals it for at most so long before."""
+    """A vehicle that pulls out to overtake signals for at most this long before."""
     overtaking_s: float = 6.0
-    """Overtaking takes so long on a road where others come towards ego."""
+    """Overtaking takes this long on a road with oncoming traffic."""
     access_s: float = 5.0
-    """Who turns off within so long crosses a line for access."""
+    """A vehicle that turns off within this time crosses a line for access."""
     setting_off_s: float = 10.0
-    """Who stood so short a time ago sets off, and may gain speed beside others."""
+    """A vehicle that stood within this time sets off, and may gain speed beside others."""
     together_s: float = 1.0
-    """Who reach a junction within so long reach it at the same time."""
+    """Participants that reach a junction within this time arrive together."""
 
     def __post_init__(self) -> None:
         for own in fields(self):
@@ -155,16 +161,16 @@ LEAST_S: Mapping[str, float] = MappingProxyType(
         ("driving_side", "reversing", "congested", "CONGESTED", "walking_pace_flow"), 1.0
     )
 )
-"""Word -> how long (s) a value of it lasts at least; a shorter one is noise.
+"""Word -> the least time (s) that a value of it lasts; shorter ones are noise.
 
-Others have none: they are of one moment, or cannot waver.
+Other words have none: they concern one moment, or cannot waver.
 """
 
 
 def threshold_options(texts: Iterable[str]) -> Thresholds:
-    """The usual thresholds but for some, from texts such as ``near_m=200``.
+    """The usual thresholds with some changed, from texts such as ``near_m=200``.
 
-    Raises ValueError: with what is wrong, for people.
+    Raises ValueError with a message for users.
     """
     known = {field.name: field.default for field in fields(Thresholds)}
     numbers: dict[str, float | int] = {}
@@ -187,7 +193,7 @@ def threshold_options(texts: Iterable[str]) -> Thresholds:
 
 
 def pair_of(text: str, example: str) -> tuple[str, str]:
-    """Name and value of a text such as ``near_m=200``. Raises ValueError."""
+    """Name and value from a text such as ``near_m=200``. Raises ValueError for another form."""
     name, equals, value = text.partition("=")
     if not equals or not name.strip() or not value.strip():
         raise ValueError(f"`{text}` is not written as in `{example}`")
@@ -195,7 +201,7 @@ def pair_of(text: str, example: str) -> tuple[str, str]:
 
 
 def hinted(message: str, name: str, known: Iterable[str], otherwise: str = "") -> str:
-    """A message with a name that may be meant, else with something else behind it."""
+    """A message followed by a suggestion of a similar known name, or else by ``otherwise``."""
     hint = did_you_mean(name, list(known))
     return f"{message}; {hint}" if hint else message + otherwise
 
@@ -204,4 +210,4 @@ _UNITS = {
     f"_{end}": f" without a unit, in {unit}"
     for end, unit in (("m", "m"), ("s", "s"), ("kmh", "km/h"), ("mps", "m/s"), ("mps2", "m/s²"))
 }
-"""How names of thresholds end -> what is said of their unit."""
+"""Suffix of a threshold's name -> the note on its unit in error messages."""

@@ -23,12 +23,12 @@ from rulec.trace import Trace, Value
 class ViolationEvidence:
     """What a violation rests on.
 
-    The names that its rule reads were ``measured`` in all states, be it to a tolerance, ``assumed``
-    by the user, presumed (or taken by default, if that was asked for), or ``unknown`` in some state
-    without making a difference. It lasts from ``from_s`` to ``to_s`` (s of the recording), and is
-    decided ``at_s``; ``margins`` say by how much, ``place`` where ego is then. ``whom`` are those
-    because of whom a word that decides is then as it is, such as who overtakes ego, where the rule
-    itself names nobody.
+    The names that its rule reads were ``measured`` in all states, perhaps to within a tolerance,
+    ``assumed`` by the user, taken ``by_default`` (presumed, or defaults were requested), or
+    ``unknown`` in some state without making a difference. The violation lasts from ``from_s`` to
+    ``to_s`` (s of the recording) and is decided at ``at_s``; ``margins`` say by how much, ``place``
+    is where ego is then. ``whom``: participants that the rule does not name but that cause the
+    value of a deciding word then, such as the vehicle that overtakes ego.
     """
 
     measured: tuple[str, ...]
@@ -50,7 +50,7 @@ def evidence_of(
     assumed: Mapping[str, Value],
     explanation: Explanation | None = None,
 ) -> ViolationEvidence:
-    """The evidence for a violation by a drive; ``explanation`` is its own, if there is one."""
+    """The evidence for a violation in a drive; ``explanation`` explains it, if already made."""
     explained = (
         explanation
         or explain_arrays(violation, drive.arrays, rules, drive.decided_by)
@@ -81,9 +81,9 @@ def evidence_of(
 
 
 def whom_of(explained: Explanation, drive: Drive) -> tuple[str, ...]:
-    """Those because of whom words that decide are as they are, when it is decided or just before.
+    """The participants behind the values of deciding words, at the decisive state or just before.
 
-    A duty that has come to its end may be lost in a state in which nobody is there any more.
+    A duty that has ended may be violated in a state in which nobody is present any more.
     """
     decide = [fact.text for fact in explained.facts if fact.decides and fact.text in drive.whom]
     first, _ = explained.lasts
@@ -96,9 +96,9 @@ def whom_of(explained: Explanation, drive: Drive) -> tuple[str, ...]:
 
 
 def trace_for(violation: Violation, drive: Drive, rules: CompiledRulebook) -> Trace:
-    """The drive's trace with what the violated rule reads, of the objects that it is about.
+    """The drive's trace, reduced to what the violated rule reads, of the objects that it is about.
 
-    A drive's states say a hundred things of dozens, a rule reads five of one.
+    A drive's states have a hundred signals of dozens of objects, a rule reads five of one.
     """
     arrays = drive.arrays
     rule = next(rule for rule in rules.rules if rule.name == violation.rule)
@@ -119,7 +119,7 @@ def trace_for(violation: Violation, drive: Drive, rules: CompiledRulebook) -> Tr
 
 
 def _is_partial(drive: Drive, name: str) -> bool:
-    """Whether a name is unknown in some state, of somebody of whom it is said."""
+    """Whether a name is unknown in some state, for some object to which it applies."""
     arrays = drive.arrays
     unknown = arrays.unknown.get(name)
     if unknown is None or not unknown.any():
