@@ -38,20 +38,20 @@ from rulec.scenario.recorded.route import (
 
 _BESIDE_M = 20.0
 _AWAY_M = 30.0
-"""A road meets itself if it is so near to a piece so far along it."""
+"""A road meets itself if it is within ``_BESIDE_M`` of a piece over ``_AWAY_M`` away along it."""
 
 _FEWEST_CORNERS = 20
 
 _HAIR_M = 0.01
 
 TURN_REACH_M = 10.0
-"""Where no map marks junctions, by crossing lanelets, ways have begun to turn so far before them.
+"""Where a map marks no junctions, ways begin to turn this far (m) before crossing lanelets.
 
-What crosses others is often no more than the middle of a turn.
+The crossing lanelets, which define junctions there, are often only the middle of a turn.
 """
 
 _WAY_M = 30.0
-"""Ways through a junction that only join others are shorter than roads that lead there."""
+"""Longest way through a junction that only joins others; roads that lead there are longer."""
 
 _GIVES_WAY = STOP_SIGNS | {"YIELD"}
 
@@ -63,11 +63,11 @@ _CROSSING_ANGLE = radians(30.0)
 class DrivenRoad:
     """The road of a drive, with ego's own lanelets end to end.
 
-    Piece ``i`` lies from ``borders[i]`` to ``borders[i + 1]``; ``rows[i]`` are the lanelets beside
-    each other there, a lane each, from the right, None where the map has none; ``own_lanes[i]`` is
-    the one along which the road leads. ``crossings`` are pedestrian crossings and ``junctions``
-    junctions, from where to where along the road; ``junctions_marked``: has the map marked them?
-    ``meets_itself``: is a place beside several pieces, as on a ring?
+    Piece ``i`` extends from ``borders[i]`` to ``borders[i + 1]``. ``rows[i]`` are the lanelets
+    beside each other there, one per lane from the right, None where the map has none;
+    ``own_lanes[i]`` is the lane along which the road leads. ``crossings`` (pedestrian crossings)
+    and ``junctions`` are intervals along the road. ``junctions_marked``: whether the map marks
+    junctions. ``meets_itself``: whether a place may be beside several pieces, as on a ring.
     """
 
     rows: tuple[tuple[Lanelet | None, ...], ...]
@@ -81,17 +81,18 @@ class DrivenRoad:
     meets_itself: bool = False
 
     def lanelet(self, piece: int, lane: int) -> Lanelet:
-        """The lanelet of a lane; where the map has none, ego's own."""
+        """The lanelet of a lane; ego's own lanelet where the map has none."""
         row = self.rows[piece]
         own = row[self.own_lanes[piece]]
         assert own is not None
         return row[lane] or own
 
     def limit_mps(self, piece: int, lane: int, most_turned: float) -> float | None:
-        """The limit of a lane, None if the map has none there.
+        """The speed limit of a lane; None if the map has none there.
 
-        In a junction without one it is that before it if the same one holds behind it, and the road
-        turns by no more than an angle (rad): a sign goes on for who goes on.
+        In a junction without a limit, the one before it if the same holds behind it and the road
+        turns by at most ``most_turned`` (rad): a sign stays valid for traffic that goes straight
+        on.
         """
         own = self.lanelet(piece, lane).limit_mps
         middle = (self.borders[piece] + self.borders[piece + 1]) / 2
@@ -104,9 +105,10 @@ class DrivenRoad:
         return own
 
     def turned(self, start: float, end: float, aside_m: float = _HAIR_M) -> float:
-        """The angle (rad) by which it turns to the left from a place to another.
+        """The angle (rad) by which the road turns to the left between two places.
 
-        By its directions so far aside of them, or where it comes to a junction that nobody marked.
+        Compares the directions ``aside_m`` outside the two places, or up to ``TURN_REACH_M``
+        outside them where the map marks no junctions.
         """
         low, high = start - aside_m, end + aside_m
         if not self.junctions_marked:
@@ -116,15 +118,16 @@ class DrivenRoad:
         return float(turn(*self.line.headings_at(np.array([low, high])).tolist()))
 
     def piece(self, s: Floats) -> NDArray[intp]:
-        """The numbers of the lanelets at places."""
+        """The numbers of the pieces at places along the road."""
         return pieces_at(self.borders, s)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Layout:
-    """A road, the lanelets of its pieces, and how many lanes left of the first one's each begins.
+    """A road whose ``own_lanes`` are not known yet.
 
-    The ``own_lanes`` of the road are not known yet.
+    ``pieces`` are the lanelets of each piece; ``numbers`` are how many lanes left of the first
+    piece's lane each piece begins.
     """
 
     pieces: tuple[tuple[str, ...], ...]
@@ -135,9 +138,9 @@ class _Layout:
 
 
 class DrivenRoads:
-    """The roads of a recording's drives, those that lead along the same lanelets laid out once.
+    """The roads of a recording's drives; roads along the same lanelets are laid out once.
 
-    ``junctions`` are the lanelets that lie in one.
+    ``junctions`` are the ids of the lanelets that lie in a junction.
     """
 
     def __init__(self, recording: Recording, junctions: Set[str]) -> None:
@@ -148,9 +151,9 @@ class DrivenRoads:
         self._roads: dict[tuple[_Layout, tuple[int, ...]], DrivenRoad] = {}
 
     def along(self, way: Sequence[str]) -> tuple[DrivenRoad, int]:
-        """The road of a chain of lanelets, extended straight at both ends; where it enters this.
+        """The road of a chain of lanelets and the number of the chain's first piece in it.
 
-        That is the number of the chain's first piece. Raises ValueError: its lanes cannot be laid
+        The road is extended straight at both ends. Raises ValueError if the lanes cannot be laid
         out along a line.
         """
         behind, ahead = roads_beyond(self._recording, way)
@@ -159,7 +162,7 @@ class DrivenRoads:
         if pieces not in self._layouts:
             self._layouts[pieces] = _layout(self._recording, pieces)
         layout, first = self._layouts[pieces], len(behind)
-        # Lanes are told apart in the middle of what is driven
+        # Lanes are identified in the middle of the driven pieces
         key = layout, _own_lanes(layout, first, first + len(driven))
         if key not in self._roads:
             self._roads[key] = self._road(*key)
@@ -201,7 +204,7 @@ def _layout(recording: Recording, pieces: tuple[tuple[str, ...], ...]) -> _Layou
 
 
 def _own_lanes(layout: _Layout, first: int, end: int) -> tuple[int, ...]:
-    """The lane of each piece, by where the middle of some pieces is between the lanes' bounds."""
+    """The road's lane in each piece, found at the middle of pieces ``first`` to ``end``."""
     borders = layout.borders
     middle = float(borders[first] + borders[end]) / 2
     probed = _straight_piece(layout.pieces, int(pieces_at(borders, np.array(middle))))
@@ -213,7 +216,7 @@ def _own_lanes(layout: _Layout, first: int, end: int) -> tuple[int, ...]:
 
 
 def _middle(recording: Recording, piece: Sequence[str]) -> Points:
-    """The middle of a piece, leading evenly across where it changes lanes."""
+    """The middle line of a piece; where it changes lanes, it leads across evenly."""
     first, last = (recording.lanelets[number].centre for number in (piece[0], piece[-1]))
     if len(piece) == 1:
         return first
@@ -229,7 +232,7 @@ def _middle(recording: Recording, piece: Sequence[str]) -> Points:
 
 
 def _lane_numbers(recording: Recording, pieces: Sequence[Sequence[str]]) -> list[int]:
-    """Which lane the road enters each piece in, from 0 at its beginning, ascending to the left."""
+    """The lane in which the road enters each piece: 0 in the first piece, ascending to the left."""
     numbers = [0]
     for piece in pieces:
         left = lanes_beside(recording, piece[0], left=True)
@@ -248,7 +251,7 @@ def _straight_piece(pieces: Sequence[Sequence[str]], wanted: int) -> int:
 
 
 def _meets_itself(lanelets: Sequence[Lanelet], borders: Floats) -> bool:
-    """Is the road beside itself after having been away?"""
+    """Whether the road comes beside itself after having been away."""
     lines = [shapely.LineString(lanelet.centre) for lanelet in lanelets]
     pairs = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=_BESIDE_M)
     first, second = np.sort(pairs, axis=0)
@@ -264,7 +267,7 @@ def _row(recording: Recording, number: str, own: int, count: int) -> tuple[Lanel
 
 
 def runs_along(borders: Floats, flags: Sequence[bool]) -> Iterator[tuple[float, float]]:
-    """The extents along the road of consecutive pieces that have a flag."""
+    """The extents along the road of runs of consecutive pieces that are flagged."""
     for flag, pieces in groupby(range(len(flags)), key=lambda piece: flags[piece]):
         if flag:
             run = list(pieces)
@@ -272,16 +275,15 @@ def runs_along(borders: Floats, flags: Sequence[bool]) -> Iterator[tuple[float, 
 
 
 def marks_junctions(recording: Recording) -> bool:
-    """True if a recording's map marks junctions, or says that all are marked."""
+    """Whether a recording's map marks junctions, or states that all are marked."""
     lanes = filter(is_lane, recording.lanelets.values())
     return "junctions" in recording.complete or any("intersection" in x.types for x in lanes)
 
 
 def junction_lanelets(recording: Recording) -> frozenset[str]:
-    """The ids of the lanelets in junctions, by the map, by ways that cross, or join behind a sign.
+    """The ids of the lanelets in junctions: marked by the map, crossing, or joining behind a sign.
 
-    Where a map marks any, only those count: whoever drew it has thought of junctions. So has who
-    says that all are marked.
+    Where the map marks any junction, or states that all are marked, only marked ones count.
     """
     lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
     if not lanes or marks_junctions(recording):
@@ -291,9 +293,10 @@ def junction_lanelets(recording: Recording) -> frozenset[str]:
 
 
 def _signed_joins(lanes: Sequence[Lanelet]) -> Iterator[tuple[Lanelet, ...]]:
-    """Short lanelets that lead to one, as onto a ring, where a sign makes one of them give way.
+    """Short lanelets that join, as onto a ring, where a sign makes one of them give way.
 
-    With those that part from them: who leaves there is in nobody's way.
+    Includes the short lanelets that part from them, since traffic that leaves there is in nobody's
+    way.
     """
     short = {x.id: x for x in lanes if x.successors and lanelet_length(x) <= _WAY_M}
     known, joining = {lanelet.id: lanelet for lanelet in lanes}, defaultdict(list)
@@ -310,7 +313,7 @@ def _signed_joins(lanes: Sequence[Lanelet]) -> Iterator[tuple[Lanelet, ...]]:
 def level_crossing_lanelets(recording: Recording) -> frozenset[str]:
     """The ids of the lanelets that cross at level crossings, where no junctions are marked.
 
-    A level crossing is no junction: what cars may not block is another rule's there.
+    A level crossing is not a junction: a different rule says what cars must not block there.
     """
     lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
     if marks_junctions(recording) or not any(map(_is_level_crossing, lanes)):
@@ -324,7 +327,7 @@ def _is_level_crossing(lanelet: Lanelet) -> bool:
 
 
 def _crossing_pairs(lanes: Sequence[Lanelet]) -> Iterator[tuple[Lanelet, Lanelet]]:
-    """The pairs of lanelets whose middles cross at more than ``_CROSSING_ANGLE``."""
+    """The pairs of lanelets whose middle lines cross at an angle above ``_CROSSING_ANGLE``."""
     lines = [shapely.LineString(lanelet.centre) for lanelet in lanes]
     firsts, seconds = shapely.STRtree(lines).query(lines, predicate="crosses")
     for first, second in zip(firsts.tolist(), seconds.tolist(), strict=True):

@@ -1,8 +1,8 @@
-"""Passages: who went through which junction, on which way, when.
+"""Passages: which participants went through which junction, on which way, and when.
 
-A participant's way is the one whose middle its places are nearest on average, of those that begin
-in its direction. Its place on it is the arc length of its middle, its body reaching half its length
-to either side; before the way begins it is the distance to it, negative.
+A participant's way is, of those that begin in its direction, the one whose middle line is nearest
+to its places on average. Its place on the way is the arc length of its middle; its body extends
+half its length to either side. Before the way begins, the place is the negative distance to it.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.plain_arrays import distinct
 
 _FARTHEST_M = 2.5
-"""Who is farther from a way's middle on average is not on it."""
+"""A participant whose average distance (m) from a way's middle line is larger is not on it."""
 
 _SURE_M = 0.4
-"""The way is known if no other one that parts from it fits nearly as well."""
+"""The way is certain if no way that parts from it is farther away by less than this (m)."""
 
 _LARGEST_TURN = np.pi / 3
 
 _NO_WAY_M = 1e-9
-"""Corners of a line that are nearer to each other give it no direction."""
+"""Corners of a line that are nearer to each other than this (m) give it no direction."""
 
 _ALIKE = 0.5
-"""Ways whose turns differ by less (rad) lead to the same road."""
+"""Ways whose turns differ by less than this (rad) lead to the same road."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +45,9 @@ class Passage:
     """A participant's passage of a junction, in columns ``first`` to ``last`` inclusive.
 
     ``way`` is the number of the way; ``sure`` is False if it may be another one. ``heading`` is the
-    direction (rad) in which it came, when its front got there: it may have turned by the time its
-    middle is in the junction. ``whole``: it was recorded on its way in and out.
+    direction (rad) of approach when the front got there: the participant may have turned by the
+    time its middle is in the junction. ``whole``: whether both its entry and its exit were
+    recorded.
     """
 
     row: int
@@ -63,7 +64,8 @@ class Passage:
 class JunctionPassages:
     """All passages of a recording, by participant and by junction.
 
-    ``astray``: by junction the row, first and last column of who was in it on no way of the map.
+    ``astray``: by junction, the row and the first and last column of participants in it that are on
+    no way of the map.
     """
 
     tracks: Tracks
@@ -85,7 +87,7 @@ class JunctionPassages:
             else:
                 rigid[row] = outlines
         if rigid:
-            # One by one they take ten times as long
+            # Computed one by one they take ten times as long
             way = np.array([own.track.rows[0, 2] for own in rigid.values()])
             corners = np.array([own.laid_out[0] for own in rigid.values()])
             ahead = corners @ np.stack((np.cos(way), np.sin(way)), axis=-1)[:, :, None]
@@ -94,7 +96,7 @@ class JunctionPassages:
 
     @cached_property
     def travelled(self) -> Floats:
-        """The way (m) that each participant has covered by step."""
+        """The distance (m) that each participant has travelled by each step."""
         steps = np.hypot(np.diff(self.tracks.x, axis=1), np.diff(self.tracks.y, axis=1))
         first = np.zeros((len(steps), 1))
         return np.concatenate((first, np.nancumsum(steps, axis=1)), axis=1)
@@ -104,7 +106,7 @@ class JunctionPassages:
         return shapely.STRtree([junction.area for junction in self.junctions])
 
     def and_one(self, other: JunctionPassages, row: int, tracks: Tracks) -> JunctionPassages:
-        """These, and behind them those of a row of others; ``tracks`` are those of all of them."""
+        """These passages, followed by those of one row of ``other``; ``tracks`` are of both."""
         own, last = other.of_row.get(row, ()), len(self.tracks.participants)
         of_row, through = dict(self.of_row), dict(self.through)
         moved = tuple([replace(passage, row=last) for passage in own])
@@ -118,7 +120,7 @@ class JunctionPassages:
             if strays:
                 astray[junction] = (*astray.get(junction, ()), *strays)
         joined = JunctionPassages(tracks, self.junctions, of_row, through, astray)
-        # What is known of the map, and of each row, need not be derived again
+        # Facts about the map and about each row need not be derived again
         joined.__dict__["_areas"] = self._areas
         joined.__dict__["_first_meetings"] = self._first_meetings
         for name in ("lengths", "travelled"):
@@ -127,13 +129,13 @@ class JunctionPassages:
         return joined
 
     def crosses_junction(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
-        """True if a straight line leads through a junction."""
+        """Whether a straight line leads through a junction."""
         line = shapely.LineString([start, end])
         return len(self._areas.query(line, predicate="intersects")) > 0
 
     @cached_property
     def _first_meetings(self) -> dict[str, float]:
-        """Lanelet -> the first place (m) on it where others cross or join, if there is any."""
+        """Lanelet -> the first place (m) on it where other ways cross or join it, if any."""
         first: dict[str, float] = {}
         for junction in self.junctions:
             for own, way in enumerate(junction.ways):
@@ -150,7 +152,7 @@ class JunctionPassages:
         return first
 
     def first_meeting(self, lanelet: str) -> float | None:
-        """The first place (m) on a lanelet where other ways cross or join it, None without any."""
+        """The first place (m) on a lanelet where other ways cross or join it, or None."""
         return self._first_meetings.get(lanelet)
 
     def way(self, passage: Passage) -> JunctionWay:
@@ -158,14 +160,14 @@ class JunctionPassages:
         return self.junctions[passage.junction].ways[passage.way]
 
     def occupied(self, passage: Passage, interval: Interval) -> tuple[float | None, float | None]:
-        """When, in columns, its front gets to an interval of its way, and its rear is past.
+        """When (in columns) its front reaches an interval of its way, and its rear has passed it.
 
-        Between two columns in proportion; None where the recording ends before.
+        Interpolated between columns; None where the recording ends before.
         """
         low, high = interval
         half = self.lengths[passage.row] / 2
         middle, first = self._places(passage), self.front_enters(passage)
-        # Of a long body the front gets there long before its middle is in the junction
+        # The front of a long body gets there long before its middle is in the junction
         travelled = self.travelled[passage.row]
         came = travelled[passage.first] - travelled[first : passage.first]
         middle = np.concatenate((middle[0] - came, middle))
@@ -175,9 +177,9 @@ class JunctionPassages:
         )
 
     def front_enters(self, passage: Passage) -> int:
-        """The last column in which it was half its length from where it was in its first one.
+        """The last column in which it was at least half its length before its place in ``first``.
 
-        That in which its track begins, if it was not.
+        The column in which its track begins, if there is none.
         """
         row, first = passage.row, passage.first
         absent = (~self.tracks.present[row, :first]).nonzero()[0]
@@ -186,7 +188,7 @@ class JunctionPassages:
         return begin + max(int((came >= self.lengths[row] / 2).sum()) - 1, 0)
 
     def _places(self, passage: Passage) -> Floats:
-        """Arc lengths (m) on the way from its first column to the end of its track."""
+        """Arc lengths (m) along the way, from the passage's first column to the track's end."""
         line = self.way(passage).line
         last = passage.last
         row = self.tracks.present[passage.row]
@@ -199,9 +201,9 @@ class JunctionPassages:
 
 
 def _along(line: shapely.LineString, places: NDArray[np.object_]) -> Floats:
-    """Arc lengths (m) beside places, before the line's start below 0, and beyond its end above.
+    """Arc lengths (m) along a line beside places: below 0 before its start, beyond its end above.
 
-    A junction is as large as all of its ways, of which one may begin within it.
+    A junction covers all of its ways, and some begin within it.
     """
     points, corners = shapely.get_coordinates(places), shapely.get_coordinates(line)
     along: Floats = shapely.line_locate_point(line, places)
@@ -214,7 +216,7 @@ def _along(line: shapely.LineString, places: NDArray[np.object_]) -> Floats:
 
 
 def _gets_to(places: Floats, place: float) -> float | None:
-    """When, in numbers of places, one is got to that ascend; None if none is."""
+    """When, in indices of ascending ``places``, a place is reached; None if it never is."""
     beyond = places >= place
     if not beyond.any():
         return None
@@ -238,9 +240,9 @@ def _length(outlines: object, states: object) -> float:
 def junction_passages(
     recording: Recording, tracks: Tracks, junctions: tuple[Junction, ...] | None = None
 ) -> JunctionPassages:
-    """The passages of everybody who moves, and does so on wheels.
+    """The passages of all participants that move on wheels.
 
-    ``junctions`` are those of the map, if they have been found.
+    ``junctions`` are those of the map, if already known.
     """
     if junctions is None:
         junctions = junctions_of(recording)
@@ -280,13 +282,13 @@ def junction_passages(
 
 
 def _is_alike(one: JunctionWay, other: JunctionWay, place: shapely.Point) -> bool:
-    """True if ways lead to the same road, or are the same up to a place."""
+    """Whether two ways lead to the same road, or are the same up to a place."""
     same_road = abs(one.turned - other.turned) < _ALIKE
     return same_road or _lanelets_until(one, place) == _lanelets_until(other, place)
 
 
 def _lanelets_until(way: JunctionWay, place: shapely.Point) -> tuple[str, ...]:
-    """The lanelets of a way up to the one whose middle a place is nearest to."""
+    """The lanelets of a way up to the one whose middle line is nearest to a place."""
     away = shapely.distance([shapely.LineString(x.centre) for x in way.lanelets], place)
     return tuple(lanelet.id for lanelet in way.lanelets[: int(np.argmin(away)) + 1])
 
@@ -297,10 +299,10 @@ def _runs(flags: Flags) -> Iterator[tuple[int, int]]:
 
 
 def _stays(inside: Flags, tracks: Tracks, row: int) -> Iterator[tuple[int, int]]:
-    """From which column to which one a participant is in a junction, by flags of its middle.
+    """The first and last column of each stay of a participant in a junction.
 
-    The middle of a long one cuts corners, and may leave the junction there while its body does not:
-    it stays until it has gone its own length.
+    ``inside`` is the mask of its middle. The middle of a long vehicle cuts corners, and may leave
+    the junction there while the body does not: the stay lasts until it has moved by its own length.
     """
     runs = list(_runs(inside))
     body = tracks.participants[row]
@@ -317,9 +319,9 @@ def _stays(inside: Flags, tracks: Tracks, row: int) -> Iterator[tuple[int, int]]
 
 
 def _touches(tracks: Tracks, row: int, columns: tuple[int, int]) -> bool:
-    """True if somebody's middle is in a junction for too short a way to tell which one it takes.
+    """Whether a participant's middle is in a junction too briefly to tell which way it takes.
 
-    That of a long one that cuts a corner may be nearer to other ways than to its own.
+    The middle of a long vehicle that cuts a corner may be nearer to other ways than to its own.
     """
     first, last = columns
     x, y = tracks.x[row, first : last + 1], tracks.y[row, first : last + 1]
@@ -328,9 +330,9 @@ def _touches(tracks: Tracks, row: int, columns: tuple[int, int]) -> bool:
 
 
 def _heading(tracks: Tracks, row: int, first: int, way: JunctionWay) -> float:
-    """The direction of a participant half its length before its place in a column.
+    """A participant's direction half its length before its place in column ``first``.
 
-    That in which its way begins, if it was not seen there.
+    The direction in which its way begins, if it was not recorded there.
     """
     body, x, y = tracks.participants[row], tracks.x[row], tracks.y[row]
     half = _length(body.outlines, body.states) / 2

@@ -32,7 +32,7 @@ MOST_LANELETS = 8
 """The most lanelets end to end on one way through a junction."""
 
 _SIDE_M = 0.4
-"""Bodies keep so far within their lanes: ways side by side are not in each other's way."""
+"""Bodies keep this far (m) inside their lanes, so that ways side by side do not conflict."""
 
 _SHORT_M = 30.0
 _TURNED = np.radians(45.0)
@@ -42,10 +42,11 @@ Interval = tuple[float, float]
 
 @dataclass(frozen=True, eq=False)
 class JunctionWay:
-    """A way through a junction: lanelets end to end, from the one before it to the one after.
+    """A way through a junction: its lanelets end to end, from the junction's entry to its exit.
 
     ``entries`` and ``exits`` are the lanelets before and after it. ``road_headings``: the
-    directions (rad) in which the road comes and goes on, where these are not those of its ends.
+    directions (rad) in which the road arrives and leaves, where they differ from those of the way's
+    ends.
     """
 
     lanelets: tuple[Lanelet, ...]
@@ -55,34 +56,34 @@ class JunctionWay:
 
     @cached_property
     def line(self) -> shapely.LineString:
-        """Its middle."""
+        """The middle line of the way."""
         return shapely.LineString(np.concatenate([lanelet.centre for lanelet in self.lanelets]))
 
     @cached_property
     def area(self) -> shapely.Geometry:
-        """The area of its lanelets, without their edges."""
+        """The area of the way's lanelets, without their edges."""
         whole = shapely.union_all([lanelet_area(lanelet) for lanelet in self.lanelets])
         return shapely.buffer(whole, -_SIDE_M)
 
     @cached_property
     def headings(self) -> tuple[float, float]:
-        """The directions (rad) in which it begins and ends."""
+        """The directions (rad) in which the way begins and ends."""
         first, last = self.lanelets[0].centre, self.lanelets[-1].centre
         return _heading(first[:2]), _heading(last[-2:])
 
     @property
     def turned(self) -> float:
-        """The angle (rad) by which it turns to the left."""
+        """The angle (rad) by which the way turns to the left."""
         return float(turn(*(self.road_headings or self.headings)))
 
     @property
     def names(self) -> frozenset[str]:
-        """The ids of its lanelets."""
+        """The ids of the way's lanelets."""
         return frozenset(lanelet.id for lanelet in self.lanelets)
 
     @property
     def on_rails(self) -> bool:
-        """True if only rail vehicles use it."""
+        """Whether only rail vehicles use the way."""
         return all("rail" in lanelet.types for lanelet in self.lanelets)
 
 
@@ -93,9 +94,9 @@ def _heading(points: Points) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Junction:
-    """A junction with its ways; ``regulated``: do signs or lights say who goes first?
+    """A junction with its ways.
 
-    None where the map does not tell.
+    ``regulated``: whether signs or lights determine priority; None if the map does not say.
     """
 
     id: str
@@ -105,20 +106,21 @@ class Junction:
 
     @cached_property
     def area(self) -> shapely.Geometry:
-        """The area of all its lanelets."""
+        """The area of all of the junction's lanelets."""
         return shapely.union_all([lanelet_area(x) for way in self.ways for x in way.lanelets])
 
     def meeting(self, way: int, other: int) -> tuple[Interval, Interval] | None:
-        """Where a way and another cross or join, along either (m), or None.
+        """The intervals (m) of two ways in which they cross or join, one along each, or None.
 
-        Ways from one lanelet, which part, do not cross; those that share lanelets join before them.
+        Ways that part from the same lanelet do not cross; ways that share lanelets join before
+        them.
         """
         if (way, other) not in self._met:
             self._met[way, other] = _meeting(self.ways[way], self.ways[other])
         return self._met[way, other]
 
     def goes_straight(self, way: JunctionWay) -> bool:
-        """True if the road that the way comes from goes on beyond the junction."""
+        """Whether the road that the way comes from continues straight beyond the junction."""
         return any(
             abs(turn(way.headings[0], other.headings[0])) < _TURNED and abs(other.turned) < _TURNED
             for other in self.ways
@@ -127,7 +129,7 @@ class Junction:
 
 
 def before_joining(way: JunctionWay, other: JunctionWay) -> tuple[Lanelet, ...]:
-    """The lanelets of a way before the first of the other one's that both share."""
+    """The lanelets of a way before the first shared one, in the order of the other way."""
     shared = next((x.id for x in other.lanelets if x.id in way.names), "")
     return tuple(takewhile(lambda lanelet: lanelet.id != shared, way.lanelets))
 
@@ -139,7 +141,7 @@ def _meeting(way: JunctionWay, other: JunctionWay) -> tuple[Interval, Interval] 
     if foes is not None and not foes & other.names:
         return None
     for one in (way, other) if way.names & other.names else ():
-        # Where they have joined they follow each other: they meet before, as where they leave
+        # After joining, vehicles follow each other: the ways meet before that, or where they leave
         shared = next(x.id for x in one.lanelets if x.id in way.names & other.names)
         parts = [_until(x, shared) for x in (way, other)]
         if all(part.lanelets for part in parts) and (met := _overlap(*parts)):
@@ -170,7 +172,7 @@ def junctions_of(recording: Recording) -> tuple[Junction, ...]:
     members: dict[str, list[Lanelet]] = defaultdict(list)
     for number, junction in _junction_ids(recording).items():
         members[junction].append(recording.lanelets[number])
-    # A map with no such sign at all is rather one on which nobody has drawn any
+    # A map without any such sign is more likely one in which nobody has drawn signs
     told = bool(recording.complete & REGULATING) or any(
         lanelet.signs & REGULATING for lanelet in recording.lanelets.values()
     )
@@ -189,9 +191,9 @@ def junctions_of(recording: Recording) -> tuple[Junction, ...]:
 
 
 def _junction_ids(recording: Recording) -> dict[str, str]:
-    """Lanelet -> junction: the map's own, or lanelets that overlap."""
+    """Lanelet -> junction: the map's own, or else one per group of overlapping lanelets."""
     lanelets = recording.lanelets
-    # Looked for once: on maps without marked junctions that goes through all lanelets
+    # Computed once: on maps without marked junctions it goes through all lanelets
     crossing = junction_lanelets(recording)
     inside = [number for number in lanelets if number in crossing]
     with_rails = [
@@ -230,7 +232,7 @@ def _ways(members: Mapping[str, Lanelet]) -> Iterator[JunctionWay]:
 
 
 def _road_headings(recording: Recording, way: JunctionWay) -> tuple[float, float]:
-    """The directions (rad) of the road ``TURN_REACH_M`` before and behind a way, or at its ends."""
+    """The road's directions (rad) ``TURN_REACH_M`` before and behind a way, or at its ends."""
     first, last, known = way.lanelets[0], way.lanelets[-1], recording.lanelets
     begins, ends = way.headings
     for entry in [known[x].centre for x in first.predecessors if x in known][:1]:
@@ -241,21 +243,21 @@ def _road_headings(recording: Recording, way: JunctionWay) -> tuple[float, float
 
 
 def _heading_from(line: Points, away_m: float) -> float:
-    """The direction (rad) of a line so far from its beginning, or at its end."""
+    """The direction (rad) of a line ``away_m`` from its beginning, or at its end if shorter."""
     far = np.hypot(*np.diff(line, axis=0).T).cumsum()
     piece = min(int(far.searchsorted(away_m)), len(far) - 1)
     return _heading(line[piece : piece + 2])
 
 
 def _is_no_corner(chain: tuple[Lanelet, ...]) -> bool:
-    """True if lanelets follow each other without a gap, as those of one way do."""
+    """Whether lanelets follow each other without a gap, as those of one way do."""
     return all(np.hypot(*(b.centre[0] - a.centre[-1])) < 1.0 for a, b in pairwise(chain))
 
 
 def _regulated(
     recording: Recording, lanelets: list[Lanelet], ways: tuple[JunctionWay, ...]
 ) -> bool | None:
-    """True if signs or lights say who goes first, False if the map says that nothing does."""
+    """True if signs or lights determine priority, False if the map says that nothing does."""
     if any("unregulated" in lanelet.types for lanelet in lanelets):
         return False
     if any(lanelet.first is not None for lanelet in lanelets):
@@ -269,9 +271,9 @@ def _regulated(
 
 
 def all_have_to_stop(recording: Recording, junction: Junction) -> bool | None:
-    """True if all who come to a junction on a road have a stop sign; None if that is not told.
+    """Whether every road to a junction has a stop sign; None if unknown.
 
-    Of roads that begin at the map's edge nobody knows the signs.
+    The signs of roads that begin at the map's edge are unknown.
     """
     ways = [way for way in junction.ways if not way.on_rails]
     before = [approaches(recording, way) for way in ways]
@@ -286,7 +288,7 @@ def all_have_to_stop(recording: Recording, junction: Junction) -> bool | None:
 
 
 def _may_be_regulated(recording: Recording, ways: tuple[JunctionWay, ...]) -> bool:
-    """True if there may be lights at a junction that nobody saw, or signs that are not placed."""
+    """Whether a junction may have unobserved lights, or signs whose place is unknown."""
     entries = [entry for way in ways for entry in approaches(recording, way)]
     return any(
         entry.untold_signs & REGULATING or not all(map(is_there, entry.lights)) for entry in entries

@@ -1,4 +1,4 @@
-"""Sets of lanes as numbers, and those that bodies reach into."""
+"""Sets of lanes as whole numbers, and the sets that bodies reach into."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
 
 LaneSets: TypeAlias = NDArray[Any]
-"""Lanes as whole numbers, of which bit ``k`` says whether lane ``k`` is among them."""
+"""Sets of lanes as whole numbers: bit ``k`` is set if lane ``k`` is in the set."""
 
 
 def lane_sets(lanes: Flags) -> LaneSets:
-    """Flags of lanes (last axis) as sets."""
-    # Of more than 64 lanes they are Python's integers
+    """A mask of lanes (last axis) as sets."""
+    # With more than 64 lanes they are Python's integers
     kind = np.min_scalar_type((1 << lanes.shape[-1]) - 1)
     sets: LaneSets = np.zeros(lanes.shape[:-1], dtype=kind)
     for lane in range(lanes.shape[-1]):
@@ -27,8 +27,8 @@ def lane_sets(lanes: Flags) -> LaneSets:
 
 
 def is_in(sets: LaneSets, lane: NDArray[intp] | int) -> Flags:
-    """Flags of the sets in which a lane is."""
-    # Of the narrow kind of the sets, so that what is found stays so
+    """Mask of the sets that contain a lane."""
+    # Cast to the sets' narrow type, so that the result keeps it
     only = np.left_shift(1, lane, dtype=sets.dtype, casting="unsafe")
     flags: Flags = (sets & only) != 0
     return flags
@@ -37,13 +37,14 @@ def is_in(sets: LaneSets, lane: NDArray[intp] | int) -> Flags:
 def lanes_touched(
     extents: RoadExtents, there: LaneSets, least_m: Sequence[float], across: Floats | None = None
 ) -> tuple[LaneSets, ...]:
-    """The sets of the lanes that are ``there`` and that bodies reach into by more than so much.
+    """The sets of lanes ``there`` that bodies reach into, one for each threshold in ``least_m``.
 
-    One for each of these lengths, with all bodies so much (m), by column, farther left.
+    Bodies have to reach in by more than the threshold (m). With ``across``, all bodies are moved
+    this far (m) to the left, by column.
     """
     found = tuple(np.zeros(there.shape, dtype=there.dtype) for _ in least_m)
     ends = (extents.left_of_min, extents.left_of_max)
-    # Lane by lane, so that what is looked at stays in the processor's caches
+    # Lane by lane, so that the data stay in the processor's caches
     low, high = (_moved(own[..., 0], across) for own in ends)
     middle = (low + high) / 2
     for lane in range(extents.left_of_min.shape[-1] - 1):
@@ -55,7 +56,7 @@ def lanes_touched(
         breadth /= 2
         exists = is_in(there, lane)
         for sets, least in zip(found, least_m, strict=True):
-            # A narrow body, such as a pedestrian's, is in a lane with most of it
+            # A narrow body, such as a pedestrian's, is in a lane with most of its width
             touched = inside > np.minimum(least, breadth)
             touched &= exists
             sets |= touched.astype(sets.dtype) << lane

@@ -1,4 +1,4 @@
-"""A mirrored recording, whose traffic keeps to the other side."""
+"""A mirrored recording, in which traffic keeps to the other side."""
 
 from __future__ import annotations
 

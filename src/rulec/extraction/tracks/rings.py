@@ -1,4 +1,4 @@
-"""Roundabouts of a map: rings of lanelets that nobody crosses."""
+"""Roundabouts of a map: rings of lanelets that no other lane crosses."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rulec.recordings.recording import Lanelet, Recording, Side, is_lane
 from rulec.scenario.recorded.reference_line import turn
 
 LONGEST_M = 300.0
-"""A ring is no longer round."""
+"""Greatest length (m) of a ring."""
 
 MOST_LANELETS = 24
 
@@ -20,14 +20,14 @@ _UNEVEN = 0.5
 
 _EVERY_M = 2.0
 _STRAIGHT_M, _LEAST_TURN = 30.0, 0.2
-"""A roundabout turns by more (rad) on each stretch of such a length."""
+"""A roundabout turns by more than ``_LEAST_TURN`` (rad) on each stretch of ``_STRAIGHT_M``."""
 
 
 def ring_lanelets(recording: Recording, side: Side) -> frozenset[str]:
-    """The lanelets of roundabouts: the map's own, or else rings of its lanelets.
+    """The lanelets of roundabouts: those that the map marks, or else rings of its lanelets.
 
-    A ring leads round once, away from ``side``, is nowhere straight for long, as the streets around
-    a block are, is joined and left, and nobody crosses it.
+    A ring leads round once, away from ``side``, is nowhere straight for long, unlike the streets
+    around a block, can be entered and left, and no lane crosses it.
     """
     known = recording.lanelets
     marked = frozenset(name for name, lanelet in known.items() if "roundabout" in lanelet.types)
@@ -65,7 +65,7 @@ def _turned(lanelet: Lanelet) -> float:
 def _rings(
     lanes: Mapping[str, Lanelet], turned: Mapping[str, float], start: str, towards: float
 ) -> Iterator[tuple[str, ...]]:
-    """The chains of lanelets from one back to itself that turn round once."""
+    """The chains of lanelets that lead from ``start`` back to itself in one full turn."""
     chains: tuple[str, ...] = (start,)
     waiting = [(chains, turned[start] * towards, _length(lanes[start]))]
     while waiting:
@@ -94,7 +94,7 @@ def _length(lanelet: Lanelet) -> float:
 
 
 def _is_round(ring: tuple[str, ...], lanes: Mapping[str, Lanelet]) -> bool:
-    """True if a ring turns by a little on every stretch of some length."""
+    """Whether a ring turns at least a little on every stretch of ``_STRAIGHT_M``."""
     line = shapely.LinearRing(np.concatenate([lanes[name].centre for name in ring]))
     count = max(int(line.length / _EVERY_M), 8)
     places = shapely.get_coordinates(
@@ -107,7 +107,7 @@ def _is_round(ring: tuple[str, ...], lanes: Mapping[str, Lanelet]) -> bool:
 
 
 def _crossed(ring: tuple[str, ...], lanes: Mapping[str, Lanelet]) -> bool:
-    """True if a lane that is not in the ring leads through it from side to side."""
+    """Whether a lane outside the ring leads through it from side to side."""
     line = shapely.LinearRing(np.concatenate([lanes[name].centre for name in ring]))
     others = [shapely.LineString(x.centre) for name, x in lanes.items() if name not in ring]
     met = shapely.intersection(line, others)

@@ -1,9 +1,10 @@
 """The extents of participants along and across a road, in Frenet coordinates.
 
-Rows are participants and columns time steps, as in ``Tracks``; NaN for who is not beside the road.
-Frenet coordinates are the arc length ``s`` along a reference line and the offset ``d`` from it (m,
-positive to the left). Lanes get wider and narrower, so across them places are measured from each of
-their bounds: who reaches into a lane that opens by some centimetres is in it by so much.
+Rows are participants and columns time steps, as in ``Tracks``; NaN for participants that are not
+beside the road. Frenet coordinates are the arc length ``s`` along a reference line and the offset
+``d`` from it (m, positive to the left). Lanes get wider and narrower, so lateral places are
+measured from each of their bounds: a vehicle that reaches some centimetres into a lane that opens
+is in it by that much.
 """
 
 from __future__ import annotations
@@ -32,9 +33,9 @@ _MORE_M = 10.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class EgoPieces:
-    """Ego's row, and in which piece of the road it was at some columns.
+    """Ego's row, and the piece of the road that it was in at some columns.
 
-    ``numbers`` are those of the map's lanelets.
+    ``numbers`` are those of the map's lanelets, by id.
     """
 
     row: int
@@ -47,9 +48,9 @@ class EgoPieces:
 class RoadExtents:
     """The bounds and the motion of participants in coordinates of the road.
 
-    ``left_of_min`` and ``left_of_max`` say how far (m) left of each bound of the lanes (third axis,
-    from the right) bodies begin and end; in memory that axis comes first. ``turned`` is the heading
-    relative to the road's direction (rad, in [-pi, pi)), ``along`` and ``across`` are the velocity
+    ``left_of_min`` and ``left_of_max`` are how far (m) left of each lane bound (third axis, from
+    the right) bodies begin and end; in memory that axis comes first. ``turned`` is the heading
+    relative to the road's direction (rad, in [-pi, pi)); ``along`` and ``across`` are the velocity
     along the road and to its left (m/s).
     """
 
@@ -65,17 +66,17 @@ class RoadExtents:
 
     @cached_property
     def s(self) -> Floats:
-        """The middle along the road (m)."""
+        """The place of the middle along the road (m)."""
         return (self.s_min + self.s_max) / 2
 
     @cached_property
     def left_of(self) -> Floats:
-        """How far (m) left of each bound of the lanes the middle is."""
+        """How far (m) the middle is left of each lane bound."""
         return (self.left_of_min + self.left_of_max) / 2
 
     @cached_property
     def lane(self) -> NDArray[intp]:
-        """The lane of the middle, the nearest one beside the road."""
+        """The lane of the middle; beside the road, the nearest lane."""
         last = self.left_of_min.shape[-1] - 2
         beyond = self.left_of.transpose(2, 0, 1) >= 0
         lane: NDArray[intp] = np.minimum(np.maximum(beyond.sum(axis=0) - 1, 0), last)
@@ -83,7 +84,7 @@ class RoadExtents:
 
     @cached_property
     def lane_steps(self) -> NDArray[int8]:
-        """By how many lanes farther left, at most one, the middle is a column later."""
+        """The way of the middle's lane change to the next column: 1 left, -1 right, 0 none."""
         onward = self.lane[:, 1:] - self.lane[:, :-1]
         steps: NDArray[int8] = np.zeros(self.lane.shape, dtype=int8)
         steps[:, :-1] = np.sign(onward)
@@ -91,7 +92,7 @@ class RoadExtents:
 
     @cached_property
     def off_middle(self) -> Floats:
-        """How far (m) left of the middle of its lane the middle of each is."""
+        """How far (m) the middle is left of the middle of its lane."""
         at = *np.ogrid[: len(self.lane), : self.lane.shape[1]], self.lane
         beyond = *at[:2], self.lane + 1
         low, high = (
@@ -102,27 +103,27 @@ class RoadExtents:
 
     @cached_property
     def most_off_middle(self) -> float:
-        """The greatest of these distances (m) to either side, or more."""
+        """The greatest absolute value (m) of ``off_middle``, or an upper bound of it."""
         return float(np.abs(zero_if_nan(self.off_middle)).max(initial=0.0))
 
     @cached_property
     def breadth(self) -> Floats:
-        """How far (m) bodies reach across each lane (last axis)."""
+        """How far (m) bodies extend across each lane (last axis)."""
         return self.left_of_max[..., :-1] - self.left_of_min[..., :-1]
 
     @cached_property
     def inside(self) -> Floats:
-        """How far (m) bodies reach into each lane (last axis), less than 0 beside it."""
+        """How far (m) bodies reach into each lane (last axis), negative beside it."""
         into = np.minimum(self.left_of_max[..., :-1], -self.left_of_min[..., 1:])
         widths = self.left_of[..., :-1] - self.left_of[..., 1:]
         return np.minimum(into, np.minimum(self.breadth, widths))
 
     def from_bound(self, bound: NDArray[intp]) -> tuple[Floats, Floats]:
-        """How far (m) left of one bound of the lanes, by column, bodies begin and end."""
+        """How far (m) left of one lane bound, given by column, bodies begin and end."""
         return _at_bound(self.left_of_min, bound), _at_bound(self.left_of_max, bound)
 
     def cells_from_bound(self, cells: Cells, bound: NDArray[intp]) -> tuple[Floats, Floats]:
-        """The same of some cells only."""
+        """``from_bound`` for some cells only."""
         steps = bound * len(self.left_of_min)
         places = (steps[cells.columns] + cells.rows) * len(bound) + cells.columns
         low, high = (
@@ -131,16 +132,16 @@ class RoadExtents:
         return low, high
 
     def from_middle(self, lane: NDArray[intp]) -> tuple[Floats, Floats]:
-        """How far (m) left of the middle of one lane, by column, bodies begin and end."""
+        """How far (m) left of the middle of one lane, given by column, bodies begin and end."""
         (low, high), (low_left, high_left) = self.from_bound(lane), self.from_bound(lane + 1)
         return (low + low_left) / 2, (high + high_left) / 2
 
     def middle_from(self, bound: NDArray[intp]) -> Floats:
-        """How far (m) left of one bound of the lanes, by column, the middle is."""
+        """How far (m) left of one lane bound, given by column, the middle is."""
         return _at_bound(self.left_of, bound)
 
     def moved(self, across: Floats) -> RoadExtents:
-        """The same so much (m), by column, farther left in the lanes."""
+        """The extents with bodies moved to the left in the lanes by ``across`` (m, by column)."""
         if not across.any():
             return self
         by = across[:, None]
@@ -158,14 +159,14 @@ class RoadExtents:
                 for field in fields(self)
             }
         )
-        # What is known of all need not be derived again
+        # Values already derived for all need not be derived again
         for name in ("s", "lane"):
             if name in self.__dict__:
                 part.__dict__[name] = part_of(self.__dict__[name], rows, columns)
         return part
 
     def at(self, rows: NDArray[intp], columns: NDArray[intp]) -> RoadExtents:
-        """The extents at places in the arrays, of rows and columns in one shape."""
+        """The extents at cells of the arrays, given by rows and columns of the same shape."""
         part = RoadExtents(
             **{name: at_columns(getattr(self, name), rows, columns) for name in _FIELDS}
         )
@@ -174,11 +175,11 @@ class RoadExtents:
         return part
 
     def end_to_end(self, laid: LaidOut) -> RoadExtents:
-        """Some participants in several ranges of columns."""
+        """The extents of some participants in several ranges of columns, end to end."""
         return _LaidExtents(self, laid)
 
     def and_one(self, other: RoadExtents, row: int) -> RoadExtents:
-        """These extents, and behind them a row of others in the same steps."""
+        """These extents, followed by one row of ``other`` in the same steps."""
         return RoadExtents(
             **{
                 field.name: and_row(getattr(self, field.name), getattr(other, field.name), row)
@@ -191,17 +192,17 @@ _FIELDS = tuple(field.name for field in fields(RoadExtents))
 
 
 class _LaidExtents(RoadExtents):
-    """Extents of a ``whole`` in several ranges, with each array laid out when it is asked for.
+    """Extents of a ``whole`` in several ranges, with each array laid out on first use.
 
-    What is derived of a single place is so once for the whole. Without a place the lane is the
-    first one, as for who is absent.
+    Values derived from single places are derived once, for the whole. Participants without a place
+    have the first lane, like absent ones.
     """
 
     def __init__(self, whole: RoadExtents, laid: LaidOut) -> None:
         self.__dict__.update(_whole=whole, _laid=laid, most_off_middle=whole.most_off_middle)
 
     def from_bound(self, bound: NDArray[intp]) -> tuple[Floats, Floats]:
-        """How far (m) left of one bound of the lanes, by column, bodies begin and end."""
+        """How far (m) left of one lane bound, given by column, bodies begin and end."""
         if bound.ndim > 1 and len(bound) != 1:
             return super().from_bound(bound)
         whole, laid, places = self.__dict__["_whole"], self.__dict__["_laid"], bound.ravel()
@@ -215,7 +216,7 @@ class _LaidExtents(RoadExtents):
         return _LaidExtents(self.__dict__["_whole"], self.__dict__["_laid"].of_rows(rows))
 
     def cells_from_bound(self, cells: Cells, bound: NDArray[intp]) -> tuple[Floats, Floats]:
-        """How far (m) left of one bound of the lanes, by column, bodies begin and end in cells."""
+        """How far (m) left of one lane bound, given by column, bodies begin and end in cells."""
         own, laid = self.__dict__["_whole"], self.__dict__["_laid"]
         steps = bound * len(own.left_of_min)
         columns = laid.columns.take(cells.columns)
@@ -255,7 +256,7 @@ class _LaidExtents(RoadExtents):
 
 
 def at_columns(values: NDArray[Any], rows: NDArray[intp], columns: NDArray[intp]) -> NDArray[Any]:
-    """Some columns of rows, or of one row for each; a third axis stays the first in memory."""
+    """Values at rows and columns, with the memory order of arrays with a third axis kept."""
     if values.ndim == 2:
         return values[rows, columns]
     by_lane = [own[rows, columns] for own in values.transpose(2, 0, 1)]
@@ -264,7 +265,7 @@ def at_columns(values: NDArray[Any], rows: NDArray[intp], columns: NDArray[intp]
 
 
 def and_row(values: NDArray[Any], others: NDArray[Any], row: int) -> NDArray[Any]:
-    """All rows, and behind them one of others; a third axis stays the first in memory."""
+    """All rows, followed by one row of ``others``; a third axis stays first in memory."""
     own = slice(row, row + 1)
     if values.ndim < 3:
         return np.concatenate((values, others[own]))
@@ -273,7 +274,7 @@ def and_row(values: NDArray[Any], others: NDArray[Any], row: int) -> NDArray[Any
 
 
 def part_of(values: NDArray[Any], rows: NDArray[intp], columns: slice) -> NDArray[Any]:
-    """Some rows and a range of columns; a third axis stays the first in memory."""
+    """Some rows and a range of columns; a third axis stays first in memory."""
     if values.ndim == 2:
         return values[rows, columns]
     by_lane = np.moveaxis(values, -1, 0)[:, :, columns]
@@ -281,13 +282,13 @@ def part_of(values: NDArray[Any], rows: NDArray[intp], columns: slice) -> NDArra
 
 
 def _at_bound(left_of: Floats, bound: NDArray[intp]) -> Floats:
-    """The values of one bound (last axis), by column, or by row and column."""
+    """The values at one bound (last axis), given by column, or by row and column."""
     rows, columns = left_of.shape[:2]
     values: Floats
     if (bound.ndim > 1 and len(bound) != 1) or not columns:
         values = left_of[np.arange(rows)[:, None], np.arange(columns), bound]
         return values
-    # Ego seldom changes lanes: the values of a bound stand together
+    # Ego seldom changes lanes, so the values of one bound are contiguous
     of_column = bound if bound.ndim == 1 else bound[0]
     is_new = of_column[1:] != of_column[:-1]
     if not np.count_nonzero(is_new):
@@ -310,8 +311,8 @@ def road_extents(
 ) -> RoadExtents:
     """The extents of all participants in the coordinates of a road.
 
-    ``expected``: about where along it each is, and how far from there it may be, since a road that
-    meets itself passes a place more than once.
+    ``expected``: roughly where along the road each participant is, and how far from there it may
+    be; needed since a road that meets itself passes a place more than once.
     """
     bounds = np.full((len(_BOUNDS), *tracks.present.shape), np.nan)
     left_of = np.full((2, road.lanes.bounds.shape[1], *tracks.present.shape), np.nan)
@@ -346,10 +347,11 @@ def road_extents(
 def expected_places(
     tracks: Tracks, road: DrivenRoad, ego: EgoPieces, lanelets: NDArray[intp], reach_m: float
 ) -> tuple[Floats, Floats]:
-    """About where along a road that meets itself participants are, and how far from there at most.
+    """Rough places along a road that meets itself, and how far (m) from them participants may be.
 
-    Ego is in the pieces that it drove, and who drives on the same lanes (``lanelets`` has their
-    numbers) is on those nearest to it, the shorter way round; anybody else is within ``reach_m``.
+    Ego is in the pieces that it drove. Participants on the same lanes (``lanelets`` has their
+    numbers) are on the pieces nearest to ego, the shorter way round; all others are within
+    ``reach_m`` of ego.
     """
     middles, halves = (road.borders[1:] + road.borders[:-1]) / 2, np.diff(road.borders) / 2
     columns = np.arange(tracks.present.shape[1])

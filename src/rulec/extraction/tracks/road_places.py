@@ -1,4 +1,4 @@
-"""Everybody beside one road: what is the same for all who drive along it."""
+"""All participants beside one road: what is the same for every ego that drives along it."""
 
 from __future__ import annotations
 
@@ -20,27 +20,28 @@ KMH = 3.6
 """km/h in one m/s."""
 
 _ACROSS = np.pi / 4
-"""The angle to the road from which on who comes from another one drives across."""
+"""Traffic from another road drives across if its angle to the road is larger than this."""
 
 _PIECES_M = 20.0
-"""Feet are looked for on whole pieces of a line, of 5 m at most."""
+"""Allowance (m), since feet are searched on whole pieces of a line, of at most 5 m."""
 
 _SOME_TIMES = 32
-"""One of so many times is looked at first."""
+"""Only one state in this many is examined first."""
 
 _SOON_S = 2.0
-"""So long before it comes near to a road one is looked at, longer than somebody may be away."""
+"""Participants are included this long (s), in addition to ``away_s``, before they come near a
+road."""
 
 _ONCOMING_COSINE = -0.7
-"""The cosine of the angle to the road from which on a vehicle counts as coming towards ego."""
+"""Cosine of the angle to the road beyond which a vehicle counts as oncoming."""
 
 
 @dataclass(frozen=True, eq=False)
 class RoadPlaces:
     """The places of participants on a road, a row each, by step.
 
-    ``elsewhere``: who drives on lanelets that are not of the road. ``fastest`` is each one's
-    greatest speed (m/s) in all of the recording.
+    ``elsewhere``: whether a participant drives on lanelets outside the road. ``fastest`` is each
+    one's greatest speed (m/s) in the whole recording.
     """
 
     road: DrivenRoad
@@ -51,7 +52,7 @@ class RoadPlaces:
     fastest: Floats
 
     def and_one(self, other: RoadPlaces, row: int, tracks: Tracks) -> RoadPlaces:
-        """These, and behind them a row of others on the road; ``tracks`` has all of them."""
+        """These places, followed by one row of ``other``; ``tracks`` are the joined ones."""
         joined = replace(
             self,
             tracks=tracks,
@@ -59,7 +60,7 @@ class RoadPlaces:
             elsewhere=and_row(self.elsewhere, other.elsewhere, row),
             fastest=and_row(self.fastest, other.fastest, row),
         )
-        # What is known of each need not be derived again
+        # Values already derived for each row need not be derived again
         for name in ("lanes_there", "touched", "on_lanes", "crosses", "counts", "seen"):
             joined.__dict__[name] = and_row(getattr(self, name), getattr(other, name), row)
         for place_m, own in self._lanes_within.items():
@@ -72,7 +73,7 @@ class RoadPlaces:
 
     @cached_property
     def there(self) -> Flags:
-        """Flags of the lanes (last axis) that exist where participants are."""
+        """Mask of the lanes (last axis) that exist where participants are."""
         return self.road.lanes.existing_at(self.extents.s)
 
     @cached_property
@@ -88,9 +89,9 @@ class RoadPlaces:
         return sets
 
     def lanes_within(self, place_m: float) -> tuple[LaneSets, ...]:
-        """The sets of those lanes, and of those with all so much (m) less far and farther in them.
+        """The sets of lanes reached into: as measured, and by ``place_m`` less far and farther.
 
-        Across a lane's bounds each of a body's sides counts by itself.
+        Each side of a body counts by itself at a lane's bounds.
         """
         if place_m not in self._lanes_within:
             reach = self.thresholds.touching_m
@@ -105,13 +106,13 @@ class RoadPlaces:
 
     @cached_property
     def on_lanes(self) -> Flags:
-        """Flags of who reaches into any."""
+        """Mask of participants that reach into at least one lane."""
         flags: Flags = self.touched != 0
         return flags
 
     @cached_property
     def counts(self) -> Flags:
-        """Flags of who counts for one that is near.
+        """Mask of participants that count for an ego that is near.
 
         On the lanes everybody does; beside them only vulnerable road users, and oncoming vehicles
         that move at some time.
@@ -130,27 +131,27 @@ class RoadPlaces:
 
     @cached_property
     def crosses(self) -> Flags:
-        """Flags of cross traffic: vehicles that drive on another road, and across this one."""
+        """Mask of cross traffic: vehicles that drive on another road, across this one."""
         cells = Cells.at(self.elsewhere & self.tracks.of_type("vehicle")[:, None])
         turned = np.abs(cells.of(self.extents.turned))
         return cells.laid((turned > _ACROSS) & (turned < np.pi - _ACROSS))
 
     @cached_property
     def seen(self) -> Flags:
-        """Flags of who is in sight of one that is near enough."""
+        """Mask of participants that are in sight of an ego that is near enough."""
         return self.on_lanes & ~self.crosses
 
 
 def rows_in_reach(
     tracks: Tracks, road: DrivenRoad, ego: int, columns: slice, limits: Thresholds
 ) -> Flags:
-    """Flags of those of all tracks that may count for, or be in sight of, ego on a road.
+    """Mask of the tracks that may count for ego on a road, or be in its sight.
 
-    They are so near some time in a range of columns, as the crow flies, were they as fast as they
-    ever are: somebody's feet on the road are no farther apart than its outline is large, and ego's
-    no farther off than `are_on_road`.
+    They come near enough to ego in some column, in a straight line and at their greatest speeds.
+    The feet of a body's corners on the road are no farther apart than its outline is large, and ego
+    is no farther off the road than ``are_on_road`` allows.
     """
-    # As the gap between them that counts, measured along the road, where nobody is known to turn
+    # Like the gap that counts, measured along the road, but with all directions unknown
     along = np.maximum(
         limits.near_m, (tracks.fastest + tracks.fastest[ego] + 1.0) * limits.catching_up_s
     )
@@ -158,7 +159,7 @@ def rows_in_reach(
     squares = (along + off) ** 2
     flags = np.zeros(len(squares), dtype=bool)
     flags[ego] = True
-    # Most of those who are so near some time are so at one of a few times already
+    # Most of those that come near enough already are so at one of a few times
     for step in (_SOME_TIMES, 1):
         rows, times = (~flags).nonzero()[0], slice(columns.start, columns.stop, step)
         away = tracks.x[rows, times] - tracks.x[ego, times]
@@ -177,9 +178,10 @@ def near_road(
     limits: Thresholds,
     step_s: float,
 ) -> Flags:
-    """Flags of where participants, some rows and columns, are so near a road that they may count.
+    """Mask of where participants, in some rows and columns, are near enough to a road to count.
 
-    Or will so soon, or did shortly before: nobody who counts is absent in between.
+    Includes the time shortly before and after, so that no participant that counts is absent in
+    between.
     """
     reach = float(tracks.reaches.max(initial=0.0)) + _PIECES_M
     fastest = float(tracks.fastest.max(initial=0.0))
@@ -197,11 +199,11 @@ def near_road(
 def are_on_road(
     extents: RoadExtents, road: DrivenRoad, egos: NDArray[intp], limits: Thresholds
 ) -> bool:
-    """Whether rows are never farther off a road than who counts on it, wherever they are known."""
+    """Whether the egos are never farther off a road than participants that count may be."""
     ends = extents.d_min[egos], extents.d_max[egos]
     return not any((np.abs(end) > _farthest_off(road, limits)).any() for end in ends)
 
 
 def _farthest_off(road: DrivenRoad, limits: Thresholds) -> float:
-    """How far (m) from the road's line a part of a body may be that counts, and more."""
+    """Upper bound (m) on how far from the road's line a part of a body that counts may be."""
     return float(np.abs(road.lanes.bounds).max()) + limits.beside_road_m

@@ -1,7 +1,7 @@
 """Accuracy of positions and speeds, by the source of a recording.
 
-Within these of its threshold a word is unknown, and a number is an interval. Errors that have
-nothing to do with each other add up as squares (JCGM 100:2008, 5.1.2).
+Where a number is within its tolerance of a threshold, the word is unknown; the number itself is an
+interval. Independent errors add up as squares (JCGM 100:2008, 5.1.2).
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ Floats: TypeAlias = NDArray[float64]
 
 @dataclass(frozen=True, slots=True)
 class Tolerances:
-    """How far the distance of two places (m) and speeds (m/s) may be wrong.
+    """The possible errors of the distance between two places (m) and of speeds (m/s).
 
-    Speeds are means over a second: what is wrong with a track for longer does not show in them.
-    Over a shorter time they are known less well, by as much as it is shorter. ``stated_mps`` is the
-    tolerance of the file's own speeds, None if these do not count. ``add_up``: a user states
-    bounds, which errors may reach all at once, as those of tracks that drift do.
+    Speeds are means over a second; track errors that last longer do not show in them. Over a
+    shorter time the error is larger in proportion. ``stated_mps`` is the tolerance of the file's
+    own speeds, None if these are not used. ``add_up``: a user states bounds, which errors may all
+    reach at once, as the errors of drifting tracks do.
     """
 
     place_m: float
@@ -39,10 +39,10 @@ class Tolerances:
     add_up: bool = False
 
     def joint(self, one: Floats | float, other: Floats | float) -> Floats:
-        """How far a sum may be wrong by two errors that have nothing to do with each other."""
+        """The possible error of a sum of two values with independent errors."""
         if self.add_up:
             return np.add(one, other)
-        # What hypot does beyond this, for numbers near the largest, takes ten times as long
+        # The extra work of hypot, for numbers near the largest, takes ten times as long
         found: Floats = np.sqrt(np.square(one) + np.square(other))
         return found
 
@@ -50,34 +50,35 @@ class Tolerances:
 NGSIM = Tolerances(0.3, 0.3)
 """Vehicles tracked in video from high buildings.
 
-Places as far as tracks agree with each other. Of means over a second 95 in 100 differ from the
-slope of a smooth curve, the cubic that fits two seconds best, by less than 0.16 m/s (US101, 3,188
-means), 0.17 m/s (Lankershim, 1,222), 0.32 m/s (Peachtree, 325).
+Places are as accurate as tracks agree with each other. Of means over a second, 95 in 100 differ
+from the slope of a smooth curve, the cubic that best fits two seconds, by less than 0.16 m/s
+(US101, 3,188 means), 0.17 m/s (Lankershim, 1,222), 0.32 m/s (Peachtree, 325).
 """
 
 OTHERS = Tolerances(0.05, 0.1)
-"""Files made by hand or from simulations."""
+"""Files made by hand or by simulation."""
 
 DRONES = Tolerances(0.14, 0.14)
 """Vehicles tracked in video from drones.
 
 The makers of highD state an error of less than 0.1 m (Krajewski, Bock, Kloeker, Eckstein: The highD
-dataset, ITSC 2018), which two places have, and both ends of a mean over a second.
+dataset, ITSC 2018); it applies to each of two places, and to both ends of a mean over a second.
 """
 
 AUTO_LABELS = Tolerances(0.2, 0.1)
-"""Waymo's motion data: boxes that a network has fitted to lidar, on lanes given by their middles.
+"""Waymo's motion data: boxes that a network fitted to lidar, on lanes given by their middle lines.
 
-Of the places on two coordinates 95 in 100 differ from the cubic that fits two seconds best by less
-than 0.034 m, of boxes' half lengths from their median by less than 0.064 m (two scenarios, 13,000
-states; a distance is of two of each), of means over a second from the cubic's slope by less than
-0.064 m/s (624 means). Bounds of lanes, where no line is drawn, are known less well.
+On either coordinate, 95 in 100 places differ from the cubic that best fits two seconds by less than
+0.034 m, and boxes' half lengths from their median by less than 0.064 m (two scenarios, 13,000
+states; a distance involves two of each); means over a second differ from the cubic's slope by less
+than 0.064 m/s (624 means). Lane bounds without a drawn line are known less well.
 """
 
 KEYFRAMES = Tolerances(0.3, 0.2)
-"""Boxes that people have drawn twice a second, and places in between on straight lines.
+"""Boxes that people drew twice a second, with places in between interpolated linearly.
 
-As above, of five scenes of nuScenes: 0.12 m, and 0.09 m/s (1,142 means); boxes have one size each.
+As above, from five scenes of nuScenes: 0.12 m, and 0.09 m/s (1,142 means); the size of a box is
+constant.
 """
 
 USUAL_ROUNDING = Rounding(0.01, 0.01)
@@ -86,8 +87,8 @@ USUAL_ROUNDING = Rounding(0.01, 0.01)
 LIDAR = Tolerances(0.15, 0.1)
 """Boxes around lidar points, as annotated by hand in Argoverse 2's sensor logs.
 
-Where a body ends is known to a step of the lidar, 0.2° (Velodyne VLP-32C), which is 0.1 m at 30 m,
-and by as much where another one does. Of means over a second 95 in 100 differ from the slope of a
+The end of a body is known to within a step of the lidar, 0.2° (Velodyne VLP-32C), which is 0.1 m at
+30 m, and so is that of the other body. Of means over a second, 95 in 100 differ from the slope of a
 smooth curve, as above, by less than 0.06 m/s (1,666 means of 48 vehicles).
 """
 
@@ -107,7 +108,7 @@ BY_FORM: Mapping[str, Tolerances] = MappingProxyType(
         "Argoverse 2 sensor log": LIDAR,
         "123D log of Argoverse 2": LIDAR,
         "123D log of Waymo": AUTO_LABELS,
-        # The least exact of its data sets counts for those of which it is not known
+        # If the data set is unknown, its least accurate one counts
         "123D log": KEYFRAMES,
         "ScenarioNet scenario": KEYFRAMES,
         "ScenarioNet scenario of Waymo": AUTO_LABELS,
@@ -115,10 +116,11 @@ BY_FORM: Mapping[str, Tolerances] = MappingProxyType(
 )
 _DIAGONAL = 2**0.5
 _MOST_SIGMAS = 4.0
-"""Three in 100,000 errors are larger, to one side, than so many standard deviations.
+"""One-sided, three in 100,000 errors exceed this many standard deviations.
 
-A drive has hundreds of states, each with errors of its own, of which one is enough to be accused:
-with three standard deviations it would be one in three of the drives that are just at a limit.
+A drive has hundreds of states with independent errors, and one of them is enough for a violation:
+with three standard deviations, one in three of the drives that are exactly at a limit would be
+affected.
 """
 _NGSIM = re.compile(r"USA_(US101|I80|Lanker|Peach)")
 
@@ -126,21 +128,21 @@ _NGSIM = re.compile(r"USA_(US101|I80|Lanker|Peach)")
 def tolerances_of(
     recording: Recording, limits: Thresholds = USUAL, whole: WholeRecording | None = None
 ) -> Tolerances:
-    """The tolerances of a recording, by its form, by where it was made, and by what it says.
+    """The tolerances of a recording, from its format, its location and its own statements.
 
-    And by the noise that its tracks have, or what a user says of them, if that is more. ``whole``
-    is what ``whole_recording`` says of it, if that is known already.
+    At least as large as the noise of its tracks and the errors that a user states. ``whole`` is the
+    result of ``whole_recording``, if already known.
     """
     whole = whole or whole_recording(recording)
     if recording.form == "SUMO data":
         known = rounded_to(recording.rounding or USUAL_ROUNDING)
     else:
         known = NGSIM if _NGSIM.match(recording.name) else BY_FORM.get(recording.form, OTHERS)
-    # Of two places, which distances have, and both ends of a mean over a second
+    # A distance involves two places, and a mean over a second both its ends
     noise = _MOST_SIGMAS * _DIAGONAL * whole.noise_m
     stated = whole.stated_error or StatedError(0.0, 0.0)
     own = known.stated_mps
-    # Both of two places may be anywhere in their areas, all of which outlines cover
+    # Both of two places may be anywhere in their areas, and outlines cover these
     return Tolerances(
         place_m=max(known.place_m, noise, 2 * stated.place_m, 2 * limits.place_error_m),
         speed_mps=max(known.speed_mps, noise, stated.speed_mps, limits.speed_error_mps),
@@ -150,9 +152,10 @@ def tolerances_of(
 
 
 def rounded_to(rounding: Rounding) -> Tolerances:
-    """The tolerances of what is exact but for rounding.
+    """The tolerances of data that are exact except for rounding.
 
-    Each of two places may be wrong by half a unit along both axes, and so may a way between them.
+    Each of two places may be wrong by half a unit along both axes, and so may a distance between
+    them.
     """
     place_m = _DIAGONAL * rounding.place_m
     return Tolerances(place_m, place_m, rounding.speed_mps / 2)

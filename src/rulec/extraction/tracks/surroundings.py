@@ -1,4 +1,4 @@
-"""Facts of a whole recording, computed once: junctions, passages, carriageways."""
+"""Facts about a whole recording, computed once: junctions, passages, carriageways."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rulec.scenario.recorded.route import directions_beside, lanelet_area, lanes
 
 SAME_CARRIAGEWAY_M = 1.5
 OTHER_CARRIAGEWAY_M = 30.0
-"""So far apart at most are the lanes of one carriageway, and the carriageways of one road."""
+"""Greatest distances (m) between the lanes of a carriageway, and the carriageways of a road."""
 
 _AGAINST = np.radians(135.0)
 
@@ -32,7 +32,8 @@ Directions = tuple["bool | None", "bool | None"]
 class Surroundings:
     """The junctions, passages and carriageways of a recording.
 
-    ``computed`` holds what signals have found of it, ``of_map`` what of its map and of roads alone.
+    ``computed`` caches results of signals about the recording, ``of_map`` those about its map and
+    roads alone.
     """
 
     recording: Recording
@@ -45,13 +46,13 @@ class Surroundings:
     _opposite_m: dict[str, float] = field(default_factory=dict)
 
     def __reduce__(self) -> tuple[type[Surroundings], tuple[object, ...]]:
-        # What has been found is found again: functions that say for what cannot be pickled.
+        # Caches are dropped and computed again: their keys are functions, which cannot be pickled.
         return Surroundings, (self.recording, self.tracks, self.thresholds)
 
     def and_one(self, other: Surroundings, row: int, types: ObjectTypes) -> Surroundings:
-        """These, and behind all who are there a row of others in the same recording.
+        """These surroundings, with one row of ``other``'s participants added as the last.
 
-        The ``types`` are those of all of them.
+        ``types`` are those of all of them.
         """
         tracks = self.tracks.and_one(other.tracks, row, types)
         joined = replace(self, tracks=tracks, computed={})
@@ -62,21 +63,21 @@ class Surroundings:
 
     @cached_property
     def whole(self) -> WholeRecording:
-        """What is known of the whole recording."""
+        """Facts about the whole recording."""
         return whole_recording(self.recording)
 
     @cached_property
     def tolerances(self) -> Tolerances:
-        """How well places and speeds are known."""
+        """The errors of places and speeds."""
         return tolerances_of(self.recording, self.thresholds, self.whole)
 
     @cached_property
     def passages(self) -> JunctionPassages:
-        """Who went through which junction when."""
+        """The passages of all participants through junctions."""
         return junction_passages(self.recording, self.tracks)
 
     def ring(self, side: Side) -> frozenset[str]:
-        """The lanelets of roundabouts where traffic keeps to a side."""
+        """The lanelets of roundabouts, for traffic that keeps to ``side``."""
         if side not in self._rings:
             self._rings[side] = ring_lanelets(self.recording, side)
         return self._rings[side]
@@ -89,24 +90,25 @@ class Surroundings:
 
     @cached_property
     def _both_ways(self) -> bool:
-        """True if a lanelet of the map has another beside it that leads the other way."""
+        """Whether some lanelet of the map has one beside it that leads the other way."""
         lanes, _ = self._lanes
         return any(self._nearest_opposite(lane) <= OTHER_CARRIAGEWAY_M for lane in lanes)
 
     def directions(self, lanelet: Lanelet) -> Directions:
-        """Is its carriageway one-way, and do a strip or barrier part it from the opposite one?
+        """Whether a carriageway is one-way, and whether a strip or barrier divides the road.
 
-        By the nearest lane beside its middle that leads the other way. Where a map has no such lane
-        anywhere it may have left them out. In a junction by the road that leads there.
+        None means unknown. Decided by the nearest lane beside its middle that leads the other way.
+        A map without any such lane may have left them out. In a junction the roads that lead there
+        decide.
         """
         if lanelet.id not in self._directions:
             self._directions[lanelet.id] = self._computed(lanelet)
         return self._directions[lanelet.id]
 
     def is_surely_one_way(self, lanelet: Lanelet, side: Side) -> bool:
-        """True if nobody may drive against a lane: in rings, on motorways, on several lanes.
+        """Whether nobody may drive against a lane: in rings, on motorways, on several lanes.
 
-        Of a carriageway with one lane some maps have one direction alone.
+        Of a carriageway with a single lane, some maps contain only one direction.
         """
         if lanelet.id in self.ring(side) or "interstate" in lanelet.types:
             return True
@@ -131,7 +133,7 @@ class Surroundings:
         )
 
     def _roads_before(self, lanelet: Lanelet) -> Iterator[Lanelet]:
-        """The lanelets that lead into a junction, and on to one in it."""
+        """The lanelets outside junctions from which a lanelet in a junction can be reached."""
         seen, waiting = {lanelet.id}, [lanelet]
         while waiting:
             for name in set(waiting.pop().predecessors) & self.recording.lanelets.keys() - seen:
@@ -143,7 +145,7 @@ class Surroundings:
                     yield before
 
     def _nearest_opposite(self, lanelet: Lanelet) -> float:
-        """The distance (m) from its carriageway to a lane that leads the other way."""
+        """The distance (m) from a lanelet's carriageway to a lane that leads the other way."""
         if lanelet.id not in self._opposite_m:
             self._opposite_m[lanelet.id] = self._computed_opposite(lanelet)
         return self._opposite_m[lanelet.id]
@@ -176,7 +178,7 @@ class Surroundings:
 
 
 def _is_beside(lane: Lanelet, place: shapely.Point, heading: float) -> bool:
-    """True if the nearest place of a lane is across from a place, not before or behind it."""
+    """Whether the nearest place of a lane is across from a place, not ahead of or behind it."""
     line = shapely.LineString(lane.centre)
     near = line.interpolate(line.project(place))
     away = np.array([near.x - place.x, near.y - place.y])

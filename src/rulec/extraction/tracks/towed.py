@@ -1,4 +1,4 @@
-"""Bodies that another one tows: nobody drives them."""
+"""Bodies that another one tows, and that therefore have no driver."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from numpy.typing import NDArray
 from rulec.extraction.tracks.tracks import Flags, Tracks
 
 _DRAWBAR_M = 1.5
-"""What is towed is no farther behind who tows it."""
+"""A towed body is no farther (m) behind the vehicle that tows it."""
 
 _STEADY_M = 0.4
-"""Nor is its distance spread by more: nobody who drives keeps so close to another so evenly."""
+"""Greatest standard deviation (m) of their distance: no driver follows another so evenly."""
 
 _ASIDE_M = 2.0
-"""Nor is who tows it ever farther aside of the line that it heads along."""
+"""The towing vehicle is never farther (m) aside of the line along the towed body's heading."""
 
 _HAIR_M = 1e-6
 
 _FAST_MPS, _LEAST_S = 8.0, 2.0
-"""Only who gets so fast, and is there for so long, is known to be towed: queues creep alike."""
+"""Slower or shorter tracks cannot be told from queues, whose vehicles creep at equal distances."""
 
 
 def towed_by(tracks: Tracks, row: int, step_s: float) -> str | None:
-    """The id of who tows a participant, None if it drives of itself.
+    """The id of the vehicle that tows a participant; None if it drives by itself.
 
-    All the time it is there the other one is, too, so close ahead of it as a drawbar is long, and
-    always as far away, of whatever speed they are.
+    As long as the participant is present, the other vehicle is too, no farther ahead than a drawbar
+    is long, and always equally far away, whatever their speed.
     """
     columns = tracks.present[row].nonzero()[0]
     if tracks.fastest[row] < _FAST_MPS or len(columns) * step_s < _LEAST_S:
@@ -54,8 +54,8 @@ def towed_by(tracks: Tracks, row: int, step_s: float) -> str | None:
 def _near_enough(tracks: Tracks, row: int, columns: NDArray[intp]) -> NDArray[intp]:
     """The rows of other vehicles that may be near a participant all the time, by where it begins.
 
-    No number is farther from the mean of some than their standard deviation times the root of
-    their count.
+    No number is farther from the mean of a sample than its standard deviation times the root of its
+    size.
     """
     first, last = columns[0], columns[-1]
     x, y = tracks.x[:, first], tracks.y[:, first]

@@ -1,4 +1,4 @@
-"""Velocities and accelerations from places, and how far they may be wrong."""
+"""Velocities and accelerations derived from places, and their possible errors."""
 
 from __future__ import annotations
 
@@ -13,40 +13,40 @@ from rulec.extraction.tracks.source_tolerances import Tolerances
 from rulec.trace.plain_arrays import zero_if_nan
 
 _LEAST_PART = 0.7
-"""Whose motion is less along its heading than at 45° has a heading that says nothing."""
+"""If less motion than this is along the heading (as at 45°), the heading says nothing about it."""
 
 _AGREES, _STANDS_MPS = 0.05, 0.1
-"""Stated speeds count if they make the way that places do, to a twentieth, or so much in the mean.
-"""
+"""Stated speeds are used if their mean differs from that of places by at most this part, or this
+much (m/s)."""
 
 _MEANS_ELSE = 0.5
-"""Stated speeds that make so much another way, as a part of the longer one, mean something else."""
+"""Stated speeds mean something else if the way by them differs by more than this part of the
+longer."""
 
 _TURNS = 0.1
-"""By how much a heading turns (rad) over a window that what turns does."""
+"""A participant turns if its heading changes by more than this (rad) over a window."""
 
 _CONTRADICTS = 0.1
-"""Up to such a part stated speeds that differ from places mean the same, and one of both is off."""
+"""Stated speeds that differ by at most this part mean the same as places: one of both is wrong."""
 
 _SLIP_S, _GRIP_MPS2, _HAIR = 0.3, 10.0, 1e-6
-"""A track that gains or loses more speed over so long than tyres can has slipped off its vehicle.
+"""A track whose speed changes over ``_SLIP_S`` more than tyres allow has slipped off its vehicle.
 
 Tyres hold about 1 g on a dry road.
 """
 
 _SEAM_S, _GAINS_MPS2, _SEAM_LASTS_S = 0.5, 4.0, 1.5
-"""What gains speed so hard for so long and loses it again as hard soon after, or the other way
-round, is where one camera's picture meets the next: tracks are stretched or pressed there.
-"""
+"""A track that gains speed this hard for this long, and loses it as hard soon after, or the
+reverse, passes a seam between two cameras' pictures: tracks are stretched or compressed there."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Motion:
-    """Velocity (m/s), its length or part along the heading, and acceleration (m/s²).
+    """Velocity (m/s), speed (its length, or its part along the heading) and acceleration (m/s²).
 
-    A row for each participant, a column for each step; the errors are how far they may be wrong.
-    ``scale_error`` is that of distances nearby, as a part of them: a net may draw a lane shorter
-    than it says, and than is driven there.
+    A row per participant, a column per step; the errors are the largest possible ones.
+    ``scale_error`` is the relative error of distances nearby: a net may draw a lane shorter than it
+    states, and than vehicles drive there.
     """
 
     vx: NDArray[float64]
@@ -60,9 +60,9 @@ class Motion:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Poses:
-    """Places (m), headings (rad) and stated speeds (m/s) by step; NaN where nobody is.
+    """Places (m), headings (rad) and stated speeds (m/s) by step; NaN where a body is absent.
 
-    ``steers``: does it move along its heading, as a vehicle does?
+    ``steers``: whether a participant moves along its heading, as a vehicle does.
     """
 
     x: NDArray[float64]
@@ -73,13 +73,14 @@ class Poses:
 
 
 def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances) -> Motion:
-    """Central differences over ``smoothing_s``, one-sided where a track begins or ends.
+    """Motion by central differences over ``smoothing_s``, one-sided at the ends of a track.
 
-    Where that is no whole number of steps, its ends are between two places, along a straight line.
-    The speed of what steers is the part along its heading, or what the file states if its stated
-    speeds are ``known`` better and agree with its places. Where they do not quite, as on lanes that
-    a net draws longer than it says, or where single ones cannot be, as of who is moved by hand in a
-    simulator, nobody knows which of both is meant.
+    Where half of that is no whole number of steps, the window's ends are interpolated linearly. The
+    speed of a participant that steers is the part along its heading, or the file's stated speed if
+    stated speeds are ``known`` to be more accurate and agree with its places. It is unknown which
+    of both is meant where they do not quite agree, as on lanes that a net draws longer than it
+    states, or where single stated speeds are impossible, as for vehicles moved by hand in a
+    simulator.
     """
     present = ~np.isnan(poses.x)
     window = _Window.around(present, max(1.0, smoothing_s / 2 / step_s))
@@ -87,12 +88,12 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     duration = window.gained(columns)
     seconds = np.where(duration > 0, duration, np.nan) * step_s
     vx, vy = window.gained(poses.x) / seconds, window.gained(poses.y) / seconds
-    # A single moment has no displacement: there the stated speed counts
+    # A single state has no displacement: there the stated speed counts
     cos, sin, stated = np.cos(poses.heading), np.sin(poses.heading), poses.stated
     single = present & (duration == 0)
     vx, vy = np.where(single, stated * cos, vx), np.where(single, stated * sin, vy)
     speed = np.hypot(vx, vy)
-    # A vehicle moves along its heading: a simulated change of lanes in one step is no speed
+    # A vehicle moves along its heading: a simulated change of lanes in one step is not speed
     forward = vx * cos + vy * sin
     along = np.abs(forward)
     steers = poses.steers & (
@@ -108,14 +109,14 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         contradicts = np.where(alike, differ, 0.0)
         just_then = np.where(alike[:, None], np.abs(speed - window.mean(stated)), 0.0)
     else:
-        # A middle cuts corners: it is slower there than the front, of which files state speeds
+        # The middle cuts corners: it is slower there than the front, whose speed files state
         turns = np.hypot(window.gained(cos), window.gained(sin)) > _TURNS
         straight = np.where(turns & ~turns.all(axis=1, keepdims=True), np.nan, stated)
         since = _since_before(poses, speed, step_s)
         (differ, told), (differ_since, _) = (_differ(x, straight) for x in (speed, since))
         differ = np.minimum(differ, differ_since)
         own = poses.steers & (differ <= np.maximum(_AGREES * told, _STANDS_MPS))
-        # Stated speeds do not say which way
+        # Stated speeds have no direction
         way = np.where(forward < 0, -stated, stated)
         vx, vy = np.where(own[:, None], (way * cos, way * sin), (vx, vy))
         apart = np.where(_denied(poses, step_s), np.abs(stated - speed), 0.0)
@@ -127,7 +128,7 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         is_scaled &= drawn > np.maximum(_AGREES * stated, _STANDS_MPS)
         scale_error = np.where(is_scaled, drawn / np.where(is_scaled, speed, 1.0), 0.0)
         speed = np.where(own[:, None], stated, speed)
-    # At a track's ends the mean is of the time beside the state
+    # At a track's ends the mean is over a time beside the state
     begin, end = window.of(columns)
     middle = (begin + end) / 2
     beside = np.abs(middle - columns) * step_s
@@ -136,9 +137,9 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     gained = window.gained(speed) / apart
     error = known.speed_mps / np.where(single, 1.0, seconds)
     error += zero_if_nan(np.abs(gained) * beside)
-    # What contradicts itself is known no better
+    # Motion that contradicts itself has a larger error
     error = np.maximum(error + contradicts[:, None], known.joint(error, zero_if_nan(just_then)))
-    # A slip is anywhere in the time over which it shows
+    # A slip may be anywhere in the time over which it shows
     steps = ceil(_SLIP_S / step_s - _HAIR)
     slips = np.maximum(_slips(poses, steps, step_s), _seams(poses, step_s))
     slips = np.where(poses.steers[:, None], slips, 0.0)
@@ -161,7 +162,7 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
 
 
 def _since_before(poses: Poses, otherwise: NDArray[float64], step_s: float) -> NDArray[float64]:
-    """Mean speeds since the step before, which a simulator may state; otherwise where it begins."""
+    """Mean speeds since the step before, which simulators may state; else ``otherwise``."""
     ways = np.hypot(np.diff(poses.x, axis=1), np.diff(poses.y, axis=1)) / step_s
     since: NDArray[float64] = otherwise.copy()
     since[:, 1:] = np.where(np.isnan(ways), since[:, 1:], ways)
@@ -169,7 +170,7 @@ def _since_before(poses: Poses, otherwise: NDArray[float64], step_s: float) -> N
 
 
 def _denied(poses: Poses, step_s: float) -> NDArray[bool_]:
-    """Where neither the way to a state nor that from it could be driven at its stated speed."""
+    """Mask of states whose stated speed fits neither the way to them nor the way from them."""
     ways = np.hypot(np.diff(poses.x, axis=1), np.diff(poses.y, axis=1)) / step_s
     ends = np.full((len(ways), 1), np.nan)
     both = np.concatenate((ends, ways), axis=1), np.concatenate((ways, ends), axis=1)
@@ -179,16 +180,16 @@ def _denied(poses: Poses, step_s: float) -> NDArray[bool_]:
 
 
 def _slips(poses: Poses, steps: int, step_s: float) -> NDArray[float64]:
-    """How far (m) tracks jump along their heading, where they do: 0 where a vehicle could drive so.
+    """How far (m) tracks jump along their heading; 0 where a vehicle could drive like that.
 
-    By the second difference of places over ``_SLIP_S``, where tyres would not hold.
+    From the second difference of places over ``_SLIP_S``, where tyres would not hold.
     """
     jumps = np.abs(_bends(poses, steps))
     return np.where(jumps > _GRIP_MPS2 * (steps * step_s) ** 2, jumps, 0.0)
 
 
 def _seams(poses: Poses, step_s: float) -> NDArray[float64]:
-    """How far (m) tracks are stretched or pressed at seams, between where that begins and ends."""
+    """How far (m) tracks are stretched or compressed at seams, from their begin to their end."""
     steps = ceil(_SEAM_S / step_s - _HAIR)
     bends, longest = _bends(poses, steps), round(_SEAM_LASTS_S / step_s)
     least = _GAINS_MPS2 * (steps * step_s) ** 2
@@ -206,7 +207,7 @@ def _seams(poses: Poses, step_s: float) -> NDArray[float64]:
                 if not pairs:
                     break
                 bend, _, begin, end = max(pairs)
-                # So much farther within the time over which it shows, or as long as it lasts
+                # This much farther within the time over which it shows, or within its duration
                 stretched = bend * max(end - begin, steps) / steps
                 found[row, begin : end + 1] = np.maximum(found[row, begin : end + 1], stretched)
                 begins = begins[abs(begins - begin) > longest]
@@ -214,7 +215,7 @@ def _seams(poses: Poses, step_s: float) -> NDArray[float64]:
 
 
 def _bends(poses: Poses, steps: int) -> NDArray[float64]:
-    """The second difference (m) of places along the heading, over so many steps each way."""
+    """The second difference (m) of places along the heading, over ``steps`` steps each way."""
     bends = np.zeros(poses.x.shape)
     if poses.x.shape[1] > 2 * steps:
         (x, y), inner = (
@@ -229,7 +230,7 @@ def _bends(poses: Poses, steps: int) -> NDArray[float64]:
 
 
 def _most_around(values: NDArray[float64], reach: int) -> NDArray[float64]:
-    """The greatest value of each row up to so many columns away."""
+    """The greatest value of each row up to ``reach`` columns away."""
     padded = np.pad(values, ((0, 0), (reach, reach)))
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=1)
     most: NDArray[float64] = windows.max(axis=2)
@@ -239,9 +240,9 @@ def _most_around(values: NDArray[float64], reach: int) -> NDArray[float64]:
 def _differ(
     speed: NDArray[float64], stated: NDArray[float64]
 ) -> tuple[NDArray[float64], NDArray[float64]]:
-    """By how much participants' mean speeds from places and stated ones differ; the latter.
+    """By how much participants' mean speeds from places and mean stated ones differ; the latter.
 
-    Where there are stated ones.
+    Only over steps with a stated speed.
     """
     is_stated = ~np.isnan(stated)
     count = np.maximum(is_stated.sum(axis=1), 1)
@@ -251,9 +252,10 @@ def _differ(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Window:
-    """Unbroken windows around moments: the columns of their ends, and of those a step farther in.
+    """Unbroken windows around states: the columns of their ends, and those one step farther in.
 
-    ``part`` is how far the ends are from the latter, as a part of a step; with 1 they are columns.
+    ``part`` is how far the ends are from the inner columns, as a part of a step; with 1 the ends
+    are columns themselves.
     """
 
     rows: NDArray[intp]
@@ -264,7 +266,7 @@ class _Window:
 
     @staticmethod
     def around(present: NDArray[bool_], steps: float) -> _Window:
-        """Up to so many steps each way, as far as somebody is there."""
+        """Windows of up to ``steps`` steps each way, as far as the participant is present."""
         reach = ceil(steps - _HAIR)
         part = steps - (reach - 1)
         whole = part > 1.0 - _HAIR
@@ -294,9 +296,9 @@ class _Window:
         )
 
     def mean(self, values: NDArray[float64]) -> NDArray[float64]:
-        """The mean of values between both ends, which are on straight lines between columns.
+        """The mean of values between both ends, interpolated linearly between columns.
 
-        A window of no length has the value there.
+        A window without length has its own value.
         """
         whole = np.zeros(values.shape)
         half = zero_if_nan((values[:, 1:] + values[:, :-1]) / 2)
@@ -308,6 +310,6 @@ class _Window:
         return np.where(there, gained / np.where(there, length, 1.0), values)
 
     def gained(self, values: NDArray[float64]) -> NDArray[float64]:
-        """By how much values change from one end to the other."""
+        """The change of values from one end to the other."""
         begin, end = self.of(values)
         return end - begin

@@ -33,14 +33,14 @@ Flags: TypeAlias = NDArray[bool_]
 
 
 class ObjectTypes:
-    """The object types of a recording's participants, as flags that are made once."""
+    """The object types of a recording's participants, as masks that are built once."""
 
     def __init__(self, participants: Iterable[Participant]) -> None:
         self._types = [body.object_types for body in participants]
         self._flags: dict[str, Flags] = {}
 
     def of(self, name: str) -> Flags:
-        """Flags of all participants that are of a type or its subtypes."""
+        """Mask of the participants that have a type or one of its subtypes."""
         if name not in self._flags:
             self._flags[name] = np.array([name in types for types in self._types], dtype=bool)
         return self._flags[name]
@@ -57,13 +57,15 @@ class Bodies:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Tracks:
-    """Arrays of participants by steps, NaN where one is not present.
+    """Arrays of participants by steps, NaN where a participant is absent.
 
-    ``rows`` are the participants' among all of the recording, which ``types`` is about.
-    ``x`` and ``y`` are centres (m), ``heading`` is in rad. Velocities (m/s) and accelerations
-    (m/s²) are those of ``motion_of``, with their errors.
-    ``on_lane`` and ``on_crosswalk``: is the middle of a vulnerable road user on a lane, of any
-    direction, or on a pedestrian crossing of the map? Who walks on the pavement is on no lane.
+    ``rows`` are the participants' rows in the whole recording, as in ``types``. ``x`` and ``y`` are
+    centres (m), ``heading`` is in rad. Velocities (m/s) and accelerations (m/s²) are those of
+    ``motion_of``, with their errors.
+
+    ``on_lane`` and ``on_crosswalk``: whether the middle of a vulnerable road user is on a lane, of
+    any direction, or on a pedestrian crossing of the map. Pedestrians on the pavement are on no
+    lane.
     """
 
     participants: tuple[Participant, ...]
@@ -86,12 +88,12 @@ class Tracks:
 
     @cached_property
     def bodies(self) -> Bodies:
-        """Outlines of all participants; those that stand for good have one, in the first column."""
+        """The outlines of all participants; a single one, in the first column, if standing."""
         return _bodies(self, repeated=False)
 
     @cached_property
     def repeated_bodies(self) -> Bodies:
-        """The same, with one in each column."""
+        """The outlines of all participants, one in each column."""
         return _bodies(self, repeated=True)
 
     @cached_property
@@ -102,10 +104,10 @@ class Tracks:
 
     @cached_property
     def reaches(self) -> Floats:
-        """How far (m) from each participant's centre a corner's foot on a line may be for its sake.
+        """Bound (m) on how far from its centre a participant's corners may have feet on a line.
 
-        That is as far as the corners are from it and from each other, whatever the line; 0 for who
-        is nowhere.
+        Covers the corners' distances from the centre and from each other, whatever the line; 0 for
+        participants without a place.
         """
         bodies, found = self.bodies, np.zeros(len(self.participants))
         at = bodies.rows, bodies.columns
@@ -120,7 +122,7 @@ class Tracks:
     def widths(self) -> Floats:
         """The widths (m) of bodies across their headings, 0 where unknown.
 
-        Of those that stand for good in the first column only.
+        Bodies that stand for good have one in the first column only.
         """
         return self._sizes(lambda x, y, cos, sin: y * cos - x * sin)
 
@@ -132,10 +134,7 @@ class Tracks:
         return longest
 
     def _sizes(self, along: Callable[[Floats, Floats, Floats, Floats], Floats]) -> Floats:
-        """How long bodies are along a line, which each corner's place and heading tell.
-
-        Of the heading these are the cosine and the sine.
-        """
+        """The sizes of bodies along an axis, from x, y and their heading's cosine and sine."""
         bodies, sizes = self.bodies, np.zeros(self.present.shape)
         outlines, way = bodies.outlines, self.heading[bodies.rows, bodies.columns]
         x, y = outlines.corners.T
@@ -151,9 +150,9 @@ class Tracks:
         return _PartOfTracks(self, rows, columns)
 
     def where(self, flags: Flags) -> Tracks:
-        """The same, as if participants were there where it is flagged only.
+        """The tracks with participants present only where the mask holds.
 
-        Those that stand for good are there all the time.
+        Participants that stand for good stay present all the time.
         """
         same = copy(self)
         for name in _OF_BODIES.intersection(same.__dict__):
@@ -164,15 +163,15 @@ class Tracks:
     def seen_as(
         self, participants: tuple[Participant, ...], types: ObjectTypes, rows: NDArray[intp]
     ) -> Tracks:
-        """The same tracks, as those of others, with rows of their own among the ``types``."""
+        """The same tracks under other participants, with their rows among ``types``."""
         same = copy(self)
         same.__dict__.update(participants=participants, types=types, rows=rows)
         return same
 
     def at(self, rows: NDArray[intp], columns: NDArray[intp], members: NDArray[intp]) -> Tracks:
-        """What arrays have at places, of rows and columns in one shape; who are the ``members``.
+        """The values at rows and columns of the same shape; ``members`` are the participants' rows.
 
-        The columns are any, so that ``first`` says nothing of them.
+        The columns need not be contiguous, so ``first`` does not describe them.
         """
         return Tracks(
             participants=tuple(self.participants[row] for row in members.tolist()),
@@ -183,15 +182,15 @@ class Tracks:
         )
 
     def end_to_end(self, laid: LaidOut) -> Tracks:
-        """Some participants in several ranges of columns."""
+        """The tracks of some participants in several ranges of columns, end to end."""
         return _LaidTracks(self, laid.rows, laid)
 
     def of_type(self, name: str) -> Flags:
-        """Flags of participants of an object type or its subtypes."""
+        """Mask of participants of an object type or its subtypes."""
         return self.types.of(name)[self.rows]
 
     def and_one(self, other: Tracks, row: int, types: ObjectTypes) -> Tracks:
-        """The tracks of all of a recording, and behind them a row of others in the same steps.
+        """The tracks of a whole recording, followed by one row of ``other`` in the same steps.
 
         ``types`` are those of all of them.
         """
@@ -211,13 +210,13 @@ class Tracks:
 _ARRAYS = tuple(x.name for x in fields(Tracks))[4:]
 
 _OF_BODIES = frozenset({"bodies", "repeated_bodies", "reaches", "widths"})
-"""What is known of outlines once it was asked for."""
+"""Cached values that depend on outlines."""
 
 
 class _LaidTracks(Tracks):
-    """Some rows of a ``whole``, with each array laid out when it is first asked for.
+    """Some rows of a ``whole``, with each array laid out on first use.
 
-    Most of them never are.
+    Most arrays are never used.
     """
 
     def __init__(
@@ -244,7 +243,7 @@ class _LaidTracks(Tracks):
 
 
 class _PartOfTracks(_LaidTracks):
-    """Some rows and a range of columns of a ``whole``, whose own parts are parts of that."""
+    """Some rows and a range of columns of a ``whole``; parts of it refer to that whole directly."""
 
     def __init__(self, whole: Tracks, rows: NDArray[intp], columns: slice) -> None:
         super().__init__(whole, rows, itemgetter((rows, columns)))
@@ -277,7 +276,7 @@ def _bodies(tracks: Tracks, *, repeated: bool) -> Bodies:
 def _outlines_of(
     body: Participant, first: int, there: tuple[Flags, int], *, repeated: bool
 ) -> tuple[NDArray[intp], Sequence[Points] | Floats]:
-    """The columns of a participant's outlines, and these; ``there`` in so many of the columns."""
+    """The columns and outlines of a participant; ``there`` is its presence mask and its count."""
     present, count = there
     if body.standing:
         columns = np.arange(len(present) if repeated else 1)
@@ -302,10 +301,11 @@ def tracks_of(
     span: tuple[int, int] | None = None,
     tolerances: Tolerances | None = None,
 ) -> Tracks:
-    """The tracks of the participants of a recording that occupy something.
+    """The tracks of all participants of a recording that have outlines.
 
-    Or of others than it has. ``span`` are the first and the last step of the arrays, if they are to
-    have more than are told; ``tolerances`` are the recording's, if they are known.
+    ``participants`` may replace the recording's. ``span`` is the first and last step of the arrays,
+    if these should cover more than the tracks; ``tolerances`` are the recording's, if already
+    known.
     """
     members = recording.participants if participants is None else participants
     bodies = tuple(body for body in members if body.outlines)
@@ -339,7 +339,7 @@ def tracks_of(
     crosswalks = (lanelet for lanelet in lanelets if "crosswalk" in lanelet.types)
     on_crosswalk = _inside(users, x, y, crosswalks)
     on_lane = _inside(users, x, y, filter(is_lane, lanelets))
-    # Where maps let the ways of those who turn lie over corners of the pavement
+    # Where maps let the ways of turning vehicles overlap corners of the pavement
     walkers = users & on_lane & ~on_crosswalk & types.of("pedestrian")[:, None]
     on_lane &= ~_inside(walkers, x, y, (x for x in lanelets if "sidewalk" in x.types))
     return Tracks(
@@ -367,7 +367,7 @@ def _inside(flags: Flags, x: Floats, y: Floats, lanelets: Iterable[Lanelet]) -> 
 
 
 def _poses(body: Participant) -> tuple[NDArray[intp], Floats]:
-    """The steps of a participant, and its place, heading and stated speed in each, a row."""
+    """The steps of a participant, and a row with its place, heading and stated speed for each."""
     on_track = outlines_on_track(body)
     if on_track is not None:
         return on_track.track.steps, on_track.track.rows[:, :4]

@@ -1,10 +1,10 @@
-"""The road under a matched path: lanelets end to end, of which ego may have left lanes.
+"""The road under a matched path: lanelets end to end, whose lanes ego may have left.
 
-A change of lanes does not leave the road, so of each row of lanes one lanelet is chosen: those that
-lead to each other, where ego was fewest lanes away. Where lanes become one it is that by which ego
-came: from another one ego would seem to change lanes there. Where no such lanelets lead all the
-way, as after a turn into one lane and before a turn from another, the road changes lanes itself, in
-a lanelet as long as possible.
+A change of lanes does not leave the road, so one lanelet is chosen from each row of lanes: those
+that lead to each other and from which ego was fewest lanes away. Where lanes merge, the one in
+which ego came is chosen: otherwise ego would seem to change lanes there. Where no such lanelets
+lead all the way, as after a turn into one lane and before a turn from another, the road itself
+changes lanes, in a lanelet as long as possible.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ _SHIFT_COST, _SHORT_COST, _OTHER_WAY_COST = 1e6, 1e5, 1e4
 class RouteStretch:
     """The states of a drive along one road, and its lanelets, each beside or after the one before.
 
-    ``pieces``: for each of the ``columns`` the number of the row of lanes there. ``against``: do
-    all lanes lead the other way?
+    ``pieces``: for each of the ``columns`` the number of the row of lanes there. ``against``:
+    whether all lanes lead the other way.
     """
 
     columns: tuple[int, ...]
@@ -47,10 +47,10 @@ class RouteStretch:
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """Lanes beside each other, and how long each is (m).
+    """Lanes beside each other, with their lengths (m).
 
-    ``away`` is how many lanes the states are away from each, in sum; ``entered`` the one in which
-    ego's way comes there, ``left`` the one from which it goes on.
+    ``away`` is, for each lane, the sum over states of how many lanes ego is away from it;
+    ``entered`` is the lane in which ego comes there, ``left`` the one from which it goes on.
     """
 
     lanes: tuple[str, ...]
@@ -62,7 +62,7 @@ class _Row:
 
 @dataclass(frozen=True, slots=True)
 class _Choice:
-    """The cheapest choice of lanelets up to a row's exit."""
+    """The cheapest choice of lanelets up to the exit of a row."""
 
     cost: float
     lanelets: tuple[str, ...]
@@ -71,9 +71,9 @@ class _Choice:
 def pieces_of(
     recording: Recording, route: Sequence[str], beside: Callable[[str, str], bool]
 ) -> tuple[tuple[str, ...], ...]:
-    """A route's lanelets by row: one, or those from which and to which it changes lanes.
+    """A route's lanelets by row: a single one, or those between which it changes lanes.
 
-    ``beside``: is a lane beside another one?
+    ``beside`` tests whether a lane is beside another one.
     """
     pieces: list[tuple[str, ...]] = []
     for lanelet in route:
@@ -89,14 +89,14 @@ def pieces_of(
 def route_stretches(
     recording: Recording, matched: MatchedStretch, graph: LaneletGraph
 ) -> Iterator[RouteStretch]:
-    """The roads of a matched stretch, which is one as far as the map is consistent."""
+    """The roads of a matched stretch: a single one if the map is consistent."""
     pieces = pieces_of(recording, matched.chain, graph.beside)
     piece_of = [k for k, piece in enumerate(pieces) for _ in piece]
     at = matched.places
     if len(pieces) < len(piece_of):
         at = tuple([piece_of[place] for place in at])
     if len(set(at)) == len(pieces) and _leads_on(recording, pieces):
-        # Who is in each of them, and changes no lanes, has driven nowhere else
+        # If ego was in each piece and changed no lanes, it drove nowhere else
         yield RouteStretch(matched.columns, matched.chain, at)
         return
     counts: Counter[tuple[int, str]] = Counter()
@@ -124,7 +124,7 @@ def route_stretches(
 
 
 def _leads_on(recording: Recording, pieces: Sequence[Sequence[str]]) -> bool:
-    """True if no piece changes lanes, and each leads to the next one."""
+    """Whether no piece changes lanes and each leads to the next."""
     if any(len(piece) > 1 for piece in pieces):
         return False
     lanelets = recording.lanelets
@@ -162,14 +162,14 @@ def _least(best: dict[str, _Choice]) -> _Choice:
 def _entry(
     recording: Recording, best: dict[str, _Choice], lane: str, rows: Sequence[_Row]
 ) -> _Choice | None:
-    """The cheapest way into a lane of the last of one or two rows, from the one before if any."""
+    """The cheapest entry into a lane of the last row, from the row before if there is one."""
     if len(rows) == 1:
         return _Choice(0.0, ())
     before, row = rows
     leading = []
     for exit_, choice in best.items():
         if lane in recording.lanelets[exit_].successors:
-            # It joins ego's way there, which comes out of another one
+            # Joins the lane in which ego came, but from another lane than ego's
             other_way = lane == row.entered and exit_ != before.left
             cost = choice.cost + _OTHER_WAY_COST * other_way
             leading.append(_Choice(cost, choice.lanelets))

@@ -1,4 +1,4 @@
-"""The lanelets that vehicles may be on, moment by moment, and how well each explains them."""
+"""The lanelets that vehicles may be on, state by state, and how well each explains them."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ from rulec.scenario.recorded.route import directions_at
 from rulec.trace.plain_arrays import are_new
 
 NEAR_M = 3.0
-"""The farthest that a vehicle may be beside a lanelet that it is matched to."""
+"""The greatest distance (m) of a vehicle from a lanelet that it is matched to."""
 
 _AROUND_M = NEAR_M + 0.1
-"""Who is not even so near to the rectangle around a lanelet is not near it."""
+"""Places farther (m) than this from the rectangle around a lanelet are not near it."""
 
 _SIDEWAYS_M = NEAR_M - 0.1
-"""Who is on a lanelet when so far off to a side is near it."""
+"""A place that is on a lanelet when moved sideways by this (m) is near it."""
 
 _HAIR_RAD, _HAIR_M = 1e-6, 1e-6
 _FEW_CORNERS = 6
 
 SIGMA_M = 1.0
 SIGMA_RAD = radians(20)
-"""Standard deviations of vehicles about the middle and the direction of their lanelet."""
+"""Standard deviations of vehicles from the middle and the direction of their lanelet."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class LaneCandidates:
     """The lanelets that states may be on.
 
-    States by participant (``rows``) and then time (``columns``); state k has those from
-    ``first[k]`` to before ``first[k + 1]``, in the order of the file. Each is a number in ``names``
-    with the ``costs`` of its distance, and the place ``along`` it (m).
+    States are ordered by participant (``rows``), then time (``columns``). State k has the
+    candidates from ``first[k]`` to before ``first[k + 1]``, in the order of the file. Each has its
+    index in ``names``, its ``costs`` of distance and angle, and the place ``along`` it (m).
     """
 
     names: tuple[str, ...]
@@ -56,7 +56,7 @@ class LaneCandidates:
 
     @cached_property
     def counts(self) -> NDArray[intp]:
-        """How many each state has, at least one."""
+        """The number of candidates of each state, at least one."""
         return self.first[1:] - self.first[:-1]
 
 
@@ -123,14 +123,14 @@ def candidates(graph: LaneletGraph, tracks: Tracks) -> LaneCandidates:
 
 
 def _around(bounds: Floats, x: Floats, y: Floats) -> NDArray[intp]:
-    """The rectangles that the one around some places meets; there is a place at least."""
+    """The numbers of the rectangles that meet the one around the places (at least one)."""
     left, low, right, high = bounds.T
     meets: Flags = (left <= x.max()) & (right >= x.min()) & (low <= y.max()) & (high >= y.min())
     return meets.nonzero()[0]
 
 
 def leading_on(line: Points, headings: Floats) -> Flags:
-    """Flags of headings (rad), of all that are less than a right angle off a line somewhere."""
+    """Mask of headings (rad), including all less than a right angle off some part of a line."""
     steps = line[1:] - line[:-1]
     directions = np.arctan2(steps[:, 1], steps[:, 0])
     turned = turn(directions[0], directions)
@@ -141,9 +141,9 @@ def leading_on(line: Points, headings: Floats) -> Flags:
 
 
 def _beside(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> Flags:
-    """Flags of places hardly farther to a lanelet's sides than its area; whoever is near is there.
+    """Mask of places hardly farther to the sides than a lanelet's area; includes all near ones.
 
-    Of those in the rectangle around one that lies aslant most are not.
+    Excludes most of the places in the rectangle around a slanting lanelet.
     """
     corners = shapely.get_coordinates(area)
     (ux, uy), (x0, y0) = lanelet.centre[-1] - lanelet.centre[0], lanelet.centre[0]
@@ -157,9 +157,9 @@ def _beside(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> Fl
 
 
 def are_near(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> Flags:
-    """Flags of places within ``NEAR_M`` of a lanelet's area.
+    """Mask of places within ``NEAR_M`` of a lanelet's area.
 
-    Most are in it, or are so if they move a little sideways, which takes a tenth as long to tell.
+    Most are in it, or would be if moved a little sideways, which takes a tenth of the time to test.
     """
     shapely.prepare(area)
     near: Flags = shapely.intersects_xy(area, x, y)
@@ -177,17 +177,17 @@ def are_near(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> F
 
 
 def _numbers(groups: Iterable[tuple[int, NDArray[intp]]]) -> NDArray[intp]:
-    """The number of each group, as often as it has members."""
+    """The number of each group, repeated once per member."""
     numbers, members = zip(*groups, strict=True)
     return np.array(numbers, dtype=intp).repeat([len(own) for own in members])
 
 
 def feet_on(lines: Sequence[tuple[Points, Points]]) -> tuple[Floats, Floats]:
-    """How far (m) along a line, and from it, the nearest of its points to each place is.
+    """The distances (m) along a line of its nearest points to places, and the places' from them.
 
-    Each line comes with the places that are asked about; their answers are end to end. Of points as
-    near the first one counts. Shapely's ``line_locate_point`` and ``distance`` say the same, to the
-    last digit, but try each piece of a line for each place.
+    Each line comes with its places; results are laid end to end. Of equally near points the first
+    one counts. Shapely's ``line_locate_point`` and ``distance`` give the same to the last digit,
+    but try each piece of a line for each place.
     """
     starts = np.concatenate([line[:-1] for line, _ in lines])
     ends = np.concatenate([line[1:] for line, _ in lines])
@@ -213,7 +213,7 @@ def feet_on(lines: Sequence[tuple[Points, Points]]) -> tuple[Floats, Floats]:
     with np.errstate(divide="ignore", invalid="ignore"):
         part = (dx * ux + dy * uy) / square
         off = np.abs((dx * uy - dy * ux) / square) * lengths[piece]
-    # NaN, of a piece without length, is before it
+    # NaN, from a piece without length, counts as before it
     is_before, is_beyond = ~(part > 0), part >= 1
     off[is_before] = np.sqrt(dx[is_before] ** 2 + dy[is_before] ** 2)
     dx, dy = places.T[:, number[is_beyond]] - ends.T[:, piece[is_beyond]]
@@ -227,9 +227,9 @@ def feet_on(lines: Sequence[tuple[Points, Points]]) -> tuple[Floats, Floats]:
 
 
 def _pieces_near(line: Points, places: Points) -> tuple[NDArray[intp], NDArray[intp]]:
-    """The first piece of a line that may be the nearest to each place, and how many there are.
+    """The first piece of a line that may be nearest to each place, and the number of such pieces.
 
-    Pieces count that come as near as some corner does, seen along the chord.
+    Includes pieces that, seen along the chord, come as near as some corner does.
     """
     if len(line) <= _FEW_CORNERS:
         return np.zeros(len(places), dtype=intp), np.full(len(places), len(line) - 1)

@@ -1,7 +1,7 @@
 """The ways from lanelet to lanelet: successors, and lanes beside that lead the same way.
 
-Lanes whose borders run together for a while, as where a ramp joins, are beside each other there
-even where the map does not name them neighbours; to change to such a one costs two changes.
+Lanes whose borders coincide for a while, as where a ramp joins, are beside each other there even if
+the map does not name them neighbours; changing to such a lane counts as two changes.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from rulec.recordings.recording import Lanelet, Recording, is_lane
 from rulec.scenario.recorded.route import lanelet_area, lanelet_length, lanes_beside
 
 MOST_HOPS = 4
-"""The number of lanelets that a vehicle passes at most between two of its states."""
+"""The most lanelets that a vehicle passes between two of its states."""
 
 _LANE_M = 4.0
 _SHORTEST_M = 5.0
@@ -29,9 +29,9 @@ _UNNAMED_CHANGES = 2
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """A way from a lanelet's start to another's: its lanelets but the first, its length (m).
+    """A way from a lanelet's start to another's: its lanelets except the first, its length (m).
 
-    ``changes`` is the number of lanes changed, ``sideways`` about how far that is (m).
+    ``changes`` is the number of lane changes, ``sideways`` roughly how far they lead (m).
     """
 
     lanelets: tuple[str, ...]
@@ -40,7 +40,7 @@ class Way:
 
     @property
     def sideways(self) -> float:
-        """About how far the way leads sideways (m)."""
+        """Roughly how far the way leads sideways (m)."""
         return self.changes * _LANE_M
 
 
@@ -70,18 +70,18 @@ class LaneletGraph:
 
     @cached_property
     def bounds(self) -> NDArray[np.float64]:
-        """For each lane the least x and y (m) of its area, and the greatest."""
+        """The bounding box of each lane's area: least x and y (m), greatest x and y."""
         found: NDArray[np.float64] = shapely.bounds(np.array(self.areas, dtype=object))
         return found
 
     def length(self, start: str) -> float:
-        """The length (m) of a lane's middle."""
+        """The length (m) of a lane's middle line."""
         if start not in self._lengths:
             self._lengths[start] = lanelet_length(self._recording.lanelets[start])
         return self._lengths[start]
 
     def beside(self, start: str, end: str) -> bool:
-        """Is a lane beside another one, in its row or along a part of its border?"""
+        """Whether a lane is beside another one, in its row or along a part of its border."""
         return end in self.row(start) or end in self._bordering[start]
 
     def row(self, start: str) -> tuple[str, ...]:
@@ -94,7 +94,7 @@ class LaneletGraph:
         return self._rows[start]
 
     def way(self, start: str, end: str) -> Way | None:
-        """The way with the fewest changes, then lanelets; None if there is no short one."""
+        """The way with the fewest changes, then lanelets; None if no short way exists."""
         if start not in self._ways:
             self._ways[start] = self._ways_from(start)
         return self._ways[start].get(end)

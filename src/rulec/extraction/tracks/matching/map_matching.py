@@ -1,16 +1,17 @@
 """Map matching: the lanelets that vehicles drove, by a hidden Markov model.
 
 Newson, Krumm, "Hidden Markov map matching through noise and sparseness" (ACM SIGSPATIAL GIS 2009):
-hidden states are the lanelets near a vehicle's middle, and of all paths the likeliest is found by
+hidden states are the lanelets near a vehicle's middle, and the likeliest of all paths is found by
 dynamic programming (Viterbi, "Error bounds for convolutional codes", 1967), so that where lanelets
 overlap the whole drive decides. Costs are negative logarithms of likelihoods. *Emission*: normal in
-the distance from a lanelet's middle, as there, and in the angle to it. Recorders are a thousand
-times denser than their samples, which they thin out to one per two standard deviations; here a
-state counts by how far the vehicle has moved, the line integral of Oran and Jaillet, "An HMM-based
-map matching method with cumulative proximity-weight formulation" (ICCVE 2013), so that who stands
-adds nothing. *Transition*: exponential in the difference of the way along lanelets and the way
-moved; to a successor, or with a cost a lane to one beside. Where no path leads on, as when a
-recording jumps or somebody leaves a lanelet sideways, the drive breaks for a high cost.
+the distance from a lanelet's middle line, as in the paper, and in the angle to it. Recordings are a
+thousand times denser than the paper's samples, which it thins out to one per two standard
+deviations; here a state is weighted by how far the vehicle has moved, the line integral of Oran and
+Jaillet, "An HMM-based map matching method with cumulative proximity-weight formulation" (ICCVE
+2013), so that standing vehicles add nothing. *Transition*: exponential in the difference between
+the way along lanelets and the way moved; to a successor, or to a lane beside at a cost per lane.
+Where no path leads on, as when a recording jumps or a vehicle leaves a lanelet sideways, the drive
+breaks at a high cost.
 """
 
 from __future__ import annotations
@@ -32,28 +33,28 @@ from rulec.recordings.recording import Recording
 from rulec.trace.plain_arrays import distinct
 
 BETA_M = 2.0
-"""The mean difference of the way along lanelets and the way moved."""
+"""The mean difference (m) between the way along lanelets and the way moved."""
 
 CHANGE_COST = 5.0
-"""The cost of each lane that is changed."""
+"""The cost of each lane change."""
 
 BREAK_COST = 50.0
-"""The cost of going on where no lanelet leads to."""
+"""The cost of going on where no lanelet leads."""
 
 _AT_ONCE = 1 << 19
-"""So many transitions are computed together."""
+"""Roughly the most transitions that are computed together."""
 
 
 FEW_TRANSITIONS = 16
-"""For fewer transitions in a step each is computed by itself."""
+"""With at most this many transitions in a step, each is computed by itself."""
 
 
 @dataclass(frozen=True, slots=True)
 class MatchedStretch:
     """Consecutive states that one path along the map explains.
 
-    In ``chain`` each lanelet succeeds the one before or lies beside it; ``places`` are the numbers
-    of those of the states in ``columns``.
+    In ``chain`` each lanelet succeeds the one before or lies beside it; ``places`` are the chain
+    indices of the states in ``columns``.
     """
 
     columns: tuple[int, ...]
@@ -72,7 +73,7 @@ class MapMatching:
 
     @cached_property
     def _paths(self) -> tuple[NDArray[intp], NDArray[bool_]]:
-        """The lane of each state, and where a stretch begins."""
+        """The lane of each state, and the mask of states that begin a stretch."""
         lane_candidates = self._candidates
         at = lane_candidates.rows, lane_candidates.columns
         places = np.array((self._tracks.x[at], self._tracks.y[at])).T
@@ -84,7 +85,7 @@ class MapMatching:
         return likeliest_paths(lane_candidates, places, begins, self._graph)
 
     def of(self, row: int) -> tuple[MatchedStretch, ...]:
-        """The stretches of a participant, parted at gaps in its recording."""
+        """The stretches of a participant, separated at gaps in its recording."""
         lanes, _ = self._paths
         starts, of_row = self._starts
         own = slice(of_row[row], of_row[row + 1])
@@ -93,7 +94,7 @@ class MapMatching:
 
     @cached_property
     def _starts(self) -> tuple[list[int], list[int]]:
-        """Where stretches begin, and the last one ends; and the numbers of each row's first one."""
+        """Where stretches begin and the last one ends; the number of each row's first one."""
         rows, (_, begins) = self._candidates.rows, self._paths
         starts = begins.nonzero()[0]
         of_row = rows[starts].searchsorted(np.arange(len(self._tracks.present) + 1))
@@ -114,7 +115,7 @@ class MapMatching:
 
     @cached_property
     def _columns_and_changes(self) -> tuple[list[int], list[int]]:
-        """The column of each state, and the states whose lane is not that of the one before."""
+        """The column of each state, and the states whose lane differs from the one before."""
         lanes, _ = self._paths
         changes = (lanes[1:] != lanes[:-1]).nonzero()[0] + 1
         return self._candidates.columns.tolist(), changes.tolist()
@@ -132,10 +133,10 @@ class MapMatching:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Transitions:
-    """What it costs to get to candidates (second axis) of states from those before (third axis).
+    """Costs of reaching candidates (second axis) of states from the candidates before (third axis).
 
-    ``off`` for the difference of ways, ``changes`` for those of lanes; ``own`` for the candidate.
-    What stands for no candidate costs infinitely much.
+    ``off`` for the difference of ways, ``changes`` for lane changes, ``own`` for the candidate
+    itself. Entries without a candidate cost infinity.
     """
 
     off: Floats
@@ -146,10 +147,10 @@ class _Transitions:
 def likeliest_paths(
     found: LaneCandidates, places: Floats, begins: NDArray[bool_], graph: LaneletGraph
 ) -> tuple[NDArray[intp], NDArray[bool_]]:
-    """The lanes of the cheapest path through each run of states, and where no way leads on.
+    """The lanes of the cheapest path through each run of states, and the mask of breaks.
 
-    ``places`` are those of the states (m), ``begins`` flags of the first ones of runs, which are
-    flagged in the answer, too.
+    ``places`` (m) are those of the states; ``begins`` is the mask of the first states of runs,
+    which are flagged in the result, too.
     """
     if not len(begins):
         return np.empty(0, dtype=intp), begins
@@ -157,11 +158,11 @@ def likeliest_paths(
     if len(starts) * width**2 <= FEW_TRANSITIONS:
         return _paths_one_by_one(found, places, begins, graph)
     lengths = np.diff(starts, append=len(begins))
-    # All runs go step by step together, the longest first: those that go on are the first ones
+    # All runs advance together step by step, the longest first: those that go on are the first rows
     longest = (-lengths).argsort(kind="stable")
     starts, lengths = starts[longest], lengths[longest]
     going = (-lengths).searchsorted(-np.arange(int(lengths[0])), "left").tolist()
-    # States and what is known of them stand in the order of steps, those of one together
+    # States are ordered by step, so that the data of one step are contiguous
     bounds = np.cumsum([0, *going]).tolist()
     parts = list(map(slice, bounds[:-1], bounds[1:]))
     states = np.concatenate([starts[:count] + step for step, count in enumerate(going)])
@@ -186,7 +187,7 @@ def likeliest_paths(
     last = np.array(bounds)[lengths - 1] + np.arange(len(starts))
     own = np.array(
         [
-            # As cheap ones by their name
+            # Equal costs are decided by name
             min((cost, found.names[found.lanes[first + k]], k) for k, cost in enumerate(costs))[2]
             for first, costs in _ends(found, states[last], reached[last])
         ]
@@ -205,7 +206,7 @@ def likeliest_paths(
 def _paths_one_by_one(
     found: LaneCandidates, places: Floats, begins: NDArray[bool_], graph: LaneletGraph
 ) -> tuple[NDArray[intp], NDArray[bool_]]:
-    """The same of few runs: in numbers, since arrays are not worth it for some of them."""
+    """``likeliest_paths`` for few runs, in plain numbers: arrays are not worth it for these."""
     starts = begins.nonzero()[0].tolist()
     to = _transitions(found, places, (~begins).nonzero()[0], graph)
     steps = iter(zip(to.off.tolist(), to.changes.tolist(), to.own.tolist(), strict=True))
@@ -221,7 +222,7 @@ def _paths_one_by_one(
             reached = costs
         own = first[end - 1]
         names = [found.names[found.lanes[own + k]] for k in range(counts[end - 1])]
-        # As cheap ones by their name
+        # Equal costs are decided by name
         _, _, chosen = min(zip(reached[: len(names)], names, range(len(names)), strict=True))
         for state in range(end - 1, start - 1, -1):
             lanes[state] = found.lanes[first[state] + chosen]
@@ -233,7 +234,7 @@ def _paths_one_by_one(
 def _cheapest(
     before: list[float], off: list[list[float]], changes: list[list[float]], own: list[float]
 ) -> tuple[list[tuple[int, bool]], list[float]]:
-    """For each candidate the one before and whether its stretch breaks there; and the costs."""
+    """For each candidate the one before and whether a stretch breaks there; and the costs."""
     ways, costs = [], []
     for place, more in enumerate(own):
         away, change = off[place], changes[place]
@@ -251,7 +252,7 @@ def _cheapest(
 def _ends(
     found: LaneCandidates, last: NDArray[intp], reached: Floats
 ) -> Iterator[tuple[int, list[float]]]:
-    """The first candidate and the costs of all of each run's last state."""
+    """For each run's last state its first candidate and the costs of all of its candidates."""
     counts = found.counts[last].tolist()
     for first, count, costs in zip(found.first[last].tolist(), counts, reached, strict=True):
         yield first, costs[:count].tolist()
@@ -271,7 +272,7 @@ def _steps(
     size = max(1, _AT_ONCE // int(found.counts.max()) ** 2)
     step = 1
     while step < len(bounds) - 1:
-        # Whole steps, one at least
+        # Whole steps, at least one
         begin = bounds[step]
         last = max(step + 1, bisect_right(bounds, begin + size) - 1)
         to = _transitions(found, places, states[begin : bounds[last]], graph)
@@ -282,7 +283,7 @@ def _steps(
 
 
 def _padded(found: LaneCandidates, states: NDArray[intp], values: Floats) -> Floats:
-    """The values of all candidates of some states, a row each."""
+    """The values of all candidates of some states, one row per state, padded with infinity."""
     number, counts = np.arange(int(found.counts.max())), found.counts[states][:, None]
     at = found.first[states][:, None] + np.minimum(number, counts - 1)
     return np.where(number < counts, values[at], np.inf)
@@ -291,7 +292,7 @@ def _padded(found: LaneCandidates, states: NDArray[intp], values: Floats) -> Flo
 def _transitions(
     found: LaneCandidates, places: Floats, states: NDArray[intp], graph: LaneletGraph
 ) -> _Transitions:
-    # The other way of hypot, numpy's, rounds otherwise
+    # Numpy's hypot rounds differently
     steps = (places[states] - places[states - 1]).T.tolist()
     moved = np.array(list(map(hypot, *steps)))
     weight = np.zeros(len(found.rows))
@@ -317,7 +318,7 @@ def _transitions(
     ahead = length + found.along[to] - found.along[since]
     off = np.full((*own.shape, own.shape[1]), np.inf)
     changes = np.zeros(off.shape)
-    # Who changes lanes moves sideways, too
+    # A vehicle that changes lanes also moves sideways
     off[row, end, start] = np.maximum(0.0, np.abs(ahead - moved[row]) - sideways) / BETA_M
     changes[row, end, start] = (CHANGE_COST * changed)[which]
     return _Transitions(off, changes, own)

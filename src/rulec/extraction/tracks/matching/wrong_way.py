@@ -1,7 +1,7 @@
 """The stretches that vehicles drove against the traffic, where no lane leads their way.
 
-Only where a carriageway is surely one-way does that say anything about the driver: of a single
-lane maps often have one direction alone.
+This says something about the driver only where a carriageway is surely one-way: of a road with a
+single lane maps often contain only one direction.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from rulec.scenario.recorded.route import directions_beside, lanelet_area
 from rulec.trace.plain_arrays import are_new
 
 LEAST_S, LEAST_M = 1.0, 10.0
-"""Who drives against the traffic does so for as long and as far."""
+"""Driving against the traffic lasts at least this long (s) and leads at least this far (m)."""
 
 _SLOWEST_MPS = 1.0
 _AGAINST_RAD = np.radians(135.0)
 _GAP_M = 0.3
-"""Between lanelets of a map there are gaps of up to so much."""
+"""Largest gap (m) between adjacent lanelets of a map."""
 
 _RESERVED = frozenset({"busLane", "bicycleLane", "rail"})
-"""Lanes that some may use the other way, as signs say that maps do not have."""
+"""Lanes that some traffic may use the other way, by signs that maps do not contain."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Against:
-    """States, by participant (``rows``) and then time, and the lanelets that lead against each."""
+    """States, ordered by participant (``rows``), then time, and the lanelets against each."""
 
     rows: NDArray[intp]
     columns: NDArray[intp]
@@ -50,11 +50,11 @@ def wrong_way_stretches(
     matched: NDArray[intp],
     is_one_way: Callable[[Lanelet], bool],
 ) -> dict[int, list[RouteStretch]]:
-    """The stretches on which participants, who are rows, drove against all lanes.
+    """The stretches on which participants drove against all lanes, by row.
 
-    ``matched`` are the numbers of the lanelets that lead somebody's way, by participant and column,
-    -1 for none; ``is_one_way``: is a lanelet's carriageway surely one-way? The pieces of a stretch
-    are in the order of its lanelets, which its states pass the other way round.
+    ``matched`` are the numbers of the lanelets that lead a participant's way, by participant and
+    column, -1 for none; ``is_one_way`` tests whether a lanelet's carriageway is surely one-way. The
+    pieces of a stretch are in the order of its lanelets, which its states pass in reverse.
     """
     found = _states_against(recording, tracks, matched, is_one_way)
     stretches: dict[int, list[RouteStretch]] = {}
@@ -72,7 +72,7 @@ def _states_against(
     matched: NDArray[intp],
     is_one_way: Callable[[Lanelet], bool],
 ) -> _Against:
-    """The states of vehicles that head and move against all lanes where they are."""
+    """The states of vehicles that head and move against all lanes at their place."""
     lanes = [x for x in recording.lanelets.values() if is_lane(x) and not x.types & _RESERVED]
     rows, columns = _unmatched(tracks, matched)
     near: dict[int, list[Lanelet]] = {}
@@ -136,7 +136,7 @@ def _drawn_the_other_way(
     near: dict[int, list[Lanelet]],
     matched: NDArray[intp],
 ) -> set[str]:
-    """The lanelets against which several drove, and half as many as along them or more."""
+    """The lanelets that several drove against, at least half as many as drove along them."""
     pairs = {(int(rows[state]), x.id) for state, own in near.items() for x in own}
     against = Counter(name for _, name in pairs)
     numbers = {name: number for number, name in enumerate(recording.lanelets)}
@@ -150,9 +150,9 @@ def _drawn_the_other_way(
 
 
 def _runs(recording: Recording, found: _Against) -> Iterator[tuple[int, NDArray[intp], list[str]]]:
-    """States one after the other that pass lanelets end to end, the other way round.
+    """Runs of consecutive states that pass lanelets end to end in reverse.
 
-    The row of each run, its columns, and the lanelet of each state.
+    Yields the row of each run, its columns, and the lanelet of each state.
     """
     known = recording.lanelets
     begins: list[bool] = []
