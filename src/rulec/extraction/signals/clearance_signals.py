@@ -1,4 +1,4 @@
-"""Signals of the room that ego has: oncoming traffic, obstacles, ways past others, access."""
+"""Signals of ego's room: oncoming traffic, obstacles, room to pass others, access."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct
 
 _BESIDE_M = 0.5
-"""A vehicle needs so much more room than it is wide."""
+"""Extra width (m) that passing a vehicle needs."""
 
 _BESIDE_WALKERS_M = 1.5
-"""So much more it needs past people in the road: laws ask for 1 m to 2 m, or for enough."""
+"""Extra width (m) that passing people in the road needs; laws ask for 1 m to 2 m or just for enough
+room."""
 
 _ALONG = np.cos(np.pi / 4)
-"""Who walks at no more than that angle to the road walks along it, either way."""
+"""Cosine of the largest angle to the road at which a pedestrian walks along it, either way."""
 
 
 def _for_overtaking(context: DriveContext) -> SignalColumns:
@@ -50,13 +51,13 @@ def _on_near_side(context: DriveContext) -> SignalColumns:
 
 
 def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
-    """Does what comes towards ego leave room to overtake, and where is that unknown?
+    """Whether oncoming traffic leaves room to overtake, and where that is unknown.
 
-    It does where ego need not leave the lanes of its direction, on the far one of which it may be
-    already. Else nobody that comes would meet ego within ``overtaking_s``, as fast as both are, nor
-    does meet it; nor, however much later, while it is still on its way over the other half, or
-    within ``yielding_s`` of that. Where the drive ends before, and ego is so fast that somebody may
-    come from beyond ``near_m``, it is unknown.
+    It does where ego need not leave the lanes of its direction, in the far one of which it may
+    already be. Otherwise no oncoming vehicle may meet ego within ``overtaking_s`` at both current
+    speeds, or actually meet it within that time; nor, however much later, while ego is still on its
+    way over the other half, or within ``yielding_s`` of that. Unknown where the drive ends before
+    and ego is so fast that a vehicle may come from beyond ``near_m``.
     """
     limits = context.thresholds
     own_lanes = (travel_lanes(context).sum(axis=1) > 1) & ~_beyond_own_lanes(context)
@@ -88,9 +89,9 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
 
 
 def _meets_beyond_middle(context: DriveContext, meets: Flags) -> Flags:
-    """Flags of states in which ego is on its way over the other half, on which it meets another.
+    """Mask of states in which ego is on its way over the other half and meets a vehicle there.
 
-    From when it begins to be there, as it should have seen that it would not be back in time.
+    From the start of that stretch, as ego should have seen that it would not be back in time.
     """
     if not meets.any():
         return meets
@@ -102,7 +103,7 @@ def _meets_beyond_middle(context: DriveContext, meets: Flags) -> Flags:
 
 
 def _beyond_own_lanes(context: DriveContext) -> Flags:
-    """Flags of states in which ego reaches over the far edge of the lanes of its direction."""
+    """Mask of states in which ego reaches over the far edge of the lanes of its direction."""
     first, end = _edges(context)
     own, touching = context.ego_extents, context.thresholds.touching_m
     left, right = own.from_bound(end)[1][0], -own.from_bound(first)[0][0]
@@ -111,16 +112,16 @@ def _beyond_own_lanes(context: DriveContext) -> Flags:
 
 
 def _edges(context: DriveContext) -> tuple[NDArray[intp], NDArray[intp]]:
-    """The first and the last bound of the lanes beside ego, by state."""
+    """The first and the last lane bound beside ego, by state."""
     there = context.existing_lanes
     return there.argmax(axis=1), there.shape[1] - there[:, ::-1].argmax(axis=1)
 
 
 def _obstructed(context: DriveContext) -> Flags:
-    """Flags of states in which what stands in a lane that ego is in leaves no room within it.
+    """Mask of states in which an obstacle in one of ego's lanes leaves no room within that lane.
 
-    Ahead, beside ego, or so near behind it that ego may still be on its way back. So do people who
-    walk along in it.
+    Obstacles stand ahead, beside ego, or so near behind it that ego may still be on its way back;
+    pedestrians who walk along in the lane count, too.
     """
     own = context.ego_extents
     width = own.d_max[0] - own.d_min[0]
@@ -155,9 +156,9 @@ def _obstructed(context: DriveContext) -> Flags:
 
 
 def _near_obstacle(context: DriveContext, cells: Cells) -> Flags:
-    """Flags of cells of who stands or walks, whom ego goes round now.
+    """Mask of cells of standing or walking participants that ego goes round now.
 
-    For one that never moves it goes out earlier.
+    For pedestrians, and for participants that never move, ego goes out earlier.
     """
     gap, along = cells.of(relations.gap(context)), context.ego_extents.along[0]
     near: Flags = gap <= context.thresholds.obstacle_m
@@ -173,7 +174,7 @@ def _near_obstacle(context: DriveContext, cells: Cells) -> Flags:
 
 
 def _room_on_near_side(context: DriveContext) -> Flags:
-    """Flags of participants that leave room for ego between them and the near edge of the road."""
+    """Mask of participants that leave room for ego between them and the road's near edge."""
     first, end = _edges(context)
     others, right = context.extents, context.side == "right"
     room = others.from_bound(first)[0] if right else -others.from_bound(end)[1]
@@ -183,7 +184,7 @@ def _room_on_near_side(context: DriveContext) -> Flags:
 
 
 def _needs_access(context: DriveContext) -> tuple[Flags, Flags]:
-    """Does ego turn off within ``access_s``, and where is that unknown as its drive ends before?"""
+    """Whether ego turns off within ``access_s``; and where its drive ends too early to know."""
     steps = round(context.thresholds.access_s / context.recording.step_s)
     turns = np.zeros(context.states, dtype=bool)
     least = np.radians(context.thresholds.turned_deg)
@@ -205,4 +206,4 @@ clearance_signals = SignalPasses(
         ("room_on_near_side",): _on_near_side,
     }
 )
-"""The signals of what leaves ego room to go on, to overtake, and to pass."""
+"""The signals of whether ego has room to go on, to overtake, and to pass."""

@@ -1,4 +1,4 @@
-"""Ego's lanelets state by state, and what there is on the lanelets of the whole map."""
+"""Ego's lanelets state by state, and what the lanelets of the whole map contain."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from rulec.trace.cells import Cells
 _Value = TypeVar("_Value")
 
 SHOULDER, CYCLE_LANE = "shoulder", "bicycleLane"
-"""The types of hard shoulders, and of lanes for cycles alone."""
+"""The lanelet types of hard shoulders and of cycle lanes."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class OwnLanelets:
     """The lanelets of ego's lane at its middle.
 
-    ``places`` are the pieces and lanes, each once, ``lanelets`` theirs; ``number`` says by state
-    which of them it is.
+    ``places`` are the distinct (piece, lane) pairs, ``lanelets`` the lanelet of each; ``number`` is
+    the index of the pair by state.
     """
 
     places: tuple[tuple[int, int], ...]
@@ -36,19 +36,19 @@ class OwnLanelets:
     number: NDArray[intp]
 
     def values(self, value: Callable[[Lanelet], _Value]) -> list[_Value]:
-        """What a function says of the lanelet, by state."""
+        """The values of a function of the lanelet, by state."""
         of_each = [value(lanelet) for lanelet in self.lanelets]
         return [of_each[number] for number in self.number.tolist()]
 
     def told(self, value: Callable[[Lanelet], bool | None]) -> tuple[Flags, Flags]:
-        """Flags of the states in which a function says yes of the lanelet, and None."""
+        """Masks of the states in which a function of the lanelet returns True, and None."""
         of_each = [value(lanelet) for lanelet in self.lanelets]
         true = np.array([x is True for x in of_each], dtype=bool)
         unknown = np.array([x is None for x in of_each], dtype=bool)
         return true[self.number], unknown[self.number]
 
     def flags(self, holds: Callable[[Lanelet], bool]) -> Flags:
-        """Flags of the states in which something holds of the lanelet."""
+        """Mask of the states in which a condition holds for the lanelet."""
         of_each = np.array([holds(lanelet) for lanelet in self.lanelets], dtype=bool)
         flags: Flags = of_each[self.number]
         return flags
@@ -61,7 +61,7 @@ def own_lanelets(context: DriveContext) -> OwnLanelets:
 
 
 def lanelets_at(context: DriveContext, middle: Floats, lanes: NDArray[intp]) -> OwnLanelets:
-    """The lanelets at so far along the road, in a lane, by state."""
+    """The lanelets at places along the road in given lanes, by state."""
     return _of_places(context, *context.places_at(middle, lanes))
 
 
@@ -74,7 +74,7 @@ def _of_places(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class MapContents:
-    """What some lanelet of a map has: types, signs, limits, lights, marks."""
+    """What lanelets of a map have: types, signs, limits, lights, marks."""
 
     types: frozenset[str]
     signs: frozenset[str]
@@ -87,7 +87,7 @@ class MapContents:
 
 @once_a_map
 def map_contents(context: DriveContext) -> MapContents:
-    """What some lanelet of the recording's map has."""
+    """What at least one lanelet of the recording's map has."""
     lanelets = context.recording.lanelets.values()
     return MapContents(
         types=frozenset().union(*(lanelet.types for lanelet in lanelets)),
@@ -102,22 +102,23 @@ def map_contents(context: DriveContext) -> MapContents:
 
 @once
 def travel_lanes(context: DriveContext) -> Flags:
-    """Flags of the lanes (second axis) beside ego that are there to be driven on, by state.
+    """Mask of the lanes (second axis) beside ego that are meant for driving, by state.
 
-    All that exist but hard shoulders, which are no part of the carriageway, what is beyond these,
-    which is another one, as a road beside the main one, and lanes for cycles, unless ego is one.
+    All existing lanes except hard shoulders, which are not part of the carriageway, lanes beyond
+    these, which belong to another carriageway, such as a road beside the main one, and cycle lanes,
+    unless ego is a cycle.
     """
     return travel_lanes_at(context, context.ego_extents.s[0])
 
 
 @once
 def travel_lanes_first(context: DriveContext) -> Flags:
-    """The same with lanes as the first axis, along which they are sooner counted."""
+    """``travel_lanes`` with lanes as the first axis, along which they are faster to count."""
     return np.ascontiguousarray(travel_lanes(context).T)
 
 
 def travel_lanes_at(context: DriveContext, places: Floats) -> Flags:
-    """The same beside places along the road, one for each state."""
+    """``travel_lanes`` beside places along the road, one per state."""
     types, travel = map_contents(context).types, context.road.lanes.existing_at(places)
     if CYCLE_LANE in types:
         cycles = _lanes_of(context, CYCLE_LANE, places)
@@ -125,7 +126,7 @@ def travel_lanes_at(context: DriveContext, places: Floats) -> Flags:
     if SHOULDER not in types:
         return travel
     shoulders = _lanes_of(context, SHOULDER, places)
-    # How many are nearer to the kerb than each lane
+    # The number of shoulders to the right of each lane
     nearer: NDArray[intp] = shoulders.cumsum(axis=1) - shoulders
     lanes, own = np.arange(shoulders.shape[1]), context.ego_lane[:, None]
     low, high = np.minimum(lanes, own), np.maximum(lanes, own)
@@ -138,23 +139,23 @@ def travel_lanes_at(context: DriveContext, places: Floats) -> Flags:
 
 
 def _lanes_of(context: DriveContext, kind: str, places: Floats) -> Flags:
-    """Flags of the lanes (second axis) of a type, by place along the road."""
+    """Mask of the lanes (second axis) of a type, by place along the road."""
     of_places: Flags = lanes_of_type(context.road, kind)[context.road.piece(places)]
     return of_places
 
 
 def lanes_of_type(road: DrivenRoad, kind: str) -> Flags:
-    """Flags of the lanes (second axis) of a type, by the road's pieces."""
+    """Mask of the lanes (second axis) of a type, by the road's pieces."""
     return np.array([[x is not None and kind in x.types for x in row] for row in road.rows])
 
 
 def those_on_lanes(context: DriveContext, kind: str, others: Flags) -> Flags:
-    """Flags of those of some others whose lane is of a type."""
+    """Mask ``others`` reduced to participants whose lane is of a type."""
     flags, cells, extents = lanes_of_type(context.road, kind), Cells.at(others), context.extents
     return cells.laid(flags[context.road.piece(cells.of(extents.s)), cells.of(extents.lane)])
 
 
 def room_beside(context: DriveContext) -> tuple[Floats, Floats]:
-    """The room (m) in ego's lane to the right and to the left of it."""
+    """The room (m) in ego's lane to ego's right and left."""
     lane, own = context.steady_lane, context.ego_extents
     return own.from_bound(lane)[0][0], -own.from_bound(lane + 1)[1][0]

@@ -1,4 +1,4 @@
-"""Signals of ego: its type, speed, lane, and place in it."""
+"""Signals of ego: its type, speed, lane, and place in the lane."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ def _ego_type(context: DriveContext) -> SignalColumns:
     types, spread = [body.type for body in context.ego.participants], context.spans.spread
     return SignalColumns(
         {"ego_type": spread([_EGO_TYPES.get(kind, "ego_car") for kind in types])},
-        # A file may know of vehicles no more than that they are some
+        # Some files say no more about a vehicle than that it is one
         unknown={"ego_type": spread([kind == "vehicle" for kind in types])},
     )
 
 
 def _ego_length(context: DriveContext) -> SignalColumns:
-    """Ego's length, of a rectangle its own: who turns takes more of the road."""
+    """Ego's length, of its own rectangle if known: a turning body is longer along the road."""
     outlines = [body.outlines for body in context.ego.participants]
     own = [x.track.length if isinstance(x, TrackOutlines) else np.nan for x in outlines]
     length = np.array(own)
@@ -103,13 +103,13 @@ def _lane(context: DriveContext) -> SignalColumns:
     for other in (context.ego_lane, context.steady_lane_from_beside):
         if (context.steady_lane != other).any():
             moves |= lane != _from_kerb(context, other)
-    # Beside one to join or to leave by, the lane at the kerb may as well be ego's
+    # Beside a lane that only joins or leaves, the kerb lane may as well be ego's
     at_side = (lane == _MIDDLE) & ~_nearer_goes_on(context)
     return SignalColumns({"lane": lane}, unknown={"lane": moves | at_side}, texts={"lane": _LANES})
 
 
 def _nearer_goes_on(context: DriveContext) -> Flags:
-    """Flags of states in which a lane nearer to the kerb than ego's goes on."""
+    """Mask of states in which a lane nearer to the kerb than ego's goes on."""
     lanes = travel_lanes_first(context)
     number, own = np.arange(len(lanes))[:, None], context.steady_lane
     nearer = number < own if context.side == "right" else number > own
@@ -130,10 +130,11 @@ def _lane_number(context: DriveContext) -> SignalColumns:
 
 
 def _lane_count(context: DriveContext) -> SignalColumns:
-    """How many lanes there are, where most are beside ego's body.
+    """The number of lanes, the largest at ego's rear, middle and front.
 
-    Who stands beside ego where ways part is not on ego's any more when its middle is past that, and
-    where a lane forks those beside it may be of no width for some metres on the road of ego's way.
+    A vehicle beside ego where ways part is no longer on ego's road once ego's middle is past that
+    place, and where a lane forks the lanes beside it may have no width for some metres on the road
+    of ego's way.
     """
     own = context.ego_extents
     places = own.s_min[0], own.s[0], own.s_max[0]
@@ -149,23 +150,23 @@ def _lane_position(context: DriveContext) -> SignalColumns:
 
 
 def _from_kerb(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
-    """Indices into ``_LANES`` of lanes by state: 0 at the kerb, 2 farthest, 1 between."""
+    """Indices into ``_LANES`` of lanes by state: 0 at the kerb, 2 farthest from it, 1 between."""
     rank, count = _rank(context, lane), travel_lanes_first(context).sum(axis=0)
     return np.where(rank <= 0, 0, np.where(rank >= count - 1, 2, 1))
 
 
 def _rank(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
-    """How many lanes lie between lanes by state and the kerb."""
+    """The number of lanes between given lanes, by state, and the kerb."""
     lanes, states = travel_lanes_first(context), context.spans.columns
     right: NDArray[intp] = lanes.cumsum(axis=0)[lane, states] - lanes[lane, states]
     return right if context.side == "right" else lanes.sum(axis=0) - 1 - right
 
 
 def _straddling(context: DriveContext) -> SignalColumns:
-    """Whether ego is in two lanes; unknown where places, or the map, decide it, or it turns off.
+    """Whether ego is in two lanes; unknown where tolerances or the map decide, or ego turns off.
 
-    Its body swings over the lanes of the road that it comes to then. Also on its way over the
-    middle of the road, to the lanes of the other direction or back.
+    A turning body swings over the lanes of the road that it enters. Ego also straddles on its way
+    over the middle of the road, to the lanes of the other direction or back.
     """
     straddling, unknown = np.zeros((2, context.states), dtype=bool)
     states = _near_a_bound(context).nonzero()[0]
@@ -173,7 +174,7 @@ def _straddling(context: DriveContext) -> SignalColumns:
         straddling[states], unknown[states] = _in_two_lanes(context, states)
         askew, spans = straddling & lies_askew_in_turn(context), context.spans
         if askew.any():
-            # As long as it lies across the mark without a break before
+            # For as long as it lies across the mark without interruption before
             unknown |= straddling & (spans.next_state(askew) < spans.next_state(~straddling))
     over = goes_over_the_middle(context)
     straddling, unknown = straddling | over, unknown & ~over
@@ -181,11 +182,11 @@ def _straddling(context: DriveContext) -> SignalColumns:
 
 
 def _in_two_lanes(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Flags]:
-    """Flags of those states in which ego is in two lanes, and in which places decide it."""
+    """Masks, among ``states``, of being in two lanes and of tolerances deciding that."""
     place, offset = context.tolerances.place_m, context.map_offset_m
     shifts = [np.zeros(len(states)), *([offset[states]] if offset.any() else [])]
     tried = [(0.0, shifts[0]), *product((place, -place), shifts)]
-    # Numbers of tries are the first axis
+    # The first axis is the number of the try
     by = -np.array([shift for _, shift in tried])[..., None]
     own = context.ego_extents
     bounds = {
@@ -199,7 +200,7 @@ def _in_two_lanes(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, 
 
 
 def _near_a_bound(context: DriveContext) -> Flags:
-    """Flags of states in which ego may be in two lanes, places and the map being as they are."""
+    """Mask of states in which ego may be in two lanes, given the errors of places and map."""
     own, loose = context.ego_extents, context.tolerances.place_m + np.abs(context.map_offset_m)
     across = np.minimum(-own.left_of_min[0], own.left_of_max[0])
     least = context.thresholds.touching_m - loose - _HAIR_M
@@ -212,7 +213,7 @@ def _place_in_lane(context: DriveContext) -> NDArray[intp]:
     near, far = room_beside(context)
     if context.side == "left":
         near, far = far, near
-    # In a lane that is hardly wider than ego both edges are near, and neither is kept to
+    # In a lane hardly wider than ego both edges are near, and ego keeps to neither
     edge = context.thresholds.at_edge_m
     kept = (np.minimum(near, far) < edge) & (np.abs(near - far) > edge)
     return np.where(kept, np.where(near < far, 1, 2), 0)
@@ -233,4 +234,4 @@ ego_signals = SignalPasses(
         ("lane_position",): _lane_position,
     }
 )
-"""The signals of ego alone."""
+"""The signals about ego alone."""

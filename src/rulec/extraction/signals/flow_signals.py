@@ -1,6 +1,6 @@
 """Signals of traffic flow around ego: queues and congestion.
 
-All of it counts the vehicles that go ego's way on its lanes, ego among them, as queues do.
+All of them count the vehicles that go ego's way on its lanes, including ego, as queues do.
 """
 
 from __future__ import annotations
@@ -29,19 +29,19 @@ from rulec.extraction.tracks.tracks import Flags
 from rulec.trace.plain_arrays import medians_hold
 
 TIMES_AS_FAST = 2.0
-"""A lane on which several are so many times as fast as slow traffic flows."""
+"""A lane flows if several vehicles on it are this many times as fast as slow traffic."""
 
 _JAM_S = 10.0
-"""Traffic that has been slow for less may be so where somebody pulls in or turns off."""
+"""Traffic that has been slow for less (s) may be so because a vehicle pulls in or turns off."""
 
 
 def _slow_traffic(context: DriveContext) -> SignalColumns:
-    """Whether traffic is slow as a whole, and no lane flows beside the others, nor all but ego's.
+    """Whether traffic is slow as a whole, with no lane flowing, nor all lanes except ego's.
 
-    Who queues to leave, beside lanes on which traffic flows or nobody is, is in no jam of the road:
-    that is on half of its lanes or more. Unknown on no more than half, where one may wait to turn,
-    those in junctions left out, and for ego if nobody is ahead of it: it may be what the others
-    wait for. Nor is it a jam yet that came up less than ``_JAM_S`` ago.
+    Vehicles that queue to leave, beside lanes that flow or are empty, are no jam of the road: slow
+    vehicles have to be on at least half of its lanes. Unknown if, without those in junctions, they
+    are on no more than half, since they may wait to turn there; if no vehicle is ahead of ego, as
+    the others may be waiting for ego; and for the first ``_JAM_S`` of slow traffic.
     """
     around, limits, states = vehicles_around(context), context.thresholds, context.states
     existing = travel_lanes_first(context)
@@ -81,7 +81,7 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
 
 
 def _in_junctions(context: DriveContext, around: VehiclesAround, chosen: NDArray[intp]) -> Flags:
-    """Flags of the chosen ones who are in junctions of ego's road."""
+    """Mask of the chosen vehicles that are in junctions of ego's road."""
     s_min, s_max = around.s_min.take(chosen), around.s_max.take(chosen)
     inside = np.zeros(len(chosen), dtype=bool)
     for start, end in context.road.junctions:
@@ -90,9 +90,9 @@ def _in_junctions(context: DriveContext, around: VehiclesAround, chosen: NDArray
 
 
 def _comes_up(context: DriveContext, slow: Flags) -> Flags:
-    """Flags of states up to ``_JAM_S`` after traffic was not slow, as far as that is recorded.
+    """Mask of states less than ``_JAM_S`` after traffic was not slow, as far as that is recorded.
 
-    Where all traffic is, ego was not in any before its drive began.
+    Where all traffic is recorded, ego was in none before its drive began.
     """
     spans, before = context.spans, context.spans.latest(~slow)
     ago_s = (spans.columns - before) * context.recording.step_s
@@ -104,10 +104,10 @@ def _comes_up(context: DriveContext, slow: Flags) -> Flags:
 def _is_slow(
     context: DriveContext, around: VehiclesAround, asked: NDArray[intp], below_kmh: float
 ) -> Flags:
-    """Flags of states in which traffic is slower than so much, and nowhere so many times as fast.
+    """Mask of states in which traffic is below ``below_kmh``, and nowhere ``TIMES_AS_FAST`` that.
 
-    By all vehicles in states that are asked about, at places among all. Nobody is on no lane, nor
-    one alone where traffic flows freely.
+    ``asked`` are the indices of all vehicles in the states to be tested. A lane with at most one
+    vehicle does not count as flowing.
     """
 
     def are_below(limit_kmh: float, groups: NDArray[intp], own: NDArray[intp], count: int) -> Flags:
@@ -137,13 +137,13 @@ def _far_lane_queue(context: DriveContext) -> SignalColumns:
     queues, are_slow = queues_by_lane(context)
     slow = queues & are_slow
     queue, fewer = (_beside(context, slow[reading]) for reading in (MEASURED, STRICT))
-    # Whether one farther out is the queue beside ego's lane depends on who is passed
+    # Whether a lane farther out is the queue beside ego's depends on the vehicle that is passed
     more = _at_far_side(context, slow[LOOSE])
     return SignalColumns({"far_lane_queue": queue}, unknown={"far_lane_queue": more & ~fewer})
 
 
 def _own_lane_queue(context: DriveContext) -> SignalColumns:
-    """Whether ego is in a slow queue, by its lane; for all that is as wrong as may be, too."""
+    """Whether ego's lane is a slow queue; unknown where errors or the definition decide."""
     queues, are_slow = queues_by_lane(context)
     slow = queues & are_slow
     queue, fewer, more = (
@@ -153,7 +153,7 @@ def _own_lane_queue(context: DriveContext) -> SignalColumns:
 
 
 def _at_far_side(context: DriveContext, lanes: Flags) -> Flags:
-    """Whether a lane (first axis) of those flagged lies at ego's far side, by state."""
+    """Whether one of the flagged lanes (first axis) lies at ego's far side, by state."""
     number, own = np.arange(len(lanes))[:, None], context.ego_lane
     far = number > own if context.side == "right" else number < own
     there: Flags = np.logical_or.reduce(lanes & far)

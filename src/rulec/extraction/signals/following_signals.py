@@ -1,9 +1,10 @@
 """Following: for how long others have been ahead, and whether ego keeps its distance from them.
 
-Where the tolerance of places decides who is in ego's lane, the time began some time in between. Who
-came into the lane before anybody saw it needed some time to get where it is now. If it moves
-sideways at ``v`` after ``d`` from where it began to be ahead in the lane, and nobody slows down
-sideways by more than ``cutting_in_mps2`` (``a``), it took ``(sqrt(v² + 2ad) - v) / a`` at least.
+Where the tolerance of places decides whether a vehicle is in ego's lane, the time began some time
+in between. A vehicle that came into the lane before it was first seen needed some time to get where
+it is now. If it moves sideways at ``v`` after ``d`` from where it began to be ahead in the lane,
+and its lateral deceleration is at most ``cutting_in_mps2`` (``a``), it took at least ``(sqrt(v² +
+2ad) - v) / a``.
 """
 
 from __future__ import annotations
@@ -32,21 +33,21 @@ from rulec.trace.plain_arrays import begin_runs, distinct
 _AWAY_MPS = 0.3
 
 _DRIFT_MPS = 0.2
-"""Who moves sideways by less keeps its lane."""
+"""A vehicle with a lower lateral speed keeps its lane."""
 
 _MOVES_OFF_MPS2 = 1.0
-"""Who changes lanes gains speed sideways so hard at most, about."""
+"""Roughly the greatest lateral acceleration in a change of lanes."""
 
 _BRIEF_S = 1.0
 
 _OUTLIERS = 3.0
-"""So many tolerances off are places now and then, but not for ``_BRIEF_S``."""
+"""Places are wrong by this many tolerances now and then, but not for ``_BRIEF_S``."""
 
 _HAIR_S = 1e-6
 
 
 def _ahead_for(context: DriveContext) -> SignalColumns:
-    """Times (s) for which ego has been behind others in one lane, with their bounds."""
+    """Times (s) for which ego has been behind others in the same lane, with their bounds."""
     _, surely, _ = relations.ahead_in_lane(context)
     cells, step_s = relations.perhaps_ahead(context), context.recording.step_s
     since, seen = _since(context, cells)
@@ -55,7 +56,7 @@ def _ahead_for(context: DriveContext) -> SignalColumns:
     own, least = cells.part(sure), np.zeros(len(cells))
     since, seen = _since(context, own)
     times = (own.columns - since) * step_s
-    # For all of a run it is that of its first state
+    # All states of a run share the time before its first state
     appears = (~seen).nonzero()[0]
     first = appears[since[appears] == own.columns[appears]]
     earlier = _before(context, own.part(first))
@@ -70,7 +71,7 @@ def _ahead_for(context: DriveContext) -> SignalColumns:
 
 
 def _since(context: DriveContext, cells: Cells) -> tuple[NDArray[intp], Flags]:
-    """The states in which runs of cells began, and was one seen the state before?"""
+    """The first states of runs of cells, and whether the participant was seen just before."""
     spans, begins = context.spans, begin_runs(cells.places)
     begins |= spans.begins_here[cells.columns]
     since = cells.columns[begins][begins.cumsum() - 1]
@@ -79,7 +80,7 @@ def _since(context: DriveContext, cells: Cells) -> tuple[NDArray[intp], Flags]:
 
 
 def _before(context: DriveContext, cells: Cells) -> Floats:
-    """How long (s) others were ahead at least when first seen, by where they were across."""
+    """The least time (s) that others had been ahead when first seen, by their lateral places."""
     limits, own, others = context.thresholds, context.ego_extents, context.extents
     rows, states, reach = cells.rows, cells.columns, limits.touching_m
     right = context.ego_lane
@@ -101,14 +102,14 @@ def _before(context: DriveContext, cells: Cells) -> Floats:
 
 @once
 def parts_soon(context: DriveContext) -> Flags:
-    """Flags of those ahead in ego's lane whose lane is not ego's within ``parting_s``.
+    """Mask of participants ahead in ego's lane that are in another lane within ``parting_s``.
 
-    Or who may be clear of ego at its side then, as on a broad lane; or who are lost from sight
-    before, and go aside by ``_AWAY_MPS``, or do so from each other when they are seen last, such
-    that they may be clear of each other then; if ego closes in on them, also where they go aside
-    by ``_DRIFT_MPS``, and a change of lanes may have them clear. Where ways part in a junction
-    nobody is clear of one that stops before. And of those who back: they come, and ego stands or
-    waits behind them.
+    Or that may be clear of ego at its side by then, as on a broad lane; or that are lost from sight
+    before, and move aside at ``_AWAY_MPS``, or away from ego at that speed when last seen, so that
+    both may be clear of each other by then; if ego closes in, ``_DRIFT_MPS`` away from it is
+    enough, where a change of lanes may clear them. Where ways part in a junction, ego is not clear
+    of a participant that stops before that. Includes participants that reverse: they come, and ego
+    stands or waits behind them.
     """
     _, _, follows = relations.ahead_in_lane(context)
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
@@ -137,16 +138,17 @@ def parts_soon(context: DriveContext) -> Flags:
 
 
 def _back(context: DriveContext, cells: Cells) -> Flags:
-    """Flags of cells of those who surely move against ego's way."""
+    """Mask of cells of participants that surely move against ego's way."""
     slowest = -cells.of(context.extents.along) - cells.of(context.tracks.speed_error)
     back: Flags = slowest * KMH >= context.thresholds.standing_kmh
     return back
 
 
 def _go_aside(context: DriveContext, cells: Cells, seen_last: Cells, left: NDArray[intp]) -> Flags:
-    """Flags of cells in which one goes aside, such that it may be clear of ego later.
+    """Mask of cells whose participant moves aside, so that ego may be clear of it later.
 
-    That is so many states after it is ``seen_last``, when it goes aside from ego.
+    ``seen_last`` are the cells in which it is last seen, ``left`` the number of states from then
+    on.
     """
     limits, known, others = context.thresholds, context.tolerances, context.extents
     own = context.ego_extents
@@ -172,7 +174,7 @@ def _side(context: DriveContext, cells: Cells) -> Floats:
 
 
 def may_part(context: DriveContext) -> SignalColumns:
-    """Unknown of those ahead in ego's lane who are on another one soon, and False of all others.
+    """Unknown for participants ahead in ego's lane that leave it soon, False for all others.
 
     No law says how near they may be by then.
     """
@@ -181,7 +183,7 @@ def may_part(context: DriveContext) -> SignalColumns:
 
 
 def _in_junctions(context: DriveContext, cells: Cells) -> Flags:
-    """Flags of bodies in the junctions of ego's road."""
+    """Mask of bodies in the junctions of ego's road."""
     inside, junctions = np.zeros(len(cells), dtype=bool), context.road.junctions
     if junctions:
         s_min, s_max = map(cells.of, (context.extents.s_min, context.extents.s_max))
@@ -191,9 +193,9 @@ def _in_junctions(context: DriveContext, cells: Cells) -> Flags:
 
 
 def _would_stand(context: DriveContext, at: Cells, spans: EndToEnd) -> NDArray[intp]:
-    """The state in which they get to where they would stop, did they brake from now on.
+    """The state in which others reach the place where they would stop, braking from now on.
 
-    One past the last where they do not get there while they are seen.
+    One past the last state where they do not reach it while they are seen.
     """
     tracks = context.tracks
     x, y = at.of(tracks.x), at.of(tracks.y)
@@ -211,21 +213,21 @@ def _would_stand(context: DriveContext, at: Cells, spans: EndToEnd) -> NDArray[i
 
 
 def keeps_safe_gap(context: DriveContext) -> SignalColumns:
-    """Whether ego keeps its distance from who is, or may be, ahead in its lane.
+    """Whether ego keeps its distance from participants that are, or may be, ahead in its lane.
 
-    Unknown of one that stood ``reaction_s`` ago already, if ego can stop behind it: it has seen it
-    stand, and need not react first. And where it is too short for less than ``_BRIEF_S``, and by no
-    more than ``_OUTLIERS`` tolerances: that may be what boxes err.
+    Unknown for a participant that already stood ``reaction_s`` ago if ego can stop behind it: ego
+    has seen it stand, and need not react first. Unknown, too, where the distance is too short for
+    less than ``_BRIEF_S`` and by at most ``_OUTLIERS`` tolerances, which may be an error of boxes.
     """
     known, limits, followed = context.tolerances, context.thresholds, safe_gaps(context)
     short = followed.safe - followed.gap
     wrong = known.joint(followed.safe_error, known.place_m)
-    # Elsewhere the distance is long enough, whoever that is
+    # Elsewhere the distance is long enough for any participant
     perhaps_short = (short > -wrong).nonzero()[0]
     short, wrong = short.take(perhaps_short), wrong.take(perhaps_short)
     cells = followed.cells.part(perhaps_short)
     stands = cells.of(context.tracks.speed) * KMH < limits.standing_kmh
-    # One that stands, and that ego drives by, does not drive ahead
+    # A standing participant that ego drives past does not drive ahead of it
     aside = cells.of(relations.way_across(context)) - limits.touching_m
     room = np.where(stands, aside, -np.inf)
     moot, follows = np.abs(room) < known.place_m, room <= 0
@@ -241,7 +243,7 @@ def keeps_safe_gap(context: DriveContext) -> SignalColumns:
 
 
 def _need_not_follow(context: DriveContext, cells: Cells, short: Floats) -> Flags:
-    """Flags of cells in which who is ahead parts soon, or has stood for long enough to be seen.
+    """Mask of cells whose participant parts soon, or has stood long enough to have been seen.
 
     ``short`` is by how much (m) the distance is too short if ego reacts first.
     """
@@ -254,7 +256,10 @@ def _need_not_follow(context: DriveContext, cells: Cells, short: Floats) -> Flag
 
 
 def _brief_and_slight(context: DriveContext, late: Cells, far_too_late: Flags) -> Flags:
-    """Flags of late cells in runs that last for less than ``_BRIEF_S``, and are nowhere far too."""
+    """Mask of cells where ego is too close only in short runs, and never far too close.
+
+    A short run lasts for less than ``_BRIEF_S``.
+    """
     if not len(late):
         return far_too_late
     is_first = begin_runs(late.places)
@@ -267,7 +272,7 @@ def _brief_and_slight(context: DriveContext, late: Cells, far_too_late: Flags) -
 
 
 def _stood_before(context: DriveContext, cells: Cells) -> Flags:
-    """Flags of cells of those who stand, and have for ``reaction_s`` or since they were seen."""
+    """Mask of cells of participants that stand, and did for ``reaction_s`` or since first seen."""
     rows = distinct(cells.rows)
     stands = context.tracks.speed[rows] * KMH < context.thresholds.standing_kmh
     steps = round(context.thresholds.reaction_s / context.recording.step_s)
@@ -279,9 +284,9 @@ def _stood_before(context: DriveContext, cells: Cells) -> Flags:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SafeGaps:
-    """The distances (m) that ``safe_gap`` compares, by cell of those whom ego may follow.
+    """The distances (m) that ``safe_gap`` compares, by cell of participants that ego may follow.
 
-    The error is that of both, but for the places' own.
+    ``safe_error`` covers both distances, except for the places' own error.
     """
 
     cells: Cells

@@ -1,7 +1,8 @@
 """Signals of what others show and do next: turning off, leaving a stop, overtaking.
 
-What somebody was about to do is known from what it did. Whether it has signalled is known where the
-recording has its lamps; elsewhere who does what it should have signalled first is unknown.
+What a participant was about to do is known from what it did. Whether it signalled is known if the
+recording contains its lamps; otherwise it is unknown for participants that do what they should have
+signalled.
 """
 
 from __future__ import annotations
@@ -54,9 +55,9 @@ def _warning_lights(context: DriveContext) -> SignalColumns:
 
 
 def may_have_broken_down(context: DriveContext) -> Flags:
-    """Flags of those who stand with the indicators of both sides lit, or with hazard lights.
+    """Mask of participants that stand with both indicators or the hazard lights flashing.
 
-    Nobody knows whether they do not stand for the traffic, or warn of the end of a jam.
+    They may as well stand because of traffic, or warn of the end of a jam.
     """
     still = stands(context)
     if not still.any():
@@ -84,9 +85,9 @@ def _far_indicator(context: DriveContext) -> tuple[Flags, Flags]:
 
 
 def _turning_far(context: DriveContext) -> SignalColumns:
-    """The signal of those who have signalled to turn to the far side, and do.
+    """The signal of vehicles that have signalled to turn to the far side, and do.
 
-    However long they wait for it, their indicator on.
+    However long they wait for it with the indicator on.
     """
     turns, open_end = (own_part(context, flags) for flags in _turns(context))
     lit, told = _far_indicator(context)
@@ -94,7 +95,7 @@ def _turning_far(context: DriveContext) -> SignalColumns:
         turns |= _lit_until(context, turns & lit, lit)
         seen_last = _ends_within(context, 1)
         if "arrivals" not in context.recording.complete:
-            # Who signals and leaves the map may turn beyond it
+            # A vehicle that signals and leaves the map may turn beyond it
             ahead = round(context.thresholds.preparing_s / context.recording.step_s)
             open_end |= lit & _ends_within(context, ahead)
         else:
@@ -108,7 +109,7 @@ def _turning_far(context: DriveContext) -> SignalColumns:
 
 
 def _lit_until(context: DriveContext, flags: Flags, lit: Flags) -> Flags:
-    """Flags of states from which on an indicator is lit until one that is flagged."""
+    """Mask of states from which an indicator stays lit until a flagged state."""
     spans, rows = context.spans, lit.any(axis=1).nonzero()[0]
     lasts, lit = np.zeros_like(lit), lit[rows]
     until = spans.next_state(flags[rows] & lit)
@@ -118,9 +119,9 @@ def _lit_until(context: DriveContext, flags: Flags, lit: Flags) -> Flags:
 
 @once_a_recording
 def _turns(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of vehicles that turn to the far side soon, and of participants that perhaps do.
+    """Masks of vehicles that turn to the far side soon, and of participants that perhaps do.
 
-    Of all participants of the recording, in all its steps.
+    For all participants of the recording, in all its steps.
     """
     passages = context.surroundings.passages
     ahead = round(context.thresholds.preparing_s / context.recording.step_s)
@@ -143,7 +144,7 @@ def _turns(context: DriveContext) -> tuple[Flags, Flags]:
 
 
 def _may_turn(context: DriveContext, row: int) -> bool:
-    """True if a participant's track ends near a junction that it has not come to."""
+    """Whether a participant's track ends near a junction before reaching it."""
     passages = context.surroundings.passages
     end = int(passages.tracks.present[row].nonzero()[0][-1])
     x, y, heading = (
@@ -166,7 +167,7 @@ def _leaving_stop(context: DriveContext) -> SignalColumns:
 
 
 def _buses_leave(context: DriveContext, buses: NDArray[intp]) -> tuple[Flags, Flags]:
-    """Flags of buses, a row each, that leave a stop, and of those of which nobody knows it."""
+    """Masks, one row per bus, of those that leave a stop and of those for which it is unknown."""
     steps = round(context.thresholds.preparing_s / context.recording.step_s)
     still = stands(context)[buses]
     leaves = still & context.spans.within(moves(context)[buses], steps)
@@ -174,13 +175,13 @@ def _buses_leave(context: DriveContext, buses: NDArray[intp]) -> tuple[Flags, Fl
     doors, doors_told = (flags[buses] for flags in lit_lamps(context, "doors"))
     at_stop = context.spans.within_last(doors, steps)
     known = told & doors_told
-    # What it does after it is lost from sight nobody knows
+    # What a bus does after it is lost from sight is unknown
     lost = still & lit & at_stop & _ends_within(context, steps)[buses]
     return leaves & lit & at_stop, (leaves & ~known) | (lost & ~leaves)
 
 
 def _ends_within(context: DriveContext, steps: int) -> Flags:
-    """Flags of states in which a participant's track goes on for fewer states than so many."""
+    """Mask of states in which a participant's track ends fewer than ``steps`` states later."""
     ends: Flags = context.spans.columns + steps > context.spans.spread(_last_seen(context))
     return ends
 
@@ -196,10 +197,11 @@ def _last_seen(context: DriveContext) -> NDArray[intp]:
 
 
 def _about_to_overtake(context: DriveContext) -> SignalColumns:
-    """The signal of those who have signalled to pull out to the far side, and do so soon.
+    """The signal of vehicles that have signalled to pull out to the far side, and do so soon.
 
-    Who is on a lane that joins others has to leave it, and overtakes nobody by that. Unknown of one
-    that ego does not catch up with: they change lanes one after the other, and do not overtake.
+    A vehicle on a lane that joins others has to leave it, and overtakes nobody by that. Unknown for
+    vehicles that ego does not catch up with: the vehicles change lanes one after the other, and do
+    not overtake.
     """
     far = 1 if context.side == "right" else -1
     steps = round(context.thresholds.signalling_s / context.recording.step_s)
@@ -226,7 +228,7 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
 
 
 def _caught_up(context: DriveContext, cells: Cells) -> Flags:
-    """Flags of cells of those whom ego is beside within ``catching_up_s``, at both speeds."""
+    """Mask of cells of vehicles that ego reaches within ``catching_up_s`` at both speeds."""
     faster_mps = cells.of(context.ego_extents.along[0]) - cells.of(context.extents.along)
     caught_up: Flags = (
         cells.of(relations.gap(context)) <= faster_mps * context.thresholds.catching_up_s
@@ -235,9 +237,9 @@ def _caught_up(context: DriveContext, cells: Cells) -> Flags:
 
 
 def _came_up(context: DriveContext) -> SignalColumns:
-    """The signal of riders who came up beside ego while it waited at a junction.
+    """The signal of riders that came up beside ego while it waited at a junction.
 
-    Of one that is beside it there when it is first seen nobody knows how it got there.
+    For a rider that is already beside ego when first seen, it is unknown how it got there.
     """
     riders = context.tracks.of_type("light_rider")
     came, unsure = np.zeros((2, *context.relevant.shape), dtype=bool)
@@ -251,7 +253,7 @@ def _came_up(context: DriveContext) -> SignalColumns:
 
 
 def _came_beside(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags]:
-    """Flags of participants beside ego, of these rows, who came up there, or perhaps did."""
+    """Masks of participants in ``rows`` beside ego that came up there, or perhaps did."""
     waits = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
     at_junction = np.zeros(context.states, dtype=bool)
     front = context.ego_extents.s_max[0]
@@ -261,7 +263,7 @@ def _came_beside(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Fla
     beside = there & (station == relations.BESIDE)
     behind_ego = there & (station == relations.IN_FRONT_OF)
     spans = context.spans
-    # In a drive's first state who is beside ego is not behind it
+    # In a drive's first state a participant beside ego is not behind it
     arrives = beside & spans.before(behind_ego) & (waits & at_junction)
     appears = beside & (spans.begins_here | ~spans.before(there)) & at_junction
     left = spans.latest(~beside)

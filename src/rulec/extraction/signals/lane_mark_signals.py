@@ -29,22 +29,24 @@ _SINGLE = (
     ("solid", "none"),
     ("none", "solid"),
 )
-"""One line between two lanes is the mark of both, or of the one whose bound it is."""
+"""Marks by which a line is single: it is the mark of both lanes, or of the one whose bound it
+is."""
 
 _STEADY_MPS = 1.0
-"""Of who is slower nobody knows from places where it points."""
+"""Below this speed the places of a vehicle do not show its direction."""
 
 _EXACT_M = 0.1
 
 _MOVED_OFF_M, _STOOD_S = 1.0, 1.0
-"""A box of who is parked wanders by less; who stays there for so long stands."""
+"""The box of a parked vehicle drifts by less; a vehicle that stays in place for this long
+stands."""
 
 _Marks = tuple[LaneMark | None, LaneMark | None]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class MarkedRows:
-    """The lanelets beside each other at ego, None where no lane exists; ``number`` by state."""
+    """The rows of lanelets beside ego, None where no lane exists; ``number`` is a state's row."""
 
     rows: tuple[tuple[Lanelet | None, ...], ...]
     number: NDArray[intp]
@@ -54,7 +56,7 @@ class MarkedRows:
 def _marked_rows(context: DriveContext) -> MarkedRows:
     there = context.existing_lanes
     pieces = context.road.piece(context.ego_extents.s[0])
-    # A piece and its lanes that exist as one number
+    # A piece and its existing lanes, encoded as one number
     lanes = 1 << np.arange(there.shape[1])
     keys = pieces << len(lanes) | there @ lanes
     different = distinct(keys)
@@ -85,13 +87,13 @@ def _marked_lanes(context: DriveContext) -> SignalColumns:
 
 
 def _lines_under_ego(context: DriveContext) -> SignalColumns:
-    """Whether ego is on a solid line, is one broken on the side it comes from, and a single one.
+    """Whether ego is on a solid line, one broken on the side that it comes from, and a single one.
 
-    Unknown where places, or the map, decide it, or marks are not told, and of the line at the
-    road's edge: what is beyond it no map tells, and laws on it differ. Who stands all through its
-    drive crosses none: it is parked on the one at the edge. Nor has anybody seen who stands from
-    the drive's beginning on cross the line that it stands on, until it moves off; nor who comes
-    first into view on one from which side it came.
+    Unknown where tolerances or the map decide, where marks are unknown, and for the line at the
+    road's edge: maps do not contain what is beyond it, and laws on it differ. A vehicle that stands
+    all through its drive crosses no line: it is parked on the one at the edge. A vehicle that
+    stands from the drive's start was not seen crossing the line under it, until it moves off; and
+    for one first seen on a line, the side that it came from is unknown.
     """
     if not map_contents(context).marks:
         return _NONE
@@ -110,13 +112,13 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     outer = _outer_lines(context)
     outer &= ~_on_a_lane_beside(context, (measured & outer).any(axis=1).nonzero()[0])[:, None]
     found = _under(context, measured & ~outer, every)
-    # Beyond the road's edge there may be premises, a place to park or a lane that nobody drew
+    # Beyond the road's edge there may be premises, a parking space or a lane missing on the map
     not_told = ~found[:, 0] & _under(context, measured, every)[:, [0, -1]].any(axis=1)
     near = _near_a_line(context, place + np.abs(offsets))
     shifts = [unmoved, offsets] if offsets.any() else [unmoved]
     others = list(product((place, -place), shifts))
     tried = [(near, _across(context, low, high, other)) for other in others]
-    # A body lies across a line by where it is, not by the direction in which its box points alone
+    # A body lies across a line by its place, not only by the direction of its box
     middle, half = context.ego_extents.left_of[0], _half_across(context)[:, None]
     tried += [
         (near | found[:, 0], _across(context, middle - half, middle + half, other))
@@ -136,10 +138,10 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
 
 
 def _gets_over(context: DriveContext, on_it: Flags, outer: Flags) -> Flags:
-    """Flags of states in which ego gets from clear of a solid line to clear of it, to its far side.
+    """Mask of states in which ego passes from clear of a solid line to clear of it on the far side.
 
-    So it lies across it as measured at some moment, and only the moment is in doubt. Of no more
-    than one line, solid from both sides all the time, no ``outer`` one.
+    Ego surely lies across it at some moment then, and only the moment is in doubt. Applies to at
+    most one line, solid from both sides all the time and not an ``outer`` one.
     """
     if not on_it.any():
         return on_it
@@ -166,10 +168,10 @@ def _gets_over(context: DriveContext, on_it: Flags, outer: Flags) -> Flags:
 
 @once
 def _comes_from(context: DriveContext) -> tuple[NDArray[intp], NDArray[intp]]:
-    """Bits of the lines that ego comes to from their left, by state, and of those nobody knows of.
+    """Bits of the lines that ego reaches from their left, by state, and of those where unknown.
 
-    The side is that on which its body last was clear of the line. Of who has not been so yet it is
-    that of its middle in the drive's first state.
+    The side is the one on which its body last was clear of the line; before that, the one of its
+    middle in the drive's first state.
     """
     own, spans = context.ego_extents, context.spans
     left, right = (own.left_of_min[0] > 0.0).T, (own.left_of_max[0] < 0.0).T
@@ -182,7 +184,7 @@ def _comes_from(context: DriveContext) -> tuple[NDArray[intp], NDArray[intp]]:
 
 
 def _not_moved_yet(context: DriveContext) -> Flags:
-    """Flags of states up to which ego stands where it was first seen, for a second or more."""
+    """Mask of states in which ego stands where it was first seen, for ``_STOOD_S`` or more."""
     x, y, spans = context.ego.x[0], context.ego.y[0], context.spans
     way = np.hypot(x - x[spans.first], y - y[spans.first])
     away = way > _MOVED_OFF_M + 2 * context.tolerances.place_m
@@ -193,16 +195,16 @@ def _not_moved_yet(context: DriveContext) -> Flags:
 
 
 def _outer_lines(context: DriveContext) -> Flags:
-    """Flags of the lines (second axis) at the edges of ego's road, by state."""
+    """Mask of the lines (second axis) at the edges of ego's road, by state."""
     there = np.pad(context.existing_lanes, ((0, 0), (1, 1)))
     outer: Flags = there[:, 1:] != there[:, :-1]
     return outer
 
 
 def _on_a_lane_beside(context: DriveContext, asked: NDArray[intp]) -> Flags:
-    """Of the states asked for those in which ego reaches onto a lane that is none of its road's.
+    """Mask of the states in ``asked`` in which ego reaches onto a lane outside its road.
 
-    As where a file does not say which lanes of the other direction lie beside ego's.
+    This happens where a file does not say which lanes of the other direction lie beside ego's.
     """
     found = np.zeros(context.states, dtype=bool)
     own = {lanelet.id for row in context.road.rows for lanelet in row if lanelet is not None}
@@ -218,10 +220,10 @@ def _on_a_lane_beside(context: DriveContext, asked: NDArray[intp]) -> Flags:
 
 
 def _half_across(context: DriveContext) -> Floats:
-    """How far (m) ego reaches to either side of its middle, were it to point where it moves.
+    """How far (m) ego would reach to either side of its middle if it pointed where it moves.
 
-    Of who is slow, where its box points in sources as good as ``_EXACT_M``, and along the lanes in
-    others; along them, too, where places are known so badly that a track points where it slips.
+    A slow ego points where its box does in sources as exact as ``_EXACT_M``, and along the lanes in
+    others; also along the lanes where places are so inexact that a track points where it slips.
     """
     width, turned = own_widths(context), context.ego_extents.turned[0]
     place = context.tolerances.place_m
@@ -232,7 +234,7 @@ def _half_across(context: DriveContext) -> Floats:
     before, after = np.maximum(at - steps, spans.first), np.minimum(at + steps, spans.end - 1)
     dx, dy = (places[0, after] - places[0, before] for places in (context.ego.x, context.ego.y))
     lasts = np.maximum(after - before, 1) * context.recording.step_s
-    # From the road's direction, which is the heading less how far that is turned
+    # Relative to the road's direction, which is the heading less the turned angle
     aside = np.arctan2(dy, dx) - context.ego.heading[0] + turned
     slow = turned if place < _EXACT_M else 0.0
     aside = np.where(np.hypot(dx, dy) >= _STEADY_MPS * lasts, aside, slow)
@@ -243,10 +245,11 @@ def _half_across(context: DriveContext) -> Floats:
 
 
 def _across(context: DriveContext, low: Floats, high: Floats, other: tuple[float, Floats]) -> Flags:
-    """Flags of the lines that a body lies across, by state: line ``k`` lies right of lane ``k``.
+    """Mask of the lines that a body lies across, by state; line ``k`` lies right of lane ``k``.
 
-    ``low`` and ``high`` say how far (m) left of each line it begins and ends. The ``other`` numbers
-    are how much more (m) of it has to be beyond a line, and by state how much farther right it is.
+    ``low`` and ``high`` are how far (m) left of each line the body begins and ends. ``other`` is
+    the extra distance (m) that it has to reach beyond a line, and by state how far right it is
+    moved.
     """
     more, right = other
     across = np.minimum(right[:, None] - low, high - right[:, None])
@@ -255,11 +258,11 @@ def _across(context: DriveContext, low: Floats, high: Floats, other: tuple[float
 
 
 def _under(context: DriveContext, crossed: Flags, states: NDArray[intp] | slice) -> Flags:
-    """What the lines are that ego crosses in these states, a row of flags each.
+    """What the lines are that ego crosses in some states, as a row of flags per state.
 
-    Is one solid, is such a one broken on ego's own side, and is it a single one? And is one broken
-    on one side alone, and nobody has seen from which one ego came? And are there marks that are
-    not told? Ego's own side is that from which it comes.
+    The flags: a line is solid; a solid one is broken on the side from which ego comes; it is a
+    single one; a solid one is broken on one side alone and ego's side was not seen; some marks are
+    unknown.
     """
     bits = crossed @ (1 << np.arange(crossed.shape[1]))
     from_left, unseen = (own[states] for own in _comes_from(context))
@@ -280,9 +283,9 @@ def _under(context: DriveContext, crossed: Flags, states: NDArray[intp] | slice)
 
 @once
 def _line_kinds(context: DriveContext) -> NDArray[intp]:
-    """Bits of the lines that are of a kind, by row of lanelets (second axis): bit ``k`` of line k.
+    """Bits of the lines of each kind, by row of lanelets (second axis): bit ``k`` is line k.
 
-    Solid ones, those broken on their right and on their left, single ones, and those not told of.
+    The kinds: solid, broken on the right, broken on the left, single, and unknown.
     """
 
     def kinds(marks: _Marks) -> tuple[bool, ...]:
@@ -300,12 +303,12 @@ def _line_kinds(context: DriveContext) -> NDArray[intp]:
 
 
 def _between(right: Lanelet | None, left: Lanelet | None) -> _Marks:
-    """The marks of the line between two lanes, as the one on its right and on its left says."""
+    """The marks of the line between two lanes, given by the lane on its right and on its left."""
     return right.left_mark if right else None, left.right_mark if left else None
 
 
 def _near_a_line(context: DriveContext, margin_m: Floats) -> Flags:
-    """Flags of states in which so much decides whether ego's body lies across a line."""
+    """Mask of states in which a margin decides whether ego's body lies across a line."""
     own = context.ego_extents
     across = np.minimum(-own.left_of_min[0], own.left_of_max[0])
     near: Flags = (np.abs(across - context.thresholds.touching_m) <= margin_m[:, None]).any(axis=1)

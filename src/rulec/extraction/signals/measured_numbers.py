@@ -1,7 +1,6 @@
-"""Measured numbers with the bounds that their source's tolerances leave them.
+"""Measured numbers with the bounds that follow from their source's tolerances.
 
-Bounds of quotients are those of their parts (interval arithmetic), of sums those of errors that
-have nothing to do with each other.
+Quotients are bounded by those of their parts (interval arithmetic), sums by independent errors.
 """
 
 from __future__ import annotations
@@ -17,36 +16,36 @@ from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.cells import Cells
 
 LONGEST_S = 1000.0
-"""The longest headway (s), also that of an ego that stands."""
+"""The longest headway (s), also used for a standing ego."""
 
 _ALIKE = 0.17
-"""The cosine of the angle to the road up to which one goes about ego's way."""
+"""Cosine of the largest angle to the road at which a participant still goes roughly ego's way."""
 
 _SURELY_ALIKE_RAD = 1.39
-"""An angle that is less than that; cosines take long."""
+"""An angle surely smaller than that, since computing cosines takes long."""
 
 _CORNER_M = 0.2
-"""How far a corner reaches along the road beyond the middle of the front before that matters."""
+"""How far a corner reaches along the road beyond the middle of the front before it matters."""
 
 _STRAIGHT_RAD = 0.1
-"""The angle to the road behind its rear up to which ego has not begun to turn."""
+"""Largest angle to the road behind ego's rear at which ego has not begun to turn."""
 
 _AT_LIMIT_MPS = 0.01
-"""Limits are written to a hundredth: a simulated speed so near to one is at it."""
+"""Limits are written to a hundredth: a simulated speed this close to a limit equals it."""
 
 
 @once
 def moves(context: DriveContext) -> Flags:
-    """Flags of states in which ego moves."""
+    """Mask of states in which ego moves."""
     drives: Flags = context.ego.speed[0] * KMH >= context.thresholds.standing_kmh
     return drives
 
 
 @once
 def own_speed(context: DriveContext) -> tuple[Floats, Floats]:
-    """Ego's speed (m/s), 0 if it stands, and how far it may be wrong.
+    """Ego's speed (m/s), 0 if it stands, and its possible error.
 
-    A simulated driver keeps to a limit exactly, but for what is rounded away of both.
+    A simulated driver keeps a limit exactly, except for the rounding of both.
     """
     speed, error = context.ego.speed[0], context.ego.speed_error[0]
     if (context.tolerances.stated_mps or np.inf) <= _AT_LIMIT_MPS:
@@ -57,7 +56,7 @@ def own_speed(context: DriveContext) -> tuple[Floats, Floats]:
 
 @once
 def speed_bounds(context: DriveContext) -> Bounds:
-    """The bounds of ego's speed (km/h); it may stand if it may be so slow."""
+    """The bounds of ego's speed (km/h); from 0 if ego may be slow enough to stand."""
     speed, error = own_speed(context)
     low = (speed - error) * KMH
     may_stand = (low < context.thresholds.standing_kmh) & (error > 0)
@@ -65,7 +64,7 @@ def speed_bounds(context: DriveContext) -> Bounds:
 
 
 def gap_bounds(context: DriveContext) -> Bounds:
-    """The bounds of gaps (m), of the ``presence_cells``, as all that follow."""
+    """The bounds of gaps (m), per presence cell, like all functions below."""
     _, least, most = gaps(context)
     return rounded_outward(least, most)
 
@@ -88,7 +87,7 @@ def headway_bounds(context: DriveContext) -> Bounds:
 
 @once
 def gaps(context: DriveContext) -> tuple[Floats, Floats, Floats]:
-    """Gaps (m), and the least and the greatest that they may be."""
+    """Gaps (m), and their least and greatest possible values."""
     along = presence_cells(context).of(relations.way_along(context))
     place = context.tolerances.place_m
     return np.maximum(along, 0.0), np.maximum(along - place, 0.0), np.maximum(along + place, 0.0)
@@ -102,7 +101,7 @@ def lateral_gap_bounds(context: DriveContext) -> Bounds:
 
 
 def difference_bounds(context: DriveContext) -> Bounds:
-    """The bounds of differences of speed (km/h)."""
+    """The bounds of speed differences (km/h)."""
     difference, speeds = speed_differences(context)
     cells = presence_cells(context)
     their_error = np.where(speeds == 0, 0.0, cells.of(context.tracks.speed_error))
@@ -112,7 +111,7 @@ def difference_bounds(context: DriveContext) -> Bounds:
 
 @once
 def speed_differences(context: DriveContext) -> tuple[Floats, Floats]:
-    """By how much (km/h) ego is faster along the road, and the others' speeds, 0 if they stand."""
+    """By how much (km/h) ego is faster along the road; the others' speeds, 0 if they stand."""
     cells = presence_cells(context)
     speeds = context.zero_if_standing(cells.of(context.extents.along) * KMH)
     difference: Floats = cells.of(context.ego_extents.along[0]) * KMH - speeds
@@ -120,10 +119,11 @@ def speed_differences(context: DriveContext) -> tuple[Floats, Floats]:
 
 
 def safe_distances(context: DriveContext, cells: Cells) -> tuple[Floats, Floats]:
-    """The distances (m) for ego to stop behind others braking fully, and how far they may be wrong.
+    """The distances (m) that ego needs to stop behind others braking fully, and their errors.
 
-    At some cells. Ego brakes as hard after its reaction time: v t + (v² - u²) / 2a, as in RSS
-    (Shalev-Shwartz, Shammah, Shashua 2017). Who is oncoming stands; cycles and trams brake less.
+    For some cells. Ego brakes as hard after its reaction time: v t + (v² - u²) / 2a, as in RSS
+    (Shalev-Shwartz, Shammah, Shashua 2017). Oncoming participants count as standing; cycles and
+    trams brake less.
     """
     limits = context.thresholds
     own, other = _ahead(context, cells)
@@ -139,9 +139,10 @@ def safe_distances(context: DriveContext, cells: Cells) -> tuple[Floats, Floats]
 
 
 def _ahead(context: DriveContext, cells: Cells) -> tuple[Floats, Floats]:
-    """The speeds (m/s) of ego and of others, from which they brake, at some cells.
+    """The speeds (m/s) from which ego and others brake, for some cells.
 
-    Who turns off brakes on its own way, so its whole speed counts while it still goes about ego's.
+    A vehicle that turns off brakes on its own way, so its whole speed counts while it still goes
+    roughly ego's way.
     """
     others = np.maximum(cells.of(context.extents.along), 0.0)
     turned = cells.of(context.extents.turned)
@@ -162,15 +163,15 @@ def own_widths(context: DriveContext) -> Floats:
 
 @once
 def own_front(context: DriveContext) -> Floats:
-    """Where along the road (m) the middle of ego's front is.
+    """The place (m) along the road of the middle of ego's front.
 
-    No farther than half its length from ego's own middle: where the road turns round just ahead, a
-    corner of its body is nearest to a place beyond the bend.
+    At most half ego's length from its own middle: where the road turns round just ahead, a corner
+    of its body is nearest to a place beyond the bend.
     """
     lengths = context.spans.spread(context.own.passages.lengths[context.ego.rows])
     own = context.ego_extents
     front: Floats = np.minimum(own.s_max[0], own.s[0] + lengths / 2)
-    # Where it has not begun to turn, but the road ahead has, the middle is looked for by itself
+    # Where ego has not begun to turn but the road ahead has, the front's middle is located directly
     (far,) = (own.s_max[0] - own.s_min[0] > lengths + _CORNER_M).nonzero()
     behind = context.road.line.headings_at(own.s_min[0, far])
     far = far[np.abs(turn(behind, context.ego.heading[0, far])) < _STRAIGHT_RAD]
@@ -190,6 +191,6 @@ def own_front(context: DriveContext) -> Floats:
 
 
 def corner_ahead(context: DriveContext) -> Floats:
-    """How far (m) a corner of ego's body reaches along the road beyond the middle of its front."""
+    """How far (m) a corner of ego's body extends along the road beyond the middle of its front."""
     corner: Floats = own_widths(context) / 2 * np.abs(np.sin(context.ego_extents.turned[0]))
     return corner

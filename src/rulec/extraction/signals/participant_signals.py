@@ -45,22 +45,22 @@ from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct
 
 _ALONG = 0.5
-"""The sine of the angle to the road up to which one heads along it."""
+"""Sine of the largest angle to the road at which a participant heads along it."""
 
 _FACES_RAD = np.radians(120.0)
-"""The angle to the road beyond which one faces ego."""
+"""Beyond this angle to the road a participant faces ego."""
 
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
 _EDGE_M, _ROOM_M = 0.5, 3.05
-"""Who parks does so at the edge; the widest vehicle (2.55 m) gets by with half a metre more."""
+"""A parked vehicle is at the edge; the widest vehicle (2.55 m) needs half a metre more to pass."""
 
 _ASKED_FOR_M = 3.0
-"""No law asks for more room between a vehicle and a cycle, or people in the road."""
+"""No law requires more room between a vehicle and a cycle, or people in the road."""
 
 
 def _position(context: DriveContext) -> SignalColumns:
-    """The paper's positions; unknown, as stations, of who is at ego's side in the first state."""
+    """The paper's positions; unknown, like stations, for participants at ego's side at first."""
     position = relations.position(context)
     at_side = (position == "l") | (position == "r")
     return SignalColumns(
@@ -69,11 +69,11 @@ def _position(context: DriveContext) -> SignalColumns:
 
 
 def _station(context: DriveContext) -> SignalColumns:
-    """The stations; unknown within the tolerance of places, but for who passes.
+    """The stations; unknown within the tolerance of places, except while ego or the other passes.
 
-    There only the moment is in doubt. Who gets on so slowly that it is for long is beside ego, or
-    is not, all that time. Unknown, too, of cycles and people whom nobody saw beside ego, and where
-    one is beside it in the first state: ego may have come up from behind.
+    There only the moment is in doubt, unless passing takes longer than ``passed_s``. Unknown, too,
+    for cycles and people that were never seen beside ego while it went past them, and for
+    participants beside it in their first state: ego may have come up from behind.
     """
     station, others = relations.station(context), relations.possible_stations(context)
     doubtful = np.logical_or.reduce([station != codes for codes in others])
@@ -91,7 +91,7 @@ def _station(context: DriveContext) -> SignalColumns:
 
 @once
 def _at_first(context: DriveContext) -> Flags:
-    """Flags of the first states of others in a drive in which they were not recorded before."""
+    """Mask of others' first states in a drive, if they were not recorded just before."""
     runs, spans, first = presence_runs(context), context.spans, np.zeros_like(context.relevant)
     rows, columns = runs.rows, spans.begins[runs.drives] + runs.first
     present = context.surroundings.tracks.present
@@ -102,9 +102,9 @@ def _at_first(context: DriveContext) -> Flags:
 
 
 def _passed_unseen(context: DriveContext) -> Flags:
-    """Flags of cycles and people near ego's side whom it went past from one state to the next.
+    """Mask of cycles and people near ego's side that it passed from one state to the next.
 
-    In both of these: how near it was as it was beside them lies in between.
+    Set in both states: how near ego was while beside them lies in between.
     """
     passed, spans = np.zeros(context.relevant.shape, dtype=bool), context.spans
     rows = context.tracks.of_type("vulnerable_user").nonzero()[0]
@@ -120,9 +120,9 @@ def _passed_unseen(context: DriveContext) -> Flags:
 
 
 def _lateral(context: DriveContext) -> SignalColumns:
-    """The sides of others; unknown within tolerances, but where ego or the other one moves over.
+    """The sides of others; unknown within tolerances, except while ego or the other moves over.
 
-    There only the moment is in doubt, as it is for stations.
+    There only the moment is in doubt, as with stations.
     """
     laterals = relations.laterals(context)
     there = context.relevant & ~np.isnan(context.extents.s_min)
@@ -141,7 +141,7 @@ def _gap(context: DriveContext) -> SignalColumns:
 
 
 def _time_headway(context: DriveContext) -> SignalColumns:
-    # The speed that the word `speed` says
+    # The speed that the word `speed` has
     cells = presence_cells(context)
     speed, drives = cells.of(own_speed(context)[0]), cells.of(moves(context))
     seconds = gaps(context)[0] / np.where(drives, speed, 1.0)
@@ -160,9 +160,9 @@ def _speed_difference(context: DriveContext) -> SignalColumns:
 
 
 def _time_to_collision(context: DriveContext) -> SignalColumns:
-    """How long ego takes to who is ahead in its lane, both as fast as they are."""
+    """The time (s) in which ego reaches participants ahead in its lane, at both current speeds."""
     measured, surely, perhaps = relations.ahead_in_lane(context)
-    # Ego runs into nobody else
+    # Ego runs into no other participants
     cells, place = relations.perhaps_ahead(context), context.tolerances.place_m
     closing = cells.of(context.ego_extents.along[0]) - cells.of(context.extents.along)
     errors = context.ego.speed_error[0], context.tracks.speed_error
@@ -191,7 +191,7 @@ def _measured(name: str, values: Floats, bounds: Bounds) -> SignalColumns:
 
 
 def _precedes(context: DriveContext) -> SignalColumns:
-    """Who is next ahead of ego in its lane."""
+    """The participant next ahead of ego in its lane."""
     (follows, _, _), cells = relations.ahead_in_lane(context), relations.perhaps_ahead(context)
     counts = cells.of(follows) & ~cells.of(_comes_towards(context)) & cells.of(context.relevant)
     ahead = cells.part(counts.nonzero()[0])
@@ -200,9 +200,9 @@ def _precedes(context: DriveContext) -> SignalColumns:
 
 
 def _one_between(context: DriveContext) -> SignalColumns:
-    """Whether a vehicle that is ahead in ego's lane itself is nearer than another one ahead.
+    """Whether another vehicle ahead in ego's lane is nearer to ego than a participant ahead.
 
-    It is if it is farther from that one than places may be wrong, which is unknown otherwise.
+    It is if it is nearer by more than the tolerance of places, and unknown within that.
     """
     (_, surely, _), cells = relations.ahead_in_lane(context), relations.perhaps_ahead(context)
     drives = context.tracks.of_type("vehicle")[cells.rows] & ~cells.of(_comes_towards(context))
@@ -225,7 +225,7 @@ def _oncoming(context: DriveContext) -> SignalColumns:
 
 @once
 def _comes_towards(context: DriveContext) -> Flags:
-    """Flags of participants that move against ego's direction, or wait on lanes of that way."""
+    """Mask of participants that move against ego's direction, or wait on lanes of that way."""
     along = context.extents.along
     faces: Flags = np.abs(context.extents.turned) > _FACES_RAD
     comes = faces & (along * -KMH >= context.thresholds.standing_kmh)
@@ -235,12 +235,12 @@ def _comes_towards(context: DriveContext) -> Flags:
 
 
 def _waits_elsewhere(context: DriveContext, cells: Cells) -> Flags:
-    """Flags of cells of who drives or rides, facing ego, on lanes not of its way.
+    """Mask of cells of drivers and riders that face ego on lanes not of its way.
 
-    Where they stand, in a queue for example. Ego does not overtake those, no more than ones that
-    move, nor follow one that waits in a junction for its turn. What only stands there, the wrong
-    way round, is an obstacle in ego's lanes. One that faces ego and moves away from it backs, or
-    its box drifts: as good as standing.
+    They stand, in a queue for example. Ego does not overtake them, any more than oncoming ones that
+    move, nor follow one that waits in a junction for its turn. A body that always stands there, the
+    wrong way round, is an obstacle in ego's lanes. One that faces ego and moves away from it
+    reverses, or its box drifts: it counts as standing.
     """
     rows = distinct(cells.rows)
     slow = np.abs(context.extents.along[rows]) * KMH < context.thresholds.standing_kmh
@@ -252,15 +252,15 @@ def _waits_elsewhere(context: DriveContext, cells: Cells) -> Flags:
 
 
 def _goes_across(context: DriveContext) -> SignalColumns:
-    """Whether participants move across the road, more than along it.
+    """Whether participants move across the road more than along it.
 
-    Who walks or rides across goes on doing so, though it stops or somebody runs into it, until it
-    leaves the road or moves along it. Unknown where the tolerance of speeds decides.
+    A person or cycle that crosses keeps crossing, even if it stops or is hit, until it leaves the
+    road or moves along it. Unknown where the tolerance of speeds decides.
     """
     least = context.thresholds.standing_kmh / KMH
     along, across = np.abs(context.extents.along), np.abs(context.extents.across)
     goes: Flags = (across >= least) & (across > along)
-    # Of a difference of speeds, which each may be wrong
+    # The error of a difference of two speeds
     wrong = context.tolerances.joint(context.tracks.speed_error, context.tracks.speed_error)
     unsure = (np.maximum(along, across) >= least) & (np.abs(across - along) <= wrong)
     users = context.tracks.of_type("vulnerable_user").nonzero()[0]
@@ -276,10 +276,10 @@ def _goes_across(context: DriveContext) -> SignalColumns:
 
 
 def _appears_there(context: DriveContext, rows: NDArray[intp], away: NDArray[intp]) -> Flags:
-    """Flags of participants of these rows that the recording, once it runs, has first in the road.
+    """Mask of participants in ``rows`` first recorded in the road, after the recording's start.
 
-    Or again, after the states in which they were last ``away``. Such a track may go on with that of
-    one who went across.
+    Or recorded there again after the states in which they were last ``away``. Such a track may
+    continue the one of a participant that went across.
     """
     first, bodies = context.surroundings.whole.first, context.tracks.participants
     later = [span_of(bodies[row])[0] > first for row in rows.tolist()]
@@ -289,9 +289,10 @@ def _appears_there(context: DriveContext, rows: NDArray[intp], away: NDArray[int
 
 
 def _mostly_along(context: DriveContext, rows: NDArray[intp]) -> Flags:
-    """Flags of participants of these rows that have moved along the road, by most steps.
+    """Mask of participants in ``rows`` that have moved along the road in most recent steps.
 
-    Step by step: in means over a second a blow that moves a body at once lasts as long.
+    Counted step by step: in means over a second, a collision that displaces a body at once lasts as
+    long.
     """
     least, step_s = context.thresholds.standing_kmh / KMH, context.recording.step_s
     others, spans = context.extents, context.spans
@@ -316,10 +317,11 @@ def _parked(context: DriveContext) -> SignalColumns:
 
 
 def _stays_aside(context: DriveContext) -> Flags:
-    """Flags of vehicles that stand aside all the time they are recorded.
+    """Mask of vehicles that stand aside for as long as they are recorded.
 
-    Their middles are beside the lanes of ego's road, or their sides at the road's edge, and they
-    leave room for all others in their lane. Those who wait in a lane do not, however long.
+    Their middles are beside the lanes of ego's road, or their sides at the road's edge with room
+    for all others in their lane. Vehicles that wait in a lane do not stand aside, however long they
+    wait.
     """
     lanes, vehicles = context.existing_lanes, context.tracks.of_type("vehicle").nonzero()[0]
     aside = np.zeros(context.relevant.shape, dtype=bool)
@@ -335,9 +337,9 @@ def _stays_aside(context: DriveContext) -> Flags:
 
 
 def _at_edge(others: RoadExtents, there: Flags) -> Flags:
-    """Flags of bodies at an edge of the lanes, in a lane that has room beside them.
+    """Mask of bodies at an edge of the lanes, in a lane that has room beside them.
 
-    ``there``: the lanes (last axis) that exist where they are.
+    ``there``: the lanes (last axis) that exist at their places.
     """
     first, end = there.argmax(axis=2), there.shape[2] - there[..., ::-1].argmax(axis=2)
     right = (others.from_bound(first)[0] < _EDGE_M) & (others.from_bound(first + 1)[1] < -_ROOM_M)
@@ -347,10 +349,10 @@ def _at_edge(others: RoadExtents, there: Flags) -> Flags:
 
 
 def _on_shoulder(context: DriveContext) -> SignalColumns:
-    """Whether vehicles that head along the road stand beside its lanes, or are on a hard shoulder.
+    """Whether vehicles heading along the road stand beside its lanes or are on a hard shoulder.
 
-    At the near side: what is at the far one may be on lanes of the other direction. What moves
-    beside the lanes may be on one that the road does not have.
+    Only at the near side: at the far one they may be on lanes of the other direction. A vehicle
+    that moves beside the lanes may be on a lane that the road does not contain.
     """
     others, there = context.extents, context.there
     if context.side == "right":
@@ -377,9 +379,9 @@ def _constant(context: DriveContext, flags: list[bool]) -> Flags:
 
 
 def _in_the_road(context: DriveContext) -> SignalColumns:
-    """Whether people are on a lane; unknown at outermost edges of ego's, where they may wait.
+    """Whether people are on a lane; unknown at the outermost edges of ego's, where they may wait.
 
-    Unknown, too, of those who ride on a lane for cycles alone: it may be a path beside the road.
+    Unknown, too, for riders on a cycle lane: it may be a path beside the road.
     """
     unsure, users = np.zeros_like(context.relevant), context.tracks.of_type("vulnerable_user")
     if len(rows := users.nonzero()[0]):
@@ -423,4 +425,4 @@ participant_signals = SignalPasses(
         ("in_the_road",): _in_the_road,
     }
 )
-"""The signals of objects."""
+"""The signals about objects."""

@@ -1,7 +1,7 @@
-"""Queues of vehicles that go ego's way: lane by lane, on all lanes, and which lanes tell of them.
+"""Queues of vehicles that go ego's way: by lane, on all lanes, and which lanes show them.
 
-Those count that are not farther away than ``flow_reach_m``, or than where ``fewest`` vehicles of a
-queue at ego's speed have room. A lane's vehicles are those whose middle is in it.
+Vehicles count up to ``flow_reach_m`` away, or as far as ``fewest`` vehicles of a queue at ego's
+speed need. A lane's vehicles are those whose middle is in it.
 """
 
 from __future__ import annotations
@@ -25,30 +25,30 @@ from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import medians_hold
 
 _BODY_M = 5.0
-"""About how long a vehicle is."""
+"""Roughly the length of a vehicle (m)."""
 
 _HAIR_M = 0.01
 
 _SIDE_LANE_M = 300.0
-"""A lane that begins or ends no farther away is one to join or to leave by."""
+"""A lane that begins or ends within this distance serves to join or leave."""
 
 _UNEVEN_M = 20.0
-"""By so much maps cut their lanes off unevenly."""
+"""Maps cut off their lanes unevenly by up to this distance."""
 
 _MOST = 0.5
-"""More than this part of a queue's gaps are short."""
+"""In a queue more than this part of the gaps are short."""
 
 READINGS = range(3)
 MEASURED, STRICT, LOOSE = READINGS
-"""What counts as a short gap: as measured, whatever is wrong, and what some call a queue, too."""
+"""What counts as a short gap: as measured, certain despite errors, and possible or only to some."""
 
 
 def lanes_that_decide(context: DriveContext) -> Flags:
-    """Flags of lanes (second axis) that go on, and on which a queue would show.
+    """Mask of lanes (second axis) that go on, and on which a queue would show.
 
-    A lane that is a short acceleration lane here, or of which the map ends soon, has no room for
-    ``fewest`` vehicles at the largest distances of a queue. One that begins or ends near ego while
-    others go on is for who joins or leaves, as between two ramps.
+    A short acceleration lane, or a lane whose map ends soon, has no room for ``fewest`` vehicles at
+    the largest distances of a queue. A lane that begins or ends near ego while others go on serves
+    to join or leave, as between two ramps.
     """
     there, _ = _lane_lengths(context)
     room = _length_near(context, there, _reach(context))
@@ -58,7 +58,7 @@ def lanes_that_decide(context: DriveContext) -> Flags:
 
 @once
 def lanes_that_go_on(context: DriveContext) -> Flags:
-    """Flags of lanes (second axis) that neither begin nor end near ego while others go on."""
+    """Mask of lanes (second axis) that neither begin nor end near ego while others go on."""
     _, only_others = _lane_lengths(context)
     without = _length_near(context, only_others, np.full(context.states, _SIDE_LANE_M))
     goes_on: Flags = without <= _UNEVEN_M
@@ -67,9 +67,9 @@ def lanes_that_go_on(context: DriveContext) -> Flags:
 
 @once_a_road
 def _lane_lengths(context: DriveContext) -> tuple[Floats, Floats]:
-    """How much (m) of each lane there is up to each place of the lanes, and of others only.
+    """The length (m) of each lane up to each place of the lanes, and the length with others only.
 
-    A row for each lane.
+    One row per lane.
     """
     lanes = context.road.lanes
     only_others = lanes.there.any(axis=1, keepdims=True) & ~lanes.there
@@ -82,9 +82,10 @@ def _lane_lengths(context: DriveContext) -> tuple[Floats, Floats]:
 
 
 def _other_roads(road: DrivenRoad) -> Iterator[tuple[slice, list[int]]]:
-    """The lanes of a road that ego's own joins, or leaves, and where in the lanes that is not yet.
+    """Lanes of another road that ego's joins or leaves, and the range where they are not beside it.
 
-    They neither begin nor end there: more of them than of ego's go on beyond, on the map.
+    They neither begin nor end there: beyond, on the map, there are more of them than of ego's lanes
+    that go on.
     """
     for piece, (before, after) in enumerate(pairwise(road.rows), 1):
         border = int(road.lanes.s.searchsorted(road.borders[piece]))
@@ -101,7 +102,7 @@ def _other_roads(road: DrivenRoad) -> Iterator[tuple[slice, list[int]]]:
 
 
 def _length_near(context: DriveContext, lengths: Floats, reach_m: Floats) -> Floats:
-    """How much (m) of each lane (second axis) is near ego, up to so far from it, by state."""
+    """The length (m) of each lane (second axis) within ``reach_m`` of ego, by state."""
     s, own = context.road.lanes.s, context.ego_extents.s[0]
     places = np.concatenate((own + reach_m, own - reach_m))
     near: Floats = np.zeros((len(lengths), len(own)))
@@ -113,7 +114,7 @@ def _length_near(context: DriveContext, lengths: Floats, reach_m: Floats) -> Flo
 
 
 def _length_ahead(context: DriveContext) -> Floats:
-    """How much (m) of ego's lane there is ahead of it on the map, by state."""
+    """The length (m) of ego's lane ahead of it on the map, by state."""
     there, _ = _lane_lengths(context)
     s, front, lane = context.road.lanes.s, context.ego_extents.s_max[0], context.ego_lane
     ahead = np.zeros(context.states)
@@ -124,7 +125,7 @@ def _length_ahead(context: DriveContext) -> Floats:
 
 
 def _shortest_queue(context: DriveContext) -> Floats:
-    """How much (m) ``fewest`` vehicles take up at the largest distances of a queue, by state."""
+    """The length (m) of ``fewest`` vehicles at the largest distances of a queue, by state."""
     limits, speed = context.thresholds, context.ego_extents.along[0]
     gap = np.maximum(limits.queue_gap_m, limits.queue_headway_s * speed)
     length: Floats = limits.fewest * (gap + _BODY_M)
@@ -132,7 +133,7 @@ def _shortest_queue(context: DriveContext) -> Floats:
 
 
 def longest_gaps(context: DriveContext, speed: Floats, speed_error: Floats) -> Floats:
-    """The longest gap (m) in a queue behind which one drives at ``speed`` (m/s), by reading."""
+    """The longest gap (m) in a queue in front of vehicles at ``speed`` (m/s), by reading."""
     limits = context.thresholds
     wrong = limits.queue_headway_s * np.fmax(speed_error, 0.0)
     wrong = context.tolerances.joint(context.tolerances.place_m, wrong)
@@ -144,7 +145,7 @@ def longest_gaps(context: DriveContext, speed: Floats, speed_error: Floats) -> F
 
 
 def _reach(context: DriveContext) -> Floats:
-    """How far (m) ahead and behind traffic is looked at, by state."""
+    """How far (m) ahead and behind traffic is considered, by state."""
     limits = context.thresholds
     far = np.minimum(_shortest_queue(context) / 2, limits.near_m)
     return np.maximum(limits.flow_reach_m, far)
@@ -152,17 +153,17 @@ def _reach(context: DriveContext) -> Floats:
 
 @once
 def close_by(context: DriveContext) -> Flags:
-    """Flags of vehicles that go ego's way and are part of the traffic around it."""
+    """Mask of vehicles that go ego's way and are part of the traffic around it."""
     return context.going_along & (relations.gap(context) <= _reach(context))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class VehiclesAround:
-    """Ego and the vehicles around it that go its way, an entry for each in each state.
+    """Ego and the vehicles around it that go its way: one entry per vehicle and state.
 
-    ``place`` numbers the lanes, of their middles, and in each of them the states; there are so many
-    ``counts`` (lane x state) of them, and ``number`` is an entry's among these. ``speed`` (m/s) is
-    that along the road, 0 of who drives back.
+    ``lane`` is that of the middle. ``place`` is the flat index of lane and state, ``counts`` (lane
+    x state) the number of entries there, and ``number`` an entry's index among these. ``speed``
+    (m/s) is along the road, 0 for vehicles that reverse.
     """
 
     state: NDArray[intp]
@@ -178,14 +179,14 @@ class VehiclesAround:
 
 @once
 def vehicles_around(context: DriveContext) -> VehiclesAround:
-    """The traffic around ego, which is first."""
+    """The traffic around ego, with ego's entries first."""
     own, others, there = context.ego_extents, context.extents, close_by(context)
     cells, n_lanes = Cells.at(there), context.existing_lanes.shape[1]
     numbers, counts = np.zeros(there.shape, dtype=np.int16), []
     for number in range(n_lanes):
         inside, egos = there & (others.lane == number), own.lane[0] == number
         up_to = np.concatenate((egos[None], inside)).astype(np.int16)
-        # Whole rows are sooner added than by cumsum
+        # Adding whole rows is faster than cumsum
         for earlier, later in pairwise(up_to):
             later += earlier
         numbers += (up_to[1:] - 1) * inside
@@ -211,10 +212,10 @@ def vehicles_around(context: DriveContext) -> VehiclesAround:
 
 @once
 def queues_by_lane(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of queues, and of lanes whose median speed is that of slow ones, by lane and state.
+    """Masks of queues, and of lanes whose median speed is that of slow queues, by lane and state.
 
-    In a queue more than half of the gaps are short. Its flags are by what counts as short, a first
-    axis.
+    In a queue more than half of the gaps are short. The mask of queues has the reading of short
+    gaps as its first axis.
     """
     around = vehicles_around(context)
     n_places, shape = around.counts.size, around.counts.shape
@@ -239,24 +240,25 @@ def queues_by_lane(context: DriveContext) -> tuple[Flags, Flags]:
 def _short_gaps(
     context: DriveContext, chosen: NDArray[intp], rows: NDArray[intp], counts: NDArray[intp]
 ) -> NDArray[intp]:
-    """How many of the gaps between vehicles in a lane are short, by reading and row.
+    """The number of short gaps between vehicles in a lane, by reading and row.
 
-    The chosen ones of all around are in these rows, so many in each.
+    ``chosen`` entries of all vehicles around are in these ``rows``, which have ``counts`` entries
+    each.
     """
     around, longest = vehicles_around(context), int(counts.max())
-    # A row for each lane and state, which ends in NaN
+    # One row per lane and state, which ends in NaN
     at = rows * longest + around.number.take(chosen)
     s_min = np.full(len(counts) * longest, np.nan)
     s_min[at] = around.s_min.take(chosen)
     within = s_min.reshape(-1, longest).argsort(axis=1, kind="stable")
-    # One behind the other in the first axis, in which they are sooner added
+    # Successive vehicles along the first axis, along which they are added faster
     order = np.ascontiguousarray(within.T)
     order += np.arange(len(counts)) * longest
     entries = np.zeros(len(s_min), dtype=intp)
     entries[at] = chosen
     behind = entries.take(order[:-1])
     gaps = s_min.take(order[1:]) - around.s_max.take(behind)
-    # So near one another are vehicles of a queue whatever their speeds are
+    # Gaps up to this are short at any speed
     most_wrong = np.fmax.reduce(around.speed_error, initial=0.0)
     near = longest_gaps(context, np.zeros(1), most_wrong)[STRICT]
     short = (gaps <= near)[None].repeat(len(READINGS), axis=0)
@@ -271,17 +273,17 @@ def _short_gaps(
 
 @once
 def dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
-    """Flags of states with queues on all lanes, surely so, and of those where nobody knows."""
+    """Masks of states with queues on all lanes: as measured, surely, and unknown."""
     queues, _ = queues_by_lane(context)
     lanes = travel_lanes_first(context)
     decides = lanes & (lanes_that_decide(context).T | queues)
     all_queue = np.logical_and((queues | ~decides).all(axis=1), decides.any(axis=1))
-    # What a few lanes are is not told of the others, but where the world of all of them ends
+    # A few lanes say nothing about the others; where all traffic is recorded they are no queue
     few = 2 * decides.sum(axis=1) < lanes.sum(axis=0)
     whole = "arrivals" in context.recording.complete
     all_queue &= ~(few & whole)
-    # Whom nobody is ahead of goes as fast as it likes, unless that one is not recorded any more:
-    # it is first of a line, and half of the lanes have one
+    # A vehicle with none ahead drives freely, unless the one ahead is no longer recorded: ego is
+    # then first of a line, and at least half of the lanes have one
     every, loose = decides[LOOSE].sum(axis=0), queues[LOOSE] & decides[LOOSE]
     lines = loose[context.ego_lane, context.spans.columns] & (2 * loose.sum(axis=0) >= every)
     gap, gap_behind = (
@@ -293,19 +295,19 @@ def dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     dense, surely, perhaps = (
         all_queue[reading] & (gap <= longest[reading]) for reading in READINGS
     )
-    # Nor is there a queue where the world ends, whose traffic is all recorded, nor is ego in one
-    # that sees more of its lane empty before it
+    # There is no queue where the world ends and all its traffic is recorded, and ego is in none if
+    # it sees a longer empty part of its lane ahead
     empty = (gap > longest[LOOSE]) & (_length_ahead(context) > longest[LOOSE])
     nobody_knows = ~decides[MEASURED].any(axis=0) & ~empty & (not whole)
-    # And who is last behind a queue may be in it or not
+    # The last vehicle behind a queue may be in it or not
     surely &= ~few[MEASURED] & (gap_behind <= longest[LOOSE])
     return dense, surely, (perhaps | dense) & ~surely | cut_off | nobody_knows
 
 
 def gap_in_lane(context: DriveContext, station: int) -> Floats:
-    """The gap (m) to the next one in ego's lane to whom ego has this station, by state.
+    """The gap (m) to the nearest vehicle in ego's lane to which ego has ``station``, by state.
 
-    As far as traffic reaches, infinity without any.
+    As far as traffic is considered; infinity without any.
     """
     cells = Cells.at(close_by(context) & (relations.station(context) == station))
     cells = cells.part((cells.of(context.extents.lane) == cells.of(context.ego_lane)).nonzero()[0])

@@ -1,8 +1,9 @@
 """Relations of ego to others: along and across the road, and distance.
 
-Along the road bodies count: ego is behind somebody until its front is level with the other's rear.
-Across the road lanes count, those of the other's body and that of ego's middle, so that who keeps
-within a lane is in that lane. For the paper's ``position`` see ``docs/scenarios.md``.
+Along the road bodies count: ego is behind a participant until its front is level with the other's
+rear. Across the road lanes count, those of the other's body and that of ego's middle, so that a
+participant that keeps within a lane is in that lane. For the paper's ``position`` see
+``docs/scenarios.md``.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ def station(context: DriveContext) -> Codes:
 
 @once
 def possible_stations(context: DriveContext) -> tuple[Codes, Codes]:
-    """The same with others so much longer and shorter at both ends as places may be wrong."""
+    """``station`` with others longer, and shorter, at both ends by the tolerance of places."""
     own, ends, place = context.ego_extents, context.extents, context.tolerances.place_m
     longer, shorter = (_along(own, ends.s_min - x, ends.s_max + x) for x in (place, -place))
     return longer, shorter
@@ -57,8 +58,8 @@ def _along(ego: RoadExtents, s_min: Floats, s_max: Floats) -> Codes:
 
 
 def _coded(least: Flags, most: Flags) -> Codes:
-    """The least of three codes, the greatest, where that is not so, and else the one between."""
-    # Arithmetic of bytes is many times as fast as choosing
+    """Code 0 where ``least`` holds, else 2 where ``most`` holds, else 1."""
+    # Byte arithmetic is many times as fast as np.where
     codes: Codes = most.view(int8) + int8(1)
     codes *= (~least).view(int8)
     return codes
@@ -66,16 +67,16 @@ def _coded(least: Flags, most: Flags) -> Codes:
 
 @once
 def known_places(context: DriveContext) -> Cells:
-    """The cells of those who are beside the road: of the others no relation says anything."""
+    """The cells of participants that are beside the road; relations to others mean nothing."""
     return Cells.at(~np.isnan(context.extents.s_min))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Laterals:
-    """On which side of others ego is: as measured, and as far as places allow.
+    """On which side of others ego is: as measured, and within the tolerance of places.
 
-    ``codes`` are indices into ``LATERALS``, ``doubtful`` where it may be another one. Is it the
-    same lane ``surely``, and ``perhaps``?
+    ``codes`` are indices into ``LATERALS``, ``doubtful`` where another may be right. ``surely`` and
+    ``perhaps``: whether it is the same lane.
     """
 
     codes: Codes
@@ -87,18 +88,18 @@ class Laterals:
 def lateral(context: DriveContext) -> Codes:
     """Ego right of others, in their lanes or left of them, as indices into ``LATERALS``.
 
-    Who is on a mark of ego's lane, reaching beyond it, and clear of ego sideways is at its side;
-    who is no farther in but in the way of ego's body is in the lane.
+    A participant on a mark of ego's lane, reaching beyond it, and clear of ego sideways is at its
+    side; one no farther in but in the way of ego's body is in the lane.
     """
     return laterals(context).codes
 
 
 @once
 def laterals(context: DriveContext) -> Laterals:
-    """The same with what places allow: others further in and out, and the map where it may be.
+    """``lateral`` within tolerances: others farther in and out, and the map where it may be.
 
-    What lies between these is among them. Who is ahead in ego's lane, but hardly in its way, may as
-    well be at its side.
+    This covers all that lies in between. A participant ahead in ego's lane but hardly in its way
+    may as well be at its side.
     """
     place, offset = context.tolerances.place_m, context.map_offset_m
     cells, beside = known_places(context), _beside_lane(context)
@@ -134,7 +135,7 @@ def laterals(context: DriveContext) -> Laterals:
 
 
 def _left_of_bounds(context: DriveContext, cells: Cells) -> RoadExtents:
-    """How far (m) left of each bound of the lanes bodies begin and end, by cell."""
+    """How far (m) left of each lane bound bodies begin and end, by cell."""
     bounds = [np.full(context.states, k) for k in range(context.existing_lanes.shape[1] + 1)]
     ends = np.array([context.extents.cells_from_bound(cells, bound) for bound in bounds])
     low, high = np.moveaxis(ends, 0, -1)
@@ -142,10 +143,10 @@ def _left_of_bounds(context: DriveContext, cells: Cells) -> RoadExtents:
 
 
 def _in_the_way(context: DriveContext, cells: Cells, clear: Floats) -> Flags:
-    """Flags of who takes up ego's way by a quarter of its width, half with its middle elsewhere.
+    """Mask of bodies across a quarter of ego's way, or half with their middle in another lane.
 
-    The width is the narrower one's. Who leaves ego's lane or comes into it, or rides at its edge,
-    is not driving in front of ego yet, or any more.
+    Of the narrower one's width. A vehicle that leaves ego's lane or comes into it, or rides at its
+    edge, is not yet, or no longer, driving in front of ego.
     """
     own, others = context.ego_extents, context.extents
     theirs = cells.of(others.d_max) - cells.of(others.d_min)
@@ -158,7 +159,7 @@ def _in_the_way(context: DriveContext, cells: Cells, clear: Floats) -> Flags:
 
 @once
 def ahead_in_lane(context: DriveContext) -> tuple[Flags, Flags, Flags]:
-    """Flags of who is ahead in ego's lane: as measured, surely and perhaps."""
+    """Masks of participants ahead in ego's lane: as measured, surely and perhaps."""
     ahead, sides = station(context) == BEHIND, laterals(context)
     measured = ahead & (sides.codes == SAME_LANE)
     return measured, ahead & sides.surely, ahead & sides.perhaps
@@ -166,19 +167,20 @@ def ahead_in_lane(context: DriveContext) -> tuple[Flags, Flags, Flags]:
 
 @once
 def perhaps_ahead(context: DriveContext) -> Cells:
-    """The cells of who is perhaps ahead in ego's lane."""
+    """The cells of participants that are perhaps ahead in ego's lane."""
     _, _, perhaps = ahead_in_lane(context)
     return Cells.at(perhaps)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _BesideLane:
-    """Where others are beside ego's lane: how far (m) they reach in it and beyond its bounds.
+    """Others beside ego's lane: how far (m) they reach into it and beyond its bounds, by cell.
 
-    ``low`` and ``high`` say how far left of its middle they begin and end, ``into`` and ``beyond``
-    how far they reach over the nearer bound and the farther one. ``middle`` is ego's, ``right_of``
-    and ``left_of`` are the sets of the lanes that it is right and left of. They are ``clear`` of
-    ego at the side where that is more, and there ``ego_at`` is its side. All by cell.
+    ``low`` and ``high``: how far left of the lane's middle they begin and end; ``into`` and
+    ``beyond``: how far they reach over its nearer bound and its farther one. ``middle`` is ego's;
+    ``right_of`` and ``left_of`` are the sets of lanes whose right bound is right, and whose left
+    bound is left, of ego's middle. ``clear`` is the distance from ego at the side where it is
+    larger, ``ego_at`` ego's side there.
     """
 
     reach: float
@@ -200,9 +202,9 @@ class _BesideLane:
         return replace(self, **own)
 
     def sides(self, touched: LaneSets, inward: float) -> Codes:
-        """Ego's sides, with others so much (m) further in its lane; they touch the lanes of sets.
+        """Ego's sides, with others ``inward`` (m) farther in its lane.
 
-        ``touched`` has a set by cell.
+        ``touched`` are the sets of lanes that they reach into, by cell.
         """
         reach, sides = self.reach, self.across(touched)
         beside_way = (self.beyond > reach + inward) & (self.clear > reach + inward)
@@ -213,7 +215,7 @@ class _BesideLane:
         return sides
 
     def across(self, touched: LaneSets) -> Codes:
-        """Ego's middle right of others' lanes, in or left of them; without any lane, of them."""
+        """Ego's middle right of others' lanes, in or left of them; of bodies if in no lane."""
         nowhere = touched == 0
         right_of, left_of_all = (touched & self.right_of) == 0, (touched & self.left_of) == 0
         right_of &= ~nowhere | (self.middle <= self.low)
@@ -221,9 +223,9 @@ class _BesideLane:
         return _coded(right_of, left_of_all)
 
     def wavering(self, sets: Sequence[LaneSets], place_m: float) -> NDArray[intp]:
-        """The cells in which sides may be others so much (m) further in and out.
+        """The cells whose sides may change with others ``place_m`` (m) farther in and out.
 
-        ``sets`` are the lanes that others touch then, which in between are between these.
+        ``sets`` are the lanes that others then touch; those in between lie between these.
         """
         reach = self.reach
         wavers: Flags = sets[0] != sets[1]
@@ -251,12 +253,12 @@ def _beside_lane(context: DriveContext) -> _BesideLane:
 def _beside_lane_shifted(
     context: DriveContext, chosen: NDArray[intp], shift: Floats
 ) -> _BesideLane:
-    """The same with all so much (m), by state, farther right on the map; of some known places."""
+    """``_beside_lane`` of some known places, with all moved right by ``shift`` (m, by state)."""
     cells = known_places(context)
     if len(chosen) < len(cells):
         cells = cells.part(chosen)
     own, others = context.ego_extents.moved(-shift), context.extents
-    # How far left of the two bounds of ego's lane they begin and end
+    # How far left of the two bounds of ego's lane others begin and end
     low_r, high_r, low_l, high_l = (
         values
         for bound in (own.lane[0], own.lane[0] + 1)
@@ -273,7 +275,7 @@ def _beside_lane_shifted(
     else:
         on_left, on_right = low - cells.of(own_high), cells.of(own_low) - high
         clear, ego_at = np.maximum(on_left, on_right), (~(on_left > on_right)).view(int8) * LEFT_OF
-    # Bounds ascend to the left: who is right of the first lane is left of the right bound of none
+    # Bounds ascend to the left: a place right of the first lane is left of no lane's right bound
     return _BesideLane(
         context.thresholds.touching_m,
         right_of=cells.of(lane_sets(own.left_of[..., :-1] > 0)),
@@ -289,9 +291,9 @@ def _beside_lane_shifted(
 
 
 def _beside_elsewhere(context: DriveContext, offset: Floats) -> NDArray[intp]:
-    """Those of the known places whose sides may be others with the map so much (m) off, by state.
+    """The known places whose sides may change if the map is off by ``offset`` (m), by state.
 
-    It is another matter with who stays beside ego's lane, and at its side, while ego stays in it.
+    Not those that stay beside ego's lane, and at its side, while ego stays in it.
     """
     cells, beside, away = known_places(context), _beside_lane(context), np.abs(offset)
     keeps_lane = np.abs(context.ego_extents.left_of[0]).min(axis=1) > away + _HAIR_M
@@ -304,13 +306,13 @@ def _beside_elsewhere(context: DriveContext, offset: Floats) -> NDArray[intp]:
 
 @once
 def gap(context: DriveContext) -> Floats:
-    """The distance (m) along the road between bodies, 0 beside each other."""
+    """The distance (m) along the road between bodies, 0 where they overlap along it."""
     return np.maximum(way_along(context), 0.0)
 
 
 @once
 def way_along(context: DriveContext) -> Floats:
-    """The same, less than 0 beside each other."""
+    """The distance (m) along the road between bodies, negative where they overlap along it."""
     ego, others = context.ego_extents, context.extents
     way: Floats = np.maximum(others.s_min - ego.s_max, ego.s_min - others.s_max)
     return way
@@ -318,13 +320,13 @@ def way_along(context: DriveContext) -> Floats:
 
 @once
 def lateral_gap(context: DriveContext) -> Floats:
-    """The distance (m) across the road between bodies, 0 behind each other."""
+    """The distance (m) across the road between bodies, 0 where they overlap across it."""
     return np.maximum(way_across(context), 0.0)
 
 
 @once
 def way_across(context: DriveContext) -> Floats:
-    """The same, less than 0 behind each other."""
+    """The distance (m) across the road between bodies, negative where they overlap across it."""
     ego, others = context.ego_extents, context.extents
     way: Floats = np.maximum(others.d_min - ego.d_max, ego.d_min - others.d_max)
     return way
@@ -334,9 +336,9 @@ def way_across(context: DriveContext) -> Floats:
 def position(context: DriveContext) -> NDArray[np.str_]:
     """The paper's position letters b, f, l and r.
 
-    Pedestrians have a frame of their own. Where bodies are beside each other in one lane they are
-    at each other's sides if they overlap across the road by less than along it, and less than half
-    of the narrower one; else their middles decide.
+    Pedestrians have a frame of their own. Bodies beside each other in one lane are at each other's
+    sides if they overlap across the road by less than along it, and by less than half of the
+    narrower one; otherwise their middles decide.
     """
     ego, others = context.ego_extents, context.extents
     walking = context.tracks.of_type("pedestrian").nonzero()[0]
@@ -368,7 +370,7 @@ def position(context: DriveContext) -> NDArray[np.str_]:
 
 
 def _facing(others: RoadExtents) -> NDArray[intp]:
-    """The direction of motion, or heading at rest, by right angles to the road.
+    """The direction of motion, or the heading at rest, by right angles to the road.
 
     Indices into ``_FACING``; half-way counts as across the road.
     """
@@ -380,9 +382,9 @@ def _facing(others: RoadExtents) -> NDArray[intp]:
 
 
 def stays(context: DriveContext, rows: NDArray[intp]) -> Flags:
-    """Flags of those of these rows who stand all the time that they are recorded.
+    """Mask of the participants in ``rows`` that stand for as long as they are recorded.
 
-    Boxes of one that stands drift by up to ``_DRIFT_M``.
+    Boxes of standing participants drift by up to ``_DRIFT_M``.
     """
     still: Flags = _who_stays(context)[context.tracks.rows[rows]]
     return still
@@ -390,7 +392,7 @@ def stays(context: DriveContext, rows: NDArray[intp]) -> Flags:
 
 @once_a_recording
 def _who_stays(context: DriveContext) -> Flags:
-    """The same flags of everybody: no two of its places are farther apart."""
+    """``stays`` for all participants: no two places of one are farther apart than that."""
     tracks = context.surroundings.tracks
     spreads = [
         np.where(tracks.present, places, -np.inf).max(axis=1, initial=-np.inf)
@@ -399,7 +401,7 @@ def _who_stays(context: DriveContext) -> Flags:
     ]
     diagonal = np.hypot(spreads[0], spreads[1])
     still: Flags = diagonal <= _DRIFT_M
-    # Of a few the spreads do not tell: they depend on how a file's axes lie
+    # For a few the spreads do not decide: they depend on the direction of a file's axes
     in_doubt = (np.maximum(spreads[0], spreads[1]) <= _DRIFT_M) & np.isfinite(diagonal) & ~still
     for row in in_doubt.nonzero()[0].tolist():
         own = tracks.present[row]

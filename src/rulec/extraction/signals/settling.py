@@ -1,4 +1,4 @@
-"""Durations: a value that lasts for less than its word's least one is noise."""
+"""Durations: a value that lasts for less than its word's least duration is noise."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ _IMPLIED: Mapping[str, Sequence[str]] = {
     "level_crossing_zone": ("enters_level_crossing",),
     "warning_lights": ("hazard_lights",),
 }
-"""Signal -> those that it holds with, as the vocabulary's facts say."""
+"""Signal -> the signals that imply it by the vocabulary's facts."""
 
 
 def fewest_states(least_s: float, step_s: float) -> int:
-    """How many states a value lasts for at least that lasts for so long (s)."""
+    """The least number of states of a value that lasts for ``least_s`` (s)."""
     return ceil(least_s / step_s - _HAIR)
 
 
@@ -40,11 +40,11 @@ def settled(
     spans: EndToEnd,
     there: Flags | None = None,
 ) -> SignalColumns:
-    """The signals of drives without values that are shorter than their word's least duration (s).
+    """The signals of drives without values shorter than their word's least duration (s).
 
-    Such a value between two equal ones becomes theirs, and no better known than they. At the ends
-    of a recording, and where others come or go, who are not ``there`` (a row each) before or after,
-    nobody knows it: it may be noise or last.
+    Such a value between two equal ones becomes theirs, and no better known than they are. At the
+    ends of a recording, and where others come or go (are not ``there``, a row each, before or
+    after), it is unknown: it may be noise or last.
     """
     least = {name: fewest_states(seconds, step_s) for name, seconds in least_s.items()}
     unknown = dict(signals.unknown)
@@ -57,7 +57,7 @@ def settled(
 
 
 def agreeing(signals: SignalColumns) -> SignalColumns:
-    """The signals with each true, and known to be, where one that implies it surely is.
+    """The signals, each made true and known where a signal that implies it is surely true.
 
     Each may have been settled by itself, or found by a measure of its own.
     """
@@ -80,9 +80,9 @@ def _changed(
     spans: EndToEnd,
     parts: Flags | None,
 ) -> dict[str, SignalColumn]:
-    """The columns that change by being settled, each as it is then.
+    """The columns that are changed by settling, with their new values.
 
-    What is not known of them, or of others, is added to ``unknown``.
+    Where these or other columns become unknown, ``unknown`` is extended.
     """
     changed: dict[str, SignalColumn] = {}
     for names in _alike(columns, least):
@@ -104,9 +104,9 @@ def _changed(
 def _alike(
     columns: Mapping[str, SignalColumn], least: Mapping[str, int]
 ) -> Iterable[Sequence[str]]:
-    """The names of columns with a least number of states, those of one kind and number together.
+    """The names of columns with a least number of states, grouped by type and number.
 
-    Without those of what is never so, which no value interrupts.
+    Without columns that are never true, since no value interrupts them.
     """
     groups: dict[object, list[str]] = {}
     for name, column in columns.items():
@@ -116,7 +116,7 @@ def _alike(
 
 
 def _next_to(changed: Flags, flags: Flags, spans: EndToEnd) -> Flags:
-    """Flags of changed states next to flagged ones, across others that have changed, too."""
+    """Mask of changed states next to flagged ones, also across other changed states."""
     if not changed.any():
         return changed
     if changed.ndim > 1:
@@ -135,12 +135,12 @@ def _beside_flagged(changed: Flags, flags: Flags, spans: EndToEnd) -> Flags:
 
 
 def _brief_at_ends(column: SignalColumn, least: int, spans: EndToEnd) -> Flags:
-    """Flags of the values that a column, or rows, begins or ends with for fewer states."""
+    """Mask of values, at a column's or rows' ends, that last for fewer states than ``least``."""
     brief, either = np.zeros(column.shape, dtype=bool), np.logical_or.accumulate
     of_drive = np.minimum(least, spans.lengths) - 1
     for most in distinct(of_drive[of_drive > 0]).tolist():
         own = of_drive == most
-        # From each end of a drive so many states to the inside, and one more
+        # This many states inward from each end of a drive, and one more
         near = np.arange(most + 1)
         for edge, way in ((spans.begins, 1), (spans.begins + spans.lengths - 1, -1)):
             columns = edge[own][:, None] + way * near
@@ -151,7 +151,7 @@ def _brief_at_ends(column: SignalColumn, least: int, spans: EndToEnd) -> Flags:
 
 
 def _coming_or_going(there: Flags, spans: EndToEnd) -> Flags | None:
-    """Flags of the states in which others, a row each, come or are gone; None if nobody does."""
+    """Mask of the states in which others, a row each, come or are gone; None if nobody does."""
     found = np.zeros(there.shape, dtype=bool)
     found[:, 1:] = there[:, 1:] != there[:, :-1]
     found[:, spans.begins] = False
@@ -159,7 +159,7 @@ def _coming_or_going(there: Flags, spans: EndToEnd) -> Flags | None:
 
 
 def _brief_beside(column: SignalColumn, least: int, spans: EndToEnd, parts: Flags) -> Flags:
-    """Flags of values, by row, that last for fewer states from where somebody comes or is gone."""
+    """Mask of values, by row, lasting under ``least`` states from where others come or are gone."""
     starts, at_end = _runs(column, spans, parts)
     lengths = starts[1:] - starts[:-1]
     brief: Flags = (at_end[:-1] != at_end[1:]) & (lengths < least)
@@ -169,9 +169,9 @@ def _brief_beside(column: SignalColumn, least: int, spans: EndToEnd, parts: Flag
 def _runs(
     column: SignalColumn, spans: EndToEnd, parts: Flags | None
 ) -> tuple[NDArray[intp], Flags]:
-    """Where runs of one value begin, in all rows laid flat, and flags of those with none before.
+    """The flat indices where runs of one value begin; mask of those with none before them.
 
-    Behind them all is one more.
+    One more index follows at the end.
     """
     begins, ends = np.ones(column.shape, dtype=bool), spans.begins_here
     begins[..., 1:] = column[..., 1:] != column[..., :-1]
@@ -188,9 +188,9 @@ def without_blips(
 ) -> SignalColumn:
     """A column, or rows of them, without values that last for fewer states than ``least``.
 
-    Only between equal neighbours, from the first on: flicker becomes what it began with. Where
-    there are none it is the column itself. What is beyond where somebody comes or is gone,
-    flagged in ``parts``, is no neighbour.
+    Changes only those between equal neighbours, from the first on, so that flicker becomes what it
+    began with. Returns the column itself if there are none. Values beyond where a participant comes
+    or is gone, flagged in ``parts``, are no neighbours.
     """
     starts, at_end = _runs(column, spans, parts)
     between = ~(at_end[:-1] | at_end[1:])
@@ -207,10 +207,11 @@ def without_blips(
 def with_one_change(
     codes: SignalColumn, doubtful: Flags, there: Flags, spans: EndToEnd
 ) -> SignalColumn:
-    """Codes without what goes to and fro in doubt, between the sure codes before and after it.
+    """Codes without alternation in doubtful states between the sure codes before and after.
 
-    Noise does so: where all in between are one of these two, the later one holds from where it
-    first comes. Rows with a column per state, in all of which one is ``there``.
+    Noise alternates: if all codes in between are one of these two, the later one holds from its
+    first occurrence. Rows with a column per state; the participant has to be ``there`` in all of
+    them.
     """
     if not doubtful.any():
         return codes
@@ -227,10 +228,10 @@ def with_one_change(
 
 
 class _BetweenSure(NamedTuple):
-    """The doubtful states between two sure ones, in all of which one is there.
+    """The doubtful states between two sure ones, with the participant there throughout.
 
-    Their numbers, and those of the sure ones ``before`` and ``behind``, among the ``codes`` of the
-    ``spans`` with any doubt; their ``places`` in the whole.
+    ``states`` are their numbers, ``before`` and ``behind`` those of the sure ones, among the
+    ``codes`` of the ``spans`` with any doubt; ``places`` are theirs in the whole array.
     """
 
     spans: EndToEnd
@@ -259,17 +260,17 @@ def _between_sure(
 def only_when(
     codes: SignalColumn, doubtful: Flags, there: Flags, most: int, spans: EndToEnd
 ) -> Flags:
-    """Flags of doubtful states between sure ones of different codes: only when is in doubt.
+    """Mask of doubtful states between sure ones of different codes: only the moment is in doubt.
 
-    Rows with a column per state. That is so of ``most`` states at a time, in all of which one is
-    ``there``, and whose codes do not go to and fro.
+    Rows with a column per state. Applies to at most ``most`` states at a time, in all of which the
+    participant is ``there``, and whose codes do not alternate.
     """
     found = np.zeros(doubtful.shape, dtype=bool)
     if not doubtful.any():
         return found
     own, near, _, before, behind, places = _between_sure(codes, doubtful, there, spans)
     changes = own.changes(near).cumsum()
-    # Codes that differ at the ends are all different, or go to and fro
+    # Codes that differ at the ends are all different, or alternate
     one_way = changes.take(behind) - changes.take(before) <= _MOST_CHANGES
     only = one_way & (near.take(before) != near.take(behind)) & (behind - before - 1 <= most)
     found.ravel()[places[only]] = True

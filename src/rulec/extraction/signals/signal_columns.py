@@ -1,4 +1,4 @@
-"""The signals of a drive as named columns, of world and objects."""
+"""The signals of a drive as named columns, of the world and of objects."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SignalColumn = NDArray[Any]
 Bounds: TypeAlias = tuple[SignalColumn, SignalColumn]
 
 SignalNames: TypeAlias = frozenset[str] | None
-"""The names of the signals that somebody reads; None for all."""
+"""The names of the signals that are read; None means all."""
 
 
 _NONE: Mapping[str, Any] = MappingProxyType({})
@@ -25,12 +25,14 @@ _NONE: Mapping[str, Any] = MappingProxyType({})
 class SignalColumns(NamedTuple):
     """The signals of a drive, in arrays with a column per state.
 
-    ``world``: a value for each state. ``about``: a row of values for each participant, or only
-    those of the ``presence_cells`` one after the other.
+    ``world``: one value per state. ``about``: one row of values per participant, or only the values
+    of the ``presence_cells`` one after the other.
+
     ``unknown``: where a signal has no value, in the shape of its own array. ``only``: the
-    participants that a signal about objects applies to. ``bounds``: the least and the greatest that
-    a measured number may be, by the tolerances of its source, in the shape of its own array.
-    ``whom``: the ids of those because of whom a signal of the world is as it is, a tuple by state.
+    participants that a signal about objects applies to. ``bounds``: the least and the greatest
+    possible value of a measured number, by the tolerances of its source, in the shape of its own
+    array. ``texts``: the texts that a signal's values index. ``whom``: the ids of the participants
+    that cause the value of a signal of the world, a tuple per state.
     """
 
     world: Mapping[str, SignalColumn] = _NONE
@@ -42,7 +44,7 @@ class SignalColumns(NamedTuple):
     whom: Mapping[str, SignalColumn] = _NONE
 
     def values(self, name: str) -> SignalColumn:
-        """The values of a signal, as texts if they stand for such."""
+        """The values of a signal, as texts if they are indices of texts."""
         column = self.world[name] if name in self.world else self.about[name]
         return np.array(self.texts[name])[column] if name in self.texts else column
 
@@ -51,7 +53,7 @@ class SignalColumns(NamedTuple):
 
 
 def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> SignalColumns:
-    """The signals of all these, optionally only those of some names."""
+    """The signals of all parts, optionally only those with some names."""
     kinds: list[dict[str, Any]] = []
     for of_kind in zip(*parts, strict=True):
         found: dict[str, Any] = {}
@@ -65,7 +67,7 @@ def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> Signa
 
 
 def end_to_end(parts: Sequence[SignalColumns]) -> SignalColumns:
-    """The signals of drives with the same participants, end to end; all give the same ones."""
+    """The signals of drives with the same participants, end to end; all supply the same names."""
 
     def joined(kind: str) -> dict[str, Any]:
         columns = [getattr(part, kind) for part in parts]
@@ -88,7 +90,7 @@ def end_to_end(parts: Sequence[SignalColumns]) -> SignalColumns:
 
 
 def known_only(signals: SignalColumns, names: frozenset[str]) -> SignalColumns:
-    """The signals, of which only those of some names have values."""
+    """The signals with values only for some names, and all others unknown."""
     columns = {**signals.world, **signals.about}
     unknown = {
         name: signals.unknown.get(name, np.zeros(column.shape, dtype=bool))
@@ -101,7 +103,7 @@ def known_only(signals: SignalColumns, names: frozenset[str]) -> SignalColumns:
 
 
 def ids_by_state(flags: Flags, ids: Sequence[str]) -> SignalColumn:
-    """The ids of the rows that are flagged, a tuple for each state."""
+    """The ids of the rows that are flagged, a tuple per state."""
     found = nobody(flags.shape[-1])
     if not flags.any():
         return found
@@ -122,14 +124,14 @@ def nobody(states: int) -> SignalColumn:
 
 
 def rounded(values: SignalColumn) -> SignalColumn:
-    """Round numbers to a hundredth, no better being known, without negative zeros."""
+    """Round numbers to a hundredth, their greatest accuracy, without negative zeros."""
     found: SignalColumn = values.round(2)
     found += 0.0
     return found
 
 
 def rounded_outward(low: SignalColumn, high: SignalColumn) -> Bounds:
-    """Round bounds to a hundredth, so that what lies between them still does."""
+    """Round bounds to a hundredth, outward, so that they still enclose the same values."""
     least, most = low * 100, high * 100
     for ends, hair, rounds in ((least, _HAIR, np.floor), (most, -_HAIR, np.ceil)):
         ends += hair

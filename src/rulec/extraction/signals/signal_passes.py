@@ -1,4 +1,4 @@
-"""Signal passes: which signals a function gives, and only those of them that somebody reads."""
+"""Signal passes: which signals a function provides, so that only functions that are read run."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, together
 
 Passes: TypeAlias = Mapping[tuple[str, ...], Callable[[DriveContext], SignalColumns]]
-"""Names -> the function that gives signals of these names, and no others."""
+"""Names of signals -> the function that provides exactly these."""
 
 _Value = TypeVar("_Value")
 
 _MOST_READERS = 1 << 6
-"""Choices of names for which the functions are kept before all are forgotten."""
+"""Most choices of names whose functions are kept; beyond this all are dropped."""
 
 
 class SignalPasses:
-    """Functions that give signals of a drive, each called if somebody reads any that it gives."""
+    """The functions that compute a drive's signals, called only if a signal of theirs is read."""
 
     def __init__(self, passes: Passes) -> None:
         self._passes = passes
@@ -41,17 +41,17 @@ class SignalPasses:
 
     @staticmethod
     def joined(several: Iterable[SignalPasses]) -> SignalPasses:
-        """The functions of several, in their order."""
+        """The functions of several passes, in their order."""
         return SignalPasses({given: x for own in several for given, x in own._passes.items()})
 
 
 def once_a_recording(
     function: Callable[[DriveContext], _Value],
 ) -> Callable[[DriveContext], _Value]:
-    """Let a function of no more than the recording and its thresholds compute once for it.
+    """Make a function of only the recording and its thresholds compute its result once.
 
-    The recording's surroundings keep what it finds; they are made for one side of traffic and one
-    choice of thresholds. It is shared: nobody changes it.
+    The recording's surroundings keep the result; they belong to one side of traffic and one choice
+    of thresholds. It is shared, so callers must not change it.
     """
 
     @wraps(function)
@@ -62,7 +62,7 @@ def once_a_recording(
 
 
 def once_a_map(function: Callable[[DriveContext], _Value]) -> Callable[[DriveContext], _Value]:
-    """The same of a function of no more than the recording's map."""
+    """``once_a_recording`` for a function of only the recording's map."""
 
     @wraps(function)
     def found(context: DriveContext) -> _Value:
@@ -72,7 +72,7 @@ def once_a_map(function: Callable[[DriveContext], _Value]) -> Callable[[DriveCon
 
 
 def once_a_road(function: Callable[[DriveContext], _Value]) -> Callable[[DriveContext], _Value]:
-    """The same of a function of no more than the road, too."""
+    """``once_a_recording`` for a function of only the map and one road."""
 
     @wraps(function)
     def found(context: DriveContext) -> _Value:

@@ -1,1 +1,1 @@
-"""Signals of what ego does beyond following its lane, and of whether something makes it."""
+"""Signals of what ego does beyond following its lane, and of whether something makes it do so."""

@@ -1,7 +1,8 @@
-"""Signals of emergency vehicles on call: who is, does one come near, and is its way clear of ego.
+"""Signals of emergency vehicles on call: which are, whether one is near, whether ego makes way.
 
-What it means to be near, and in the way, differs by law. Only who draws near behind ego, is beside
-it or comes towards it surely is near; only who takes up its lane surely is in its way.
+Laws differ in what it means to be near and in the way. Only a vehicle that draws near behind ego,
+is beside it or comes towards it is surely near; only one that takes up ego's lane is surely in its
+way.
 """
 
 from __future__ import annotations
@@ -28,14 +29,14 @@ from rulec.extraction.tracks.tracks import Flags
 _OWN = "ego_on_call"
 
 _FACES = -0.5
-"""The cosine between the directions of ego's road and of one who has come the other way on it."""
+"""Cosine between the directions of ego's road and of a vehicle that comes the other way on it."""
 
 
 def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
-    """Whether one on call is near.
+    """Whether an emergency vehicle on call is near.
 
-    Unknown of one that stands, does not sound a told horn, is not beside ego soon, or comes on a
-    road across; and where ego is on call itself.
+    Unknown for one that stands, does not sound a horn that the recording contains, is not beside
+    ego soon, or comes on a crossing road; and where ego itself is on call.
     """
     on_call, not_told = _on_call(context)
     surely, perhaps = _surely_near(context), _crosses_near(context)
@@ -55,7 +56,7 @@ def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
 
 @once
 def _surely_near(context: DriveContext) -> Flags:
-    """Flags of those on call that drive and come near for sure."""
+    """Mask of vehicles on call that drive and surely come near."""
     found: Flags = np.zeros(context.relevant.shape, dtype=bool)
     on_call, _ = _on_call(context)
     rows = on_call.any(axis=1).nonzero()[0]
@@ -69,8 +70,8 @@ def _surely_near(context: DriveContext) -> Flags:
 def _way_cleared(context: DriveContext) -> SignalColumns:
     """Whether ego stands, or is at an edge of its lane.
 
-    Unknown where those that are near have another lane: whether they need ego's, or laws want it at
-    the edge all the same, nobody knows.
+    Unknown where the vehicles that are near have another lane: they may not need ego's, and laws
+    may still want ego at the edge.
     """
     still = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
     cleared = still | _at_edge(context)
@@ -96,7 +97,7 @@ def _called(context: DriveContext) -> SignalColumns:
 
 @once
 def _on_call(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of emergency vehicles with their blue lights on, and of those that perhaps are that."""
+    """Masks of emergency vehicles with their blue lights on, and of vehicles that may be such."""
     called = context.tracks.of_type("emergency_vehicle")[:, None]
     kinds = np.array([body.type == "unknown" for body in context.tracks.participants], dtype=bool)
     if not called.any():
@@ -108,16 +109,17 @@ def _on_call(context: DriveContext) -> tuple[Flags, Flags]:
 
 
 def _may_be_on_call(context: DriveContext) -> Flags:
-    """Flags of states in which ego may be on call, too: which of two goes first nobody knows."""
+    """Mask of states in which ego may be on call, too: which of the two goes first is unknown."""
     own = lamp_signals(context, frozenset({_OWN}))
     may_be: Flags = own.world[_OWN] | own.unknown.get(_OWN, np.False_)
     return may_be
 
 
 def _comes_near(context: DriveContext) -> Flags:
-    """Flags of those who are behind or beside ego, or come towards it on its carriageway.
+    """Mask of vehicles behind or beside ego, or coming towards it on its carriageway.
 
-    One that has come towards ego and is past it drives away, also while it waits at lights there.
+    A vehicle that has come towards ego and is past it drives away, even while it waits at lights
+    there.
     """
     station, against = relations.station(context), _against(context)
     directions = context.surroundings.directions
@@ -136,11 +138,11 @@ def _against(context: DriveContext) -> Flags:
 
 
 def _is_far(context: DriveContext) -> Flags:
-    """Flags of those behind ego or coming towards it who do not need its way at once.
+    """Mask of vehicles behind or coming towards ego that do not need its way at once.
 
-    They are farther than at ``queue_headway_s``, as if held up, and would not be beside ego before
-    a change of lanes is over, within ``parting_s``; who comes towards it, and may wait at lights,
-    is farther than ``approach_m``, too.
+    They are farther than at ``queue_headway_s``, as if held up, and would not be beside ego within
+    ``parting_s``, before a change of lanes is over; those that come towards ego, and may wait at
+    lights, are also farther than ``approach_m``.
     """
     limits, along, own = context.thresholds, context.extents.along, context.ego_extents.along
     theirs = np.maximum(along, 0.0)
@@ -157,9 +159,10 @@ def _is_far(context: DriveContext) -> Flags:
 
 
 def _crosses_near(context: DriveContext) -> Flags:
-    """Flags of states in which an emergency vehicle draws near on a road across.
+    """Mask of states in which an emergency vehicle draws near on a crossing road.
 
-    Nobody knows whether it needs ego's way then: it may be a crossing's, or another one's above it.
+    It is unknown whether it needs ego's way then: its road may be that of a crossing, or pass above
+    or below.
     """
     tracks, limits = context.surroundings.tracks, context.thresholds
     rows = tracks.of_type("emergency_vehicle").nonzero()[0]
@@ -179,16 +182,16 @@ def _crosses_near(context: DriveContext) -> Flags:
 
 
 def _drives(context: DriveContext, rows: NDArray[intp]) -> Flags:
-    """Flags of those who drive now, or have or will within ``preparing_s``: no more than held up.
+    """Mask, for ``rows``, of vehicles that move within ``preparing_s``: at most held up.
 
-    Of these rows. One that stands for longer, lights on, may be where it was called to.
+    Before or after. One that stands for longer with its lights on may be where it was called to.
     """
     steps = round(context.thresholds.preparing_s / context.recording.step_s)
     return context.spans.within(moves(context)[rows], steps, around=True)
 
 
 def _is_silent(context: DriveContext, rows: NDArray[intp]) -> Flags:
-    """Flags of those of these rows whose horn the recording tells, and which do not sound it."""
+    """Mask, for ``rows``, of vehicles that do not sound their horn, where it is recorded."""
     horn, told = (flags[rows] for flags in lit_lamps(context, "horn"))
     steps = round(context.thresholds.preparing_s / context.recording.step_s)
     silent: Flags = told & ~context.spans.within(horn, steps, around=True)

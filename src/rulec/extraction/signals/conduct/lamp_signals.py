@@ -1,4 +1,4 @@
-"""Signals of ego's own lamps, where the recording has them."""
+"""Signals of ego's own lamps, where the recording contains them."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ _FOG_LAMPS: tuple[tuple[str, Lamp], ...] = (
 _HEADLAMPS = ("lamps_off", "dipped_beam", "main_beam")
 _BEAMS = frozenset[Lamp]({"dipped_beam", "main_beam"})
 FLASH_S = 1.0
-"""Lights that flash are on if they are lit within so long."""
+"""Flashing lights count as on if they are lit within this time (s)."""
 
 
 def _headlamps(context: DriveContext) -> SignalColumns:
     """The brightest of ego's lamps; without a beam there may be weaker ones, unless it is night.
 
-    At night those are not enough, whichever they are.
+    At night none of those would be enough.
     """
     egos = context.ego.participants
     if not context.spans.agreed([ego.lamps and ego.shows >= _BEAMS for ego in egos]):
@@ -53,7 +53,7 @@ def _fog_lamps(context: DriveContext) -> SignalColumns:
 
 
 def _ego_on_call(context: DriveContext) -> SignalColumns:
-    """Ego's blue lights; who is no emergency vehicle has none, unless they are seen."""
+    """Ego's blue lights; only emergency vehicles have them, unless they are seen."""
     egos, spread = context.ego.participants, context.spans.spread
     may_be = spread([ego.type == "priorityVehicle" for ego in egos])
     shows = spread(["blue_light" in ego.shows for ego in egos])
@@ -71,7 +71,7 @@ def _ego_on_call(context: DriveContext) -> SignalColumns:
 
 @once
 def ego_lamps(context: DriveContext) -> list[frozenset[Lamp] | None]:
-    """Ego's lamps that are lit, by state; None where the recording does not tell."""
+    """Ego's lit lamps by state; None where the recording does not contain them."""
     drives = zip(context.ego.participants, context.spans.slices, strict=True)
     return [
         lamps

@@ -33,27 +33,28 @@ _INDICATORS = frozenset({"left_indicator", "right_indicator"})
 _INDICATIONS = ("no_indicator", "near_indicator", "far_indicator")
 
 _JUMP_MPS = 5.0
-"""Nobody steers across so fast: simulators change lanes in a step, with or without a signal."""
+"""No vehicle moves sideways faster: simulators change lanes in a step, with or without a signal."""
 
 _JUMP_S = 0.5
-"""So long before or after a jump lanes are changed by it."""
+"""Changes of lanes this long (s) before or after a jump are due to it."""
 
 _JUST_STOOD_S = 1.0
-"""Who stood so short a time ago has not driven over a mark since: it slid there as it stood."""
+"""A vehicle that stood this recently (s) has not driven over a mark since: it drifted while
+standing."""
 
 _FORK_M = 15.0
-"""So far behind where a lane has forked its ways lie over each other, as before two become one."""
+"""Up to this far behind a fork its lanes overlap, and likewise before two lanes become one."""
 
 _HAIR_M = 0.01
 
 
 def _lane_change(context: DriveContext) -> SignalColumns:
-    """Whether ego has changed lanes; unknown within tolerances, and of who turns round or off.
+    """Whether ego has changed lanes; unknown within tolerances, and where ego turns round or off.
 
-    Its body swings over the lanes of the road that it comes to. Nor does anybody know where a lane
-    has just forked, or two become one: ego may follow one of its ways; nor of who stands, whose
-    places drift, or is back at once, nor of who begins its drive so near a mark that it may come
-    over that.
+    Its body then swings over the lanes of the road that it enters. Unknown, too, where a lane has
+    just forked or two become one, since ego may follow either; where ego stands, as its places
+    drift; where it is back at once; and where it begins its drive so near a mark that it may be
+    crossing it.
     """
     changes = _changes(context)
     unknown = changes != context.spans.changes(context.steady_lane_from_beside)
@@ -70,14 +71,14 @@ def _lane_change(context: DriveContext) -> SignalColumns:
 
 
 def _speed_ahead(context: DriveContext) -> Floats:
-    """How fast ego goes where it heads (m/s), by state: who slides sideways does not drive so."""
+    """Ego's speed along its heading (m/s), by state: sliding sideways is not driving."""
     own = context.ego_extents
     ahead: Floats = own.along[0] * np.cos(own.turned[0]) + own.across[0] * np.sin(own.turned[0])
     return ahead
 
 
 def _there_and_back(context: DriveContext, changes: Flags) -> Flags:
-    """Flags of changes to a lane and back within ``_JUMP_S``: nobody drives so, but places jump."""
+    """Mask of changes to a lane and back within ``_JUMP_S``: no vehicle does so, places jump."""
     lane, spans = context.steady_lane, context.spans
     back, states = np.zeros_like(changes), changes.nonzero()[0]
     for first, then in pairwise(states.tolist()):
@@ -88,10 +89,10 @@ def _there_and_back(context: DriveContext, changes: Flags) -> Flags:
 
 
 def _at_fork(context: DriveContext, change: int, last: int) -> bool:
-    """True if the lanes that ego changes between have come of one, and it may follow one of them.
+    """Whether ego changes between lanes that have forked from one, and may follow one of them.
 
-    That is less than ``_FORK_M`` ago, or ego has been on the one that it comes to ever since. The
-    ``last`` piece of the road is the one that it is in.
+    The fork is less than ``_FORK_M`` ago, or ego has been on the lane that it changes to ever
+    since. ``last`` is the piece of the road that ego is in.
     """
     road, s = context.road, context.ego_extents.s[0]
     before, after = context.steady_lane[change - 1 : change + 1].tolist()
@@ -106,9 +107,9 @@ def _at_fork(context: DriveContext, change: int, last: int) -> bool:
 
 
 def _at_merge(context: DriveContext, change: int, first: int) -> bool:
-    """True if the lanes that ego changes between become one less than ``_FORK_M`` ahead.
+    """Whether the lanes that ego changes between become one less than ``_FORK_M`` ahead.
 
-    The ``first`` piece of the road is the one that it is in.
+    ``first`` is the piece of the road that ego is in.
     """
     road, s = context.road, context.ego_extents.s[0]
     before, after = context.steady_lane[change - 1 : change + 1].tolist()
@@ -123,7 +124,7 @@ def _at_merge(context: DriveContext, change: int, first: int) -> bool:
 
 
 def _has_followed(context: DriveContext, lane: int, begin_m: float, end: int) -> bool:
-    """True if ego's middle was on a lane's lanelets from a place of the road up to a state."""
+    """Whether ego's middle was on a lane's lanelets from a place of the road up to a state."""
     road, own = context.road, slice(int(context.spans.first[end]), end)
     states = own.start + (context.ego_extents.s[0, own] >= begin_m).nonzero()[0]
     points = shapely.points(context.ego.x[0, states], context.ego.y[0, states])
@@ -139,12 +140,12 @@ def _has_followed(context: DriveContext, lane: int, begin_m: float, end: int) ->
 
 
 def _lane_is_clear(context: DriveContext) -> SignalColumns:
-    """Whether nobody has to brake or get out of the way for ego that comes into a lane.
+    """Whether no vehicle has to brake or make way for ego as it comes into a lane.
 
-    Unknown where the only ones are about to be past, as ego comes in behind them, or only reach
-    into its lane from the one beyond. Also where one comes from behind on a lane that forks, and
-    nobody knows whether into ego's. And if ego stands by its speed, or just stood, whose places
-    drift across the mark: nothing stands and changes lanes.
+    Unknown where the only ones that have to are about to be past, with ego coming in behind them,
+    or only reach into its lane from the one beyond. Also where one comes from behind on a lane that
+    forks, and it is unknown whether into ego's; and if ego stands, or may by its speed, or just
+    stood: its places drift across the mark, but nothing stands and changes lanes.
     """
     disturbed = np.zeros(context.relevant.shape, dtype=bool)
     moot, unsure = np.zeros((2, context.states), dtype=bool)
@@ -182,8 +183,8 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
 def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[WayIn]]:
     """The states in which ego comes into another lane, or onto the road, and its ways there.
 
-    Onto the road it comes over its near edge, and is there ``changed_m`` farther on; or over its
-    far one, back from the other half.
+    It comes onto the road over its near edge, and is there ``changed_m`` farther on; or over its
+    far edge, back from the other half.
     """
     lane, inside = context.steady_lane, -beyond_near_edge(context)
     changes = _changes(context).nonzero()[0].tolist()
@@ -209,14 +210,15 @@ def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[WayIn]]
 
 
 def _changes(context: DriveContext) -> Flags:
-    """Flags of states in which ego has changed lanes since the one before."""
+    """Mask of states in which ego has changed lanes since the state before."""
     return context.spans.changes(context.steady_lane)
 
 
 def _within_tolerance(context: DriveContext, changes: Flags) -> Flags:
-    """Flags of those changes of which the marks may be so far off that there is none.
+    """Mask of changes for which the marks may be so far off that there is no change.
 
-    Before or after it, until the next one, ego's middle is never farther from the mark.
+    Before or after the change, up to the next one, ego's middle is never farther from the mark than
+    that.
     """
     lane, left_of = context.steady_lane, context.ego_extents.left_of[0]
     error = context.tolerances.place_m + np.abs(context.map_offset_m)
@@ -234,12 +236,12 @@ def _within_tolerance(context: DriveContext, changes: Flags) -> Flags:
 
 
 def _indicator(context: DriveContext) -> SignalColumns:
-    """Ego's indicator, if the recording has its lamps.
+    """Ego's indicator, if the recording contains its lamps.
 
-    Both at once are no indication, as hazard lights are none; a file that says that these are off
-    contradicts itself, and nobody knows what both mean in that drive at other times. Who changes
-    lanes has indicated it if it did up to the state before, or while it lay across the mark; of who
-    jumps at that time, or off the edge of the road, nobody knows.
+    Both sides at once are no indication, like hazard lights; if a file states that hazard lights
+    are off then, it contradicts itself, and both sides are unknown in the whole drive. A vehicle
+    that changes lanes has indicated it if it did up to the state before, or while it lay across the
+    mark; if it jumps at that time, or off the road's edge, that is unknown.
     """
     egos = context.ego.participants
     if not context.spans.agreed([ego.lamps and ego.shows >= _INDICATORS for ego in egos]):
@@ -288,7 +290,7 @@ def _shown_across(context: DriveContext, codes: NDArray[intp], change: int) -> i
 
 
 def _jumps_across(context: DriveContext) -> Flags:
-    """Flags of states into which ego has moved across in no time, from the one before."""
+    """Mask of states into which ego has jumped sideways from the state before."""
     left_of = context.ego_extents.left_of[0]
     moved = np.abs(left_of - context.spans.before(left_of.T).T).min(axis=1)
     jumps: Flags = moved > _JUMP_MPS * context.recording.step_s
@@ -296,12 +298,12 @@ def _jumps_across(context: DriveContext) -> Flags:
 
 
 def _disturbed(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Flags]:
-    """Flags of the vehicles in ego's lane that must brake for ego, in these states, and perhaps so.
+    """Masks of vehicles in ego's lane that must brake for ego in ``states``, and perhaps must.
 
-    One beside ego has to, and one behind it that would have to brake harder than
-    ``disturbing_mps2`` after its reaction time not to run into it, but for who has to brake as hard
-    for one in between. Perhaps those whose lane forks in between, of whom nobody knows whether they
-    come into ego's; and those whose bodies lie in ego's by half, which is its own box seen twice.
+    A vehicle beside ego must; so must one behind that would have to brake harder than
+    ``disturbing_mps2`` after its reaction time to avoid ego, unless it has to brake as hard for one
+    in between. Perhaps: vehicles whose lane forks in between, so that it is unknown whether they
+    come into ego's; and bodies that overlap half of ego's, which is ego's own box seen twice.
     """
     limits = context.thresholds
     station, gap = relations.station(context)[:, states], relations.gap(context)[:, states]
@@ -322,7 +324,7 @@ def _disturbed(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Fla
 
 
 def _lies_in_ego(context: DriveContext, states: NDArray[intp]) -> Flags:
-    """Flags of those whose bodies and ego's overlap by half of the smaller one in these states."""
+    """Mask of bodies that overlap ego's by half of the smaller one in these states."""
     own, others = context.ego_extents, context.extents
     length, width = (
         np.minimum((high - low)[:, states], (own_high - own_low)[:, states])
@@ -337,7 +339,7 @@ def _lies_in_ego(context: DriveContext, states: NDArray[intp]) -> Flags:
 
 
 def _brakes_for_another(context: DriveContext, states: NDArray[intp], behind: Flags) -> Flags:
-    """Flags of those behind ego who have to brake as hard for one between them, in these states."""
+    """Mask of vehicles behind ego that have to brake as hard for one in between, by ``states``."""
     found = np.zeros_like(behind)
     others, own, reaction_s = context.extents, context.ego_extents, context.thresholds.reaction_s
     for row, number in zip(*(places.tolist() for places in behind.nonzero()), strict=True):
@@ -354,9 +356,9 @@ def _brakes_for_another(context: DriveContext, states: NDArray[intp], behind: Fl
 
 
 def _pulls_away(context: DriveContext, states: NDArray[intp]) -> Flags:
-    """Flags of the vehicles that reach farther ahead than ego, and are past within ``reaction_s``.
+    """Mask of vehicles that reach farther ahead than ego and are past within ``reaction_s``.
 
-    Past is who is clear of ego, did both go on as fast as they are in these states.
+    Past means clear of ego if both keep their speeds from these states.
     """
     others, own = context.extents, context.ego_extents
     front, faster = own.s_max[:, states], others.along[:, states] - own.along[:, states]

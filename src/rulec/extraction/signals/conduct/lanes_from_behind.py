@@ -1,4 +1,4 @@
-"""Whether who comes from behind, on a lane that forks, comes into ego's lane or another one."""
+"""Whether vehicles from behind, on a lane that forks, come into ego's lane or another one."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from rulec.extraction.tracks.tracks import Flags
 from rulec.trace.plain_arrays import zero_if_nan
 
 _BEYOND_M = 15.0
-"""So far behind where a lane has forked its ways lie over each other no more."""
+"""This far behind a fork its lanes no longer overlap."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Ways:
-    """Where a lane leads farther on: to which lanes, and does a way leave the road?"""
+    """The lanes to which a lane leads, and whether a way leaves the road."""
 
     lanes: frozenset[int]
     leaves: bool
@@ -36,9 +36,9 @@ def come_into_lane(
 ) -> tuple[Flags, Flags]:
     """Which vehicles behind ego come into the lane of its middle, and which perhaps do.
 
-    Each of a row in a state, by its track if ways part, which may not tell. Those on the same lane
-    do where none forks between the two; those do not whose lane ends there: they have to change
-    lanes themselves.
+    One per row and state; where ways part, decided by the vehicle's track, which may not suffice.
+    Vehicles on the same lane do if it does not fork between the two; vehicles whose lane ends there
+    do not, since they have to change lanes themselves.
     """
     comes, perhaps = context.in_ego_lane[rows, states], np.zeros(len(rows), dtype=bool)
     if not len(rows):
@@ -55,7 +55,7 @@ def come_into_lane(
 def _comes_by_its_way(
     context: DriveContext, row: int, state: int, pieces: tuple[int, int]
 ) -> bool | None:
-    """Does one in an earlier piece of the road than ego come into its lane? None if not known."""
+    """Whether a vehicle in an earlier piece of the road than ego comes into its lane; or None."""
     extents, same = context.extents, bool(context.in_ego_lane[row, state])
     own, lane = int(context.ego_lane[state]), int(extents.lane[row, state])
     ways, fork = _ways(context, *pieces, lane)
@@ -77,7 +77,7 @@ def _comes_by_its_way(
 
 
 def _ways(context: DriveContext, first: int, last: int, lane: int) -> tuple[_Ways, int]:
-    """Where a lane of a piece of the road leads by a later one, and the piece where it parts."""
+    """The ways of a lane from a piece of the road to a later one, and the piece where it forks."""
     onward, fork = _onward(context), last
     ways = _Ways(frozenset({lane}), leaves=False)
     for piece in range(first, last):
@@ -93,7 +93,7 @@ def _ways(context: DriveContext, first: int, last: int, lane: int) -> tuple[_Way
 
 @once_a_road
 def _onward(context: DriveContext) -> Sequence[Mapping[int, _Ways]]:
-    """For each piece of the road the lanes of the next one to which each of its lanes leads."""
+    """For each piece of the road, the lanes of the next piece to which each of its lanes leads."""
     known, found = context.recording.lanelets, []
     for row, beyond in pairwise(context.road.rows):
         numbers = {one.id: lane for lane, one in enumerate(beyond) if one is not None}

@@ -1,4 +1,4 @@
-"""Signals of ego's manoeuvres: driving backwards, turning round, setting off, the side it is on."""
+"""Signals of ego's manoeuvres: reversing, turning round, setting off, the side that it is on."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from rulec.trace.plain_arrays import zero_if_nan
 _SIDES = ("own_side", "oncoming_side", "wrong_way")
 
 _DERIVED_RAD = 1e-3
-"""Headings that never differ from the way moved by more have been made of it."""
+"""Headings that never differ by more from the direction of motion were derived from it."""
 
 _ALONG_RAD = np.pi / 4
-"""Who is turned farther from the road does not drive along it."""
+"""A vehicle at a larger angle to the road does not drive along it."""
 
 _ROUND_RAD, _ROUND_M, _JUMP_RAD = np.radians(150.0), 60.0, np.radians(60.0)
-"""Who has turned round has turned by so much on so short a way, and never by the last in a step."""
+"""A turn round is by ``_ROUND_RAD`` within ``_ROUND_M``, and never by ``_JUMP_RAD`` in one step."""
 
 _HAIR_RAD = 1e-6
 _ACROSS_RAD = np.radians(30.0)
@@ -35,14 +35,14 @@ _LEAST_M = 2.0
 _MUCH_RAD = 1.5
 
 _DRIFT_M = 3.0
-"""Boxes of vehicles that stand drift by less: up to 2.5 m to and fro in Argoverse 2."""
+"""Boxes of standing vehicles drift by less: up to 2.5 m to and fro in Argoverse 2."""
 
 
 def _reversing(context: DriveContext) -> SignalColumns:
     """Whether ego moves against its heading.
 
-    Where headings follow from places vehicles look where their lanes lead: who moves along these
-    drives forwards, and of who moves against them it is unknown.
+    Where headings are derived from places, vehicles are taken to head where their lanes lead: those
+    that move that way drive forwards, and for those that move against it this is unknown.
     """
     heading = context.ego.heading[0]
     forward = context.ego.vx[0] * np.cos(heading) + context.ego.vy[0] * np.sin(heading)
@@ -62,10 +62,10 @@ def _reversing(context: DriveContext) -> SignalColumns:
 
 
 def _comes_back_nowhere(context: DriveContext, perhaps: Flags, backs: Flags) -> Flags:
-    """Flags in runs of ``perhaps`` over which ego moves against its heading by too little.
+    """Mask of runs of ``perhaps`` over which ego moves against its heading by too little.
 
-    That is by no more than places may be wrong; or, where it is never measured to go backwards, by
-    less than boxes of those who stand drift, however badly its speed is known.
+    That is by no more than places may be wrong; or, where it is never measured to reverse, by less
+    than boxes of standing vehicles drift, however badly its speed is known.
     """
     found, own = np.zeros_like(perhaps), context.ego
     if not perhaps.any():
@@ -85,9 +85,9 @@ def _comes_back_nowhere(context: DriveContext, perhaps: Flags, backs: Flags) -> 
 
 
 def _for_long(context: DriveContext, flags: Flags) -> Flags:
-    """Flags in runs over which ego moves farther than boxes of those who stand drift.
+    """Mask of runs over which ego moves farther than boxes of standing vehicles drift.
 
-    Where the file says that it stood meanwhile its box drifts however far.
+    Not where the file states that it stood meanwhile: then its box drifts, however far.
     """
     spans, found, x, y = context.spans, np.zeros_like(flags), context.ego.x[0], context.ego.y[0]
     if not flags.any():
@@ -105,22 +105,22 @@ def _for_long(context: DriveContext, flags: Flags) -> Flags:
 
 
 def _jumps(context: DriveContext) -> Flags:
-    """Flags of drives in which a heading turns round at once, as a box that is taken amiss."""
+    """Mask of drives in which a heading turns round at once, as with a misjudged box."""
     spans, heading = context.spans, context.ego.heading[0]
     turned, jumps = heading - spans.before(heading), np.zeros(context.states, dtype=bool)
-    # Hardly any turn as much
+    # Hardly any turn by this much
     much = (np.abs(turned) > _MUCH_RAD).nonzero()[0]
     jumps[much] = np.abs(np.angle(np.exp(1j * turned[much]))) > np.pi / 2
     return spans.any(jumps)
 
 
 def _are_told(context: DriveContext) -> bool:
-    """Whether the source says which way everybody looks."""
+    """Whether the source states the heading of every participant."""
     return not context.recording.complete.isdisjoint({"arrivals", HEADINGS})
 
 
 def _tells_headings(context: DriveContext, columns: slice) -> bool:
-    """False if ego's headings in a drive are no more than the directions in which it moved."""
+    """Whether ego's headings in a drive are more than the directions in which it moved."""
     own = context.ego
     x, y, heading = own.x[0, columns], own.y[0, columns], own.heading[0, columns]
     steps = np.hypot(np.diff(x), np.diff(y))
@@ -147,9 +147,9 @@ def _driving_side(context: DriveContext) -> SignalColumns:
 
 
 def _goes_over(context: DriveContext, there: Flags, perhaps: Flags) -> Flags:
-    """Flags of states between one surely on a half of the road and one surely on the other.
+    """Mask of states between one surely on one half of the road and one surely on the other.
 
-    There only the moment is in doubt, unless ego stays about the middle for longer than
+    There only the moment is in doubt, unless ego stays near the middle for longer than
     ``passed_s``.
     """
     spans, own = context.spans, ~there & ~perhaps
@@ -165,7 +165,7 @@ def _goes_over(context: DriveContext, there: Flags, perhaps: Flags) -> Flags:
 
 
 def comes_back_over_middle(context: DriveContext) -> Flags:
-    """Flags of the first states in which ego is back on its own half of a road.
+    """Mask of the first states in which ego is back on its own half of a road.
 
     Not those in which it turns round, or has driven into a junction.
     """
@@ -177,10 +177,10 @@ def comes_back_over_middle(context: DriveContext) -> Flags:
 
 
 def goes_over_the_middle(context: DriveContext) -> Flags:
-    """Flags of states in which ego is on both halves of a road, as it goes to the other or back.
+    """Mask of states in which ego is on both halves of a road, on its way to the other or back.
 
-    Up to ``passed_s`` before it is on the other half, or after. Who only drives at the edge of its
-    own for long goes nowhere.
+    Up to ``passed_s`` before it is on the other half, or after. Driving at the edge of its own half
+    for long does not count.
     """
     there, _ = oncoming_side(context)
     if not there.any():
@@ -197,7 +197,7 @@ def goes_over_the_middle(context: DriveContext) -> Flags:
 
 @once
 def on_both_halves(context: DriveContext) -> Flags:
-    """Flags of states in which ego's body is on either side of the far edge of its lanes."""
+    """Mask of states in which ego's body is on both sides of the far edge of its lanes."""
     low, high = (rows[0] for rows in sides_beyond_far_edge(context, context.ego_extents))
     least = context.thresholds.touching_m
     on_both: Flags = (low < -least) & (high > least)
@@ -205,7 +205,7 @@ def on_both_halves(context: DriveContext) -> Flags:
 
 
 def sides_beyond_far_edge(context: DriveContext, bodies: RoadExtents) -> tuple[Floats, Floats]:
-    """How far (m) the nearer and the farther side of bodies, by row, are beyond that edge."""
+    """How far (m) the nearer and the farther side of bodies, by row, are beyond ego's far edge."""
     lanes = context.existing_lanes
     if context.side == "right":
         return bodies.from_bound(lanes.shape[1] - lanes[:, ::-1].argmax(axis=1))
@@ -215,9 +215,10 @@ def sides_beyond_far_edge(context: DriveContext, bodies: RoadExtents) -> tuple[F
 
 @once
 def oncoming_side(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of ego on the other half of a two-way road, along which it drives, and of perhaps so.
+    """Masks of ego driving along the other half of a two-way road, and of perhaps doing so.
 
-    Beyond the far edge of the lanes of its direction; nowhere in junctions, nor beyond the map.
+    That half is beyond the far edge of the lanes of its direction; it has none in junctions and
+    beyond the map.
     """
     beyond, loose = _beyond_far_edge(context), _loose(context)
     both_ways, not_told = two_way(context)
@@ -227,14 +228,14 @@ def oncoming_side(context: DriveContext) -> tuple[Flags, Flags]:
 
 
 def two_way(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of states on a road with traffic both ways, and of those where the map is silent."""
+    """Masks of states on a road with traffic both ways, and of those where the map does not say."""
     directions = context.surroundings.directions
     one_way, not_told = own_lanelets(context).told(lambda lanelet: directions(lanelet)[0])
     return ~one_way & ~not_told, not_told
 
 
 def _loose(context: DriveContext) -> Floats:
-    """How far (m) beyond a bound ego's middle may be and still be on its own side of it."""
+    """How far (m) ego's middle may be beyond a bound and still count as on its own side."""
     error: Floats = context.tolerances.place_m + np.abs(context.map_offset_m)
     return np.maximum(context.thresholds.changed_m, error)
 
@@ -265,7 +266,7 @@ def _along_road(context: DriveContext) -> Flags:
 
 
 def at_junctions(context: DriveContext) -> Flags:
-    """Flags of states in a junction, or so near that ego turns there already or still."""
+    """Mask of states in a junction, or so near that ego already or still turns there."""
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
     near, reach = np.zeros(context.states, dtype=bool), context.thresholds.side_road_m
     for start, end in context.road.junctions:
@@ -285,10 +286,10 @@ def _u_turn(context: DriveContext) -> SignalColumns:
 
 @once
 def u_turns(context: DriveContext) -> Flags:
-    """Whether ego turns round on a short way, while it is across; unknown where the map decides.
+    """Mask of states in which ego, turning round on a short way, is across the road.
 
-    By the whole track: where it has turned round it is on another road. In a junction, and where
-    the road itself turns, that is none.
+    From the whole track, since ego is on another road once it has turned round. Not in junctions,
+    nor where the road itself turns.
     """
     turns = swings_round(context)
     if turns.any():
@@ -299,7 +300,7 @@ def u_turns(context: DriveContext) -> Flags:
 
 
 def swings_round(context: DriveContext) -> Flags:
-    """Flags of states in which ego is on its way round, but along a ring."""
+    """Mask of states in which ego is on its way round, except along a ring."""
     turns = _turning_round(context)
     if not turns.any():
         return turns
@@ -309,7 +310,7 @@ def swings_round(context: DriveContext) -> Flags:
 
 @once
 def _turning_round(context: DriveContext) -> Flags:
-    """Flags of states in which ego's heading is on its way round."""
+    """Mask of states in which ego's heading is on its way round."""
     tracks = context.own.tracks
     columns = context.steps - tracks.first
     may_turn, turning = _may_go_round(context), np.zeros(context.states, dtype=bool)
@@ -320,7 +321,7 @@ def _turning_round(context: DriveContext) -> Flags:
 
 
 def _may_go_round(context: DriveContext) -> Flags:
-    """Flags of those whose headings change by enough in all, or who are away for a while."""
+    """Mask of tracks whose headings change by enough in all, or that have a gap."""
     known = context.own.computed
     if _may_go_round not in known:
         tracks, present = context.own.tracks, context.own.tracks.present
@@ -331,7 +332,7 @@ def _may_go_round(context: DriveContext) -> Flags:
 
 
 def _goes_round(tracks: Tracks, row: int) -> Flags:
-    """Flags of the columns in which a participant's heading is on its way round."""
+    """Mask of the columns in which a participant's heading is on its way round."""
     columns = tracks.present[row].nonzero()[0]
     heading = np.unwrap(tracks.heading[row, columns])
     flags = np.zeros(tracks.present.shape[1], dtype=bool)
@@ -349,7 +350,7 @@ def _goes_round(tracks: Tracks, row: int) -> Flags:
 
 
 def _touches_junction(context: DriveContext, states: Flags) -> Flags:
-    """Flags of those of these states in which ego's middle is at a junction."""
+    """Mask of the states among ``states`` in which ego's middle is at a junction."""
     places = shapely.points(context.ego.x[0, states], context.ego.y[0, states])
     touches, reach = np.zeros_like(states), context.thresholds.zone_m
     for junction in context.surroundings.passages.junctions:
@@ -360,8 +361,9 @@ def _touches_junction(context: DriveContext, states: Flags) -> Flags:
 def _joins_road(context: DriveContext) -> SignalColumns:
     """Whether ego drives onto the road from where it stood beside it.
 
-    Of one that comes from beside the road at an angle, or is there when first seen, nobody knows
-    whether a road is there that the map leaves out, nor of who turns round what is its road yet.
+    Unknown where ego comes from beside the road at an angle, or is there when first seen, since
+    there may be a road that the map leaves out; and where it turns round, since its road is not
+    certain yet.
     """
     outside = (beyond_near_edge(context) > _loose(context)) & _on_map(context)
     inside, joins = beyond_near_edge(context) <= 0, np.zeros(context.states, dtype=bool)

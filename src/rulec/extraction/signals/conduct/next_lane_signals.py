@@ -1,7 +1,7 @@
-"""Signals of the lanes next to ego's: whether they are free, and whether that can be told.
+"""Signals of the lanes next to ego's: whether they are free, and whether that is known.
 
-Whether ego keeps to the kerb's lane as it should depends on the one, whether it may go past another
-one on the other.
+The near one decides whether ego keeps to the kerb lane as it should, the far one whether it may
+pass another vehicle.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import ranges
 
 _SOON_M = 10.0
-"""Who is no farther behind ego than this, and what he gains in ``passed_s``, is soon beside it."""
+"""A vehicle within this distance behind ego, plus what it gains in ``passed_s``, is soon beside
+it."""
 
 _SOLID = frozenset({"solid", "double_solid"})
 
@@ -39,15 +40,16 @@ _BUS_LANE, _CYCLE_LANE = frozenset({"busLane"}), frozenset({CYCLE_LANE})
 _RESERVED = frozenset({SHOULDER, *_BUS_LANE})
 
 _UNSEEN_S = 5.0
-"""For so long one whose track has ended is thought to drive on as before."""
+"""A vehicle whose track has ended is assumed to drive on as before for this long (s)."""
 
 _FASTER_MPS = 10.0
 
 _CHANGE_S = 4.0
-"""So long before its middle crosses the mark who changes lanes has begun to, at the earliest."""
+"""At the earliest, a change of lanes begins this long (s) before the middle crosses the mark."""
 
 _SOON_AGAIN = 2.0
-"""Within so many times ``catching_up_s`` of having gone back ego would have to come out again."""
+"""A move back is of no use if ego has to come out again within this many times
+``catching_up_s``."""
 
 _STANDING_CAMERAS = frozenset(
     {
@@ -58,7 +60,7 @@ _STANDING_CAMERAS = frozenset(
         "INTERACTION tracks",
     }
 )
-"""Forms of what is recorded from above a stretch of road, or made up for one."""
+"""Formats of data recorded from above a stretch of road, or invented for one."""
 
 
 def _on_far_lane(context: DriveContext) -> SignalColumns:
@@ -68,10 +70,10 @@ def _on_far_lane(context: DriveContext) -> SignalColumns:
 def _on_near_lane(context: DriveContext) -> SignalColumns:
     free = _near_lane_is_free(context)
     doubtful = _goes_back(context)
-    # Who is on the lane next to the kerb mostly stays there
+    # Rarely needed: an ego in the lane next to the kerb mostly stays there
     if (free & _next_lane(context, context.side)[1]).any():
         doubtful |= _perhaps_on_near_lane(context) | _of_no_use(context)
-    # For which buses such a lane is, and when, no map tells, nor do those have to use it that may
+    # Maps do not say for which buses a bus lane is, or when; and those that may use it need not
     doubtful |= _is_beside(context, _BUS_LANE)
     return SignalColumns(
         {"near_lane_is_free": free}, unknown={"near_lane_is_free": free & doubtful}
@@ -79,7 +81,7 @@ def _on_near_lane(context: DriveContext) -> SignalColumns:
 
 
 def _next_lane(context: DriveContext, side: Side) -> tuple[NDArray[intp], Flags]:
-    """The lane at a side of ego, and where there is one that goes ego's way, to be driven on."""
+    """The lane at a side of ego, and the mask of states where it exists and is for driving."""
     lane = context.ego_lane + (1 if side == "left" else -1)
     count = travel_lanes(context).shape[1]
     inside = (lane >= 0) & (lane < count)
@@ -88,7 +90,7 @@ def _next_lane(context: DriveContext, side: Side) -> tuple[NDArray[intp], Flags]
 
 
 def _far_lane_is_free(context: DriveContext) -> Flags:
-    """Flags of states in which nobody is in, or soon in, the place beside ego on the next lane."""
+    """Mask of states with nobody in the place beside ego on the next far lane, now or soon."""
     lane, there = _next_lane(context, "left" if context.side == "right" else "right")
     cells = _on_lane(context, lane, there.nonzero()[0])
     gap, station = relations.gap(context)[cells], relations.station(context)[cells]
@@ -101,12 +103,12 @@ def _far_lane_is_free(context: DriveContext) -> Flags:
 
 
 def _near_lane_is_free(context: DriveContext) -> Flags:
-    """Flags of states in which ego, in the next lane to the kerb, would be at safe distances.
+    """Mask of states in which ego, in the next lane to the kerb, would be at safe distances.
 
-    It cannot go there across a solid line, as beside lanes for who turns off, nor to a bus lane or
-    across one for cycles, nor, from a lane that is none, to one for who comes or leaves, nor to one
-    that leads elsewhere at the junction that ego gets to within ``preparing_s``. A bus stays on its
-    own lane.
+    It cannot go there across a solid line, as beside lanes for turning off; nor to a bus lane, or
+    across a cycle lane; nor, from a through lane, to a lane for joining or leaving; nor to one that
+    leads elsewhere at a junction that ego reaches within ``preparing_s``. A bus stays on its own
+    lane.
     """
     limits, others, taken = (
         context.thresholds,
@@ -138,9 +140,9 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
 
 
 def _goes_back(context: DriveContext) -> Flags:
-    """Flags of states from which on ego's change to a lane nearer to the kerb takes no longer.
+    """Mask of states from which ego changes to a lane nearer to the kerb within ``_CHANGE_S``.
 
-    Whether that lane was free before, for who had to look for room there, nobody can tell.
+    Whether that lane was free before is unknown: ego may have had to look for room there.
     """
     lane, spans = context.steady_lane, context.spans
     kerbward = spans.after(lane) - lane
@@ -150,13 +152,13 @@ def _goes_back(context: DriveContext) -> Flags:
 
 
 def _of_no_use(context: DriveContext) -> Flags:
-    """Flags of states in which nobody can tell whether ego has to go to the next lane to the kerb.
+    """Mask of states in which it is unknown whether ego has to use the next lane to the kerb.
 
-    Somebody slower is on it whom ego would come up to in twice ``catching_up_s``; it begins or ends
-    near ego while others go on, as beside a ramp; it becomes a shoulder or a lane for buses within
-    ``preparing_s``; it is full, but for a hole; ego is in a slow queue itself, with others on the
-    next lane, too; or drivers sort themselves by lanes before a junction or a ring, of which nobody
-    knows beyond the map's end.
+    A slower vehicle is on it that ego would reach within twice ``catching_up_s``; it begins or ends
+    near ego while others go on, as beside a ramp; it becomes a shoulder or bus lane within
+    ``preparing_s``; it is full except for a gap; ego is in a slow queue itself, with others on the
+    next lane, too; or drivers choose their lanes before a junction or a ring, which is unknown
+    beyond the map's end.
     """
     lane, there = _next_lane(context, context.side)
     states = context.spans.columns
@@ -178,7 +180,7 @@ def _of_no_use(context: DriveContext) -> Flags:
 
 
 def _slower_ahead(context: DriveContext, lane: NDArray[intp], states: NDArray[intp]) -> Flags:
-    """Flags of those states in which ego would have to leave a lane again soon to overtake."""
+    """Mask of those states in which ego would soon have to leave a lane again to overtake."""
     cells = _on_lane(context, lane, states)
     gap, station = relations.gap(context)[cells], relations.station(context)[cells]
     faster = context.ego_extents.along[0, cells[1]] - context.extents.along[cells]
@@ -190,10 +192,10 @@ def _slower_ahead(context: DriveContext, lane: NDArray[intp], states: NDArray[in
 
 @once
 def _sorted_ahead(context: DriveContext) -> tuple[Flags, Flags]:
-    """Where the next lane to the kerb leads elsewhere than ego, and where drivers choose lanes.
+    """Masks: the next lane to the kerb leads elsewhere than ego; drivers choose lanes.
 
-    They do before lights and rings, and where one lane leads to several roads, from
-    ``preparing_s`` before.
+    They do before lights and rings, and where one lane leads to several roads, from ``preparing_s``
+    before.
     """
     lane, there = _next_lane(context, context.side)
     front, reach = context.ego_extents.s_max[0], _reach(context)
@@ -219,7 +221,7 @@ def _reach(context: DriveContext) -> Floats:
 
 @once_a_road
 def _reserved_from(context: DriveContext) -> Sequence[tuple[int, float]]:
-    """Lanes, and from where on (m) each is a shoulder or for buses, and was for all before."""
+    """Lanes that become a shoulder or bus lane after being open to all, and from where on (m)."""
     road = context.road
     return [
         (number, float(road.borders[piece + 1]))
@@ -230,7 +232,7 @@ def _reserved_from(context: DriveContext) -> Sequence[tuple[int, float]]:
 
 
 def _reserved_ahead(context: DriveContext, lane: NDArray[intp]) -> Flags:
-    """Flags of states in which a lane will soon be a shoulder or for buses."""
+    """Mask of states in which a lane will soon be a shoulder or a bus lane."""
     front, found = context.ego_extents.s_max[0], np.zeros(context.states, dtype=bool)
     for number, place in _reserved_from(context):
         found |= (lane == number) & (front <= place) & (place - front <= _reach(context))
@@ -238,7 +240,7 @@ def _reserved_ahead(context: DriveContext, lane: NDArray[intp]) -> Flags:
 
 
 def _is_beside(context: DriveContext, types: frozenset[str]) -> Flags:
-    """Flags of states in which the next lane to the kerb is of any of these types."""
+    """Mask of states in which the next lane to the kerb has any of these types."""
     own, way = own_lanelets(context), -1 if context.side == "right" else 1
     of_each = np.zeros(len(own.places), dtype=bool)
     for number, (piece, lane) in enumerate(own.places):
@@ -253,11 +255,11 @@ def _near_mark(lanelet: Lanelet, context: DriveContext) -> LaneMark | None:
 
 
 def _perhaps_on_near_lane(context: DriveContext) -> Flags:
-    """Flags of states in which one may be near ego on the next lane to the kerb, but is not seen.
+    """Mask of states in which an unseen vehicle may be near ego on the next lane to the kerb.
 
-    Its track ended less than ``_UNSEEN_S`` ago, or begins so soon, in sight of ego; it drives on as
-    it did. Nobody is seen behind the last one of all that are recorded on ego's road.
-    Where all traffic is recorded, nobody drives unseen.
+    Its track ended less than ``_UNSEEN_S`` ago, or begins within that time, in sight of ego, and it
+    drives on as before. No vehicle is seen behind the last one recorded on ego's road. Where all
+    traffic is recorded, nobody drives unseen.
     """
     if "arrivals" in context.recording.complete:
         return np.zeros(context.states, dtype=bool)
@@ -275,9 +277,9 @@ def _perhaps_on_near_lane(context: DriveContext) -> Flags:
 
 
 def _unseen(context: DriveContext, most: int) -> Iterator[tuple[NDArray[intp], ...]]:
-    """The states after others were seen in a drive, up to where they are again, and those before.
+    """The states after others were last seen in a drive, up to their return, and those before.
 
-    Rows, the states in which they were seen, and no more than ``most`` states for each.
+    Yields rows, the states in which they were seen, and at most ``most`` states for each.
     """
     spans, seen = context.spans, context.driving_along
     bounds = np.array(spans.bounds, dtype=intp)
@@ -298,7 +300,7 @@ def _unseen(context: DriveContext, most: int) -> Iterator[tuple[NDArray[intp], .
 def _around(
     rows: NDArray[intp], edge: NDArray[intp], bounds: tuple[NDArray[intp], NDArray[intp]]
 ) -> tuple[NDArray[intp], ...]:
-    """Rows and edges for each state of a range each, and these states."""
+    """Rows and edges for each state of their ranges, and these states."""
     first, end = bounds
     lengths = end - first
     states, _ = ranges(first, lengths)
@@ -306,11 +308,11 @@ def _around(
 
 
 def _known_behind(context: DriveContext) -> Flags:
-    """Flags of states in which one that comes from behind would have been recorded.
+    """Mask of states in which a vehicle coming from behind would have been recorded.
 
-    Who comes faster by ``_FASTER_MPS`` has to brake for ego only within some distance. So far is
-    seen up to one that is recorded farther behind; and where a camera stands, and records who comes
-    later, up to where anybody on ego's road was first.
+    A vehicle faster by ``_FASTER_MPS`` has to brake for ego only within a certain distance. The
+    road is seen as far back as a vehicle is recorded; with a stationary camera that records later
+    arrivals, as far back as any vehicle on ego's road was during the drive.
     """
     limits, own = context.thresholds, np.maximum(context.ego_extents.along[0], 0.0)
     faster = own + _FASTER_MPS
@@ -331,9 +333,9 @@ def _known_behind(context: DriveContext) -> Flags:
 
 @once_a_recording
 def _records_arrivals(context: DriveContext) -> bool:
-    """True if some vehicle is recorded from later on than the first step.
+    """Whether some vehicle's record begins later than the first step.
 
-    Else those are left out that came after it, as in CommonRoad's cuts from longer recordings.
+    Otherwise vehicles that came later are left out, as in CommonRoad's cuts from longer recordings.
     """
     if context.recording.whole is not None:
         return context.recording.whole.arrivals
@@ -341,7 +343,7 @@ def _records_arrivals(context: DriveContext) -> bool:
 
 
 def _some_arrive(tracks: Tracks) -> bool:
-    """True if some vehicle is there from later on than the first step."""
+    """Whether some vehicle is present only from later than the first step on."""
     vehicles = tracks.present[tracks.of_type("vehicle")]
     return bool((~vehicles[:, :1] & vehicles.any(axis=1, keepdims=True)).any())
 
@@ -349,7 +351,7 @@ def _some_arrive(tracks: Tracks) -> bool:
 def _on_lane(
     context: DriveContext, lane: NDArray[intp], states: NDArray[intp]
 ) -> tuple[NDArray[intp], NDArray[intp]]:
-    """Those who go ego's way on a lane, by state, in some states: rows and states."""
+    """Vehicles that go ego's way on a lane, given by state, in some states: rows and states."""
     chosen = np.zeros(context.states, dtype=bool)
     chosen[states] = True
     cells = Cells.at(context.in_lane(lane) & context.going_along & chosen)

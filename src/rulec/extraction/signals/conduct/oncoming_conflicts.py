@@ -1,9 +1,9 @@
-"""The signal of those who come towards ego, and have to brake as it is over the middle of the road.
+"""The signal of oncoming vehicles that have to brake as ego is over the middle of the road.
 
-What decides is how things are when ego begins to be there, or the other one is first seen: would
-that one, as fast as it is then, meet ego in its way, and could it do without braking harder than
-``disturbing_mps2`` after its reaction time? Who stands already, or is so far away that gentle
-braking is enough, may let ego go first of its own accord.
+What decides is the situation when ego begins to be there, or the other vehicle is first seen:
+whether that one, at its speed then, would meet ego in its way, and whether it could avoid that
+without braking harder than ``disturbing_mps2`` after its reaction time. A vehicle that already
+stands, or is so far away that gentle braking is enough, may let ego go first of its own accord.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Floats
 
 _GOES_FIRST = "PRIORITY_OVER_ONCOMING"
-"""The sign by which ego goes first where the road is narrow."""
+"""The sign that gives ego priority where the road is narrow."""
 
 _ALONG_RAD = np.pi / 4
-"""Who is turned farther from the road does not drive along it."""
+"""A vehicle at a larger angle to the road does not drive along it."""
 
 _SLOWED_MPS = 0.5
-"""Who is slower by more afterwards may have had to brake."""
+"""A vehicle that is slower by more afterwards may have had to brake."""
 
 
 class _Stay(NamedTuple):
-    """Ego's states over the middle, from the first to before the end; where its drive ends."""
+    """Ego's states over the middle, from ``first`` to before ``end``; the end of its drive."""
 
     first: int
     end: int
@@ -65,10 +65,10 @@ def _holds_up_oncoming(context: DriveContext) -> SignalColumns:
 
 
 def _stays_over_the_middle(context: DriveContext, far: Floats) -> list[_Stay]:
-    """Where ego reaches over the middle of a road with traffic both ways, along which it heads.
+    """Where ego, heading along a road with traffic both ways, reaches over its middle.
 
-    Not for sure where the map does not tell of the other direction, in junctions, where ways lead
-    elsewhere, and where ego is there from the start. A sign may let it go first.
+    Not for sure where the map does not say whether there is another direction, in junctions, where
+    ways lead elsewhere, and where ego is there from the start. A sign may give it priority.
     """
     both_ways, not_told = two_way(context)
     over = (far > context.thresholds.touching_m) & (both_ways | not_told)
@@ -88,7 +88,7 @@ def _stays_over_the_middle(context: DriveContext, far: Floats) -> list[_Stay]:
 
 
 def _comes_on_its_half(context: DriveContext, row: int, seen: int, near: Floats) -> bool:
-    """Does one come along the other half of the road, ahead of ego, and has not stopped yet?"""
+    """Whether a vehicle comes along the other half of the road ahead of ego, still moving."""
     others, limits = context.extents, context.thresholds
     return bool(
         others.along[row, seen] * KMH < -limits.standing_kmh
@@ -101,9 +101,9 @@ def _comes_on_its_half(context: DriveContext, row: int, seen: int, near: Floats)
 def _has_to_brake(
     context: DriveContext, stay: _Stay, other: tuple[int, int], in_way: Floats
 ) -> bool | None:
-    """Does one have to brake hard for ego? None if not, False if only perhaps.
+    """Whether a vehicle has to brake hard for ego: True, False if only perhaps, None if not.
 
-    ``other``: its row, and the state from which it is looked at; ``in_way``: how far (m) ego
+    ``other``: its row and the state from which it is considered. ``in_way``: how far (m) ego
     reaches into its way, by state from there on.
     """
     row, seen = other
@@ -131,20 +131,20 @@ def _has_to_brake(
 
 
 def _closing(context: DriveContext, stay: _Stay, speed: float) -> float:
-    """How much (m) nearer ego and another one are ``parting_s`` after the end of ego's stay."""
+    """How much (m) ego and another vehicle approach within ``parting_s`` after ego's stay."""
     own = max(float(context.ego_extents.along[0, stay.end - 1]), 0.0)
     return (own + speed) * context.thresholds.parting_s
 
 
 def _meets(room: Floats, way: Floats, in_way: Floats) -> int | None:
-    """The state in which one that has gone so far (m) is where ego's front is, if in its way."""
+    """The state in which a vehicle that moved by ``way`` (m) meets ego in its way, or None."""
     there = way >= room
     first = int(there.argmax())
     return first if there[first] and in_way[first] > 0 else None
 
 
 def _brakes(context: DriveContext, row: int, states: slice, speed: float) -> tuple[bool, bool]:
-    """Does one brake harder than ``disturbing_mps2`` for sure, and does it get slower?"""
+    """Whether a vehicle surely brakes harder than ``disturbing_mps2``, and if it gets slower."""
     tracks = context.tracks
     least = tracks.acceleration[row, states] + tracks.acceleration_error[row, states]
     brakes = bool(np.any(least < -context.thresholds.disturbing_mps2))
@@ -153,7 +153,7 @@ def _brakes(context: DriveContext, row: int, states: slice, speed: float) -> tup
 
 
 def _touch(context: DriveContext, row: int, states: slice) -> bool:
-    """Do the fronts of ego and another one meet, one in the other's way?"""
+    """Whether the fronts of ego and another vehicle meet, one in the other's way."""
     others, own = context.extents, context.ego_extents
     met = (others.s_min[row, states] <= own.s_max[0, states]).nonzero()[0]
     across = relations.way_across(context)[row, states]
@@ -161,10 +161,10 @@ def _touch(context: DriveContext, row: int, states: slice) -> bool:
 
 
 def _is_passed(context: DriveContext, row: int, states: slice) -> bool:
-    """Does one get past ego in the end, so that it did not brake to turn off before?"""
+    """Whether a vehicle gets past ego in the end, so that it did not brake to turn off before."""
     others, own = context.extents, context.ego_extents
     return bool((others.s_min[row, states] < own.s_max[0, states]).any())
 
 
 oncoming_conflicts = SignalPasses({("holds_up_oncoming",): _holds_up_oncoming})
-"""The signal of conflicts with those who come towards ego beyond the middle."""
+"""The signal of conflicts with oncoming vehicles while ego is beyond the middle."""

@@ -1,4 +1,4 @@
-"""Which lamps of participants are lit, and of which of them the recording tells; who stands."""
+"""Which lamps of participants are lit, and for which that is recorded; which participants stand."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rulec.recordings.recording import Lamp
 
 @once_a_recording
 def lamps_of_all(context: DriveContext) -> Mapping[Lamp, tuple[Flags, Flags]]:
-    """Flags of participants of the whole recording whose lamp is lit, and of which it tells."""
+    """Lamp -> masks of the recording's participants with it lit, and with it recorded."""
     tracks = context.surroundings.tracks
     flags: dict[Lamp, tuple[Flags, Flags]] = {}
     for row, body in enumerate(tracks.participants):
@@ -32,12 +32,12 @@ def lamps_of_all(context: DriveContext) -> Mapping[Lamp, tuple[Flags, Flags]]:
 
 
 def own_part(context: DriveContext, flags: Flags) -> Flags:
-    """The drive's rows and columns of flags of the whole recording."""
+    """The drive's rows and columns of a mask for the whole recording."""
     return flags.take(context.tracks.rows, axis=0).take(context.columns, axis=1)
 
 
 def lit_lamps(context: DriveContext, lamp: Lamp) -> tuple[Flags, Flags]:
-    """Flags of participants whose lamp is lit, and of those of which the recording tells."""
+    """Masks of participants whose lamp is lit, and of those for which it is recorded."""
     if lamp not in lamps_of_all(context):
         shape = context.relevant.shape
         return np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
@@ -46,17 +46,17 @@ def lit_lamps(context: DriveContext, lamp: Lamp) -> tuple[Flags, Flags]:
 
 
 def flashing(lit: Flags, context: DriveContext) -> Flags:
-    """The same with the time between two flashes."""
+    """A mask of lit lamps that includes the time between two flashes."""
     return context.spans.within(lit, round(FLASH_S / context.recording.step_s), around=True)
 
 
 def stands(context: DriveContext) -> Flags:
-    """Flags of who stands."""
+    """Mask of participants that stand."""
     still: Flags = context.tracks.speed * KMH < context.thresholds.standing_kmh
     return still
 
 
 def moves(context: DriveContext) -> Flags:
-    """Flags of who moves."""
+    """Mask of participants that move."""
     moving: Flags = context.tracks.speed * KMH >= context.thresholds.standing_kmh
     return moving

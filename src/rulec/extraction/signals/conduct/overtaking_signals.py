@@ -1,4 +1,4 @@
-"""Signals of overtaking: ego others, and others ego."""
+"""Signals of overtaking: of others by ego, and of ego by others."""
 
 from __future__ import annotations
 
@@ -36,28 +36,26 @@ from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct
 
 _DRIFT_MPS = 0.2
-"""Who moves sideways by less keeps its lane."""
-
-"""Types of lanes to join from or to leave by, beside those that go on."""
+"""A vehicle with a lower lateral speed keeps its lane."""
 
 _HALF_M = 4.0
-"""Who is farther beyond the middle of a road is on none of its lanes, or on the second one."""
+"""A vehicle farther beyond the middle of a road is on none of its lanes, or on the second one."""
 
 _SETS_OFF_MPS2 = 2.0
-"""Vehicles gain speed about so hard when they set off."""
+"""Roughly the acceleration of vehicles that set off."""
 
 _CRAWLS_MPS = 5.5
-"""Who is as slow and gains speed sets off, though it has not quite stood."""
+"""A vehicle this slow that gains speed sets off, although it has not quite stood."""
 
 
 def _overtaking(context: DriveContext) -> SignalColumns:
-    """Whether ego overtakes, beyond the middle of the road from going there until it is back.
+    """Whether ego overtakes; beyond the road's middle, from its way there until it is back.
 
-    Unknown of who goes there behind another and back: it may have given up. Past one that stands
-    nobody is there for longer than it takes to go round it.
+    Unknown if ego goes there behind a vehicle and back: it may have given up. For a standing
+    vehicle, ego is there only as long as it takes to go round it.
     """
     there, perhaps = oncoming_side(context)
-    # Who seems to be back for so short a time that `driving_side` takes it for noise is not
+    # Back for so short a time that `driving_side` takes it for noise does not count as back
     least = fewest_states(LEAST_S["driving_side"], context.recording.step_s)
     side = there | perhaps | without_blips(there | perhaps, least, context.spans)
     stands = (context.tracks.speed * KMH < context.thresholds.standing_kmh) & side
@@ -72,7 +70,7 @@ def _overtaking(context: DriveContext) -> SignalColumns:
 
 
 def _with_all_that_joins(context: DriveContext, flags: Flags, more: Flags) -> Flags:
-    """Flags, and those of ``more`` without a break between them and a flagged state."""
+    """The flagged states, with those of ``more`` that join a flagged state without a break."""
     spans, either = context.spans, flags | more
     outside = spans.latest(~either), spans.next_state(~either)
     joins: Flags = (spans.latest(flags) > outside[0]) | (spans.next_state(flags) < outside[1])
@@ -80,14 +78,14 @@ def _with_all_that_joins(context: DriveContext, flags: Flags, more: Flags) -> Fl
 
 
 def _near_enough_to_go_round(context: DriveContext) -> Flags:
-    """Flags of participants that are no farther than an obstacle that ego goes out for now."""
+    """Mask of participants no farther than an obstacle for which ego would go out now."""
     reach = context.ego_extents.along[0] * context.thresholds.parting_s
     near: Flags = relations.gap(context) <= np.maximum(reach, context.thresholds.obstacle_m)
     return near
 
 
 def _meanwhile(context: DriveContext, flags: Flags, during: Flags) -> Flags:
-    """Flags of states at most ``catching_up_s`` from a flagged one, ``during`` all between."""
+    """Mask of states within ``catching_up_s`` of a flagged one, with ``during`` true in between."""
     spans, held = context.spans, flags & during
     horizon = round(context.thresholds.catching_up_s / context.recording.step_s)
     before, after = spans.latest(held), spans.next_state(held)
@@ -97,15 +95,16 @@ def _meanwhile(context: DriveContext, flags: Flags, during: Flags) -> Flags:
 
 
 def _close_behind(context: DriveContext) -> Flags:
-    """Flags of states in which ego would be at one beside its way soon, if that stood.
+    """Mask of states in which ego would soon reach a vehicle beside its way if that one stood.
 
-    Or at one ahead that has gone to ego's side before it: of several who overtake one all wait for
-    the first.
+    Or a vehicle ahead that has gone to ego's side before it: of several that overtake another, all
+    wait for the first.
     """
     _, near_side = _sides(context)
     reach = context.ego_extents.along * context.thresholds.signalling_s
     near = (relations.gap(context) <= reach) & (relations.station(context) == relations.BEHIND)
-    # Who has gone to the lanes of the other direction is on none of the road's, nor in sight
+    # A vehicle that has gone to the lanes of the other direction is on none of the road's, and not
+    # in sight
     goes_along = np.abs(context.extents.turned) < 1.0
     near &= goes_along & context.tracks.of_type("vehicle")[:, None]
     near &= relations.lateral(context) != near_side
@@ -114,7 +113,7 @@ def _close_behind(context: DriveContext) -> Flags:
 
 
 def _begins_to_overtake(context: DriveContext) -> SignalColumns:
-    """Whether ego overtakes within ``parting_s``, so that it pulls out for that by now.
+    """Whether ego overtakes within ``parting_s``, so that it is pulling out for that by now.
 
     Unknown where the drive ends before.
     """
@@ -139,17 +138,18 @@ def _being_overtaken(context: DriveContext) -> SignalColumns:
             unknown={"being_overtaken": nobody},
             whom={"being_overtaken": whom},
         )
-    # Who is about to join gets up speed for it, beside others on the lanes that go on; who leaves
-    # may be faster than they, too (StVO § 7a), and many lanes between ramps serve for both
+    # A vehicle about to join gains speed beside others on the lanes that go on; one that leaves may
+    # be faster than they are, too (StVO § 7a), and many lanes between ramps serve for both
     on_ramp = own_lanelets(context).flags(lambda at: not at.types.isdisjoint(RAMPS))
     by, open_end = by & ~on_ramp, open_end & ~on_ramp
     overtaken = by.any(axis=0)
     dense, surely, not_told = dense_lines(context)
-    # Lanes that move off beside each other do not overtake, and who has joined gets up speed yet
+    # Lanes that move off beside each other do not overtake, and a vehicle that has joined still
+    # gains speed
     elsewhere = on_ramp | _comes_round(context) | _comes_beside(context)
     joined = _was(context, elsewhere)
     moot = _sets_off(context) | _recovers(context) | _may_recover(context) | joined | not_told
-    # Where all lanes queue, one that is faster does not overtake (Vienna, Art. 11(6)(a))
+    # Where all lanes queue, a faster vehicle does not overtake (Vienna, Art. 11(6)(a))
     return SignalColumns(
         {"being_overtaken": ~dense & overtaken},
         unknown={"being_overtaken": ~surely & np.where(overtaken, moot, open_end)},
@@ -158,7 +158,7 @@ def _being_overtaken(context: DriveContext) -> SignalColumns:
 
 
 def _was(context: DriveContext, there: Flags) -> Flags:
-    """Flags of states in which ego was somewhere up to ``setting_off_s`` ago."""
+    """Mask of states in which ego was ``there`` less than ``setting_off_s`` ago."""
     spans, last = context.spans, context.spans.latest(there)
     ago = (spans.columns - last) * context.recording.step_s
     was_there: Flags = (last >= spans.first) & (ago < context.thresholds.setting_off_s)
@@ -166,7 +166,7 @@ def _was(context: DriveContext, there: Flags) -> Flags:
 
 
 def _recovers(context: DriveContext) -> Flags:
-    """Flags of states in which ego was faster up to ``setting_off_s`` ago: it had to brake."""
+    """Mask of states in which ego was faster up to ``setting_off_s`` ago: it had to brake."""
     speed = context.ego.speed[0]
     steps = round(context.thresholds.setting_off_s / context.recording.step_s)
     fastest = context.spans.most_of_last(speed, steps)
@@ -175,7 +175,7 @@ def _recovers(context: DriveContext) -> Flags:
 
 
 def _may_recover(context: DriveContext) -> Flags:
-    """Flags of states in which ego accelerates so soon after it was first seen.
+    """Mask of states in which ego accelerates within ``setting_off_s`` of being first seen.
 
     It may have had to brake, or have joined, before. Where all traffic is recorded nobody did.
     """
@@ -189,7 +189,7 @@ def _may_recover(context: DriveContext) -> Flags:
 
 
 def _comes_round(context: DriveContext) -> Flags:
-    """Flags of states in which ego's middle is in a junction where it turns, or joins a ring."""
+    """Mask of states in which ego's middle is in a junction where it turns or joins a ring."""
     middle, inside = context.ego_extents.s[0], np.zeros(context.states, dtype=bool)
     rings = [begins for begins, _, at_junction in roundabouts(context) if at_junction]
     for start, end in context.road.junctions:
@@ -199,14 +199,14 @@ def _comes_round(context: DriveContext) -> Flags:
 
 
 def _comes_beside(context: DriveContext) -> Flags:
-    """Flags of states in which ego comes onto a road that has more lanes than led ego there."""
+    """Mask of states in which ego comes onto a road with more lanes than those that led there."""
     joins = _before_joining(context)
     return joins[context.road.piece(context.ego_extents.s[0])]
 
 
 @once_a_road
 def _before_joining(context: DriveContext) -> Flags:
-    """Flags of the pieces of ego's road behind which most lanes come from other ones."""
+    """Mask of the pieces of ego's road after which most lanes come from other lanes."""
     joins = np.zeros(len(context.road.rows), dtype=bool)
     for piece, (row, beyond) in enumerate(pairwise(context.road.rows)):
         known = {lanelet.id for lanelet in row if lanelet is not None}
@@ -220,7 +220,7 @@ def _before_joining(context: DriveContext) -> Flags:
 
 
 def _gains_speed(context: DriveContext) -> Flags:
-    """Flags of states in which ego is faster than ``smoothing_s`` before, or than at first."""
+    """Mask of states in which ego is faster than ``smoothing_s`` before, or that new."""
     speed, spans = context.ego.speed[0], context.spans
     steps = _smoothing_steps(context)
     gains: Flags = speed > speed[np.maximum(spans.columns - steps, spans.first)]
@@ -232,13 +232,7 @@ def _smoothing_steps(context: DriveContext) -> int:
 
 
 def _sets_off(context: DriveContext) -> Flags:
-    """Flags of states in which ego has, or may have, set off, and gets up speed yet.
-
-    It stood up to ``setting_off_s`` ago, or was no faster than ``_CRAWLS_MPS`` then or since when
-    it has gained speed, or it has gained it ever since its drive began. Before that it may have
-    stood, if ``_SETS_OFF_MPS2`` has made it as fast as it is then; where all traffic is recorded,
-    if that is no faster than one that crawls.
-    """
+    """Mask of states in which ego is faster than ``smoothing_s`` before, or just began."""
     limits, speed, step_s = context.thresholds, context.ego.speed[0], context.recording.step_s
     spans, stood = context.spans, context.spans.latest(speed <= _CRAWLS_MPS).astype(float)
     at_first = speed[spans.first]
@@ -246,7 +240,7 @@ def _sets_off(context: DriveContext) -> Flags:
     if "arrivals" in context.recording.complete:
         before = np.where(at_first <= _CRAWLS_MPS, before, -np.inf)
     gained_since = spans.latest(~_gains_speed(context))
-    # Of what a drive begins with it is told by what follows
+    # The start of a drive is judged by what follows
     soon = np.minimum(spans.first + _smoothing_steps(context), spans.end - 1)
     later = speed[np.maximum(soon, spans.columns)]
     ever_since = (gained_since < spans.first) & (later > at_first + context.tolerances.speed_mps)
@@ -257,10 +251,10 @@ def _sets_off(context: DriveContext) -> Flags:
 
 
 def _overtakes(context: DriveContext, whom: Flags | bool) -> tuple[Flags, Flags]:
-    """Flags of ego overtaking a slower vehicle or cycle, and of it perhaps doing so.
+    """Masks of ego overtaking a slower vehicle or cycle, and of it perhaps doing so.
 
-    Who overtakes is at the far side, from shortly before it is beside the other until it is just
-    past. ``whom``: flags of the others by state.
+    An overtaking ego is at the far side, from shortly before it is beside the other until it is
+    just past. ``whom``: mask of the others by state.
     """
     overtakes, unsure = np.zeros((2, context.states), dtype=bool)
     if not np.any(whom):
@@ -279,7 +273,7 @@ def _overtakes(context: DriveContext, whom: Flags | bool) -> tuple[Flags, Flags]
 
 
 def _ride_along(context: DriveContext) -> Flags:
-    """Flags of cycles that go ego's way on its lanes, but for those that are for them alone."""
+    """Mask of cycles that go ego's way on its lanes, except on cycle lanes."""
     others, rides = context.extents, context.tracks.of_type("light_rider")
     along = context.in_sight & rides[:, None] & (abs(others.turned) < 1.0) & context.on_lanes
     if CYCLE_LANE in map_contents(context).types:
@@ -288,12 +282,12 @@ def _ride_along(context: DriveContext) -> Flags:
 
 
 def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of those who overtake ego, and of states after which nobody knows whether one does.
+    """Mask of vehicles that overtake ego, and of states in which it is unknown whether one does.
 
-    Who overtakes ego is with its middle on the next lane at the far side, or on the other half of
-    the road, clearly faster, and gets past within ``catching_up_s``. Nobody knows of one that is
-    lost from sight before, that falls back first (whoever gives up and tries again overtakes but
-    once), or that only reaches into that lane.
+    A vehicle that overtakes ego has its middle on the next lane at the far side, or on the other
+    half of the road, is clearly faster, and gets past within ``catching_up_s``. Unknown for one
+    that is lost from sight before, that falls back first (one that gives up and tries again
+    overtakes only once), or that only reaches into that lane.
     """
     limits, station = context.thresholds, relations.station(context)
     _, near = _sides(context)
@@ -318,15 +312,15 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
 
 
 def _sides(context: DriveContext) -> tuple[int, int]:
-    """Ego's sides of one that it overtakes, and of one that overtakes it."""
+    """Ego's sides of a vehicle that it overtakes, and of one that overtakes it."""
     sides = (relations.LEFT_OF, relations.RIGHT_OF)
     return sides if context.side == "right" else sides[::-1]
 
 
 def _ahead_and_past(context: DriveContext, cells: Cells, tolerances: float) -> Flags:
-    """Flags of cells in which ego will be beside another soon, or has just been, if it overtakes.
+    """Mask of cells in which ego, if it overtakes, is soon or has just been beside the other.
 
-    With so many tolerances of places and speeds added to what is as far as that.
+    The reach is extended by this many ``tolerances`` of places and speeds.
     """
     limits, known = context.thresholds, context.tolerances
     station, gap = cells.of(relations.station(context)), cells.of(relations.gap(context))
@@ -339,9 +333,9 @@ def _ahead_and_past(context: DriveContext, cells: Cells, tolerances: float) -> F
 
 
 def _next_lane(context: DriveContext) -> NDArray[intp]:
-    """The lane beside ego's at its far side by state; there may be none of that number.
+    """The number of the lane beside ego's at its far side by state; it may not exist.
 
-    While ego is on a mark that is the lane that it moves into, and none beyond.
+    While ego is on a mark, it is the lane that ego moves into, not the one beyond.
     """
     inside = context.ego_extents.inside[0]
     lanes = np.arange(inside.shape[1])
@@ -355,7 +349,7 @@ def _next_lane(context: DriveContext) -> NDArray[intp]:
 
 
 def _over_the_middle(context: DriveContext) -> Flags:
-    """Flags of vehicles with their middle on the other half, which have come from ego's lanes."""
+    """Mask of vehicles with their middle on the other half that have come from ego's lanes."""
     spans, others = context.spans, context.extents
     both_ways, _ = two_way(context)
     low, high = sides_beyond_far_edge(context, others)
@@ -368,11 +362,11 @@ def _over_the_middle(context: DriveContext) -> Flags:
 def _gets_past(
     context: DriveContext, rows: NDArray[intp], faster_mps: Floats, over: Flags
 ) -> tuple[Flags, Flags]:
-    """Flags of participants that are past within ``catching_up_s``, and of those that may be.
+    """Masks of participants that get past within ``catching_up_s``, and of those that may.
 
-    Of these rows, False in all others. They may be if they are lost before, or fall back first:
-    slower than ego by more than speeds may be wrong. Who is ``over`` the middle would get past, had
-    it not to brake harder than ``disturbing_mps2`` for ego, which comes there, too.
+    Only for ``rows``; False elsewhere. They may if they are lost before, or fall back first: slower
+    than ego by more than the error of speeds. A vehicle ``over`` the middle would get past if it
+    did not have to brake harder than ``disturbing_mps2`` for ego, which comes there, too.
     """
     horizon = round(context.thresholds.catching_up_s / context.recording.step_s)
     spans, states = context.spans, context.spans.columns

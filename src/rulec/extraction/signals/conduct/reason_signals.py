@@ -1,7 +1,7 @@
 """Signals of whether anything makes ego brake, stand or drive slowly, and whom it holds up.
 
-Reasons that nobody records, such as an animal, a defect or somebody to let out, cannot be excluded;
-those that can be seen are looked for as far ahead as ego might have to think of them.
+Reasons that are never recorded, such as an animal, a defect or a passenger to let out, cannot be
+excluded; visible ones are searched as far ahead as ego might have to consider them.
 """
 
 from __future__ import annotations
@@ -42,21 +42,22 @@ from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
 
 _REACH_S, _GENTLE_MPS2 = 3.0, 4.0
-"""What makes ego brake is no farther ahead than it drives in so long, brakes so hard, and
-``REACH_M``."""
+"""A cause to brake is at most this far ahead: the way in ``_REACH_S``, the braking distance at
+``_GENTLE_MPS2``, and ``REACH_M``."""
 
 FOLLOWS_S, _FALLS_BACK_MPS = 3.0, 1.0
-"""Who is so far behind by time, or nearer, is held up by ego, unless it is slower by so much."""
+"""Ego holds up a vehicle at most ``FOLLOWS_S`` behind, unless it is slower by
+``_FALLS_BACK_MPS``."""
 
 _ROAD_M, _HALF, _CALLED_M = 15.0, 0.5, 100.0
 _FAR_SLOWER, _SLOWER = 0.5, 0.75
-"""Parts of the limit: who is slower than the first holds others up, than the second perhaps."""
+"""Parts of the limit: a vehicle slower than the first holds others up, than the second perhaps."""
 
 _SETS_OFF_S = 2.0
-"""Nobody is expected to set off sooner, once it may."""
+"""No vehicle is expected to set off sooner (s) once it may."""
 
 _DRIVES_KMH = 30.0
-"""Who is as fast later on has not broken down, nor is towed."""
+"""A vehicle that is this fast later on has not broken down, nor is it towed."""
 
 
 def _cause_to_brake(context: DriveContext) -> SignalColumns:
@@ -66,18 +67,18 @@ def _cause_to_brake(context: DriveContext) -> SignalColumns:
 
 @once
 def _causes(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of states with a reason to brake, stand or be slow, and of those perhaps with one.
+    """Masks of states with a reason to brake, stand or be slow, and of those perhaps with one.
 
-    What may be one is looked for in all states; whether it is, or surely is not, only where ego
-    brakes hard, stands or is slow (``_asked``).
+    Possible reasons are searched in all states; whether one surely applies, or surely does not,
+    only where ego brakes hard, stands or is slow (``_asked``).
 
-    Ego that stands has perhaps broken down, unless its hazard lights are known to be off, or it
-    drives on at ``_DRIVES_KMH`` afterwards; one that stands soon, whose drive ends, that is beside
-    somebody, or comes up to one beside its lane who is less than half as fast, and may come into
-    it, had perhaps something to do; so has one before or on a lane that joins others, where it
-    looks for a gap, one that has stood for a reason, or since its drive began, up to
-    ``MOVES_OFF_S`` ago, and one that brakes hard with nobody near behind, whom it would surprise.
-    Where not all traffic is recorded it is as far as somebody is recorded ahead.
+    A standing ego may have broken down, unless its hazard lights are known to be off or it later
+    drives on at ``_DRIVES_KMH``. It may have had a reason if it stands soon, if its drive ends, if
+    a participant is beside it, if it comes up to one beside its lane that is less than half as fast
+    and may come into it, if it is before or on a lane that joins others, where it looks for a gap,
+    if it has stood for a reason, or since its drive began, up to ``MOVES_OFF_S`` ago, and if it
+    brakes hard with no vehicle near behind that would be surprised. Where not all traffic is
+    recorded, the road counts as known only as far as a participant is recorded ahead.
     """
     reach, spans, stands = _reach(context), context.spans, ~moves(context)
     brakes, asked = _asked(context)
@@ -109,11 +110,11 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
         broken_down = stands & ~_drives_on(context, stands)
         perhaps |= spans.within(broken_down, soon) & ~(stands & _shows_no_hazard(context))
         perhaps |= stands & spans.begins_here
-        # Who is about to back has to stand before
+        # A vehicle that is about to reverse has to stand before
         backs = context.ego_extents.along[0] * KMH <= -context.thresholds.standing_kmh
         perhaps |= stands & spans.within(backs, soon)
     perhaps |= spans.columns + soon // 2 >= spans.end
-    # Ego may want to get in behind one beside it, or let it in
+    # Ego may want to get in behind a vehicle beside it, or let it in
     perhaps[others.states] |= _beside(context, others) | _slow_beside(context, others)
     perhaps[others.states] |= _called_near(context, others)
     perhaps |= _seeks_a_gap(context)
@@ -122,7 +123,7 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     if stands.any():
         caused |= stands & _since(context, caused & stands, _SETS_OFF_S)
         perhaps |= stands & _since(context, stands & (caused | perhaps), MOVES_OFF_S)
-        # Who has just come to a stop may have seen somebody who did not come after all
+        # A vehicle that has just stopped may have seen another one that did not come after all
         looks = spans.within_last(~stands, round(LOOKS_S / context.recording.step_s))
         perhaps |= on_map.freely & stands & looks
     if not _all_are_recorded(context):
@@ -132,7 +133,7 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
 
 
 def _since(context: DriveContext, flags: Flags, seconds: float) -> Flags:
-    """Flags of states in which ego has not moved since others, at most so long ago."""
+    """Mask of states in which ego has not moved since a flagged one, at most ``seconds`` ago."""
     spans = context.spans
     latest = spans.latest(flags)
     recent = (spans.columns - latest) * context.recording.step_s <= seconds
@@ -141,9 +142,10 @@ def _since(context: DriveContext, flags: Flags, seconds: float) -> Flags:
 
 
 def _asked(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of states in which ego brakes hard, and of those in which rules ask for a reason.
+    """Masks of states in which ego brakes hard, and in which rules ask for a reason.
 
-    In the latter it may brake so, within a second, stands, is slow, or may be for who follows it.
+    In the latter ego may brake hard, within a second, stands, or is slow; if no limit is known,
+    they are those in which a vehicle follows it.
     """
     acceleration, hard = context.ego.acceleration[0], -context.thresholds.braking_hard_mps2
     brakes = acceleration - context.ego.acceleration_error[0] <= hard
@@ -154,10 +156,10 @@ def _asked(context: DriveContext) -> tuple[Flags, Flags]:
 
 
 def _drives_on(context: DriveContext, stands: Flags) -> Flags:
-    """Flags of states in which ego stands, and drives on in earnest later in its drive.
+    """Mask of states in which ego stands, and reaches ``_DRIVES_KMH`` later in its drive.
 
-    Of one that stands when its drive begins nobody knows for what, nor until it has had the time to
-    get going.
+    Not in a drive's first state: why ego stands there is unknown until it has had time to get
+    going.
     """
     spans = context.spans
     drives = context.ego.speed[0] * KMH >= _DRIVES_KMH
@@ -167,13 +169,13 @@ def _drives_on(context: DriveContext, stands: Flags) -> Flags:
 
 
 def _beside(context: DriveContext, others: Others) -> Flags:
-    """Flags of the others' states with one beside ego, near its lane."""
+    """Mask of the others' states with one beside ego, near its lane."""
     beside = (others.away > IN_WAY_M) & (others.away <= COMES_M)
     beside &= np.abs(others.ahead) <= REACH_M
     found: Flags = np.logical_or.reduce(beside)
     turns = (found & ~moves(context)[others.states]).nonzero()[0]
     if len(turns):
-        # To who stands in a turn those behind it on its road may seem to be beside it
+        # If ego stands in a turn, those behind it on its road may appear to be beside it
         there = without_followers(context, others.part(turns))
         near = (there.away > IN_WAY_M) & (there.away <= COMES_M)
         found[turns] = (near & (np.abs(there.ahead) <= REACH_M)).any(axis=0)
@@ -181,7 +183,7 @@ def _beside(context: DriveContext, others: Others) -> Flags:
 
 
 def _called_near(context: DriveContext, others: Others) -> Flags:
-    """Flags of the others' states with an emergency vehicle about: ego may make way for it."""
+    """Mask of the others' states with an emergency vehicle near: ego may make way for it."""
     called = context.surroundings.tracks.of_type("emergency_vehicle")[others.rows]
     near = np.hypot(others.ahead[called], others.left[called]) <= _CALLED_M
     found: Flags = np.logical_or.reduce(near)
@@ -189,7 +191,7 @@ def _called_near(context: DriveContext, others: Others) -> Flags:
 
 
 def _slow_beside(context: DriveContext, others: Others) -> Flags:
-    """Flags of the others' states with one ahead beside ego's lane, less than half as fast."""
+    """Mask of the others' states with one ahead beside ego's lane, less than half as fast."""
     near = (others.ahead > 0) & (others.ahead <= _reach(context)[others.states])
     cells = Cells.at(near & (others.away <= COMES_M))
     rows, columns = cells.rows, cells.columns
@@ -202,7 +204,7 @@ def _slow_beside(context: DriveContext, others: Others) -> Flags:
 
 
 def _seeks_a_gap(context: DriveContext) -> Flags:
-    """Flags of states in which ego's lane joins others, there or as far ahead as ego looks."""
+    """Mask of states in which ego's lane joins others, there or as far ahead as ego looks."""
     road, seeks = context.road, np.zeros(context.states, dtype=bool)
     joins = [[x is not None and JOINING in x.types for x in row] for row in road.rows]
     for number, row in enumerate(joins):
@@ -229,7 +231,7 @@ def _reach(context: DriveContext) -> Floats:
 
 
 def reach_at(speed: Floats) -> Floats:
-    """How far ahead (m) somebody looks for reasons to brake, by speed (m/s)."""
+    """How far ahead (m) a driver looks for reasons to brake, by speed (m/s)."""
     reach: Floats = _REACH_S * speed + speed**2 / (2 * _GENTLE_MPS2) + REACH_M
     return reach
 
@@ -239,9 +241,9 @@ def _all_are_recorded(context: DriveContext) -> bool:
 
 
 def _impedes(context: DriveContext) -> SignalColumns:
-    """Whether somebody follows ego, far below the limit for long without a reason.
+    """Whether a vehicle follows ego, which is far below the limit for long without a reason.
 
-    Who rides a cycle has one: no law asks for more than its rider's strength. Who gains speed, as
+    A cycle has one: no law asks for more than its rider's strength. A vehicle that gains speed, as
     after a stop, is not slow for good.
     """
     limit, speed = context.limit_mps, context.ego.speed[0]
@@ -257,7 +259,7 @@ def _impedes(context: DriveContext) -> SignalColumns:
     impedes = followed & (runs > steps)
     slower = (~told | (speed < _SLOWER * limit)) & moves(context) & ~gains & ~caused
     since = context.spans.latest(~slower)
-    # What was before its drive began nobody has seen
+    # What was before its drive began is unknown
     for_long = (context.spans.columns - since > steps) | (since < context.spans.first)
     return SignalColumns(
         {"impedes_traffic": impedes},
@@ -266,9 +268,9 @@ def _impedes(context: DriveContext) -> SignalColumns:
 
 
 def _followed(context: DriveContext, slower_mps: float = np.inf) -> Flags:
-    """Flags of states in which somebody is behind ego in its lane, near enough to be held up.
+    """Mask of states in which a vehicle is behind ego in its lane, near enough to be held up.
 
-    And no slower than ego by so much: who falls back goes at a speed of its own.
+    Vehicles slower than ego by ``slower_mps`` do not count: they fall back at a speed of their own.
     """
     behind = relations.station(context) == relations.IN_FRONT_OF
     behind &= context.going_along

@@ -1,4 +1,4 @@
-"""Whom ego leaves no room as it changes lanes, by what these do while it moves over."""
+"""Vehicles that ego leaves no room as it changes lanes, by what they do while it moves over."""
 
 from __future__ import annotations
 
@@ -20,26 +20,27 @@ from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct, ranges
 
 _NO_ROOM_S, _DRAWS_AWAY_MPS = 0.3, 1.0
-"""One so near behind ego has no room to react in, unless ego draws away from it."""
+"""A vehicle this close (s) behind ego has no room to react, unless ego draws away from it."""
 
 _TOO_CLOSE_S = 1.0
-"""Who brakes for one that comes in ahead by less has to: half of what all laws ask for."""
+"""A vehicle that brakes for one coming in closer than this has to: half of what all laws ask
+for."""
 
 _DRIFT_MPS = 0.2
-"""Who moves sideways by less keeps its lane."""
+"""A vehicle with a lower lateral speed keeps its lane."""
 
 _SLOWED_MPS, _ASIDE_M = 0.5, 0.3
-"""Who is slower by more, or so far aside of where it was, has got out of the way."""
+"""A vehicle that is slower, or aside of where it was, by more than this has made way."""
 
 _LONGEST_S = 4.0
-"""Who changes lanes has moved over for so long at most."""
+"""A change of lanes takes at most this long (s)."""
 
 
 @dataclass(frozen=True, slots=True)
 class WayIn:
-    """Ego's way into a lane: over which of the road's lines, and is that to its left?
+    """Ego's way into a lane: the line of the road that it crosses, and whether to its left.
 
-    ``state`` is the one in which its middle is clearly beyond.
+    ``state`` is the one in which its middle is clearly beyond the line.
     """
 
     state: int
@@ -48,15 +49,14 @@ class WayIn:
 
 
 def squeezed(context: DriveContext, ways: Sequence[WayIn]) -> tuple[Flags, Flags]:
-    """Flags of those whom ego leaves no room on these ways into lanes, and perhaps so.
+    """Masks of vehicles that ego leaves no room on these ways into lanes, and perhaps so.
 
-    Those so near behind it that they cannot react; those whom it would have run into, had they gone
-    on as they did when it began to move over: they had to get out of its way, surely if they were
-    beside it when its body came over the mark, or braked harder than ``disturbing_mps2``
-    afterwards, and perhaps if they let it in, or have one ahead of them who is slower; those
-    who would have had to brake so hard, and did before ego was in their lane; and those who do
-    with ego so close ahead, which is not slower itself. Perhaps, too, where ego's lane ends: there
-    they let each other in.
+    They are so near behind ego that they cannot react; or ego would have run into them, had they
+    gone on as they did when it began to move over, so that they had to make way (surely if they
+    were beside it when its body came over the mark, or then braked harder than ``disturbing_mps2``;
+    perhaps if they let it in, or have a slower vehicle ahead); or they would have had to brake that
+    hard, and did before ego was in their lane; or they do with ego close ahead, which is not slower
+    itself. Perhaps, too, where ego's lane ends: there drivers let each other in.
     """
     changes = np.array([way.state for way in ways], dtype=intp)
     begins, reaches = _moves_over(context, ways, changes)
@@ -69,7 +69,7 @@ def squeezed(context: DriveContext, ways: Sequence[WayIn]) -> tuple[Flags, Flags
 def _moves_over(
     context: DriveContext, ways: Sequence[WayIn], changes: NDArray[intp]
 ) -> tuple[NDArray[intp], NDArray[intp]]:
-    """The states from which on ego moves over, and its body is across the mark, by way."""
+    """The states from which ego moves over, and from which its body is across the mark, by way."""
     own, spans = context.ego_extents, context.spans
     begins, reaches = changes.copy(), changes.copy()
     longest = round(_LONGEST_S / context.recording.step_s)
@@ -85,7 +85,7 @@ def _moves_over(
 
 
 def _close_behind(context: DriveContext, changes: NDArray[intp]) -> Flags:
-    """Flags of those behind ego in its new lane who have no room to react, by way."""
+    """Mask of vehicles behind ego in its new lane that have no room to react, by way."""
     along, own = context.extents.along[:, changes], context.ego_extents.along[0, changes]
     place, speed = context.tolerances.place_m, context.tolerances.speed_mps
     close: Flags = relations.gap(context)[:, changes] + place < _NO_ROOM_S * (along - speed)
@@ -98,7 +98,7 @@ def _close_behind(context: DriveContext, changes: NDArray[intp]) -> Flags:
 def _gives_way(
     context: DriveContext, begins: NDArray[intp], reaches: NDArray[intp], changes: NDArray[intp]
 ) -> tuple[Flags, Flags]:
-    """Flags of those who got out of ego's way between these states, by way, and perhaps did."""
+    """Masks of vehicles that made way for ego between these states, by way, and perhaps did."""
     others, own, place = context.extents, context.ego_extents, context.tolerances.place_m
     lanes, went_s = context.steady_lane[changes], (changes - begins) * context.recording.step_s
     there = context.going_along[:, begins] & context.going_along[:, changes]
@@ -106,7 +106,7 @@ def _gives_way(
     there &= ~_drifts(context, there, begins, lanes)
     if not there.any():
         return there, there
-    # Who takes another way where the lane forks brakes for that
+    # A vehicle that takes another way where the lane forks brakes for that
     rows = there.any(axis=1).nonzero()[0]
     there[rows] &= ~_any_between(
         context, begins, changes, lambda states: context.elsewhere[rows[:, None], states]
@@ -125,7 +125,7 @@ def _gives_way(
     aside = np.abs(others.d_min[:, changes] + others.d_max[:, changes] - right - left)
     would &= (slower > _SLOWED_MPS + context.tolerances.speed_mps) | (aside / 2 > _ASIDE_M + place)
     beside = relations.station(context)[:, reaches] == relations.BESIDE
-    # Who comes from behind has to see that ego comes
+    # A vehicle from behind has to see that ego comes
     comes_s = (changes - reaches) * context.recording.step_s
     high = others.s_max[:, reaches] + others.along[:, reaches] * comes_s
     faster = others.along[:, reaches] - own.along[0, changes]
@@ -141,9 +141,10 @@ def _gives_way(
 
 
 def _comes_in_close(context: DriveContext, reaches: NDArray[intp], changes: NDArray[intp]) -> Flags:
-    """Flags of those close behind ego in its new lane, by way, unless ego gets slower there.
+    """Mask of vehicles close behind ego in its new lane, by way, unless ego gets slower there.
 
-    Who brakes with one ahead that does not has no other reason that ego had not as well.
+    If the vehicle ahead does not brake, a vehicle that does had no other reason that ego did not
+    have, too.
     """
     own, behind = context.ego_extents.along[0], context.in_ego_lane[:, changes]
     close = relations.gap(context)[:, changes] < _TOO_CLOSE_S * context.extents.along[:, changes]
@@ -154,7 +155,7 @@ def _comes_in_close(context: DriveContext, reaches: NDArray[intp], changes: NDAr
 
 
 def _reacted(context: DriveContext, changes: NDArray[intp]) -> NDArray[intp]:
-    """The states behind those up to which others have reacted to a change of lanes."""
+    """The states after those in which others have reacted to a change of lanes."""
     reacts = round(context.thresholds.reaction_s / context.recording.step_s) + 1
     ends: NDArray[intp] = np.minimum(changes + reacts, context.spans.end[changes])
     return ends
@@ -163,9 +164,10 @@ def _reacted(context: DriveContext, changes: NDArray[intp]) -> NDArray[intp]:
 def _drifts(
     context: DriveContext, whom: Flags, states: NDArray[intp], lanes: NDArray[intp]
 ) -> Flags:
-    """Flags of those who move sideways in a lane: the road's own line may bend from one to another.
+    """Mask of participants in ``whom`` that move sideways within their lane, by way.
 
-    Of some, by state and lane, over half of ``smoothing_s``, as far as the drive goes back.
+    Measured in the lane, since the road's own line may bend from one lane to another; over half of
+    ``smoothing_s``, as far as the drive goes back.
     """
     steps = max(round(context.thresholds.smoothing_s / 2 / context.recording.step_s), 1)
     before = np.maximum(states - steps, context.spans.first[states])
@@ -186,9 +188,9 @@ def _drifts(
 def _brake(
     context: DriveContext, whom: Flags, begins: NDArray[intp], changes: NDArray[intp]
 ) -> tuple[Flags, Flags]:
-    """Flags of some who brake harder than ``disturbing_mps2`` then, by way, and perhaps do.
+    """Masks of those in ``whom`` that then brake harder than ``disturbing_mps2``, and perhaps do.
 
-    Or up to ``reaction_s`` later.
+    By way; also up to ``reaction_s`` later.
     """
     limit, tracks = -context.thresholds.disturbing_mps2, context.tracks
     rows = whom.any(axis=1).nonzero()[0]
@@ -211,7 +213,7 @@ def _any_between(
     changes: NDArray[intp],
     flags_of: Callable[[NDArray[intp]], Flags],
 ) -> Flags:
-    """For each way whether flags of states are true in any until others have reacted to it."""
+    """For each way, whether flags hold in any of its states until others have reacted to it."""
     if not len(changes):
         return flags_of(changes)
     states, first = ranges(begins, _reacted(context, changes) - begins)
@@ -220,7 +222,7 @@ def _any_between(
 
 
 def _held_up(context: DriveContext, state: int, lane: int) -> Flags:
-    """Flags of those behind a slower one in a lane whom they get to within ``catching_up_s``."""
+    """Mask of vehicles in a lane that reach a slower one ahead within ``catching_up_s``."""
     others = context.extents
     rows = (context.going_along[:, state] & (others.lane[:, state] == lane)).nonzero()[0]
     low, high = others.s_min[rows, state], others.s_max[rows, state]
@@ -233,7 +235,7 @@ def _held_up(context: DriveContext, state: int, lane: int) -> Flags:
 
 
 def _lane_ends(context: DriveContext, states: NDArray[intp]) -> Flags:
-    """Flags of states in which ego's lane ends soon, and is none by which one joins a road."""
+    """Mask of states in which ego's lane ends soon, and does not serve to join a road."""
     joins = own_lanelets(context).flags(lambda lanelet: JOINING in lanelet.types)
     goes_on = lanes_that_go_on(context)[states, context.steady_lane[states]]
     return ~(goes_on | joins[states])

@@ -1,9 +1,9 @@
-"""The signal of who goes straight on beside a turning ego, and is in conflict with it there.
+"""The signal of participants going straight on beside a turning ego, in conflict with it there.
 
-In the frame of the direction in which ego comes to the junction, before it begins to turn: ego's
-body is across the other one's line while it drives over it. That one is in conflict with ego if ego
-gets there first though the other one would be there, as fast as it was, less than ``yielding_s``
-after ego has left, and does come less than ``held_up_s`` after it, as at junctions' crossing ways.
+In the frame of ego's direction before the junction, where it has not begun to turn, ego's body is
+across the other one's line while it drives over it. They are in conflict if ego gets there first
+although the other, at its speed then, would be there less than ``yielding_s`` after ego has left,
+and does come less than ``held_up_s`` after it, as on crossing ways in junctions.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.tracks import Floats
 
 _BEHIND_M, _ASIDE_M = 30.0, 8.0
-"""Who goes on beside ego is no farther behind it or aside when it begins to turn."""
+"""A participant that goes on beside ego is at most this far behind it or aside when ego turns."""
 
 _BEFORE_M = 8.0
 _STRAIGHT_RAD = np.radians(30.0)
@@ -46,7 +46,7 @@ def _turns_in_way_of(context: DriveContext) -> SignalColumns:
 def _conflict(
     context: DriveContext, own: Passage, row: int, towards: float
 ) -> tuple[int, int, bool] | None:
-    """The states in which ego is in the way of a participant, and whether that is known.
+    """The states in which ego is in a participant's way, and whether that is known; or None.
 
     ``towards``: 1 if ego turns left, -1 if right.
     """
@@ -61,7 +61,7 @@ def _conflict(
     heading = float(tracks.heading[own.row, came])
     along, left = _in_frame(context, row, origin, heading)
     angle = np.angle(np.exp(1j * (tracks.heading[row] - heading)))
-    # Clear of ego's way before it turned: who follows it is behind it
+    # Clear of ego's way before it turned: a vehicle that follows ego is behind it
     to_right, to_left = _clear(context, (own.row, came), (row, begin), origin, heading)
     clear = to_left if towards > 0 else to_right
     behind = float(_in_frame(context, own.row, origin, heading)[0][begin] - along[begin])
@@ -110,7 +110,7 @@ def _clear(
     origin: tuple[float, float],
     heading: float,
 ) -> tuple[float, float]:
-    """How far (m) another one is clear of ego to its right and left, each at a row and a column."""
+    """How far (m) another is clear to ego's right and left, each at a row and column."""
     tracks, ranges = context.surroundings.passages.tracks, []
     for row, column in (ego, other):
         corners = tracks.participants[row].outlines[column + tracks.first]
@@ -124,9 +124,9 @@ def _clear(
 def _crossed(
     context: DriveContext, own: Passage, begin: int, frame: tuple[float, float, float], line: float
 ) -> tuple[int, int, float, float] | None:
-    """From which column to which ego's body is across a line along its old way, and where (m).
+    """The columns from and to which ego's body is across a line along its old way, and where (m).
 
-    ``frame``: x and y of where it came from, and its heading there.
+    ``frame``: x and y of the place that it came from, and its heading there.
     """
     tracks = context.surroundings.passages.tracks
     *origin, heading = frame
@@ -161,4 +161,4 @@ def _in_frame(
 
 
 turning_conflicts = SignalPasses({("turns_in_way_of",): _turns_in_way_of})
-"""The signal of conflicts with those beside a turning ego."""
+"""The signal of conflicts with participants beside a turning ego."""

@@ -1,4 +1,4 @@
-"""Who has to brake for ego as it turns round on the road."""
+"""Vehicles that have to brake for ego as it turns round on the road."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from rulec.extraction.signals.measured_numbers import own_widths
 from rulec.extraction.tracks.tracks import Flags, Floats
 
 _SLOWED_MPS = 0.5
-"""Who is slower by more afterwards may have had to brake."""
+"""A vehicle that is slower by more afterwards may have had to brake."""
 
 
 def has_to_brake_for_turn(context: DriveContext, turns: Flags) -> tuple[Flags, Flags]:
-    """Flags of vehicles that must brake for ego in states in which it turns round, and perhaps so.
+    """Masks of vehicles that must brake for ego while it turns round, and that perhaps must.
 
     Ego is across their way, and they would have to brake harder than ``disturbing_mps2`` after
-    their reaction time not to run into it. They do brake so hard, or are slower a while later. Who
-    comes up behind on the lanes of ego's own way sees it slow down, and is none of them.
+    their reaction time to avoid it. They do brake that hard, or are slower a while later. Vehicles
+    that come up behind on the lanes of ego's own way see it slow down and do not count.
     """
     shape = context.relevant.shape
     sure, perhaps = np.zeros((2, *shape), dtype=bool)
@@ -36,7 +36,7 @@ def has_to_brake_for_turn(context: DriveContext, turns: Flags) -> tuple[Flags, F
 
 
 def _too_near(context: DriveContext, states: NDArray[intp]) -> Flags:
-    """Flags of those to whose way ahead ego comes so near that they must brake hard, by state."""
+    """Mask, by state, of vehicles whose way ego blocks so near ahead that they must brake hard."""
     tracks, own, limits = context.tracks, context.ego, context.thresholds
     heading, speed = tracks.heading[:, states], np.nan_to_num(tracks.speed[:, states])
     dx, dy = own.x[0, states] - tracks.x[:, states], own.y[0, states] - tracks.y[:, states]
@@ -57,7 +57,7 @@ def _too_near(context: DriveContext, states: NDArray[intp]) -> Flags:
 
 
 def _lengths(context: DriveContext) -> Floats:
-    """The lengths (m) of ego and of the others along the road, where they lie along it best."""
+    """The lengths (m) of ego and of the others: their greatest extents along the road."""
     bodies = (context.ego_extents, context.extents)
     rows = [body.s_max - body.s_min for body in bodies]
     lengths: Floats = np.concatenate([np.fmax.reduce(row, axis=1, initial=0.0) for row in rows])
@@ -65,7 +65,7 @@ def _lengths(context: DriveContext) -> Floats:
 
 
 def _brakes(context: DriveContext, row: int, state: int) -> tuple[bool, bool]:
-    """Does one brake harder than ``disturbing_mps2`` soon, and is it slower then?
+    """Whether a vehicle soon brakes harder than ``disturbing_mps2``, and whether it is slower then.
 
     Also after ego's drive along this road, which ends where it has turned round.
     """

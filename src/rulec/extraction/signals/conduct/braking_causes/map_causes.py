@@ -1,8 +1,8 @@
-"""What of the map may make ego brake, stand or be slow, and what of it surely does, or does not.
+"""What on the map may make ego brake, stand or be slow, and what surely does or does not.
 
-A junction or a crossing ahead is a reason only for who has to let somebody pass there, or may have
-to. It is none for who goes straight on at a green light, or on the road that goes first, nor for
-who has stood there alone for long. Nets alone tell that, which have all lights, signs and traffic.
+A junction or a crossing ahead is a reason only if ego has to let others pass there, or may have to.
+It is none if ego goes straight on at a green light or on the road with priority, or has stood there
+alone for long. Only nets show that, as they have all lights, signs and traffic.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ _BEND_RAD, _EVERY_M = np.radians(20.0), 10.0
 _SLOWER_KMH = 1.0
 
 MOVES_OFF_S = 5.0
-"""Who has waited gets going in so long."""
+"""A vehicle that has waited gets going within this time (s)."""
 
 LOOKS_S = 3.0
-"""Who has stood for so long has looked whether anybody comes."""
+"""A vehicle that has stood this long (s) has checked whether anybody comes."""
 
 _TURNS_MPS = 4.0
-"""Nobody has to be slower than that to turn."""
+"""No vehicle has to be slower than this to turn."""
 
 _SEES_GREEN_S = 1.0
-"""So long after a light has turned green one may still be braking for it."""
+"""A vehicle may still brake for a light this long (s) after it has turned green."""
 
 _GIVES_WAY = STOP_SIGNS | {"YIELD"}
 _GO, _STOP, _UNTOLD = 1, 2, 3
@@ -54,7 +54,7 @@ _HAIR_M = 0.01
 
 @dataclass(frozen=True, eq=False, slots=True)
 class MapReasons:
-    """Flags of states: the map ``may`` give a reason, and ``does``.
+    """Masks of states: the map ``may`` give a reason, and surely ``does``.
 
     ``freely``: there is a junction or a crossing, and only others could make ego wait there.
     """
@@ -65,7 +65,7 @@ class MapReasons:
 
 
 def map_reasons(context: DriveContext, asked: Flags, reach: Floats) -> MapReasons:
-    """What is on the map as far ahead as ego looks, told apart in states that are ``asked`` for."""
+    """The map's reasons as far ahead as ego looks; certain only in states ``asked`` for."""
     road, front, rear = context.road, context.ego_extents.s_max[0], context.ego_extents.s_min[0]
     speed, drives = context.ego.speed[0], moves(context)
     shown = _lights_ahead(context, asked, reach)
@@ -98,7 +98,7 @@ def map_reasons(context: DriveContext, asked: Flags, reach: Floats) -> MapReason
     may |= freely & changed
     for start, end in level_crossings(context):
         may |= (front >= start - reach) & (rear <= end)
-    # Beyond its map nobody knows the road
+    # Beyond its map the road is unknown
     may |= (front + reach > road.borders[-1]) | (rear < road.borders[0])
     may |= speed * KMH > context.limit_mps * KMH + _SLOWER_KMH
     return MapReasons(may | does, does, freely & ~may)
@@ -113,7 +113,7 @@ def _all_are_recorded(context: DriveContext) -> bool:
 
 
 def _goes_first(context: DriveContext, start: float) -> tuple[bool, bool]:
-    """True if nobody goes before ego on its road at a junction, and no sign makes it wait.
+    """Whether no traffic or sign has priority over ego on its road at a junction.
 
     And whether it has a light there.
     """
@@ -125,7 +125,7 @@ def _goes_first(context: DriveContext, start: float) -> tuple[bool, bool]:
 
 
 def _lights_ahead(context: DriveContext, asked: Flags, reach: Floats) -> NDArray[intp]:
-    """What the light ahead of ego tells it in states that are asked for, 0 without any."""
+    """What the light ahead shows to ego in the states asked for, 0 without one."""
     road, front, recording = context.road, own_front(context), context.recording
     told = np.zeros(context.states, dtype=intp)
     for piece in range(len(road.rows) - 1, -1, -1):
@@ -144,7 +144,7 @@ def _lights_ahead(context: DriveContext, asked: Flags, reach: Floats) -> NDArray
 
 
 def _at_stop_sign(context: DriveContext, reach: Floats) -> Flags:
-    """Flags of states in which ego comes to a stop sign, or has not stood there for long."""
+    """Mask of states in which ego comes to a stop sign, or has not stood there for long."""
     road, front, spans = context.road, own_front(context), context.spans
     there = np.zeros(context.states, dtype=bool)
     for piece, row in enumerate(road.rows):
@@ -160,9 +160,9 @@ def _at_stop_sign(context: DriveContext, reach: Floats) -> Flags:
 
 
 def _stands_alone(context: DriveContext, where: Flags) -> Flags:
-    """Flags of states in which ego has stood somewhere for ``MOVES_OFF_S``, and been alone there.
+    """Mask of states in which ego has stood somewhere for ``MOVES_OFF_S`` and been alone there.
 
-    Nobody was within ``CROSSES_M``, but for who has come up behind ego, and waits for it.
+    Nobody was within ``CROSSES_M``, except vehicles that have come up behind ego and wait for it.
     """
     spans, alone = context.spans, np.zeros(context.states, dtype=bool)
     states = np.flatnonzero(where)
@@ -179,7 +179,7 @@ def _stands_alone(context: DriveContext, where: Flags) -> Flags:
 def road_reasons(
     context: DriveContext, states: NDArray[intp], reach: Floats
 ) -> tuple[Flags, Flags]:
-    """Flags of these states with a bend, a lower limit or an end of the lane ahead.
+    """Mask of these states with a bend, a lower limit or an end of the lane ahead.
 
     And of those in which ego is faster than such a limit.
     """
@@ -190,7 +190,7 @@ def road_reasons(
     # Rows of places ahead, a column for each state
     ahead = np.arange(0.0, float(np.nanmax(reach, initial=0.0)) + _EVERY_M, _EVERY_M)[:, None]
     place = zero_if_nan(front + ahead)
-    # Nobody stands for a bend
+    # No vehicle stands because of a bend
     bends = np.abs(turn(before, road.line.headings_at(place))) > _BEND_RAD
     bends &= moves(context)[states]
     there = road.lanes.existing_at(place)[:, np.arange(len(states)), lanes]

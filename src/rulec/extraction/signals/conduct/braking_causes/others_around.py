@@ -1,4 +1,4 @@
-"""Where others are around ego, and how they move, by its own heading, on whatever road."""
+"""Where others are around ego, and how they move, relative to its heading, on any road."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.reference_line import turn
 
 CROSSES_M, ACROSS_RAD = 30.0, np.radians(30.0)
-"""Who is so far to the side, and drives across, may come into ego's way."""
+"""A participant this near to the side that drives across may come into ego's way."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Others:
     """Where others are in some ``states``: ahead of ego and left of it (m), by its heading.
 
-    A row for each, whose ``rows`` are those among all of the recording; ``away`` is how far (m)
+    One row per participant; ``rows`` are theirs in the whole recording; ``away`` is how far (m)
     they are from ego's line to either side.
     """
 
@@ -32,16 +32,16 @@ class Others:
     away: Floats
 
     def part(self, chosen: NDArray[intp]) -> Others:
-        """The same in some of the states."""
+        """The others in some of the states."""
         ahead, left, away = (own.take(chosen, axis=1) for own in (self.ahead, self.left, self.away))
         return Others(self.states.take(chosen), self.rows, ahead=ahead, left=left, away=away)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class MotionAhead:
-    """How some others move: their speeds ahead of ego and to its left (m/s), by its heading.
+    """The motion of others: speeds ahead of ego and to its left (m/s), by its heading.
 
-    ``turned`` is their heading from its own (rad).
+    ``turned`` is their heading relative to ego's (rad).
     """
 
     along: Floats
@@ -51,7 +51,7 @@ class MotionAhead:
 
 
 def others_in(context: DriveContext, states: NDArray[intp]) -> Others:
-    """All others of the recording in some states, also those that are not on ego's road."""
+    """All others of the recording in some states, including those not on ego's road."""
     tracks, own, spans = context.surroundings.tracks, context.ego, context.spans
     columns = context.columns[states]
     rows = tracks.present.take(columns, axis=1).any(axis=1).nonzero()[0]
@@ -71,7 +71,7 @@ def others_in(context: DriveContext, states: NDArray[intp]) -> Others:
 
 
 def without_followers(context: DriveContext, others: Others) -> Others:
-    """The same without those who go ego's way behind it: they wait for ego, and it not for them."""
+    """The others without those that go ego's way behind it, which wait for ego."""
     places = others.rows.searchsorted(context.tracks.rows)
     there = (others.rows.take(places, mode="clip") == context.tracks.rows).nonzero()[0]
     behind = (relations.station(context) == relations.IN_FRONT_OF) & context.going_along
@@ -84,7 +84,7 @@ def without_followers(context: DriveContext, others: Others) -> Others:
 
 
 def motion_of(context: DriveContext, rows: NDArray[intp], states: NDArray[intp]) -> MotionAhead:
-    """How some others move, of rows among all of the recording, in as many states."""
+    """The motion of others, given by rows in the whole recording and as many states."""
     tracks = context.surroundings.tracks
     at, own = (rows, context.columns[states]), context.ego.heading[0]
     cos, sin, own = np.cos(own)[states], np.sin(own)[states], own[states]

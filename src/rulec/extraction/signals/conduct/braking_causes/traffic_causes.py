@@ -1,7 +1,8 @@
-"""What of the others may make ego brake, stand or be slow, and what of them surely does.
+"""What traffic may make ego brake, stand or be slow, and what surely does.
 
-One ahead in ego's lane makes it slow; to brake hard only if it would run into that one, and to
-stand only if that one is near. Who comes to where ways cross makes it wait if it gets there first.
+A vehicle ahead in ego's lane makes it slow; it makes it brake hard only if ego would run into it,
+and stand only if it is near. A participant that comes to where ways cross makes ego wait if it gets
+there first.
 """
 
 from __future__ import annotations
@@ -22,25 +23,25 @@ from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
 
 IN_WAY_M, COMES_M = 2.5, 6.0
-"""Sideways: who is in ego's way, and may come into it."""
+"""Lateral distances within which a participant is in ego's way, and may come into it."""
 
 REACH_M = 20.0
-"""Who is so near ahead counts also for one that stands."""
+"""A participant this near ahead counts even for a standing ego."""
 
 _SEEN_M, _WALKS_M = 60.0, 30.0
-"""Sideways: who is so near and comes to a junction, or walks, ego may think of."""
+"""Lateral distances at which ego may consider participants that come to a junction, or walk."""
 
 _SIDEWAYS_MPS, _ALIKE_MPS = 0.3, 3.0
 _HOLDS_UP_M, _BRAKES_MPS2, _LEAST_MPS2, _NEAR_S, _REACTS_S = 10.0, 1.0, 0.5, 1.0, 2.0
-"""Who is so near ahead lets ego stand; who brakes so hard, or makes ego do so, or is so near by
-time, lets it brake, up to so long ago or later."""
+"""A vehicle ahead within ``_HOLDS_UP_M`` makes ego stand; one that brakes this hard, or makes ego
+do so, or is this near by time, makes it brake, up to ``_REACTS_S`` before or after."""
 
 _WAITS_S, _THINKS_OF_S = 5.0, 8.0
-"""So long before one gets to where ways meet ego may wait for it, and think of it."""
+"""How long before another reaches where ways meet ego may wait for it, and consider it."""
 
 
 def led(context: DriveContext, brakes: Flags, reach: Floats) -> Flags:
-    """Flags of states in which one ahead in ego's lane is why it brakes, stands or is slow."""
+    """Mask of states in which a vehicle ahead in ego's lane makes it brake, stand or be slow."""
     ahead = relations.station(context) == relations.BEHIND
     ahead &= context.relevant & context.in_ego_lane & (relations.gap(context) <= reach)
     found, spans = np.zeros(context.states, dtype=bool), context.spans
@@ -66,9 +67,9 @@ def led(context: DriveContext, brakes: Flags, reach: Floats) -> Flags:
 
 
 def may_be_others(context: DriveContext, others: Others, reach: Floats) -> tuple[Flags, Flags]:
-    """Flags of the others' states with one ahead in ego's way, coming into it, or across it.
+    """Mask of the others' states with one ahead in ego's way, coming into it, or across it.
 
-    And with one on the far side whom ego may not pass, and would without braking.
+    And of those with one on the far side that ego may not pass, and would pass without braking.
     """
     states, reach = others.states, reach[others.states]
     near = (others.ahead > -REACH_M / 4) & (others.ahead <= reach + REACH_M)
@@ -80,7 +81,7 @@ def may_be_others(context: DriveContext, others: Others, reach: Floats) -> tuple
     comes = (away <= COMES_M) & (-motion.sideways * np.sign(left) > _SIDEWAYS_MPS)
     angle = np.abs(motion.turned)
     across = (angle > ACROSS_RAD) & (angle < np.pi - ACROSS_RAD)
-    # Whom ego may not pass on the near side
+    # Vehicles that ego may not pass on their near side
     to_far = left * (1 if context.side == "right" else -1)
     speed = context.ego.speed[0, states[columns]]
     slower = (angle < ACROSS_RAD) & (motion.along < speed + _ALIKE_MPS)
@@ -101,15 +102,15 @@ def may_be_others(context: DriveContext, others: Others, reach: Floats) -> tuple
 
 
 def _closes(faster: Floats, gap: Floats) -> Flags:
-    """Flags of those whom ego, faster by so much, would run into if it did not brake at all."""
+    """Mask of those that ego, ``faster`` than them, runs into if it brakes by ``_LEAST_MPS2``."""
     closes: Flags = np.maximum(faster, 0.0) ** 2 / 2 >= _LEAST_MPS2 * np.maximum(gap, 1.0)
     return closes
 
 
 def may_come(context: DriveContext, others: Others, reach: Floats) -> Flags:
-    """Flags of the others' states with somebody about who may come to a junction or a crossing.
+    """Mask of the others' states with one near that may come to a junction or a crossing.
 
-    Who drives across towards ego's line, or is on foot or on a cycle near it.
+    It drives across towards ego's line, or is a pedestrian or cyclist near it.
     """
     states = others.states
     near = (others.ahead > -REACH_M / 4) & (others.ahead <= reach[states] + REACH_M)
@@ -125,7 +126,7 @@ def may_come(context: DriveContext, others: Others, reach: Floats) -> Flags:
 
 
 def crossed(context: DriveContext, others: Others, reach: Floats) -> Flags:
-    """Flags of states in which somebody walks or drives across ego's way, or is about to."""
+    """Mask of states in which somebody walks or drives across ego's way, or is about to."""
     states = others.states
     near = (others.ahead > 0) & (others.ahead <= reach[states])
     cells = Cells.at(near & (others.away <= IN_WAY_M))
@@ -137,7 +138,7 @@ def crossed(context: DriveContext, others: Others, reach: Floats) -> Flags:
 
 
 def met(context: DriveContext, asked: Flags, reach: Floats) -> tuple[Flags, Flags]:
-    """Flags of states in which one makes ego wait where their ways meet in a junction, or may."""
+    """Masks of states in which another makes ego wait where ways meet in a junction, or may."""
     waits, thinks = np.zeros((2, context.states), dtype=bool)
     for number, columns in context.spans.those(context.spans.any(asked)):
         if passages_of(context, number):
@@ -146,7 +147,7 @@ def met(context: DriveContext, asked: Flags, reach: Floats) -> tuple[Flags, Flag
 
 
 def _met_alone(context: DriveContext, reach: Floats) -> tuple[Flags, Flags]:
-    """The same in one drive."""
+    """``met`` for a single drive."""
     passages, first = context.surroundings.passages, int(context.columns[0])
     waits_for, thinks_of = (
         round(seconds / context.recording.step_s) for seconds in (_WAITS_S, _THINKS_OF_S)
