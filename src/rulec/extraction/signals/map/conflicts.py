@@ -1,10 +1,10 @@
-"""Conflicts at junctions: who gets to where two ways cross or join, and who lets whom pass.
+"""Conflicts at junctions: who reaches the place where two ways cross or join, and who yields.
 
-Another one is in conflict with ego if ego gets there first although the other one would be there
+A participant is in conflict with ego if ego gets there first although the other would be there
 within ``yielding_s`` after ego, or does come within ``held_up_s`` although it would have been there
-so soon; and if ego drives into the side of one that is there. Whom ego lets pass is in none, but
-for one that runs into it. Perhaps one is that comes more than ``_LATE_S`` after ego has got there
-and has had to stand there.
+that soon; and if ego drives into the side of one that is there. A participant that ego lets pass is
+not in conflict, unless it runs into ego. One that comes more than ``_LATE_S`` after ego has got
+there and has had to stand there is only perhaps in conflict.
 """
 
 from __future__ import annotations
@@ -19,37 +19,42 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.junction_passages import Passage
 
 SLOWEST_MPS = 1.0
-"""Who stands in a junction at the end of its track drives on so fast; who is slower waits."""
+"""A vehicle standing in a junction at its track's end is assumed to go on this fast; slower ones
+wait."""
 
 _DRIVES_MPS = 3.0
-"""Who drives more slowly in a junction may wait there."""
+"""A vehicle that drives more slowly in a junction may wait there."""
 
 _SLOWED = 0.9
-"""Who keeps more of its speed was not made to brake: speeds waver by so much on their own."""
+"""A vehicle that keeps more of its speed was not made to brake: speeds vary this much by
+themselves."""
 
 _BENDS_MPS2 = 2.0
-"""Who drives round a bend with so much across, as usual, may be slow for the bend alone."""
+"""A vehicle in a bend with this usual lateral acceleration may be slow because of the bend
+alone."""
 
 _BRIEFLY_S = 1.0
-"""Speeds are means over so long: who touches the brake for less is not held up."""
+"""Speeds are means over this time (s): shorter braking does not hold up a vehicle."""
 
 _GRAZES_M = 0.15
-"""Boxes that overlap by no more do not tell that bodies do, whose corners are cut."""
+"""Boxes that overlap by no more do not show that bodies do, since bodies have rounded corners."""
 
 _BEHIND_S = 0.3
-"""Who gets to a place so short a time before another one has left it passes behind it."""
+"""A vehicle that reaches a place this short a time before another one has left it passes behind
+it."""
 
 _SEES_S = 2.0
-"""So long before ego drives in one may see that it does, and brake."""
+"""This long before ego drives in, others may see that it will, and brake."""
 
 _STRAIGHT_RAD = 0.3
-"""Who turns by less goes straight on."""
+"""A vehicle that turns by less goes straight on."""
 
 _LATE_S = 10.0
-"""Who comes so long after ego has got to a place need not have been in sight as it drove in."""
+"""A vehicle that comes this long after ego reached a place need not have been in sight as ego drove
+in."""
 
 Passing: TypeAlias = tuple[Passage, float | None, float | None]
-"""A passage, with when, in columns, it enters and leaves where ways meet."""
+"""A passage, and when (in columns) it enters and leaves the place where ways meet."""
 
 
 def first_column(context: DriveContext) -> int:
@@ -58,10 +63,7 @@ def first_column(context: DriveContext) -> int:
 
 
 def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int, bool] | None:
-    """From which column on another one is in conflict with ego, and whether that is sure.
-
-    None: it is not.
-    """
+    """The column from which another is in conflict with ego, and whether surely; None if not."""
     own, other = ego[0], foe[0]
     (enters, leaves), (comes, passed) = (tuple(map(_column, when[1:])) for when in (ego, foe))
     if enters is None or (passed is not None and passed <= enters):
@@ -69,7 +71,7 @@ def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int,
     if comes is not None and comes < enters:
         return _runs_into(context, (own, enters), (other, passed))
     if _is_there_at_first(context, own, ego[1]) and _is_there_at_first(context, other, foe[1]):
-        # Who of them got there first was not recorded
+        # It was not recorded which of them got there first
         return enters, False
     speed = context.surroundings.passages.tracks.speed[own.row, enters:passed]
     waits = speed.min(initial=np.inf) < SLOWEST_MPS
@@ -87,10 +89,10 @@ def _let_pass(
     *,
     waits: bool,
 ) -> tuple[int, bool] | None:
-    """The same of one that has passed while ego was in columns where ways meet, and before it.
+    """``in_conflict`` for another that passed where ways meet while ego was there.
 
-    Who waits a little too far ahead lets others pass all the same, who drive round it. So does who
-    creeps on behind them. It is not sure if they brake, as it may be for it.
+    Ego lets others pass even if it waits a little too far ahead, so that they drive round it, or
+    creeps on behind them. It is not sure if they brake, as that may be because of ego.
     """
     own, there = ego
     if _collide(context, own, other, there):
@@ -102,7 +104,7 @@ def _let_pass(
 
 
 def _is_there_at_first(context: DriveContext, passage: Passage, when: float | None) -> bool:
-    """True if one is where ways meet in the first state in which it is recorded."""
+    """Whether a participant is where ways meet in the first state in which it is recorded."""
     present = context.surroundings.passages.tracks.present[passage.row]
     return when is not None and when <= int(present.argmax())
 
@@ -110,9 +112,9 @@ def _is_there_at_first(context: DriveContext, passage: Passage, when: float | No
 def _collide(
     context: DriveContext, own: Passage, other: Passage, columns: slice, least_m: float = 0.0
 ) -> bool:
-    """True if two bodies overlap in one of the columns, by more than places may be wrong.
+    """Whether two bodies overlap in one of the columns by more than the tolerance of places.
 
-    And by so much more at least.
+    And by ``least_m`` more.
     """
     tracks = context.surroundings.passages.tracks
     ours, theirs = (tracks.participants[passage.row].outlines for passage in (own, other))
@@ -128,11 +130,11 @@ def _collide(
 def _runs_into(
     context: DriveContext, ego: tuple[Passage, int], foe: tuple[Passage, int | None]
 ) -> tuple[int, bool] | None:
-    """The same of one that got there first: ego drives into its side while it drives on.
+    """``in_conflict`` for another that got there first: ego drives into its side as it drives on.
 
-    Those who join its way drive in behind it. Who brakes meanwhile may see it, and stop short of it
-    on lanes that are narrower than a map has them; and who creeps on behind it does not touch it.
-    One that is slow may wait there, unless ego runs into it.
+    If they join, ego drives in behind it. If ego brakes meanwhile, it may see the other and stop
+    short of it, on lanes that are narrower than on the map; if it creeps on behind, it does not
+    touch it. A slow one may wait there, unless ego runs into it.
     """
     passages = context.surroundings.passages
     (own, enters), (other, passed) = ego, foe
@@ -156,14 +158,14 @@ def _runs_into(
 
 
 def _column(when: float | None) -> int | None:
-    """The first column that is not before."""
+    """The first column that is not before a time."""
     return None if when is None else ceil(when)
 
 
 def _held_up(
     context: DriveContext, ego: tuple[Passage, int, float | None], other: Passage, at: float | None
 ) -> tuple[int, bool] | None:
-    """The same of one that does not get there first, but then, in columns, if it does."""
+    """``in_conflict`` for another that gets there later than ego, in column ``at``, or never."""
     limits, step_s = context.thresholds, context.recording.step_s
     passages = context.surroundings.passages
     own, enters, leaves = ego
@@ -188,12 +190,13 @@ def _held_up(
     speed = np.maximum(passages.tracks.speed[other.row, columns], 0.1)
     soon = columns + way / speed / step_s - until < limits.yielding_s / step_s
     decides = min(max(_decides(context, own, enters) - first, 0), len(soon) - 1)
-    # Who speeds up when ego is in the junction already was not held up by its driving in
+    # A vehicle that speeds up when ego is already in the junction was not held up by ego's driving
+    # in
     if not (soon[decides] and soon[-1]):
         before = max(decides - round(_SEES_S / step_s), 0)
         braked = soon[before] and _brakes_for(context, other, (first + before, int(until)), comes)
         return (int(columns[soon.argmax()]), leaves is not None) if braked else None
-    # Nor was who brakes once ego is gone
+    # Nor was one that brakes once ego is gone
     if not _slows_down(context, other, first + decides, int(until)):
         return None
     for_ego = not _bends(context, other, first + decides, comes)
@@ -201,7 +204,7 @@ def _held_up(
 
 
 def _is_train(context: DriveContext, own: Passage, other: Passage) -> bool:
-    """True if one comes on rails to a level crossing: there ego waits as soon as it is near."""
+    """Whether a train comes to a level crossing: there ego waits as soon as it is near."""
     passages, lanelets = context.surroundings.passages, context.recording.lanelets
     on_crossing = any("level_crossing" in lanelets[x].types for x in passages.way(own).names)
     return on_crossing and passages.way(other).on_rails
@@ -210,7 +213,7 @@ def _is_train(context: DriveContext, own: Passage, other: Passage) -> bool:
 def _brakes_for(
     context: DriveContext, other: Passage, columns: tuple[int, int], comes: int
 ) -> bool:
-    """True if one that goes straight on brakes harder than ``disturbing_mps2`` between columns."""
+    """Whether another that goes straight on brakes harder than ``disturbing_mps2`` then."""
     tracks = context.surroundings.passages.tracks
     begin, end = columns
     heading = tracks.heading[other.row, [begin, comes]]
@@ -221,19 +224,19 @@ def _brakes_for(
 
 
 def _stood(context: DriveContext, own: Passage, first: int, last: float) -> bool:
-    """True if ego stood between two columns: who came then it may not have seen as it drove in."""
+    """Whether ego stood between two columns: it may not have seen those that came then earlier."""
     speed = context.surroundings.passages.tracks.speed[own.row, first : int(last) + 1]
     return bool((speed < SLOWEST_MPS).any())
 
 
 def _stands(context: DriveContext, other: Passage, column: int) -> bool:
-    """True if one stands before a junction when ego drives in: others may be in its way as well."""
+    """Whether another stands before the junction as ego drives in, maybe because of others."""
     speed = context.surroundings.passages.tracks.speed[other.row, column]
     return bool(speed < SLOWEST_MPS) and column < other.first
 
 
 def _slows_down(context: DriveContext, other: Passage, first: int, last: int) -> bool:
-    """True if one is clearly slower for a while than in a column, from then or a later one on."""
+    """Whether a participant is clearly slower for a while than in ``first``, then or later."""
     passages, step_s = context.surroundings.passages, context.recording.step_s
     steps = max(round(_BRIEFLY_S / step_s), 1)
     travelled = passages.travelled[other.row, first : max(last, first) + steps + 1]
@@ -243,7 +246,7 @@ def _slows_down(context: DriveContext, other: Passage, first: int, last: int) ->
 
 
 def _bends(context: DriveContext, other: Passage, first: int, last: int) -> bool:
-    """True if one drives round a bend between two columns so fast that it may be slow for that."""
+    """Whether a participant drives round a bend fast enough to be slow because of it."""
     tracks, step_s = context.surroundings.passages.tracks, context.recording.step_s
     steps = max(round(_BRIEFLY_S / 2 / step_s), 1)
     heading = np.unwrap(tracks.heading[other.row, first : last + steps + 1])
@@ -253,14 +256,14 @@ def _bends(context: DriveContext, other: Passage, first: int, last: int) -> bool
 
 
 def _decides(context: DriveContext, own: Passage, enters: int) -> int:
-    """The last column in which ego could wait: it drives into the junction, or on within it."""
+    """The last column in which ego could wait before driving into the junction, or on in it."""
     speed = context.surroundings.passages.tracks.speed[own.row, own.first : enters + 1]
     waits = (speed < _DRIVES_MPS).nonzero()[0]
     return min(own.first, enters) + (int(waits[-1]) if len(waits) else 0)
 
 
 def _drives_on(context: DriveContext, own: Passage, comes: int) -> bool:
-    """True if ego, whose track ends there, drove on when another one had come; it did not wait."""
+    """Whether ego, whose track ends there, drove on when the other had come, and did not wait."""
     tracks = context.surroundings.passages.tracks
     there = tracks.present[own.row, comes:].nonzero()[0] + comes
     longer = len(there) * context.recording.step_s > _BEHIND_S

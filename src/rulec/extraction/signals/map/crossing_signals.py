@@ -1,9 +1,10 @@
 """Signals of pedestrians at the crossing ahead, and of vehicles stopping there.
 
-Intentions are not recorded. Who is on the crossing is on it, unless it walks away from
-ego's lane, which it has crossed then; who stands at the kerb beside it waits to cross; who walks
-towards it is about to, if it will be there soon. Whether one that gets to ego's lane long after ego
-has left the crossing, as on the other side of a wide road, is to be let across is open.
+Intentions are not recorded. A pedestrian on the crossing uses it, unless it walks away from ego's
+lane, which it has then crossed; one that stands at the kerb beside it waits to cross; one that
+walks towards it is about to cross if it will be there soon. Whether ego must let across a
+pedestrian that reaches ego's lane long after ego has left the crossing, as on the other side of a
+wide road, is open.
 """
 
 from __future__ import annotations
@@ -26,12 +27,12 @@ from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import ranges
 
 _STOOD_S = 5.0
-"""Who has stood for longer as ego comes, and does for as long after it, has not stopped for it."""
+"""A pedestrian that stood this long before ego comes, and after it, has not stopped for ego."""
 
 _HAIR_MPS = 1e-3
 
 _WALKS_MPS = 1.4
-"""So fast people walk who do not wait."""
+"""The walking speed of pedestrians who do not wait."""
 
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
 
@@ -57,9 +58,9 @@ def _crossing_use(context: DriveContext) -> SignalColumns:
 
 
 def _in_doubt(context: DriveContext, uses: NDArray[intp]) -> Flags:
-    """Flags of states around a change of use, as long as who walks takes for the places' error.
+    """Mask of states around a change of use, for as long as walking the error of places takes.
 
-    Where a user says how far places may be off: else the moment is taken as measured.
+    Only where a user states the error of places; otherwise the moment counts as measured.
     """
     error_s = context.thresholds.place_error_m / _WALKS_MPS
     steps = ceil(error_s / context.recording.step_s)
@@ -73,7 +74,7 @@ def _stopped_for_pedestrian(context: DriveContext) -> SignalColumns:
     stopped = np.zeros(context.relevant.shape, dtype=bool)
     if len(_pedestrians(context)):
         rows = _pedestrians(context)
-        # Who waits or comes at a crossing with lights waits for these
+        # At a crossing with lights, pedestrians that wait or come wait for the lights
         least = np.where(_is_lit(context), _USES.index("entering_crossing"), 1)
         waited_for = ((_used_ahead(context) >= least) & context.relevant[rows]).any(axis=0)
         states = waited_for.nonzero()[0]
@@ -86,7 +87,7 @@ def _stopped_for_pedestrian(context: DriveContext) -> SignalColumns:
 
 
 def _is_lit(context: DriveContext) -> Flags:
-    """Flags of states in which a light directs the crossing ahead, or may do."""
+    """Mask of states in which a light directs the crossing ahead, or may do so."""
     (start, _), lit = next_crossing(context), np.zeros(context.states, dtype=bool)
     for place, lights in crossings_lit(context).items():
         lit |= (start == place) & any(lights)
@@ -110,9 +111,9 @@ def _nearest_to_crossing(context: DriveContext) -> SignalColumns:
 
 
 def _crosses_side_road(context: DriveContext) -> SignalColumns:
-    """Who uses the road into which ego turns, and is not let go by ego.
+    """Pedestrians that use the road into which ego turns without being let across by ego.
 
-    Who waits in the junction until somebody is across has entered it lawfully.
+    An ego that waits in the junction until somebody is across has entered it lawfully.
     """
     rows, (crosses, unsure) = _pedestrians(context), np.zeros((2, *context.relevant.shape), bool)
     start, end = _side_road(context)
@@ -130,13 +131,13 @@ def _crosses_side_road(context: DriveContext) -> SignalColumns:
 
 
 def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags]:
-    """Flags of those of these rows whose way ego takes from a state on, and where nobody knows.
+    """Masks, for ``rows``, of pedestrians whose way ego takes, and where that is unknown.
 
-    They are on the lanes of its direction, and not past its own, while ego goes by or up to
-    ``entering_s`` later; or have stood until it was gone, and gone then. Not those behind whom ego
-    goes at walking pace, or waits, until they are across. Of whom ego does not reach while both are
-    seen nobody knows, nor whom it waits for yet; nor whether one wants to cross who stands there
-    since ``_STOOD_S`` before ego comes, and stays for as long once it is gone.
+    They are on the lanes of ego's direction, and not past its own, while ego goes by or up to
+    ``entering_s`` later; or they stood until it was gone, and went then. Not those behind whom ego
+    goes at walking pace, or waits, until they are across. Unknown for those that ego does not reach
+    while both are seen, or for which it still waits; and for those that have stood since
+    ``_STOOD_S`` before ego comes and stay as long once it is gone, who may not want to cross.
     """
     own, others = context.ego_extents, context.extents.part(rows, slice(None))
     spans, seen = context.spans, context.relevant[rows]
@@ -147,7 +148,7 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     reached, at = comes < spans.end, np.minimum(comes, last)
     goes = np.minimum(spans.next_state(own.s_min > others.s_max), last)
     steps_on = spans.next_state(on_lanes)
-    # Who turns along the road, as at its corner, has crossed it
+    # A pedestrian that turns along the road, as at its corner, has crossed it
     turns_along = ~stands & (np.abs(others.along) > np.abs(others.across))
     off = ~on_lanes | _past_ego(context, rows) | turns_along
     # Across before ego comes, having been on its lanes
@@ -163,11 +164,11 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     stood = round(_STOOD_S / step_s)
     moves = spans.next_state(~stands & seen)
     moves = np.take_along_axis(moves, np.maximum(at - stood, spans.first), axis=1)
-    # Of who stands at a lane's bound places alone may say that it steps over that
+    # For a pedestrian standing at a lane's bound, errors of places alone may show a step over it
     stays = (~waited | (moves > steps_on)) & (moves > np.minimum(goes + stood, last))
     lost = spans.next_state(~seen) <= np.minimum(soon, last)
     unseen = (steps_on >= spans.end) & (lost | (soon >= spans.end))
-    # As on the other half of a wide road, where it may stand for others
+    # As on the other half of a wide road, where it may stand because of others
     far = np.take_along_axis(_comes_s(context, rows) > limits.held_up_s, goes, axis=1)
     unsure = waits_yet | (taken & (stays | (far & ~in_way))) | (~let_go & ~taken & unseen)
     return taken, ~reached | unsure
@@ -176,11 +177,11 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
 def _waited_for(
     context: DriveContext, at: NDArray[intp], goes: NDArray[intp], off: Flags
 ) -> tuple[Flags, Flags]:
-    """Flags of those who are across before ego, at walking pace, is past them or goes faster.
+    """Masks of pedestrians across before ego, at walking pace, is past or faster; and not yet.
 
-    Or are within ``entering_s``. And of those for whom it still waits as the drive ends. Ego comes
-    to them in the states ``at`` and is past in those of ``goes``; they are out of its way in those
-    of ``off``.
+    The first includes those across within ``entering_s``, the second those for which ego still
+    waits as the drive ends. Ego reaches them in the states ``at`` and is past in ``goes``; they are
+    out of its way where ``off``.
     """
     spans, last = context.spans, context.spans.end - 1
     slow = context.ego.speed[0] * KMH <= context.thresholds.walking_pace_kmh
@@ -227,15 +228,15 @@ def _crossing_uses(
 ) -> NDArray[intp]:
     """Indices into ``_USES`` for pedestrians, a row each.
 
-    ``stretch`` has begin and end of the crossing by state, ``on_it`` flags of who is where one
-    crosses; where no crossing is drawn that is any place in the road.
+    ``stretch`` has begin and end of the crossing by state; ``on_it`` masks participants at a place
+    for crossing, which is any place in the road if no crossing is drawn.
     """
     start, end = stretch
     others, tracks, limits = context.extents, context.tracks, context.thresholds
     rows = _pedestrians(context)
     if not len(rows):
         return np.zeros((0, context.states), dtype=int)
-    # Room for who does not walk exactly between the marks
+    # Room for pedestrians who do not walk exactly between the marks
     beside = others.s_max[rows] > start - limits.kerb_m
     beside &= others.s_min[rows] < end + limits.kerb_m
     uses, own = np.zeros(beside.shape, dtype=int), Cells.at(beside)
@@ -253,8 +254,8 @@ def _crossing_uses(
     at_edge &= np.abs(across) < np.abs(cells.of(others.along))
     crossing = cells.of(on_it) & cells.of(tracks.on_lane)
     waits = (to_road <= limits.kerb_m) & ~walks
-    # Who walks along the pavement and drifts a little towards the road does not come to cross, nor
-    # who does so at the very edge of a crossing
+    # A pedestrian that walks along the pavement and drifts a little towards the road does not come
+    # to cross, nor does one that walks so at the very edge of a crossing
     approaches = walks & (towards > np.abs(cells.of(others.along)))
     on = crossing & ((cells.of(context.on_lanes) & ~at_edge) | ~walks | approaches)
     soon = approaches & (to_road <= towards * limits.about_to_s)
@@ -266,9 +267,9 @@ def _crossing_uses(
 def _from_edges(
     context: DriveContext, cells: Cells
 ) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
-    """How far (m) left of the right edge of the lanes that there are, and of their left one.
+    """How far (m) bodies begin and end left of the lanes' right edge, and of their left one.
 
-    Where bodies begin and end, by cell.
+    By cell, for the lanes that exist there.
     """
     others, count, sets = context.extents, context.existing_lanes.shape[1], context.lanes_there
     there = np.stack([is_in(cells.of(sets), lane) for lane in range(count)])
@@ -282,12 +283,12 @@ def _from_edges(
 def _too_late(
     context: DriveContext, rows: NDArray[intp], uses: NDArray[intp]
 ) -> tuple[Flags, Flags]:
-    """Flags of who came to use the crossing when ego could not wait any more, and of who may have.
+    """Masks of those that came to use the crossing too late for ego to wait, and that may have.
 
-    Of these rows, with their ``uses``. Ego can where, braking at once, it stops before them or
-    before the crossing. Who leaves off for no longer than ``away_s`` uses it all the time. Who does
-    when first seen may have come just then; who is on the crossing then has been about to cross for
-    ``about_to_s``. Where somebody walks shows late in a mean, by half its time.
+    For ``rows`` with their ``uses``. Ego can wait where, braking at once, it stops before them or
+    before the crossing. Interruptions of up to ``away_s`` count as use. A pedestrian using it when
+    first seen may have come just then; one on the crossing then has been about to cross for
+    ``about_to_s``. In a mean, the place of a pedestrian shows late by half its time.
     """
     limits, used = context.thresholds, uses > 0
     speed, front = np.maximum(context.ego_extents.along[0], 0.0), context.ego_extents.s_max[0]
@@ -306,11 +307,11 @@ def _too_late(
 
 
 def _past_ego(context: DriveContext, rows: NDArray[intp]) -> Flags:
-    """Flags of those of these rows that have left ego's lane and body, and walk away from them.
+    """Mask, for ``rows``, of pedestrians clear of ego's lane and body that walk away from them.
 
-    Who turns along the road then has left them behind too, for ``away_s``, until they walk back or
-    their middle is in ego's way: how far bodies reach is not known well. Of ego's body counts the
-    middle if it turns away from them: what reaches farther is its rear.
+    If they then turn along the road, they count as past for ``away_s``, until they walk back or
+    their middle is in ego's way: how far bodies reach is not known well. If ego's body turns away
+    from them its middle counts: what reaches farther is its rear.
     """
     others = context.extents.part(rows, slice(None))
     own, bound = context.ego_extents, context.ego_lane
@@ -332,9 +333,9 @@ def _past_ego(context: DriveContext, rows: NDArray[intp]) -> Flags:
 
 
 def _is_far_off(context: DriveContext, rows: NDArray[intp]) -> Flags:
-    """Flags of those of these rows that get to ego's lane long after ego has left the crossing.
+    """Mask, for ``rows``, of pedestrians that reach ego's lane long after ego leaves the crossing.
 
-    Ego goes on as fast as it is, they walk towards it, and are ``held_up_s`` later.
+    Ego keeps its speed, they walk towards its lane, and are ``held_up_s`` later.
     """
     _, end = next_crossing(context)
     speed = np.maximum(context.ego_extents.along[0], _HAIR_MPS)
@@ -344,7 +345,7 @@ def _is_far_off(context: DriveContext, rows: NDArray[intp]) -> Flags:
 
 
 def _comes_s(context: DriveContext, rows: NDArray[intp]) -> Floats:
-    """How soon (s) pedestrians of these rows get to ego's lane, if they walk towards it."""
+    """How soon (s) pedestrians in ``rows`` reach ego's lane if they walk towards it."""
     others, bound = context.extents.part(rows, slice(None)), context.ego_lane
     (_, right_of), (left_of, _) = others.from_bound(bound), others.from_bound(bound + 1)
     way = np.maximum(np.maximum(left_of, -right_of), 0.0)
@@ -353,9 +354,9 @@ def _comes_s(context: DriveContext, rows: NDArray[intp]) -> Floats:
 
 
 def _behind_another(context: DriveContext, stopped: Flags) -> Flags:
-    """Flags of those with another vehicle in their lane between them and the crossing.
+    """Mask of those with another vehicle in their lane between them and the crossing.
 
-    They may stop for that one.
+    They may stop because of that one.
     """
     if not stopped.any():
         return stopped
@@ -364,7 +365,7 @@ def _behind_another(context: DriveContext, stopped: Flags) -> Flags:
     between = context.tracks.of_type("vehicle")[:, None] & stopped.any(axis=0) & context.on_lanes
     between &= others.s_min < start
     before = Cells.at(between)
-    # Those in each column one behind the other, and for each who stopped those in its column
+    # The vehicles of each column one after the other, and for each stopped one those in its column
     before = before.part(before.columns.argsort(kind="stable"))
     begins, ends = before.columns.searchsorted((cells.columns, cells.columns + 1))
     pairs, _ = ranges(begins, ends - begins)
@@ -377,7 +378,7 @@ def _behind_another(context: DriveContext, stopped: Flags) -> Flags:
 
 
 def _stopped(context: DriveContext, states: NDArray[intp]) -> Flags:
-    """Flags of participants stopped on ego's lanes before the crossing ahead, in some states."""
+    """Mask of participants stopped on ego's lanes before the crossing ahead, in some states."""
     start, _ = next_crossing(context)
     stands = context.tracks.speed[:, states] * KMH < context.thresholds.standing_kmh
     way = start[states] - context.extents.s_max[:, states]

@@ -28,10 +28,10 @@ from rulec.recordings.recording import STOP_SIGNS, STRAIGHT_ON
 from rulec.trace.plain_arrays import distinct
 
 _SLOWEST_MPS = 5.0
-"""Who stands at the end of a drive goes on so fast."""
+"""A vehicle that stands at the end of a drive is assumed to go on this fast."""
 
 _ASKEW_RAD = np.radians(10.0)
-"""Nobody's body lies so far askew in its lane but in a turn."""
+"""A body lies this far askew in its lane only in a turn."""
 
 _SWEEPS_M = 10.0
 """The middle of a longer body cuts the corner in a turn."""
@@ -45,7 +45,7 @@ def _junction_zone(context: DriveContext) -> SignalColumns:
 
 
 def _at_junction(context: DriveContext, start: float, end: float) -> Flags:
-    """Flags of states in which ego is at a junction, from where to where on its road."""
+    """Mask of states in which ego is at a junction, given by an interval of its road."""
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
     at_junction: Flags = (front >= start - context.thresholds.zone_m) & (rear < end)
     return at_junction
@@ -70,7 +70,7 @@ def _turns(context: DriveContext) -> SignalColumns:
     limits = context.thresholds
     leaves = ((turn != "straight_on") & ~bends) | _on_exit(context)
     prepares = _within_preparation(context, leaves, limits.standing_kmh)
-    # In a queue that creeps nobody knows since when
+    # In a creeping queue it is unknown since when
     perhaps = _within_preparation(context, leaves | unknown, limits.walking_pace_kmh)
     perhaps |= _may_turn_later(context)
     return SignalColumns(
@@ -88,7 +88,7 @@ def _stop_signs(context: DriveContext) -> SignalColumns:
 
 @drive_by_drive
 def _all_way_stop(context: DriveContext) -> SignalColumns:
-    """What the signs at the roads to the junction that ego nears or is in say."""
+    """Whether all roads to the junction that ego nears or is in have stop signs."""
     if not _tells_stop_signs(context):
         return SignalColumns()
     all_stop, unknown = np.zeros((2, context.states), dtype=bool)
@@ -105,7 +105,7 @@ def _tells_stop_signs(context: DriveContext) -> bool:
 
 
 def _bends_straight_on(context: DriveContext, start: float, end: float) -> bool:
-    """True if a way that the map calls straight on turns ego's road at a junction: it may bend."""
+    """Whether a way that the map calls straight on turns ego's road at a junction: it may bend."""
     road, least = context.road, np.radians(context.thresholds.turned_deg)
     pieces = ((road.borders[:-1] >= start - 0.1) & (road.borders[:-1] < end)).nonzero()[0]
     for piece in pieces.tolist():
@@ -118,12 +118,12 @@ def _bends_straight_on(context: DriveContext, start: float, end: float) -> bool:
 
 
 def _on_exit(context: DriveContext) -> Flags:
-    """Flags of states in which ego is on a lane that leaves the road."""
+    """Mask of states in which ego is on a lane that leaves the road."""
     return own_lanelets(context).flags(lambda lanelet: "exitRamp" in lanelet.types)
 
 
 def way_not_known(context: DriveContext) -> Flags:
-    """Flags of states at a junction of whose ways the drive does not tell which ego takes."""
+    """Mask of states at a junction where the drive does not show which way ego takes."""
     rear = context.ego_extents.s_min[0]
     unknown = np.zeros(context.states, dtype=bool)
     for start, end in context.road.junctions:
@@ -137,9 +137,9 @@ def way_not_known(context: DriveContext) -> Flags:
 
 
 def _ways_part(context: DriveContext, start: float, columns: slice) -> bool:
-    """True if ways lead to different sides from the lane on which ego gets to a junction.
+    """Whether ways lead to different sides from the lane on which ego reaches a junction.
 
-    Also if the only ones turn: who has not driven in may have got where it was going.
+    Also if the only ways turn: an ego that has not driven in may have reached its destination.
     """
     piece = max(int(context.road.piece(np.array(start - 1e-6))), 0)
     near = int(np.abs(context.ego_extents.s_max[0, columns] - start).argmin())
@@ -155,7 +155,7 @@ def _ways_part(context: DriveContext, start: float, columns: slice) -> bool:
 
 
 def _on_known_way(context: DriveContext, stretch: tuple[float, float], number: int) -> bool:
-    """True if ego's passage of a junction on its road, in a drive, shows which way it takes."""
+    """Whether ego's passage of a junction on its road, in a drive, shows which way it takes."""
     road, (start, end) = context.road, stretch
     passages = context.own.passages
     inside = {
@@ -172,9 +172,9 @@ def _on_known_way(context: DriveContext, stretch: tuple[float, float], number: i
 
 
 def _may_turn_later(context: DriveContext) -> Flags:
-    """Flags of states so near the drive's end that ego may turn soon after it.
+    """Mask of states so near the drive's end that ego may turn soon after it.
 
-    It does not if no junction is so near that it would get there, as fast as it is at the end.
+    Not if no junction is so near that ego would reach it at its last speed.
     """
     if not context.road.junctions:
         return np.zeros(context.states, dtype=bool)
@@ -191,9 +191,9 @@ def _may_turn_later(context: DriveContext) -> Flags:
 
 
 def _within_preparation(context: DriveContext, flags: Flags, pace_kmh: float) -> Flags:
-    """Flags that hold now or within ``preparing_s``: intentions are read off what ego did.
+    """Mask of states with a flag now or within ``preparing_s``: ego's actions show its intentions.
 
-    While ego is slower than so it waits for its turn, and that time does not count.
+    While ego is slower than ``pace_kmh`` it waits for its turn, and the time does not count.
     """
     if not flags.any():
         return flags
@@ -205,17 +205,17 @@ def _within_preparation(context: DriveContext, flags: Flags, pace_kmh: float) ->
 
 
 def _time_driven(context: DriveContext, pace_kmh: float) -> Floats:
-    """How long (s) ego has been at least so fast up to each state."""
+    """How long (s) ego has driven at ``pace_kmh`` or faster up to each state."""
     drives = context.ego.speed[0] * KMH >= pace_kmh
     driven: Floats = (drives.cumsum() - drives) * context.recording.step_s
     return driven
 
 
 def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of ego crossing the line of a lanelet with a stop sign, and of where it may have.
+    """Masks of ego crossing the line of a lanelet with a stop sign, and perhaps crossing it.
 
-    It may if its drive ends while it moves between the places where the line may be, or where
-    places do not tell, as of who stands at the line.
+    Perhaps if its drive ends while it moves between the places where the line may be, or where
+    errors of places decide, as when it stands at the line.
     """
     crosses, may_cross = np.zeros((2, context.states), dtype=bool)
     front, moves = own_front(context), context.ego.speed[0] * KMH
@@ -235,7 +235,7 @@ def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
 
 
 def _may_have_sign(context: DriveContext) -> Flags:
-    """Flags of states in which ego moves where the map does not tell of stop signs."""
+    """Mask of states in which ego moves where the map does not say whether there are stop signs."""
     if not STOP_SIGNS & map_contents(context).untold_signs:
         return np.zeros(context.states, dtype=bool)
     may = own_lanelets(context).flags(lambda lanelet: bool(STOP_SIGNS & lanelet.untold_signs))
@@ -247,10 +247,10 @@ def _may_have_sign(context: DriveContext) -> Flags:
 
 @once
 def lies_askew_in_turn(context: DriveContext) -> Flags:
-    """Flags of states in which ego's body, partly in a junction where it turns, is askew yet.
+    """Mask of states in which ego's body, partly in a junction where it turns, is still askew.
 
     Also where it drives onto a roundabout, or leaves it. The middle of a long body is off its lane
-    there though it lies along it.
+    there, even if the body lies along the lane.
     """
     (front,), (rear,) = context.ego_extents.s_max, context.ego_extents.s_min
     turns = np.zeros(context.states, dtype=bool)
@@ -265,7 +265,7 @@ def lies_askew_in_turn(context: DriveContext) -> Flags:
 def turn_at(context: DriveContext, start: float, end: float) -> str:
     """Where ego's road goes at a junction from ``start`` to ``end``.
 
-    Who drives onto a roundabout, or along it, follows its bend: one turns where one leaves it.
+    Driving onto a roundabout, or along it, follows its bend: a turn is where ego leaves it.
     """
     if any(low - 0.1 <= start and end <= high + 0.1 for low, high, _ in roundabouts(context)):
         return "straight_on"
@@ -286,4 +286,4 @@ junction_signals = SignalPasses(
         ("all_way_stop",): _all_way_stop,
     }
 )
-"""The signals of junctions on ego's road, and their signs."""
+"""The signals of junctions on ego's road, and of their signs."""

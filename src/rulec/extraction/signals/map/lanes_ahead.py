@@ -21,7 +21,7 @@ from rulec.recordings.recording import Lanelet
 from rulec.scenario.recorded.reference_line import turn
 
 _BEYOND_M = 1.0
-"""So far behind a junction the lanes are those that go on."""
+"""This far behind a junction the lanes are those that go on."""
 
 _HAIR_M = 0.01
 
@@ -41,9 +41,10 @@ class Leads(Enum):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class JunctionAhead:
-    """A junction on ego's road, from where to where, and where each lane before it leads.
+    """A junction on ego's road, from ``low`` to ``high``, and where each lane before it leads.
 
-    ``turned`` is the angle (rad) by which ego's road turns there. ``lit``: may there be lights?
+    ``turned`` is the angle (rad) by which ego's road turns there. ``lit``: whether there may be
+    lights.
     """
 
     low: float
@@ -72,7 +73,7 @@ def _junctions_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
             lead = Leads.NOWHERE
             if lanelet is not None:
                 lead = _lead(context, ways.get(lanelet.id, ()), turned)
-            # A lane that the road beyond does not have leads to another one
+            # A lane that does not exist on the road beyond leads to another road
             if lanelet is not None and beyond.any() and not beyond[number] and lead != Leads.BOTH:
                 lead = Leads.ELSEWHERE
             leads.append(lead)
@@ -83,7 +84,7 @@ def _junctions_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
 
 
 def _forks_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
-    """Where lanes part outside of junctions, as before a lane of its own for who turns off."""
+    """Where lanes fork outside junctions, as before a separate lane for turning off."""
     road, known = context.road, context.recording.lanelets
     for piece, (row, beyond) in enumerate(pairwise(road.rows)):
         place = float(road.borders[piece + 1])
@@ -108,7 +109,7 @@ def _end_heading(lanelet: Lanelet) -> float:
 
 
 def _goes_along(context: DriveContext, way: JunctionWay, turned: float) -> bool:
-    """True if a way turns about as much as ego's road does there (rad)."""
+    """Whether a way turns by about as much as ego's road does there (rad)."""
     return bool(abs(turn(way.turned, turned)) <= np.radians(context.thresholds.turned_deg))
 
 
@@ -122,16 +123,16 @@ def _lead(context: DriveContext, ways: Sequence[JunctionWay], turned: float) -> 
 
 
 def leads_elsewhere(context: DriveContext) -> SignalColumns:
-    """Whether the lane of those before a junction does not go on along ego's road beyond it.
+    """Whether a participant's lane before a junction does not go on along ego's road beyond it.
 
-    Of a lane from which ways lead there and elsewhere, that of the one who takes it decides; in the
-    junction the way on which one is does. It is unknown where the map ends, of lanes that a solid
-    line parts from ego's there, and before a ring: by which way they leave it drivers choose among
-    several lanes.
+    Where ways from a lane lead there and elsewhere, the way that the participant takes decides; in
+    the junction, the way that it is on. Unknown where the map ends, on lanes that a solid line
+    separates from ego's there, and before a ring: drivers choose among several lanes by the exit
+    that they will take.
     """
     others, reach = context.extents, context.thresholds.approach_m
     elsewhere, unknown = np.zeros((2, *context.relevant.shape), dtype=bool)
-    # Who rides near ego's road, but on lanes of another one
+    # Riders near ego's road, but on lanes of another one
     elsewhere |= context.relevant & context.tracks.on_lane & ~context.on_lanes
     end, parted = _parted_at_the_end(context)
     if parted.any():
@@ -146,7 +147,7 @@ def leads_elsewhere(context: DriveContext) -> SignalColumns:
             surely, perhaps = _on_another_way(context, row, junction)
             elsewhere[row] |= there[row] & surely
             unknown[row] |= there[row] & perhaps
-        # Who waits there may be past the place where the junction begins for ego
+        # One that waits there may be past the place where the junction begins for ego
         near = context.on_lanes & (others.s <= junction.high)
         near &= junction.low - others.s_max <= reach
         if not near.any():
@@ -169,10 +170,10 @@ def leads_elsewhere(context: DriveContext) -> SignalColumns:
 
 @once_a_road
 def _parted_at_the_end(context: DriveContext) -> tuple[float, Flags]:
-    """The lanes that a solid line parts from ego's where the map ends, and from where on.
+    """Where the map's last piece begins, and its lanes that a solid line separates from ego's.
 
-    So lanes are drawn before junctions for who turns off; a junction may come after the map's end.
-    Of maps that have all lanes nothing comes after it.
+    Lanes for turning off are drawn like that before junctions, and a junction may come after the
+    map's end. On maps that have all lanes, nothing comes after it.
     """
     road, known = context.road, context.recording.lanelets
     row, own, begin = road.rows[-1], road.own_lanes[-1], float(road.borders[-2])
@@ -189,7 +190,7 @@ def _parted_at_the_end(context: DriveContext) -> tuple[float, Flags]:
 
 
 def _turns_off(context: DriveContext, row: int, junction: JunctionAhead) -> bool | None:
-    """Does a participant leave ego's road at a junction; None if its track does not tell."""
+    """Whether a participant leaves ego's road at a junction; None if its track does not show it."""
     passages, inside = context.surroundings.passages, _lanelets_inside(context, junction)
     for passage in passages.of_row.get(int(context.tracks.rows[row]), ()):
         same = passages.junctions[passage.junction]
@@ -212,10 +213,10 @@ def _lanelets_inside(context: DriveContext, junction: JunctionAhead) -> frozense
 def _on_another_way(
     context: DriveContext, row: int, junction: JunctionAhead
 ) -> tuple[Flags, Flags]:
-    """Flags of states in which a participant is in a junction on a way that is not ego's.
+    """Masks of states in which a participant is in a junction on another way, and perhaps is.
 
-    It came to it on another road, which the direction tells in which it came, or turns otherwise.
-    And flags of those in which that may be, where its track does not tell its way.
+    It came on another road, as its direction then shows, or it turns differently. Perhaps: where
+    its track does not show its way.
     """
     passages, own_row = context.surroundings.passages, int(context.tracks.rows[row])
     own_ways = _lanelets_inside(context, junction)

@@ -15,7 +15,8 @@ from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.route import lanelet_length
 
 _SIGNS_M = 300.0
-"""No sign that warns of a level crossing is farther before it: beacons begin 240 m before."""
+"""Signs that warn of a level crossing are at most this far before it: beacons begin 240 m
+before."""
 
 Stretches = Sequence[tuple[float, float]]
 
@@ -35,9 +36,9 @@ def _zones(context: DriveContext) -> SignalColumns:
 
 
 def _warned(context: DriveContext) -> SignalColumns:
-    """Whether ego is past the sign that warns of a level crossing; unknown where there may be one.
+    """Whether ego is past the sign warning of a level crossing; unknown where there may be one.
 
-    No map has these signs, but where no level crossing is ahead none warns of it.
+    No map has these signs, but where no level crossing is ahead, none warns of it.
     """
     if not _tells_rails(context):
         return SignalColumns()
@@ -49,12 +50,12 @@ def _warned(context: DriveContext) -> SignalColumns:
 
 
 def _way_to_next(context: DriveContext, places: Floats) -> Floats:
-    """How far (m) it is at least from places of the road to a level crossing, infinity for none."""
+    """The least distance (m) from places of the road to a level crossing, infinity without one."""
     road, ways = context.road, _ways_to_next(context)
     pieces = road.piece(places)
     behind = np.array([_least(ways, (x.id for x in row if x is not None)) for row in road.rows])
     starts = road.borders[pieces]
-    # At the beginning of each lanelet it is known; within one it is less by what has been driven
+    # Known at the beginning of each lanelet; within one it is less by the distance driven
     way: Floats = np.maximum(behind[pieces] - (places - starts), 0.0)
     return way
 
@@ -65,7 +66,7 @@ def _least(ways: Mapping[str, float], ids: Iterable[str]) -> float:
 
 @once_a_map
 def _ways_to_next(context: DriveContext) -> Mapping[str, float]:
-    """How far (m) it is from where lanelets begin to a level crossing that they lead to."""
+    """The distance (m) from the start of lanelets to a level crossing that they lead to."""
     lanelets = context.recording.lanelets
     ways: dict[str, float] = {}
     waiting = [(0.0, x.id) for x in lanelets.values() if "level_crossing" in x.types]
@@ -75,7 +76,7 @@ def _ways_to_next(context: DriveContext) -> Mapping[str, float]:
             continue
         ways[name] = way
         if way > _SIGNS_M:
-            continue  # on all that lead there it is farther still
+            continue  # all that lead there are farther still
         for before in lanelets[name].predecessors:
             if before in lanelets and before not in ways:
                 heappush(waiting, (way + lanelet_length(lanelets[before]), before))
@@ -83,7 +84,7 @@ def _ways_to_next(context: DriveContext) -> Mapping[str, float]:
 
 
 def _tracks_at_kerb(context: DriveContext) -> SignalColumns:
-    """Whether rails are beside the lane at the kerb, or in it, as who runs there shows."""
+    """Whether rails are beside the kerb lane, or in it, as rail vehicles there show."""
     if not _tells_rails(context):
         return SignalColumns()
     pieces = context.road.piece(context.ego_extents.s[0])
@@ -104,7 +105,7 @@ def _tells_rails(context: DriveContext) -> bool:
 
 @once_a_road
 def level_crossings(context: DriveContext) -> Stretches:
-    """From where to where (m) along ego's road there are level crossings."""
+    """The intervals (m) along ego's road in which there are level crossings."""
     rows = context.road.rows
     flags = [any("level_crossing" in x.types for x in row if x is not None) for row in rows]
     return list(runs_along(context.road.borders, flags))
@@ -112,7 +113,7 @@ def level_crossings(context: DriveContext) -> Stretches:
 
 @once_a_road
 def _pieces_by_rails(context: DriveContext) -> Flags:
-    """Flags of the pieces of the road beside which the lane at the kerb is for rail vehicles."""
+    """Mask of the pieces of the road with a lane for rail vehicles beside the kerb lane."""
     lanelets = context.recording.lanelets
     near = "right_of" if context.side == "right" else "left_of"
     flags = []

@@ -1,4 +1,4 @@
-"""Signals of what ego comes to: a line at which it may have to stop, its light, a junction."""
+"""Signals of what is ahead of ego: a line at which it may have to stop, its light, a junction."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ COLOURS = {
 
 
 def _to_line(context: DriveContext) -> SignalColumns:
-    """The way to the line, and how long ego takes to it."""
+    """The distance to the line, and the time that ego takes to reach it."""
     if not _tells_lines(context):
         return SignalColumns()
     way, (near, far) = _way_to_line(context)
@@ -72,9 +72,9 @@ def _tells_lines(context: DriveContext) -> bool:
 
 @once
 def _way_to_line(context: DriveContext) -> tuple[Floats, tuple[Floats, Floats]]:
-    """The way (m) to the next line of ego's lane, 0 without one, and its bounds.
+    """The distance (m) to the next line of ego's lane, 0 without one, and its bounds.
 
-    Where the map has no line it is at the nearest of the places where it may be.
+    Where the map has no line, it is at the nearest of the places where it may be.
     """
     front, place = own_front(context), context.tolerances.place_m
     touching = context.thresholds.touching_m
@@ -113,7 +113,7 @@ def _to_junction(context: DriveContext) -> SignalColumns:
 
 
 def _traffic_lights(context: DriveContext) -> SignalColumns:
-    # Lights stand where ways cross, and nowhere else: without such a place there is none
+    # Lights stand only where ways cross: without such a place there are none
     nowhere = not context.surroundings.passages.junctions and not context.road.crossings
     complete = "light" in context.recording.complete
     if not (nowhere or complete or map_contents(context).lights):
@@ -132,11 +132,11 @@ def _traffic_lights(context: DriveContext) -> SignalColumns:
 
 @once
 def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
-    """The light for ego, empty where it is not known which, and flags of ego crossing its line.
+    """The light for ego, empty where unknown which, and masks of crossing its line and perhaps so.
 
-    In the state in which ego crosses the line the light is still the one that it crosses. The last
-    flags are of who may have crossed it (``may_pass``), and of amber ones crossed at a place of
-    which nobody knows whether ego came to it slowly enough to stop at once.
+    In the state in which ego crosses the line, the light is still the one that it crosses. Perhaps
+    (last mask): where ego may have crossed it (``may_pass``), and for amber lights crossed at a
+    place where it is unknown whether ego approached slowly enough to stop at once.
     """
     front = own_front(context)
     colours = np.full(context.states, "no_light", dtype="<U11")
@@ -177,8 +177,8 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
 def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags) -> list[int]:
     """The states in which ego crosses the lines of two lanes whose lights differ.
 
-    It reaches into the other lane, or has come from it since the state before: nobody knows which
-    light it passes. ``colours`` are those of its own lane where it ``crosses`` the line of that.
+    It reaches into the other lane, or has come from it since the state before: it is unknown which
+    light it passes. ``colours`` are those of its own lane where it ``crosses`` that lane's line.
     """
     own, lane, reach = context.ego_extents, context.ego_lane, context.thresholds.touching_m
     came_from = np.where(context.spans.columns > context.spans.first, np.roll(lane, 1), lane)
@@ -202,7 +202,7 @@ def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags
             lights = lights_of(context.recording, context.road, piece, k)
             for state in (beside & passes(context, line[1])).nonzero()[0].tolist():
                 shown = {_colour(context, lights, moment) for moment in moments(state)}
-                # Its own lane has no line there, or it came to the one further on from beside
+                # Ego's own lane has no line there, or ego came from beside to the one farther on
                 past = int(lane[state]) not in lit or came_from[state] == k
                 differs = past and not shown <= {"green_light", "no_light"}
                 if shown != {colours[state]} if crosses[state] else differs:
@@ -213,9 +213,9 @@ def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags
 def lights_of(
     recording: Recording, road: DrivenRoad, piece: int, lane: int
 ) -> tuple[Light | ObservedLight, ...]:
-    """The lights for the way on of a lane, as far as the map tells them apart.
+    """The lights for the way on of a lane, as far as the map distinguishes them.
 
-    A way without any, beside others with lights, is one past them, if the map has all lights.
+    A way without lights, beside others with lights, passes by them, if the map has all lights.
     """
     lanelet = road.lanelet(piece, lane)
     if lanelet.lights_to and piece + 1 < len(road.rows):
@@ -232,7 +232,7 @@ def _colour(context: DriveContext, lights: tuple[Light | ObservedLight, ...], st
 
 
 def colour_at(lights: tuple[Light | ObservedLight, ...], step: int) -> str:
-    """What lights show at a time step, empty where it is not known or not the same."""
+    """What lights show at a time step; empty where it is unknown or differs."""
     shown = {COLOURS.get(light.colour_at(step), "") for light in lights}
     return shown.pop() if len(shown) == 1 else ""
 
@@ -244,4 +244,4 @@ line_signals = SignalPasses(
         ("distance_to_junction",): _to_junction,
     }
 )
-"""The signals of the way to lines and junctions."""
+"""The signals of the distance to lines and junctions."""

@@ -42,19 +42,19 @@ _SIGNS: Mapping[str, tuple[Set[str], bool]] = {
     "turn_on_red_sign": ({"GREEN_ARROW"}, True),
     "no_turn_on_red_sign": ({"NO_TURN_ON_RED"}, True),
 }
-"""Signal -> its signs, and whether they are for the line at the lanelet's end."""
+"""Signal -> its signs, and whether they apply to the line at the lanelet's end."""
 
 _CORNERS = ((1, 1), (1, -1), (-1, -1), (-1, 1))
-"""Those of a body, ahead and to the left of its middle."""
+"""Corners of a body: factors ahead and to the left of its middle."""
 
 _SIGN_REACH_M = 20.0
-"""The junction whose ways a sign is about begins so near behind its line."""
+"""The junction whose ways a sign is about begins at most this far behind the sign's line."""
 
 _HAIR_M = 0.01
 
 _OVERRULED = ("give_way_sign", "stop_sign")
 _AT_WORK = ("green_light", "amber_light", "red_light")
-"""What signs say who goes first, and lights that come before them."""
+"""Signs that determine priority, and the states of lights that override them."""
 
 _SURFACES = {
     "busLane": "bus_lane",
@@ -62,7 +62,7 @@ _SURFACES = {
     "shoulder": "hard_shoulder",
     "level_crossing": "level_crossing",
 }
-"""Type of a lanelet -> surface; a later one counts."""
+"""Type of a lanelet -> surface; later entries override earlier ones."""
 
 _PLAIN = "carriageway"
 
@@ -84,7 +84,7 @@ def _crossing_zone(context: DriveContext) -> SignalColumns:
     distance, zone = distance_to_crossing(context), context.thresholds.zone_m
     near, unknown = distance <= zone, abs(distance - zone) < context.tolerances.place_m
     unknown = _in_doubt(context, near, unknown)
-    # Of who has only its rear left on a crossing laws do not say whether it is still there
+    # If only ego's rear is left on a crossing, laws do not say whether it is still there
     _, end = next_crossing(context)
     half_step_m = np.maximum(context.ego_extents.along[0], 0.0) * context.recording.step_s / 2
     unknown |= context.ego_extents.s_max[0] + half_step_m > end - context.tolerances.place_m
@@ -128,7 +128,7 @@ def _has_sign(signs: Set[str]) -> Callable[[Lanelet], bool]:
 
 
 def _may_hold(context: DriveContext, signs: Set[str]) -> Flags:
-    """Flags of states in which the map does not tell whether a sign of these holds."""
+    """Mask of states in which the map does not say whether one of these signs holds."""
     if not signs & map_contents(context).untold_signs:
         return np.zeros(context.states, dtype=bool)
     may = own_lanelets(context).flags(lambda lanelet: bool(signs & lanelet.untold_signs))
@@ -141,11 +141,11 @@ def _is_of(kind: str) -> Callable[[Lanelet], bool]:
 
 
 def _holds_to_line(context: DriveContext, signs: Set[str], *, of_junction: bool) -> Flags:
-    """Flags of states in which a sign of these holds up to its line.
+    """Mask of states in which one of these signs holds, up to its line.
 
-    By where ego's front was one state before, so that it still holds when ego crosses the line.
-    One ``of_junction`` says who goes first there: it holds until ego drives in, as where lines are
-    some metres before that.
+    Decided by the place of ego's front one state before, so that the sign still holds when ego
+    crosses the line. A sign ``of_junction`` determines priority there: it holds until ego drives
+    in, as some lines are a few metres before that.
     """
     before, holds = context.spans.before(own_front(context)), np.zeros(context.states, dtype=bool)
     for piece, row in enumerate(context.road.rows):
@@ -162,9 +162,9 @@ def _holds_to_line(context: DriveContext, signs: Set[str], *, of_junction: bool)
 
 
 def _next_junction(context: DriveContext, line: float) -> float:
-    """Where the junction behind a line begins on ego's road, or the line if none is near.
+    """Where the junction behind a line begins on ego's road; the line itself if none is near.
 
-    A line within a junction, or at its end, is of that one.
+    A line within a junction, or at its end, belongs to that junction.
     """
     if any(low + _HAIR_M < line < high + _HAIR_M for low, high in context.road.junctions):
         return line
@@ -173,7 +173,7 @@ def _next_junction(context: DriveContext, line: float) -> float:
 
 
 def crossings_told(context: DriveContext) -> bool:
-    """True if the map would have the pedestrian crossings that there are."""
+    """Whether the map would contain the pedestrian crossings that exist."""
     return CROSSWALK not in context.recording.lacks or CROSSWALK in map_contents(context).types
 
 
@@ -200,11 +200,11 @@ def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
 
 
 def _surface(context: DriveContext) -> SignalColumns:
-    """What ego is on: any part of it on a crossing, else its middle.
+    """What ego is on: a crossing if any part of it is on one, else the surface at its middle.
 
-    Unknown where places decide, or who is on the crossing with no more than a corner turned to it:
-    the direction in which a body points is known less well than where it is, and some sources turn
-    those who stand.
+    Unknown where tolerances decide, or where no more than a corner, turned to it, is on the
+    crossing: the direction of a body is known less well than its place, and some sources turn
+    standing vehicles.
     """
     if not (context.road.junctions or context.road.crossings or _kinds(context)):
         surfaces = np.full(context.states, _PLAIN)
@@ -225,7 +225,7 @@ def _surface(context: DriveContext) -> SignalColumns:
 
 
 def _in_doubt(context: DriveContext, values: SignalColumn, unknown: Flags) -> Flags:
-    """Flags of unknown states without those in which ego drives from one value to another.
+    """Mask of unknown states without those in which ego drives from one value to another.
 
     There only the moment is in doubt.
     """
@@ -239,7 +239,7 @@ def _in_doubt(context: DriveContext, values: SignalColumn, unknown: Flags) -> Fl
 
 
 def _below_middle(context: DriveContext, middle: Floats, lane: NDArray[intp]) -> NDArray[np.str_]:
-    """The surface at so far along the road, in a lane, by state, crossings apart."""
+    """The surface at places along the road in given lanes, by state, without crossings."""
     surfaces = np.full(context.states, _PLAIN, dtype="<U14")
     for start, end in context.road.junctions:
         surfaces[(middle > start) & (middle < end)] = "junction"
@@ -262,10 +262,10 @@ def _kinds(context: DriveContext) -> list[str]:
 
 
 def _on_crossing(context: DriveContext) -> tuple[Flags, Flags, Flags]:
-    """Flags of states in which a part of ego is on a crossing: as measured, surely and perhaps.
+    """Masks of states with a part of ego on a crossing: as measured, surely and perhaps.
 
-    A crossing that lies askew begins farther along the road for one lane than for another: its area
-    decides where it is drawn there.
+    A slanting crossing begins farther along the road for one lane than for another: where its area
+    is drawn, that decides.
     """
     own, place = context.ego_extents, context.tolerances.place_m
     front, rear = own.s_max[0], own.s_min[0]
@@ -278,7 +278,7 @@ def _on_crossing(context: DriveContext) -> tuple[Flags, Flags, Flags]:
 
 
 def _meets_crossing(context: DriveContext, states: Flags) -> Flags:
-    """Flags of those of some states in which ego's body is on the area of a crossing, or may be."""
+    """Mask of those states in which ego's body is on the area of a crossing, or may be."""
     found = np.zeros(context.states, dtype=bool)
     (there,) = states.nonzero()
     if not len(there):
@@ -313,4 +313,4 @@ map_signals = SignalPasses(
         tuple(_SIGNS): _signs,
     }
 )
-"""The signals of ego's road, as far as the map knows them."""
+"""The signals of ego's road, as far as the map contains them."""

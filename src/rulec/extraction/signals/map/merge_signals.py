@@ -1,8 +1,8 @@
 """Signals of narrowings, where two lanes become one.
 
 Two lanes beside each other become one where both lead to the same lane and to no other, or where
-one of them ends. One of several ways on from a lane is no lane that ends. A lane that merely has no
-successor on the map may go on beyond it.
+one of them ends. One of several ways on from a lane is not a lane that ends. A lane that merely has
+no successor on the map may go on beyond it.
 """
 
 from __future__ import annotations
@@ -23,15 +23,13 @@ from rulec.recordings.recording import RAMPS, Lanelet, Recording
 from rulec.scenario.recorded.route import lanelet_length
 
 _TAPERED = 0.6
-"""A lane that ends is narrower at its end than this part of what it was."""
+"""A lane that ends is narrower at its end than this part of its width before."""
 
 _JUST_BEFORE_M = 15.0
-"""Who is farther from the narrowing when ego gets there need not be let in yet."""
+"""A vehicle farther from the narrowing when ego reaches it need not be let in yet."""
 
 _WAY_M = 30.0
-"""Ways from the lanes before a junction, or where lanes are added, to those behind are shorter."""
-
-"""Who joins from an acceleration lane gives way, and who leaves a road does not go on beside it."""
+"""Longest way from the lanes before a junction, or an added lane, to those behind."""
 
 
 def _narrowings(context: DriveContext) -> SignalColumns:
@@ -46,7 +44,7 @@ def _narrowings(context: DriveContext) -> SignalColumns:
         other = np.where(lane == right, right + 1, right)
         there, lost = _there_with_ego(context, place) if before.any() else (False, False)
         beside = before & _beside_in(context, other) if before.any() else False
-        # Beyond it other lanes may be beside the one that two have become
+        # Beyond it other lanes may be beside the merged one
         beside &= context.extents.s_max <= place
         if sure:
             narrowing |= before
@@ -68,10 +66,10 @@ def _narrowings(context: DriveContext) -> SignalColumns:
 
 
 def _could_let_in(context: DriveContext) -> Flags:
-    """Flags of those behind whom ego comes, braking no harder than it would have others do.
+    """Mask of vehicles behind which ego comes by braking no harder than it may make others.
 
-    From where it is near the narrowing on. Whether the law asks for more of who passes one that
-    hardly moves, nobody knows.
+    From where it nears the narrowing. Whether the law asks for more from a vehicle that passes one
+    that hardly moves is unknown.
     """
     limits, own, others = context.thresholds, context.ego_extents.along[0], context.extents.along
     could: Flags = own**2 - others**2 <= 2 * limits.disturbing_mps2 * limits.approach_m
@@ -79,10 +77,10 @@ def _could_let_in(context: DriveContext) -> Flags:
 
 
 def _there_with_ego(context: DriveContext, place: float) -> tuple[Flags, Flags]:
-    """Flags of those who are at a narrowing, not ahead, when ego gets there, and of those lost.
+    """Masks of those at a narrowing, not ahead, when ego gets there; and of those lost by then.
 
-    Those are not recorded then, or ego does not get there. Who is ahead of ego then comes before it
-    anyway.
+    The latter are not recorded then, or ego does not get there. Those ahead of ego then come before
+    it anyway.
     """
     arrives = context.spans.next_state(context.ego_extents.s_max[0] > place)
     never = arrives >= context.spans.end
@@ -94,7 +92,7 @@ def _there_with_ego(context: DriveContext, place: float) -> tuple[Flags, Flags]:
 
 
 def _beside_in(context: DriveContext, lane: NDArray[intp]) -> Flags:
-    """Flags of those who go ego's way beside it in a lane, by state."""
+    """Mask of vehicles that go ego's way beside it in a lane, given by state."""
     inside = context.in_lane(lane)
     beside: Flags = inside & (relations.station(context) == relations.BESIDE) & context.going_along
     return beside
@@ -102,7 +100,7 @@ def _beside_in(context: DriveContext, lane: NDArray[intp]) -> Flags:
 
 @once_a_road
 def merges(context: DriveContext) -> tuple[tuple[float, int, bool], ...]:
-    """Places along the road at which a lane and the next one to the left become one.
+    """Places along the road where a lane and the next one to its left become one.
 
     The last value is False where one of them may go on beyond the map.
     """
@@ -115,6 +113,7 @@ def _merges(context: DriveContext) -> Iterator[tuple[float, int, bool]]:
     for piece, (row, after) in enumerate(pairwise(rows)):
         onward = {lanelet.id for lanelet in after if lanelet is not None}
         for right, (lanelet, other) in enumerate(pairwise(row)):
+            # Traffic from a ramp gives way, and traffic that leaves does not go on beside the road
             if lanelet is None or other is None or (lanelet.types | other.types) & RAMPS:
                 continue
             ways = [set(lanelet.successors) & onward for lanelet in (lanelet, other)]
@@ -129,7 +128,7 @@ def _merges(context: DriveContext) -> Iterator[tuple[float, int, bool]]:
 
 
 def _is_one_of_several(recording: Recording, lanelet: Lanelet) -> bool:
-    """True of a short way that comes of a lane from which others lead on, too."""
+    """Whether a lanelet is a short way from a lane from which others lead on, too."""
     before = [recording.lanelets[x] for x in lanelet.predecessors if x in recording.lanelets]
     return any(len(x.successors) > 1 for x in before) and lanelet_length(lanelet) < _WAY_M
 
@@ -140,4 +139,4 @@ def _tapers(lanelet: Lanelet) -> bool:
 
 
 merge_signals = SignalPasses({("narrowing", "merged", "abreast_at_narrowing"): _narrowings})
-"""The signals of ego's place at narrowings, and of who is beside it there."""
+"""The signals of ego's place at narrowings, and of vehicles beside it there."""

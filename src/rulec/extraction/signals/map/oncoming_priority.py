@@ -1,4 +1,4 @@
-"""Who turns across the way of those who come towards it, and has to let them pass."""
+"""Which participants turn across the way of oncoming traffic, and have to let it pass."""
 
 from __future__ import annotations
 
@@ -12,24 +12,25 @@ from rulec.recordings.recording import ALL_STOP, STOP_SIGNS, Points, Recording
 
 _GIVES_WAY = STOP_SIGNS | {"YIELD"}
 _ONE_GIVES_WAY = _GIVES_WAY - {ALL_STOP}
-"""Where all have to stop, who has come first goes first."""
+"""Where all have to stop, the participant that came first goes first."""
 
 _CLEARED_S = 2.0
-"""A light that has been red for so long when one gets into the junction was red at its line."""
+"""A light that has been red for this long when a vehicle enters the junction was red at its
+line."""
 
 
 def turns_far(context: DriveContext, passage: Passage) -> bool:
-    """True if a participant turns to the far side, or round."""
+    """Whether a participant turns to the far side, or round."""
     towards_far = 1.0 if context.side == "right" else -1.0
     turned = context.surroundings.passages.way(passage).turned * towards_far
     return turned > radians(context.thresholds.turned_deg)
 
 
 def gives_way_to(context: DriveContext, own: Passage, other: Passage) -> bool:
-    """Does ego turn across the way of one that comes towards it, and that goes first?
+    """Whether ego turns across the way of an oncoming participant that has priority.
 
     That one goes straight on or turns to its near side, and neither signs nor a red light stop it;
-    where all have to stop, nor does it enter more than ``together_s`` after ego.
+    where all have to stop, it does not enter more than ``together_s`` after ego.
     """
     way_of = context.surroundings.passages.way
     return (
@@ -42,7 +43,7 @@ def gives_way_to(context: DriveContext, own: Passage, other: Passage) -> bool:
 
 
 def _stopped_later(context: DriveContext, own: Passage, other: Passage) -> bool:
-    """True where all have to stop, and the other one has got into the junction later."""
+    """Whether all have to stop, and the other one entered the junction later."""
     later_s = (other.first - own.first) * context.recording.step_s
     if later_s <= context.thresholds.together_s:
         return False
@@ -51,7 +52,7 @@ def _stopped_later(context: DriveContext, own: Passage, other: Passage) -> bool:
 
 
 def goes_first(recording: Recording, own: JunctionWay, other: JunctionWay) -> bool:
-    """True unless the map says that the other way, which comes towards one's own, gives way."""
+    """True unless the map says that the other way, which is oncoming, gives way to one's own."""
     first = own.lanelets[0].first
     if first is not None:
         return bool(first & other.names)
@@ -63,9 +64,9 @@ def goes_first(recording: Recording, own: JunctionWay, other: JunctionWay) -> bo
 
 
 def is_settled(recording: Recording, own: JunctionWay, other: JunctionWay) -> bool | None:
-    """True if signs stop both ways, and the map says that one's own does not have to wait.
+    """Whether signs stop both ways, and the map says that one's own does not have to wait.
 
-    None if they do, and it does not say who has to; signs then order neither before the other.
+    None if they do and the map does not say which has to: then signs give priority to neither.
     """
     stopped = [
         any(entry.signs & _ONE_GIVES_WAY for entry in approaches(recording, way))
@@ -78,15 +79,15 @@ def is_settled(recording: Recording, own: JunctionWay, other: JunctionWay) -> bo
 
 
 def _came_at_red(context: DriveContext, other: Passage) -> bool:
-    """True if a participant has come into the junction past a light that was red."""
+    """Whether a participant has entered the junction past a light that was red."""
     shown = list(_shown(context, other))
     return bool(shown) and all(colour == "red" for colour in shown)
 
 
 def _shown(context: DriveContext, other: Passage) -> Iterator[str | None]:
-    """What its lights showed when a participant crossed their line, as far as that is on the map.
+    """What a participant's lights showed when it crossed their line, if that is on the map.
 
-    Where it is not, in all the time in which it may have.
+    Otherwise during all of the time in which it may have crossed it.
     """
     passages = context.surroundings.passages
     way, lanelets = passages.way(other), context.recording.lanelets
@@ -102,7 +103,7 @@ def _shown(context: DriveContext, other: Passage) -> Iterator[str | None]:
 
 
 def _crossed(context: DriveContext, other: Passage, line: Points | None) -> int | None:
-    """The column in which a participant's front gets over a line before a passage, if it does."""
+    """The column in which a participant's front crosses a line before a passage, or None."""
     if line is None:
         return None
     passages, until = context.surroundings.passages, slice(0, other.first + 1)

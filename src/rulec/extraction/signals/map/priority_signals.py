@@ -1,7 +1,7 @@
-"""Signals of who goes first at junctions: signs, and whose ways cross ego's when.
+"""Signals of priority at junctions: signs, and whose ways cross ego's when.
 
-Ego goes through a junction on a way; others do on theirs. Another one is in conflict with ego while
-both are on their way to where these cross or join (``conflicts``).
+Ego goes through a junction on a way; others do on theirs. Another participant is in conflict with
+ego while both are on their way to where these cross or join (``conflicts``).
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ _ROADS = ("unregulated_junction", "own_road_ends", "other_road_ends", "on_priori
 
 @dataclass(frozen=True, slots=True)
 class Encounter:
-    """Another one whose way crosses ego's, and from when to when the two are in conflict.
+    """Another participant whose way crosses ego's, and the time in which the two are in conflict.
 
-    Columns of the drive; from ``enters`` on ego is in its way. ``known`` is False if the recording
-    ends before it is clear.
+    In columns of the drive; from ``enters`` on ego is in its way. ``known`` is False if the
+    recording ends before it is clear.
     """
 
     kinds: tuple[str, ...]
@@ -64,7 +64,7 @@ class Encounter:
 def drive_by_drive(
     signals_of: Callable[[DriveContext], SignalColumns],
 ) -> Callable[[DriveContext], SignalColumns]:
-    """Let a function of one drive, or of several that pass no junction, give signals of any."""
+    """Make a function for a single drive, or for drives without junctions, work for any drives."""
 
     @wraps(signals_of)
     def found(context: DriveContext) -> SignalColumns:
@@ -115,7 +115,7 @@ def _conflicts(context: DriveContext) -> SignalColumns:
 
 @once
 def own_passages(context: DriveContext) -> tuple[Passage, ...]:
-    """Ego's passages of junctions during the drive; of several, those of the first with any."""
+    """Ego's passages of junctions during the drive; of several drives, the first that has any."""
     for number in range(context.spans.n_drives):
         if passages := passages_of(context, number):
             return passages
@@ -123,17 +123,17 @@ def own_passages(context: DriveContext) -> tuple[Passage, ...]:
 
 
 def passages_of(context: DriveContext, number: int) -> tuple[Passage, ...]:
-    """Ego's passages of junctions during a drive, whose columns are those of its ``own`` tracks."""
+    """Ego's passages of junctions during a drive, in the columns of its ``own`` tracks."""
     columns = context.steps[context.spans.slices[number]] - context.own.tracks.first
     passages = context.own.passages.of_row.get(int(context.ego.rows[number]), ())
     return tuple(x for x in passages if x.last >= columns[0] and x.first <= columns[-1])
 
 
 def approach(context: DriveContext, passage: Passage) -> slice:
-    """The states from which on ego nears the junction until it is through it.
+    """The states from where ego nears the junction until it is through it.
 
-    It does so after it has entered the one before, and before it enters the next one, where a long
-    body is still in this one then: who is in its way is so at one of them.
+    They begin after ego has entered the junction before, and end before it enters the next one,
+    even if a long body is then still in this one: so others are in its way at one junction only.
     """
     shift, passages = first_column(context), context.surroundings.passages
     ways = passages.travelled[passage.row]
@@ -146,7 +146,7 @@ def approach(context: DriveContext, passage: Passage) -> slice:
 
 
 def _next(context: DriveContext, passage: Passage) -> int:
-    """The last state before ego's front is in the junction after one, or one past all states."""
+    """The last state before ego's front is in the next junction, or one past all states."""
     passages = context.surroundings.passages
     later = [x for x in passages.of_row[passage.row] if x.first > passage.first]
     enters = [passages.front_enters(x) - first_column(context) for x in later[:1]]
@@ -163,7 +163,7 @@ def _next(context: DriveContext, passage: Passage) -> int:
 
 
 def _until_out(context: DriveContext, passage: Passage) -> slice:
-    """The same states, and those after them in which ego's body is in the junction yet."""
+    """The states of ``approach``, and later ones in which ego's body is still in the junction."""
     span, (rear,) = approach(context, passage), context.ego_extents.s_min
     # Drives may break in a junction
     place = context.ego_extents.s[0, min(max(span.stop, 1), context.states) - 1]
@@ -176,7 +176,7 @@ def _until_out(context: DriveContext, passage: Passage) -> slice:
 
 @drive_by_drive
 def _roads(context: DriveContext) -> SignalColumns:
-    """What the map says of the junction that ego nears or is in."""
+    """What the map says about the junction that ego nears or is in."""
     columns = {name: np.zeros(context.states, dtype=bool) for name in _ROADS}
     unregulated, own, others, priority = _ROADS
     unknown = {name: np.zeros(context.states, dtype=bool) for name in (unregulated, priority)}
@@ -203,7 +203,7 @@ def _tells_priority(context: DriveContext) -> bool:
 
 
 def _ending_roads(junction: Junction, passage: Passage) -> tuple[bool, bool]:
-    """Does ego's road end at the junction, and does the one that it meets there?
+    """Whether ego's road ends at the junction, and whether the one that it meets there does.
 
     A road ends if no way goes straight on from it. It meets one that goes on if a way does across.
     """
@@ -220,7 +220,7 @@ def _ending_roads(junction: Junction, passage: Passage) -> tuple[bool, bool]:
 
 
 def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
-    """Those who are in ego's way at a junction, or might be."""
+    """Participants that are in ego's way at a junction, or may be."""
     passages, shift = context.surroundings.passages, first_column(context)
     span = approach(context, own)
     latest = own.last + round(context.thresholds.held_up_s / context.recording.step_s)
@@ -266,10 +266,10 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
 
 
 def _turned_in_later(context: DriveContext, own: Passage, other: Passage) -> bool:
-    """True if one turned into the road to the junction at another one, when ego drove in already.
+    """Whether another turned into the road to the junction after ego had driven in already.
 
-    Where links are short nobody knows of one that is still before the junction at their other end
-    whether it comes. Who waits within the junction drives in where it moves off.
+    Where links are short, it is unknown whether one still before the junction at their other end
+    will come. An ego that waits within the junction drives in where it moves off.
     """
     passages = context.surroundings.passages
     speed = passages.tracks.speed[own.row, own.first : own.last + 1]
@@ -285,7 +285,7 @@ def _turned_in_later(context: DriveContext, own: Passage, other: Passage) -> boo
 
 
 def _is_seen(present: Flags, first: int, last: int) -> bool:
-    """True if somebody's track has no hole between two columns, as far as it reaches."""
+    """Whether a participant's track has no hole between two columns, as far as it extends."""
     there = present[first : last + 1].nonzero()[0]
     return len(there) == 0 or len(there) == there[-1] - there[0] + 1
 
@@ -305,17 +305,17 @@ def _kinds(context: DriveContext, own: Passage, other: Passage) -> tuple[str, ..
 
 
 def _side(angle: float) -> str:
-    """The word for who comes in a direction (degrees to the left of ego's), empty for ego's own."""
+    """The word for a direction (degrees to the left of ego's) of arrival; empty for ego's own."""
     if abs(angle) < 30.0:
         return ""
     return _SIDES[2] if abs(angle) > 135.0 else _SIDES[0] if angle < 0 else _SIDES[1]
 
 
 def _might_come(context: DriveContext, own: Passage) -> Iterator[str]:
-    """The sides from which somebody might come whose way through the junction is not known.
+    """The sides from which participants may come whose way through the junction is unknown.
 
-    Somebody who is on no way of the map, or whose track ends before the junction. In a simulation
-    who is gone before the end has arrived somewhere.
+    Those on no way of the map, or whose track ends before the junction. In a simulation, one that
+    is gone before the end has arrived somewhere.
     """
     passages, shift = context.surroundings.passages, first_column(context)
     tracks, step_s = passages.tracks, context.recording.step_s
@@ -327,7 +327,7 @@ def _might_come(context: DriveContext, own: Passage) -> Iterator[str]:
             through.add(row)
             yield _side(float(np.degrees(turn(own.heading, tracks.heading[row, first]))))
     rows, ends, back = _lost_from_sight(context)
-    # Whose way is known is in the junction on it, unless that is where it was not seen
+    # A participant with a known way is in the junction on that way, unless it was unseen there
     in_time = (ends >= shift) & (ends <= latest) & (back > own.first)
     for row, end, seen in zip(*(x[in_time].tolist() for x in (rows, ends, back)), strict=True):
         if row == own.row or (row in through and seen == _NEVER):
@@ -347,7 +347,7 @@ def _might_come(context: DriveContext, own: Passage) -> Iterator[str]:
 
 @once_a_recording
 def _lost_from_sight(context: DriveContext) -> tuple[NDArray[intp], ...]:
-    """The rows of all who may go on unseen, the last columns in which they are there, and the next.
+    """The rows of all that may go on unseen, their last columns before, and the next ones.
 
     The next is ``_NEVER`` where tracks have ended.
     """
@@ -372,7 +372,7 @@ def _lost_from_sight(context: DriveContext) -> tuple[NDArray[intp], ...]:
 
 
 def _leaves_at_latest(context: DriveContext, own: Passage) -> float:
-    """The column in which ego leaves a junction; as it drives on if its track ends before."""
+    """The column in which ego leaves a junction; extrapolated if its track ends before."""
     passages = context.surroundings.passages
     tracks = passages.tracks
     column = own.last

@@ -1,6 +1,6 @@
-"""Signals of the road as a whole: where it leads through, its directions, its weather.
+"""Signals of the road as a whole: its surroundings, its directions, its weather.
 
-What a map leaves out is unknown unless its format would have it.
+What a map leaves out is unknown, unless its format would contain it.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from rulec.scenario.recorded.route import lanes_beside
 _OUTSIDE = frozenset({"country", "rural", "highway", "interstate"})
 _SETTINGS = _OUTSIDE | {"urban"}
 _URBAN_KMH = 70.0
-"""In built-up areas limits are hardly higher."""
+"""Speed limits in built-up areas are hardly higher."""
 
 _CLASSES = {"highway": "motorway", "interstate": "motorway", "country": "ordinary_road"}
 _CLASSES |= {"ordinary": "ordinary_road"}
@@ -70,11 +70,11 @@ def _ways(context: DriveContext) -> SignalColumns:
 
 
 def _lane_kind(context: DriveContext) -> SignalColumns:
-    """The kind of the lane that ego has changed to last, as `lane_change` says it.
+    """The kind of the lane that ego has changed to last, consistent with `lane_change`.
 
-    That of its middle is another one a little earlier: nobody would change from an entry lane. Of
-    the main lanes those beyond a broad line may leave the road farther ahead. What a ramp that
-    runs by itself joins or has left is not told: several lanes of it may be used as any others.
+    The lane of ego's middle differs a little earlier: then no vehicle would change from an entry
+    lane. Main lanes beyond a broad line may leave the road farther ahead. What a separate ramp
+    joins or has left is unknown: several lanes of it may be used like any others.
     """
     if not _LANE_KINDS.keys() & map_contents(context).types:
         return SignalColumns()
@@ -118,13 +118,13 @@ def _weather(context: DriveContext) -> SignalColumns:
 
 
 def _class(types: frozenset[str], town: bool | None) -> str:
-    """The class of a road, empty if unknown; in a built-up area it is an ordinary one."""
+    """The class of a road, empty if unknown; in a built-up area it is an ordinary road."""
     told = next((_CLASSES[kind] for kind in _CLASSES if kind in types), "")
     return told or ("ordinary_road" if town else "")
 
 
 def _types_of_road(context: DriveContext) -> Callable[[Lanelet], frozenset[str]]:
-    """A function that tells the types of a lanelet, of a shoulder those of the lane beside it."""
+    """A function for the types of a lanelet; for a shoulder, those of the lane beside it."""
     known = context.recording.lanelets
 
     def types(lanelet: Lanelet) -> frozenset[str]:
@@ -136,9 +136,9 @@ def _types_of_road(context: DriveContext) -> Callable[[Lanelet], frozenset[str]]
 
 
 def _directions(context: DriveContext) -> Callable[[Lanelet], Directions]:
-    """A function that says whether a lanelet's road is one-way, and divided.
+    """A function for whether a lanelet's road is one-way, and whether it is divided.
 
-    Across the island of a roundabout is not the other direction of a road.
+    The other side of a roundabout's island is not the other direction of a road.
     """
     ring = context.surroundings.ring(context.side)
     of_road = context.surroundings.directions
@@ -146,10 +146,10 @@ def _directions(context: DriveContext) -> Callable[[Lanelet], Directions]:
 
 
 def _town(context: DriveContext) -> Callable[[Lanelet], bool | None]:
-    """A function that says of a lanelet whether it is in a built-up area, None if unknown.
+    """A function for whether a lanelet is in a built-up area, None if unknown.
 
-    ``urban`` is what many maps call every road: it counts on a map that has junctions or
-    crossings, and on which no limit of an urban lanelet contradicts it.
+    Many maps call every road ``urban``: this counts on a map that has junctions or crossings, and
+    on which no limit of an urban lanelet contradicts it.
     """
     settled, fast = _settled(context), _has_fast_town(context)
     types_of_road = _types_of_road(context)
@@ -168,14 +168,14 @@ def _town(context: DriveContext) -> Callable[[Lanelet], bool | None]:
 
 @once_a_map
 def _settled(context: DriveContext) -> bool:
-    """True if the map has junctions or crossings."""
+    """Whether the map has junctions or crossings."""
     junctions = context.surroundings.passages.junctions
     return bool(junctions) or "crosswalk" in map_contents(context).types
 
 
 @once_a_map
 def _has_fast_town(context: DriveContext) -> bool:
-    """True if the limit of some lanelet that is called urban is not one of a built-up area."""
+    """Whether some lanelet called urban has a limit that is too high for a built-up area."""
     return any(
         "urban" in x.types and round((x.limit_mps or 0.0) * KMH, 2) > _URBAN_KMH
         for x in context.recording.lanelets.values()

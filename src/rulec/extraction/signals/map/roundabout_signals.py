@@ -1,4 +1,4 @@
-"""Signals of roundabouts: on one, into one, and whether its signs are there."""
+"""Signals of roundabouts: being on one, entering one, and whether its signs are there."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SIGNS: Mapping[str, frozenset[str]] = {
     "roundabout_signed": _ROUNDABOUT | {"YIELD"},
     "compulsory_roundabout": _ROUNDABOUT,
 }
-"""Word -> the signs before a ring that it is about."""
+"""Word -> the signs before a ring that it stands for."""
 
 
 def _rings(context: DriveContext) -> SignalColumns:
@@ -49,7 +49,7 @@ def _rings(context: DriveContext) -> SignalColumns:
 
 
 def without_junction(context: DriveContext) -> Flags:
-    """Flags of states in which ego enters a ring where the map has no junction."""
+    """Mask of states in which ego enters a ring where the map has no junction."""
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
     enters = np.zeros(context.states, dtype=bool)
     for begins, _, at_junction in roundabouts(context):
@@ -60,9 +60,9 @@ def without_junction(context: DriveContext) -> Flags:
 
 @once_a_road
 def roundabouts(context: DriveContext) -> tuple[tuple[float, float, bool], ...]:
-    """From where to where ego's road is on a ring, and whether it gets there by a junction.
+    """The intervals in which ego's road is on a ring, and whether it enters that by a junction.
 
-    The junction before the ring is where one drives into it.
+    The junction before the ring is where ego drives into it.
     """
     ring, road = context.surroundings.ring(context.side), context.road
     on = [any(x is not None and x.id in ring for x in row) for row in road.rows]

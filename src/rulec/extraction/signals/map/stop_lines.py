@@ -17,11 +17,11 @@ LINE_REACH_M = 40.0
 
 _HAIR = 1e-6
 _AT_ONCE_S = 0.05
-"""Within so short a time of a state ego crosses a line in that state: lights change less often."""
+"""A line crossed this close in time to a state is crossed in it: lights change less often."""
 
 
 def passes(context: DriveContext, line: float) -> Flags:
-    """Flags of ego crossing a line; again only if it was back by more than places may be wrong."""
+    """Mask of ego crossing a line; again only if it was back by more than places' errors."""
     front, spans = own_front(context), context.spans
     beyond = front > line
     enters = spans.enters(beyond)
@@ -31,10 +31,10 @@ def passes(context: DriveContext, line: float) -> Flags:
 
 
 def may_pass(context: DriveContext, line: float) -> Flags:
-    """Flags of states in which nobody can tell whether ego has crossed a line.
+    """Mask of states in which it is unknown whether ego has crossed a line.
 
-    Places do not tell it there, and not for a moment only: ego is on the line for more than
-    ``passed_s``, as who stands at it, or is not surely before it before, or beyond it after.
+    Errors of places decide, and not only for a moment: ego is on the line for more than
+    ``passed_s``, as when it stands there, or is not surely before it earlier, or beyond it later.
     """
     front, spans, place = own_front(context), context.spans, context.tolerances.place_m
     before, beyond = front <= line - place, front > line + place
@@ -54,9 +54,9 @@ def around_crossing(
 ) -> Callable[[int], range]:
     """A function from a state in which ego is beyond a line to the states around its crossing.
 
-    It crosses between the states before and after, as fast on the way as on average, and nearer to
-    one of them than ``_AT_ONCE_S`` it crosses in that state. Where the line lies between two
-    places, all from the first one on count, or from where ego last stood beyond that.
+    Ego crosses between the states before and after, at its average speed in between; closer to one
+    of them than ``_AT_ONCE_S``, it crosses in that state. Where the line lies between two places,
+    all states from the first place on count, or from where ego last stood beyond it.
     """
     first, last = line
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
@@ -81,7 +81,7 @@ def around_crossing(
 
 @once_a_road
 def drawn_lines(context: DriveContext) -> dict[str, float]:
-    """The places along the road of the stop lines that the map has, by their lanelets."""
+    """The places along the road of the stop lines that the map has, by lanelet."""
     drawn = {
         lanelet.id: lanelet.stop_line.mean(axis=0)
         for row in context.road.rows
@@ -93,10 +93,10 @@ def drawn_lines(context: DriveContext) -> dict[str, float]:
 
 
 def ends_at_line(context: DriveContext, piece: int, lane: int) -> bool:
-    """True if a lanelet has a stop sign or a light, and these stand at its end.
+    """Whether a lanelet has a stop sign or a light, and these stand at its end.
 
-    The map may have cut a lane in pieces and say of each what holds on it: the line is at the end
-    of the last one, unless it has drawn one before.
+    The map may have cut a lane in pieces and state for each what holds on it: the line is at the
+    end of the last piece, unless one is drawn before.
     """
     road = context.road
     own = road.lanelet(piece, lane)
@@ -112,16 +112,16 @@ def ends_at_line(context: DriveContext, piece: int, lane: int) -> bool:
 
 
 def has_line(lanelet: Lanelet) -> bool:
-    """True if one may have to stop at its end."""
+    """Whether vehicles may have to stop at a lanelet's end."""
     return bool(lanelet.lights or lanelet.lights_to or STOP_SIGNS & lanelet.signs)
 
 
 def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, float]:
     """The places along the road between which the line of a lanelet is.
 
-    Who is beyond a line by less than ``touching_m`` stands at it. Where the map has no line it is
-    somewhere between the lanelet's end and the first place in the junction beyond where other ways
-    cross or join ego's, if they do before that junction ends and within ``LINE_REACH_M``.
+    A vehicle beyond a line by less than ``touching_m`` stands at it. Where the map has no line, it
+    is between the lanelet's end and the first place in the junction beyond where other ways cross
+    or join ego's, if they do before that junction ends and within ``LINE_REACH_M``.
     """
     lanelet, road = context.road.lanelet(piece, lane), context.road
     end, touching = float(road.borders[piece + 1]), context.thresholds.touching_m

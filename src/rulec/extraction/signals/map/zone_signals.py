@@ -28,10 +28,10 @@ from rulec.scenario.recorded.lane_coordinates import crossings_along
 from rulec.scenario.recorded.route import lanelet_area
 
 _LIGHTS_AT_CROSSING_M = 30.0
-"""A light whose line is so near before a pedestrian crossing directs it, too."""
+"""A light whose line is this near before a pedestrian crossing directs it, too."""
 
 _BEFORE_LINE_M = 10.0
-"""On maps without stop lines crossings are up to so far before the ends of lanelets with lights."""
+"""On maps without stop lines, crossings are up to this far before ends of lanelets with lights."""
 
 ROOM_M = 1.0
 
@@ -39,7 +39,7 @@ ROOM_M = 1.0
 def _crossing_kind(context: DriveContext) -> SignalColumns:
     """The kind of the crossing ahead: ``directed_crossing`` by a light of its own or ego's.
 
-    It is unknown where there may be a light that nobody saw.
+    Unknown where there may be an unobserved light.
     """
     (start, _), directed = next_crossing(context), np.zeros(context.states, dtype=bool)
     unknown = np.zeros(context.states, dtype=bool)
@@ -52,8 +52,8 @@ def _crossing_kind(context: DriveContext) -> SignalColumns:
 
 @once_a_road
 def crossings_lit(context: DriveContext) -> dict[float, tuple[bool, bool]]:
-    """Where each crossing of the road begins, whether a light directs it, and perhaps does."""
-    # A net says itself which crossings have lights
+    """Where each crossing of the road begins -> whether a light directs it, and whether one may."""
+    # A net itself states which crossings have lights
     told = "light" in context.recording.complete
     own = _starts(context, _crossings_with_lights(context))
     shared = [] if told else _starts(context, _crossings_over_lit_lanes(context))
@@ -70,7 +70,7 @@ def crossings_lit(context: DriveContext) -> dict[float, tuple[bool, bool]]:
 
 
 def _starts(context: DriveContext, crossings: Recording) -> list[float]:
-    """Where (m) these crossings of a recording begin on ego's road."""
+    """Where (m) the crossings of a recording begin on ego's road."""
     road = context.road
     found = crossings_along(crossings, road.line, road.lanes, 0.0, road.line.length)
     return [start for start, _ in found]
@@ -78,7 +78,7 @@ def _starts(context: DriveContext, crossings: Recording) -> list[float]:
 
 @once_a_map
 def _crossings_with_lights(context: DriveContext) -> Recording:
-    """The recording with those pedestrian crossings only that have lights of their own."""
+    """The recording with only those pedestrian crossings that have lights of their own."""
     walkers = {
         name: lanelet
         for name, lanelet in context.recording.lanelets.items()
@@ -89,7 +89,7 @@ def _crossings_with_lights(context: DriveContext) -> Recording:
 
 @once_a_map
 def _crossings_over_lit_lanes(context: DriveContext) -> Recording:
-    """The recording with those pedestrian crossings only that lanes with lights lead over, too."""
+    """The recording with only those pedestrian crossings over which lanes with lights lead."""
     lanelets = context.recording.lanelets
     walkers = {name: x for name, x in lanelets.items() if "crosswalk" in x.types}
     lit = [lanelet_area(x) for x in lanelets.values() if x.lights and is_lane(x)] if walkers else []
@@ -105,11 +105,11 @@ def _crossings_over_lit_lanes(context: DriveContext) -> Recording:
 
 
 def _junctions_with_lights_untold(context: DriveContext) -> Stretches:
-    """From where to where on ego's road there may be lights that its own lanes do not tell.
+    """Intervals of ego's road with possible lights that its own lanes do not have.
 
-    At junctions, with the crossings of the roads there: some formats tell of no lights at all, and
-    others of those alone that somebody saw, so that lights for who comes from elsewhere mean that
-    ego's way may have them, too.
+    At junctions, including the crossings of the roads there: some formats contain no lights at all,
+    others only those that were observed, so that lights for traffic from elsewhere mean that ego's
+    way may have them, too.
     """
     reach, seen = context.thresholds.side_road_m, map_contents(context).lights
     known = context.recording.lanelets
@@ -127,7 +127,7 @@ def _junctions_with_lights_untold(context: DriveContext) -> Stretches:
 
 
 def _lanelets_between(context: DriveContext, low: float, high: float) -> set[str]:
-    """The lanelets of ego's road that begin in between."""
+    """The ids of the lanelets of ego's road that begin in between."""
     starts = context.road.borders.tolist()
     return {
         lanelet.id
@@ -139,10 +139,10 @@ def _lanelets_between(context: DriveContext, low: float, high: float) -> set[str
 
 
 def _directed_stretches(context: DriveContext, there: bool) -> Stretches:
-    """From where to where on ego's road its lights direct those who cross, too.
+    """The intervals of ego's road where its lights also direct pedestrians.
 
-    From shortly before a light's line on, up to the roads behind the junction that it stands at.
-    ``there``: of lights that are surely there, else of all others.
+    From shortly before a light's line up to the roads behind the junction at which it stands.
+    ``there``: for lights that surely exist, else for all others.
     """
     road, stretches = context.road, []
     for row, end in zip(road.rows, road.borders[1:].tolist(), strict=True):
@@ -161,13 +161,13 @@ def _directed_stretches(context: DriveContext, there: bool) -> Stretches:
 
 
 def _exit_clear(context: DriveContext) -> SignalColumns:
-    """Is there room for ego behind what it enters, and where is that unknown?
+    """Whether ego has room behind the place that it enters; and where that is unknown.
 
-    There is none if the one ahead leaves too little behind the place where it is at that time, and
-    makes ego stand on it, where others cross or join its way: it walks at most while ego stands.
-    Where the recording ends before ego is through it is unknown, and so it is where places decide
-    whether it stands there, and of one ahead that stands all the time: ego may wait to drive round
-    it. What ego enters is the last place that it has got to, and before any the next one.
+    There is none if a vehicle ahead, at walking pace at most while ego stands, leaves too little
+    room behind the place, so that ego has to stand on it where others cross or join its way.
+    Unknown where the recording ends before ego is through, where tolerances decide whether ego
+    stands there, and for a vehicle ahead that always stands: ego may wait to drive round it. The
+    place is the last one that ego has reached, and before any the next one.
     """
     places = [*context.road.junctions, *context.road.crossings, *level_crossings(context)]
     clear, unknown = np.ones(context.states, dtype=bool), np.zeros(context.states, dtype=bool)
@@ -193,7 +193,7 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
             _free_beyond(context, those, (start, end)) < front - rear + ROOM_M
             for those in (ahead & ~still, ahead, ahead & ~still & holds_up, ahead & holds_up)
         )
-        # Whoever leaves too little room when ego comes leaves it ego too little when it stands
+        # One that leaves too little room when ego comes leaves too little when ego stands
         takes = ahead & ~still & (context.extents.s_min - end < front - rear + ROOM_M)
         same = takes & _until(context, takes & (stuck & stops))
         blocked = nears & short & same.any(axis=0)
@@ -217,13 +217,13 @@ def _room_beyond(
 
 
 def _until(context: DriveContext, flags: Flags) -> Flags:
-    """Flags of states after which, or in which, others hold."""
+    """Mask of states at or before a state of the drive in which ``flags`` hold."""
     held: Flags = context.spans.next_state(flags) < context.spans.end
     return held
 
 
 def _standing_rows(context: DriveContext, ahead: Flags) -> Flags:
-    """Flags, one a row, of those ever ahead who stand all the time that they are recorded."""
+    """Mask, one per row, of those ever ahead that stand for as long as they are recorded."""
     still, rows = np.zeros((len(ahead), 1), dtype=bool), ahead.any(axis=1).nonzero()[0]
     still[rows, 0] = relations.stays(context, rows)
     return still
@@ -241,7 +241,7 @@ def _free_beyond(context: DriveContext, ahead: Flags, place: tuple[float, float]
 
 @once
 def _ahead_on_lane(context: DriveContext) -> Flags:
-    """Flags of who goes ego's way ahead of it, and reaches into its lane."""
+    """Mask of vehicles that go ego's way ahead of it and reach into its lane."""
     ahead: Flags = (
         context.in_ego_lane & context.going_along & (relations.station(context) == relations.BEHIND)
     )
@@ -249,7 +249,7 @@ def _ahead_on_lane(context: DriveContext) -> Flags:
 
 
 def _left_aside(context: DriveContext, ahead: Flags) -> Flags:
-    """Flags of those ahead who stand all the time and leave ego room to pass them in its lane."""
+    """Mask of those ahead that always stand and leave ego room to pass in its lane."""
     aside, still = np.zeros(ahead.shape, dtype=bool), _standing_rows(context, ahead).nonzero()[0]
     if len(still):
         others, own = context.extents.part(still, slice(None)), context.ego_extents
@@ -261,7 +261,7 @@ def _left_aside(context: DriveContext, ahead: Flags) -> Flags:
 
 
 def _shared(context: DriveContext, start: float, end: float) -> float:
-    """Where others first cross or join ego's way in a junction; the beginning of any other place.
+    """Where others first cross or join ego's way in a junction; for other places, their beginning.
 
     A map's junction often begins at its lanelets' ends, some metres before the other road.
     """
