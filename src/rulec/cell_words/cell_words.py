@@ -41,16 +41,16 @@ from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 _HAIR_S = 1e-6
 _BEFORE_M, _BEYOND_M = 100.0, 250.0
-"""What is farther from where ego may be gives no reason for any word."""
+"""Anything farther (m) behind or ahead of ego's possible places affects no word."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CellWords:
-    """What is said in each cell of a graph.
+    """The words in each cell of a graph.
 
-    ``states[p][i]`` is the state of cell ``i`` of layer ``p``, ``told`` are the names that the
-    recording tells. ``types`` are those of everybody, the most specific first, by their ids in the
-    recording, ``present`` their first and last layers.
+    ``states[p][i]`` is the state of cell ``i`` of layer ``p``; ``told`` are the names that the
+    recording supplies. ``types`` are all participants' types, the most specific first, by their ids
+    in the recording; ``present`` are their first and last layers.
     """
 
     states: tuple[tuple[State, ...], ...]
@@ -60,7 +60,7 @@ class CellWords:
 
 
 def cell_words(graph: NavigationGraph, rules: CompiledRulebook) -> CellWords | None:
-    """The words that rules read, in the cells of a recorded scene; None of any other scene.
+    """The words that rules read in the cells of a recorded scene; None for any other scene.
 
     The scene's traffic keeps to the rules' side (``mirrored_scene.on_side_of``).
     """
@@ -153,12 +153,12 @@ class _Words:
         )
 
     def _presences(self) -> dict[str, tuple[int, int]]:
-        """First and last layers of all who may count for ego, or are on the scene's road near it.
+        """First and last layers of all that may count for ego or are on the scene's road near it.
 
-        By their ids in the recording: who leaves the scene's road and comes back may be beside it
-        meanwhile. Nobody is there for rules who is farther away than who counts, wherever ego may
-        be, nor before or after it is recorded. Who is beside another lane's road alone is there for
-        who goes on in that.
+        By their ids in the recording, since a participant that leaves the scene's road and comes
+        back may be beside it meanwhile. Rules do not see participants that are too far away to
+        count, wherever ego may be, nor before or after they are recorded. A participant beside only
+        another lane's road is present for an ego that goes on in that lane.
         """
         spans: dict[str, tuple[int, int]] = {}
         on_road = [
@@ -188,7 +188,7 @@ class _Words:
         return spans
 
     def _recorded(self, item: str) -> range:
-        """The layers in which somebody is recorded, or was and will be, all in between."""
+        """The layers in which a participant is recorded, including gaps in its record."""
         body, origin = self._bodies[self._rows[item]], self._probes.origin
         starts = [layer.start_s for layer in self._graph.layers]
         if body.standing or not body.outlines:
@@ -201,7 +201,7 @@ class _Words:
         return range(there[0], there[-1] + 1) if there else range(0)
 
     def _states(self, number: int) -> list[int]:
-        """The state of the scene's time in which a layer begins, or those before and after that."""
+        """The state of the scene's time at which a layer begins, or those before and after it."""
         at = self._graph.layers[number].start_s / self._probes.recording.step_s
         return sorted({int(np.floor(at + 1e-6)), int(np.ceil(at - 1e-6))})
 
@@ -228,7 +228,7 @@ class _Words:
             yield state
 
     def _in_doubt(self, boxes: EgoBoxes) -> list[Words]:
-        """What is unknown in each cell since to drives in other lanes others are there."""
+        """The words that are unknown in each cell as drives in other lanes have others there."""
         low, high = boxes.s[0] - LOOSE_M, boxes.s[1] + LOOSE_M
         doubtful = np.zeros(len(low), dtype=bool)
         for start, end in () if self._frame is None else self._frame.other_lanes:
@@ -243,7 +243,7 @@ class _Words:
         crosses: Sequence[Flags],
         about: Mapping[str, Sequence[Any]],
     ) -> list[Words]:
-        """What signs and lights say in each cell; where ego may have passed theirs, from before."""
+        """Words of signs and lights in each cell; where ego may have passed theirs, from before."""
         passes = np.any([np.zeros(len(places), dtype=bool), *crosses], axis=0)
         passes |= [one is not False for one in about.get("enters_junction", passes)]
         if not (self._at_lines.differ and passes.any()):
@@ -255,7 +255,7 @@ class _Words:
         ]
 
     def _shared(self, number: int, items: Sequence[str]) -> Words:
-        """What is the same in all cells of a layer; what nobody knows is unknown."""
+        """The words that are the same in all cells of a layer, including unknown ones."""
         everywhere, about_all = self._scene.everywhere, self._scene.about_all
         of_others = self._scene.of_others(self._states(number))
         words: Words = {}
@@ -268,13 +268,14 @@ class _Words:
             else:
                 said = of_others.get(name, {}) | self._constants.get(name, {})
                 if name == "leads_elsewhere" and self._may_leave:
-                    # Who leaves the road for good has another one, on which they may be or not
+                    # A participant that leaves the road for good has another one, on which they may
+                    # be or not
                     said = {}
                 words[name] = {item: said.get(item, about_all.get(name, UNKNOWN)) for item in items}
         return words
 
     def _by_motion(self, name: str) -> Any:
-        """What the bounds of ego's motion tell everywhere: it goes ahead, on its lanes."""
+        """What the bounds of ego's motion imply everywhere: it moves ahead, on its lanes."""
         if self._graph.bounds is not None and name in ("reversing", "u_turn", "joins_road"):
             return False
         if name in ("lane_change", "straddling") and len(self._graph.scenario.road.lanes) == 2:
@@ -282,7 +283,7 @@ class _Words:
         return UNKNOWN
 
     def _own_words(self, boxes: EgoBoxes) -> dict[str, list[Any]]:
-        """Ego's speed, by cell."""
+        """Words of ego's speed, by cell."""
         found: dict[str, list[Any]] = {}
         slow, fast = (speed * KMH for speed in boxes.mean_speed)
         standing = USUAL.standing_kmh
@@ -303,7 +304,7 @@ class _Words:
     def _relations(
         self, boxes: EgoBoxes, number: int, items: Sequence[str]
     ) -> dict[str, list[Any]]:
-        """The relations to others, by cell, and how slow all are around ego."""
+        """The relations to others, by cell, and how slow all traffic around ego is."""
         before, now = self._now[max(number - 1, 0)], self._now[number]
         names = self._names & RELATIONS
         unknown = dict.fromkeys(items, UNKNOWN)

@@ -1,6 +1,6 @@
-"""Words about what ego does among others, bounded for all places that it may have in a cell.
+"""Words about what ego does among others, bounded over all places that it may have in a cell.
 
-Each is known where the others, or the road, leave but one value for any of these places; see
+A word is known where the others, or the road, allow only one value for all of these places; see
 ``extraction/signals/`` for what the words mean.
 """
 
@@ -38,9 +38,9 @@ _HAIR_M = 0.05
 
 
 class ConductWords:
-    """What ego does in each cell of a layer (rows), by where the others are (columns).
+    """What ego does in each cell of a layer (rows) given where the others are (columns).
 
-    Those are ``others`` as they were in the layer before, and as they are.
+    ``others`` has them in the layer before, and now.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class ConductWords:
 
     @cached_property
     def _lanes(self) -> Flags:
-        """Flags of the lanes that ego's middle may be in, by cell."""
+        """Mask of the lanes that ego's middle may be in, by cell."""
         (low, high), aside = self._boxes.d, _HAIR_M + self._frame.bent(self._boxes.s)
         found: Flags = (self._straight[None, :-1] <= column(high + aside)) & (
             self._straight[None, 1:] >= column(low - aside)
@@ -77,18 +77,18 @@ class ConductWords:
 
     @cached_property
     def _may_share(self) -> Flags:
-        """Flags of who may reach into ego's lane."""
+        """Mask of others that may reach into ego's lane."""
         found: Flags = self._lanes.astype(int) @ self._others.perhaps.T.astype(int) > 0
         return found
 
     @cached_property
     def _shares(self) -> Flags:
-        """Flags of who surely does, whichever lane that is."""
+        """Mask of others that surely reach into ego's lane, whichever it is."""
         found: Flags = self._lanes.astype(int) @ (~self._others.lanes).T.astype(int) == 0
         return found
 
     def _holds_nobody_up(self) -> Flags:
-        """Nobody follows near enough, or there is a reason for any speed of ego."""
+        """Cells where none follows near enough, or ego has a reason for any speed."""
         others, (near, _) = self._others, self._relations.gaps
         fastest = np.maximum(others.along[1], 0.0)
         follows = others.may_go_along & (self._relations.stations & IN_FRONT > 0)
@@ -96,7 +96,7 @@ class ConductWords:
         return _nobody(follows) | self._has_a_reason()
 
     def _has_a_reason(self) -> Flags:
-        """Somebody is surely ahead in ego's lane, or a junction, so near that it is a reason."""
+        """Cells with another surely ahead in ego's lane, or a junction, near enough to slow ego."""
         others, frame = self._others, self._frame
         reach = reach_at(np.maximum(self._boxes.mean_speed[0], 0.0))
         (front, far_front), (_, far_rear) = self._relations.front, self._relations.rear
@@ -133,17 +133,17 @@ class ConductWords:
         return self._on_own_side() & _nobody(slower & (self._relations.gaps[0] <= reach))
 
     def _on_own_side(self) -> Flags:
-        """Ego is not beyond the middle of a two-way road, where it overtakes until it is back."""
+        """Cells where ego is not beyond the middle of a two-way road, where it would overtake."""
         own: Flags = self._relations.gap_to_oncoming_lanes >= self._frame.loose_d
         return own | self._frame.one_way
 
     def _meets_nobody(self) -> Flags:
-        """Nobody comes towards ego from now on: who is not there yet may meet it in time."""
+        """Cells where none is oncoming from now on; even a later one may meet ego in time."""
         found: Flags = np.full(len(self._boxes.sideways), not self._others.some_come)
         return found
 
     def _room(self, aside: Floats) -> Flags:
-        """Whether so much room (m) is left to both bounds of ego's lane, wherever in the cell."""
+        """Cells with ``aside`` (m) or more to both bounds of ego's lane, wherever ego is."""
         (low, high), loose = self._boxes.d, self._frame.loose_d + self._frame.bent(self._boxes.s)
         lane = np.clip(np.searchsorted(self._straight, low, "right") - 1, 0, None)
         lane = np.minimum(lane, len(self._straight) - 2)
@@ -156,11 +156,11 @@ class ConductWords:
         return self._room(self._boxes.half_width[1] - USUAL.touching_m)
 
     def _stays_in_lane(self) -> Flags:
-        """Since the layer before it has come from no other lane."""
+        """Cells into which ego has come from no other lane since the layer before."""
         return self._room(self._boxes.sideways * self._boxes.came_s + USUAL.changed_m)
 
     def _at_no_entry(self) -> Flags:
-        """Ego's front is before all junctions, or was in them already in the layer before."""
+        """Cells where ego's front is before all junctions, or was in them in the layer before."""
         (_, far_front), frame = self._relations.front, self._frame
         before = self._boxes.front_before
         away = np.ones(len(before), dtype=bool)
@@ -170,9 +170,9 @@ class ConductWords:
         return away
 
     def _has_room_beyond(self) -> Flags:
-        """Nobody who may be ahead in ego's lane leaves too little room behind what ego enters.
+        """Cells where none ahead in ego's lane may leave too little room behind what it enters.
 
-        Nor did so since the layer before, when ego may have entered it.
+        Neither now nor since the layer before, when ego may have entered it.
         """
         frame, loose = self._frame, self._frame.apart_s + _HAIR_M
         others, earlier = self._others, self._earlier

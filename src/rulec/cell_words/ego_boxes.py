@@ -16,27 +16,27 @@ from rulec.scenario import MotionBounds
 
 Floats: TypeAlias = NDArray[float64]
 Bounds: TypeAlias = tuple[Floats, Floats]
-"""The least and the greatest, a row for each cell."""
+"""The least and the greatest values, a row for each cell."""
 
 _FASTEST_MPS = 100.0
 _WINDOW_S = 0.5
-"""Extracted speeds are means from so long before to so long after."""
+"""Extracted speeds are means from this long (s) before to this long after."""
 
 _HAIR_S = 1e-6
 
 _BEND_RAD = np.radians(6.0)
-"""The directions of two lines along one road differ by less, where it bends."""
+"""Upper bound on the angle between two lines along the same road where it bends."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EgoBoxes:
     """Bounds for each cell when its layer begins.
 
-    ``s`` and ``d`` (m) are those of ego's centre, ``mean_speed`` the speed that extraction
-    measures, a mean, whatever its direction (m/s). Half its body's extents
-    along and across the road (m) are for all headings that ego may have; ``sideways`` is the
-    greatest speed across it (m/s). ``front_before`` is where (m) ego's front was at least
-    ``came_s`` ago, in the layer before or, if that is earlier, in the state before.
+    ``s`` and ``d`` (m) are those of ego's centre; ``mean_speed`` (m/s) is the speed that extraction
+    measures, a mean, whatever its direction. Half the body's extents along and across the road (m)
+    cover all headings that ego may have; ``sideways`` is its greatest speed across the road (m/s).
+    ``front_before`` is a lower bound (m) on the place of ego's front ``came_s`` ago, in the layer
+    before or, if that is earlier, in the state before.
     """
 
     s: Bounds
@@ -60,7 +60,7 @@ def column(values: Floats) -> Floats:
 
 
 def ego_boxes(graph: NavigationGraph, state_s: float) -> Iterator[EgoBoxes]:
-    """The bounds in each layer; a recording has a state every ``state_s``."""
+    """The bounds in each layer; a recording has a state every ``state_s`` (s)."""
     motion = graph.bounds
     size = body_size(graph)
     last = len(graph.layers) - 1
@@ -83,13 +83,13 @@ def ego_boxes(graph: NavigationGraph, state_s: float) -> Iterator[EgoBoxes]:
 
 
 def body_size(graph: NavigationGraph) -> tuple[float, float]:
-    """Ego's length and width (m): as recorded, else those of the bounds, else of a car."""
+    """Ego's length and width (m): as recorded, else from the bounds, else those of a car."""
     ego, bounds = graph.scenario.ego, graph.bounds or graph.scenario.ego.bounds or MotionBounds()
     return ego.length or bounds.length, ego.width or bounds.width
 
 
 def _mean_margins(motion: MotionBounds | None, before: float, after: float) -> tuple[float, float]:
-    """How far a mean of speed may be below and above the speed."""
+    """How far (m/s) a mean of speed may be below and above the speed."""
     if motion is None or not before + after:
         return _FASTEST_MPS, _FASTEST_MPS
     gains, loses, seconds = motion.acceleration, motion.braking, before + after
@@ -115,7 +115,7 @@ def _boxes(
             rows.append((*own.s, *own.d, *own.speed, 0.0, sideways))
     s0, s1, d0, d1, slow, fast, _, sideways = np.array(rows).reshape(-1, 8).T
     slow = np.maximum(slow, 0.0)
-    # No heading is farther from the road's than 45°, nor than the speeds along and across it tell
+    # A heading differs from the road's by at most 45°, and by what speeds along and across it allow
     turned = np.minimum(np.arctan2(sideways, np.maximum(slow, 1e-9)), np.pi / 4) + _BEND_RAD
     half, side = size[0] / 2, size[1] / 2
     lengths = _extents(half, side, turned)

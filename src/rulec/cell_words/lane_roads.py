@@ -1,7 +1,8 @@
 """The roads that drives have along the lanes of a scene's road.
 
-Who goes on in another lane has its road along that: behind it comes from elsewhere, lanes that part
-or join are counted from it, and it has the bounds, junctions and lanes of its own lanelets.
+A drive that goes on in another lane has its road along that lane: the road may come from elsewhere
+behind it, lanes that part or join are counted from it, and it has the bounds, junctions and lanes
+of its own lanelets.
 """
 
 from __future__ import annotations
@@ -26,9 +27,10 @@ _HAIR_M = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Parting:
-    """A place (m) of the road beyond which lanes may be others, ahead (1) or behind (-1) of ego.
+    """A place (m) of the road beyond which lanes may differ, ahead (1) of ego or behind (-1).
 
-    ``shifts`` say how many lanes farther left they may be, ascending; none: nobody knows where.
+    ``shifts`` are the numbers of lanes by which they may lie farther left, ascending; empty if
+    unknown.
     """
 
     place: float
@@ -38,9 +40,10 @@ class Parting:
 
 @dataclass(frozen=True, eq=False)
 class LaneRoads:
-    """A scene's ``road`` and the ``others`` along its lanes that ego may get to, from it on.
+    """A scene's ``road`` and the ``others`` along those of its lanes that ego may reach.
 
-    Ego is on the ``piece`` of a number of the road.
+    The other roads begin at ego's place. ``piece`` is the number of the road's piece that ego is
+    on.
     """
 
     origin: SceneOrigin
@@ -50,13 +53,13 @@ class LaneRoads:
 
     @property
     def roads(self) -> tuple[DrivenRoad, ...]:
-        """All of them."""
+        """All of the roads."""
         return self.road, *(road for road, _ in self.others)
 
     def in_scene(
         self, road: DrivenRoad, stretches: Sequence[tuple[float, float]]
     ) -> list[tuple[float, float]]:
-        """Stretches of a road, in the scene's coordinates along its own."""
+        """Stretches of a road as intervals along the scene's road."""
         line, found = road.line, []
         for ends in stretches:
             s = np.array(ends)
@@ -67,10 +70,10 @@ class LaneRoads:
         return found
 
     def apart(self, line_s: Floats) -> tuple[Floats, Floats]:
-        """How far (m) the scene's line, and the bounds of lanes, are from those of drives.
+        """How far (m) the scene's line and its lane bounds are from those of drives.
 
-        Where a road bends each line along it cuts the corners in its own way, and lanes that part
-        lie on each other for a while.
+        Where a road bends, each line along it cuts the corners in its own way, and lanes that part
+        overlap for a while.
         """
         lanes, straight = self.origin.lanes, self.origin.lanes.straight
         there = np.pad(lanes.existing_at(line_s + self.origin.ego_s), ((0, 0), (1, 1)))
@@ -92,7 +95,7 @@ class LaneRoads:
         return line_d, bounds_d
 
     def other_lanes(self, line_s: Floats) -> Iterator[tuple[float, float]]:
-        """The stretches of the scene's road on which another one has other lanes beside it."""
+        """The stretches of the scene's road where another road has other lanes beside it."""
         places, _ = self.origin.places(line_s, np.zeros(len(line_s)))
         own, differs = _lanes_at(self.road, places), np.zeros(len(line_s), dtype=bool)
         for road, _ in self.others:
@@ -108,10 +111,10 @@ class LaneRoads:
                 yield float(line_s[max(numbers[0] - 1, 0)]), float(line_s[last])
 
     def partings(self) -> list[Parting]:
-        """Where one lane becomes several, or several become one, ahead of ego and behind.
+        """Where one lane becomes several, or several become one, ahead of ego and behind it.
 
-        A drive's own lanes beyond are those that its lane leads to, or comes from, and ego may be
-        in any of these.
+        A drive's own lanes beyond are those that its lane leads to or comes from, and ego may be in
+        any of these.
         """
         found = []
         for (before, after), border in zip(
@@ -133,7 +136,7 @@ class LaneRoads:
         return list(_joined(found))
 
     def _behind(self, road: DrivenRoad, first: int) -> Iterator[Parting]:
-        """Where behind ego another road has its lanes otherwise, or is not this one."""
+        """Where behind ego another road's lanes differ, or it is no longer this road."""
         (own,) = (
             k
             for k, lanelet in enumerate(self.road.rows[self.piece])
@@ -162,7 +165,7 @@ class LaneRoads:
 
 
 def _joined(partings: Sequence[Parting]) -> Iterator[Parting]:
-    """Partings, those at one place as one."""
+    """The partings, with those at the same place joined into one."""
     at = [(round(parting.place / _HAIR_M), parting.way) for parting in partings]
     for key in dict.fromkeys(at):
         own = [parting for one, parting in zip(at, partings, strict=True) if one == key]
@@ -174,7 +177,7 @@ def _joined(partings: Sequence[Parting]) -> Iterator[Parting]:
 def lane_roads(
     probes: ProbeDrives, road: DrivenRoad, ego_d: float, lanes: Sequence[int] | None = None
 ) -> LaneRoads:
-    """The roads along those of a road's lanes that ego may get to; all without these."""
+    """The roads along a road's lanes that ego may reach, or along all if ``lanes`` is None."""
     origin = probes.origin
     places, _ = origin.places(np.zeros(1), np.full(1, ego_d))
     piece = int(road.piece(road.line.coordinates(places)[:, 0])[0])
@@ -187,12 +190,12 @@ def lane_roads(
 
 
 def linked_with(lanelet: Lanelet, way: int) -> tuple[str, ...]:
-    """The lanelets to which one leads (1), or from which one comes to it (-1)."""
+    """The lanelets to which a lanelet leads (1), or that lead to it (-1)."""
     return lanelet.successors if way > 0 else lanelet.predecessors
 
 
 def _chains(rows: Sequence[Row], lanes: Sequence[int]) -> Iterator[list[Lanelet]]:
-    """Lanelets that lead to each other from the first row on, each of these lanes in a chain."""
+    """Chains of lanelets that lead to each other from the first row on, covering these lanes."""
     known = set[str]()
     for lane in lanes:
         for number, row in enumerate(rows):
@@ -216,7 +219,7 @@ def _chains(rows: Sequence[Row], lanes: Sequence[int]) -> Iterator[list[Lanelet]
 
 
 def _lanes_at(road: DrivenRoad, places: np.ndarray) -> list[tuple[frozenset[str], frozenset[str]]]:
-    """The lanelets beside each other at each place, and those of them that are there as lanes."""
+    """The lanelets beside each other at each place, and those of them that exist as lanes there."""
     s = road.line.coordinates(places)[:, 0]
     known: dict[tuple[int, bytes], tuple[frozenset[str], frozenset[str]]] = {}
     found = []

@@ -1,7 +1,7 @@
 """Words about lines at which ego may have to stop: whether it crosses one, and the light there.
 
-Who crosses a line does so between two layers, and a light may have changed by then; so a cell says
-what holds at any moment since the layer before.
+Ego crosses a line between two layers, and a light may have changed by then; so the words of a cell
+cover all moments since the layer before.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ _ANY = OneOf(frozenset(COLOURS.values()))
 
 _SLOWEST_MPS = USUAL.standing_kmh / KMH
 _CROSSING_S = USUAL.touching_m / _SLOWEST_MPS
-"""Who does not stand is over a line that the map has in so long."""
+"""A moving vehicle is over a line that the map contains within this time (s)."""
 
 _HAIR = 1e-6
 
 
 class LineWords:
-    """The words of lines, of a scene with these drives along its lanes."""
+    """The words about lines, for a scene with these drives along its lanes."""
 
     def __init__(
         self, probes: ProbeDrives, frame: RoadFrame | None, names: frozenset[str], length_m: float
@@ -51,13 +51,13 @@ class LineWords:
             if name in names
         }
         lanelets = probes.recording.lanelets.values()
-        # Where a drive ends between the places where such a line may be, it has perhaps crossed it
+        # Where a drive ends between possible places of such a line, it has perhaps crossed it
         self._vague_signs = any(
             STOP_SIGNS & lanelet.signs and lanelet.stop_line is None for lanelet in lanelets
         )
 
     def crossings(self, boxes: EgoBoxes, *, is_last: bool) -> dict[str, Flags]:
-        """Name -> flags of cells in which ego may have crossed such a line."""
+        """Name -> mask of cells in which ego may have crossed such a line."""
         vague = LINE_REACH_M if is_last and self._vague_signs else 0.0
         return {
             name: _may_cross(boxes, lines, vague if name == _SIGNED else 0.0)
@@ -71,7 +71,7 @@ class LineWords:
         start_s: float,
         crossings: Mapping[str, Flags],
     ) -> list[Any]:
-        """The light, by cell; ``places`` are what the place says of each, by some time's lights."""
+        """The light, by cell; ``places`` are the words of cells by place, at some time's lights."""
         first, last = lanes_of(boxes, self._straight)
         begin, end = boxes.front_before, boxes.s[1] + boxes.half_length[1]
         crosses = crossings.get(_LIT, np.zeros(len(places), dtype=bool))
@@ -112,7 +112,7 @@ class LineWords:
 
 
 def _may_cross(boxes: EgoBoxes, lines: Sequence[tuple[float, float]], reach_m: float) -> Flags:
-    """Flags of cells into which ego may have come over one of these since the layer before."""
+    """Mask of cells that ego may have reached over one of the lines since the layer before."""
     ends: Floats = np.array(lines, dtype=np.float64).reshape(-1, 2)
     beyond = column(boxes.s[1] + boxes.half_length[1]) >= ends[:, 0] - LOOSE_M - reach_m
     before = column(boxes.front_before) <= ends[:, 1] + LOOSE_M
@@ -121,9 +121,9 @@ def _may_cross(boxes: EgoBoxes, lines: Sequence[tuple[float, float]], reach_m: f
 
 
 def _where_crossed(probes: ProbeDrives, name: str, half_m: float) -> Iterator[tuple[float, float]]:
-    """Where ego's front is, from where to where, when it crosses a line, or may.
+    """The intervals of ego's front in which it crosses a line, or may cross it.
 
-    Also where nothing was asked along a lane.
+    Includes places along a lane that were not probed.
     """
     for lane, begin, end in probes.stretches:
         own = sorted(
@@ -132,7 +132,7 @@ def _where_crossed(probes: ProbeDrives, name: str, half_m: float) -> Iterator[tu
         )
         ends = [begin, *(float(at) for probe in own for at in (probe.s[0], probe.s[-1])), end]
         for number, (low, high) in enumerate(zip(ends[::2], ends[1::2], strict=True)):
-            # The first state of a drive does not tell what it has crossed
+            # The first state of a drive does not show what it has crossed
             if high - low > 2 * EVERY_M or 0 < number < len(own):
                 yield low + half_m, high + half_m
         for probe in own:

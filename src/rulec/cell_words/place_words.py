@@ -1,4 +1,4 @@
-"""Words that a place decides, or the time, or that nothing on the road gives a reason for."""
+"""Words that depend only on place or time, or that nothing on the road gives a reason for."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from rulec.cell_words.probe_drives import EVERY_M, LaneProbe, ProbeDrives
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 
 Words: TypeAlias = dict[str, Any]
-"""Name -> its value, or for one about objects object -> value."""
+"""Name -> its value; for a word about objects, object -> value."""
 
 OF_SCENE = frozenset({"ego_on_call", "ego_type", "ego_length", "told_to_stop", "told_to_go"})
 OF_SCENE |= {"wet", "icy", "visibility", "raining", "night"}
-"""The same at all places and times."""
+"""Words that are the same at all places and times."""
 
 OF_OTHERS = frozenset(
     {
@@ -42,7 +42,7 @@ OF_OTHERS = frozenset(
         "leads_elsewhere",
     }
 )
-"""About others at a time, wherever ego is."""
+"""Words about others that depend on time only, wherever ego is."""
 
 OF_PLACE = frozenset(
     {
@@ -73,15 +73,15 @@ OF_PLACE = frozenset(
         "turn",
     }
 )
-"""Decided by where ego is along the road, and in which lane."""
+"""Words that depend on where ego is along the road, and in which lane."""
 
 OF_LANES = frozenset({"lanes", "lane", "lane_number", "marked_lanes"})
-"""Of these by what other lanes are there."""
+"""Those of them that depend on which other lanes exist there."""
 
 AT_LINE = frozenset(
     {"light", "give_way_sign", "stop_sign", "turn_on_red_sign", "no_turn_on_red_sign"}
 )
-"""The same, and they still hold in the state in which ego crosses their line."""
+"""Also decided by place, and valid even in the state in which ego crosses their line."""
 
 DISTANCES = frozenset({"distance_to_crossing", "distance_to_junction"})
 
@@ -109,26 +109,26 @@ NEEDS_JUNCTION = frozenset(
         "exit_clear",
     }
 )
-"""The same everywhere on a road without junctions, crossings and level crossings."""
+"""Words that are the same everywhere on a road without junctions, crossings and level crossings."""
 
 NEEDS_CROSSING = frozenset({"crossing_use", "stopped_for_pedestrian", "nearest_to_crossing"})
-"""The same everywhere on a road without pedestrian crossings."""
+"""Words that are the same everywhere on a road without pedestrian crossings."""
 
 _NEEDS_TYPE = {"emergency_vehicle_near": "emergency_vehicle", "conflict_with_rail": "rail_vehicle"}
-"""False where nobody of a type is recorded."""
+"""Word -> the type of participant without which it is False."""
 
 _AT_ZONE: Mapping[str, Any] = {"enters_junction": False, "turn": "straight_on"}
-"""What they are where ego is not at a junction."""
+"""The values of words where ego is not at a junction."""
 
 LOOSE_M = 2.0
-"""Places of two roads through one place are no farther apart along them."""
+"""Coordinates of the same place along two roads differ by at most this (m)."""
 
 _NEXT_LANE_M = 0.5
-"""A lane is left so far beyond its mark at most, the tolerance of marks included."""
+"""Farthest beyond its mark (m) that a lane is left, including the tolerance of marks."""
 
 
 def hull(values: Iterable[Any]) -> Any:
-    """The least that is known if the value is any of some: their hull."""
+    """The hull of some values: the most that is known if the value is any of them."""
     found = list(dict.fromkeys(values))
     if len(found) == 1:
         return found[0]
@@ -150,9 +150,10 @@ def _ends(value: float | Interval) -> tuple[float, float]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Lane:
-    """What is said along a lane, in runs of places of which the same is said.
+    """The words along a lane, in runs of places with the same words.
 
-    ``s`` are the places, ``run`` the number of each one's run, ``said`` what is said in each.
+    ``s`` are the places, ``run`` is the number of each place's run, ``said`` has the words of each
+    run.
     """
 
     probe: LaneProbe
@@ -162,7 +163,7 @@ class _Lane:
 
 
 class PlaceWords:
-    """The words of cells that do not depend on how ego moves, nor on where others are beside it."""
+    """The words of cells that depend neither on ego's motion nor on others beside it."""
 
     def __init__(self, probes: ProbeDrives, names: frozenset[str]) -> None:
         self._probes = probes
@@ -174,11 +175,11 @@ class PlaceWords:
 
     @property
     def differ(self) -> bool:
-        """Whether not the same is said everywhere along a lane."""
+        """Whether words differ between places along a lane."""
         return any(len(lane.said) > 1 for lane in self._lanes)
 
     def of_cells(self, boxes: EgoBoxes, behind: Floats | float = 0.0) -> list[Words]:
-        """The words of each cell of a layer, and of so far (m) behind it, shared where the same."""
+        """The words of each cell of a layer, extended ``behind`` (m) it; equal ones are shared."""
         low = boxes.s[0] - LOOSE_M - behind
         high = boxes.s[1] + LOOSE_M
         first, last = lanes_of(boxes, self._straight)
@@ -228,7 +229,7 @@ class PlaceWords:
         return {name: hull(self._distances_to(name, low, high)) for name in self._distances}
 
     def _distances_to(self, name: str, low: float, high: float) -> Iterator[Any]:
-        """How far it may be to something, at the places between two.
+        """The possible distances to something, from the places between two.
 
         In all lanes: ego's way is that of the lane to which it may change later.
         """
@@ -239,7 +240,8 @@ class PlaceWords:
             yield from values
             for before, after in pairwise(values):
                 if UNKNOWN not in (before, after) and _ends(after)[1] > _ends(before)[1]:
-                    # The next one is from here on what was reached between the two places
+                    # The nearest one is reached between the two places, and the next one counts
+                    # from there on
                     nearest = max(_ends(before)[0] - EVERY_M, 0.0)
                     yield Interval(nearest, _ends(after)[1] + EVERY_M)
 
@@ -266,9 +268,9 @@ def _runs(probe: LaneProbe, names: frozenset[str]) -> _Lane:
 class SceneWords:
     """The words of a whole scene, and those of a time.
 
-    ``no_junction`` says whether no junction, crossing or level crossing is on the road, as far as
-    ego may get, and beyond; ``no_crossing`` the same of pedestrian crossings alone. ``straight``:
-    does the road turn in none of its junctions?
+    ``no_junction``: whether the road has no junction, crossing or level crossing as far as ego may
+    get, and beyond; ``no_crossing``: the same for pedestrian crossings alone. ``straight``: whether
+    the road turns in none of its junctions.
     """
 
     probes: ProbeDrives
@@ -297,7 +299,7 @@ class SceneWords:
 
     @cached_property
     def about_all(self) -> Words:
-        """Words about others that are the same of all of them in all cells: name -> value."""
+        """Words about others that are the same for all of them in all cells: name -> value."""
         of_all = {
             name: hull(
                 inner
@@ -327,7 +329,7 @@ class SceneWords:
         return (state[name] for states in probes for state in states if name in state)
 
     def constants(self, names: frozenset[str]) -> dict[str, dict[str, Any]]:
-        """What is said of others at any time, of these names whose values never change."""
+        """Those of ``names`` about others whose values never change: name -> object -> value."""
         found: dict[str, dict[str, Any]] = {}
         for state in (state for probe in self.probes.timed for state in probe.states):
             for name in names & OF_OTHERS & state.keys():
@@ -336,7 +338,7 @@ class SceneWords:
         return found
 
     def of_others(self, states: Sequence[int]) -> dict[str, dict[str, Any]]:
-        """What is said of others in states of the scene's time, all drives agreeing."""
+        """Words about others in some states of the scene's time, as the hull over all drives."""
         found: dict[str, dict[str, list[Any]]] = {}
         for said in self._timed(states):
             for name in self.names & OF_OTHERS & said.keys():
@@ -348,7 +350,7 @@ class SceneWords:
         }
 
     def present(self, states: Sequence[int]) -> list[str]:
-        """Of whom something is said in states of the scene's time."""
+        """The objects that have words in some states of the scene's time."""
         about = (value for said in self._timed(states) for value in said.values())
         return list(dict.fromkeys(x for own in about if isinstance(own, Mapping) for x in own))
 
@@ -361,7 +363,7 @@ class SceneWords:
 
 
 def settled_by_place(words: Words, names: frozenset[str]) -> Words:
-    """What follows of other words from those of a place."""
+    """The values of other words that follow from those of a place."""
     found: Words = {}
     if words.get("junction_zone") is False:
         found |= {name: value for name, value in _AT_ZONE.items() if name in names}

@@ -1,4 +1,4 @@
-"""Drives that ask extraction for its words: along every lane, and at several speeds."""
+"""Drives that probe extraction for its words: along every lane, and at several speeds."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ from rulec.scenario.recorded.lane_coordinates import borders_along
 from rulec.scenario.recorded.scene_origin import SceneOrigin
 
 EVERY_M = 1.0
-"""Places along a lane are asked for so far apart, nearer where something on it is shorter."""
+"""Distance (m) of probed places along a lane; less where something on it is shorter."""
 
 _BEFORE_M, _BEYOND_M = 30.0, 30.0
 _SPEEDS_MPS = (0.0, -10.0, 10.0)
-"""Drives are so much faster than ego is."""
+"""Speeds of the drives, relative to ego's."""
 
 _ON_S, _ON_MPS, _ON_MPS2 = 8.0, 10.0, 3.0
-"""For how long drives go on, and how fast; they speed up by no more than the third."""
+"""How long drives go on, how fast, and their greatest acceleration meanwhile."""
 
 Row: TypeAlias = tuple[Floats, Floats, Floats]
-"""s and d (m) in the scene, and the direction from the road's (rad), state by state."""
+"""s and d (m) in the scene, and the direction relative to the road's (rad), by state."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LaneProbe:
-    """What extraction says of a drive along the middle of a lane, and of others what is asked for.
+    """The extracted words of a drive along the middle of a lane, and requested ones about others.
 
     ``s`` (m) are the scene's coordinates of its ``states``, ascending.
     """
@@ -50,9 +50,9 @@ class LaneProbe:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TimedProbe:
-    """What extraction says of a drive through the time of the graph.
+    """The extracted words of a drive through the time of the graph.
 
-    The first of its ``states`` is at ``first``, a time step of the recording.
+    ``first`` is the recording's time step of the first of its ``states``.
     """
 
     first: int
@@ -63,8 +63,8 @@ class TimedProbe:
 class ProbeDrives:
     """The drives of a scene, and what they are made in.
 
-    ``told`` are the names that the recording tells. ``stretches`` are those of the lanes that were
-    asked for: lane, and from where to where (m) it is there.
+    ``told`` are the names that the recording supplies. ``stretches`` are those of the lanes that
+    were probed: the lane, and from where to where (m) it exists.
     """
 
     among: CandidateDrives
@@ -80,13 +80,13 @@ class ProbeDrives:
         return self.origin.recording
 
     def column(self, seconds: float) -> float:
-        """The column of a scene's time in arrays of all steps, maybe between two."""
+        """The column of a scene's time in arrays of all steps, possibly between two."""
         step = self.origin.start.step + seconds / self.recording.step_s
         return step - self.among.span[0]
 
 
 def driver(origin: SceneOrigin) -> Participant:
-    """Ego as a participant without states: whose part it takes, else a car of a new name."""
+    """Ego as a participant without states: the one that it replaces, else a car with a new name."""
     for body in origin.recording.participants:
         if body.id == origin.start.participant:
             return replace(body, states={}, outlines={}, lamps={})
@@ -98,7 +98,7 @@ def driver(origin: SceneOrigin) -> Participant:
 
 
 def body_along(graph: NavigationGraph, origin: SceneOrigin, row: Row, speed: Floats) -> Participant:
-    """Ego's body at places of the scene, a state for each time step from time 0 on."""
+    """Ego's body at places of the scene, with a state for each time step from time 0 on."""
     s, d, turned = row
     places, directions = origin.places(s, d)
     rows = np.column_stack((places, directions + turned, speed, np.zeros(len(s))))
@@ -110,7 +110,7 @@ def body_along(graph: NavigationGraph, origin: SceneOrigin, row: Row, speed: Flo
 
 
 def world_of(origin: SceneOrigin, ego: Participant, side: Side, steps: int) -> CandidateDrives:
-    """The others of the recording, for drives of ego of so many steps."""
+    """The others of the recording, for drives of ego with this number of steps."""
     recording, first = origin.recording, origin.start.step
     others = tuple(body for body in recording.participants if body.id != origin.start.participant)
     own = [list(body.outlines) for body in others if not body.standing]
@@ -132,10 +132,10 @@ def probe_drives(
     of_others: frozenset[str],
     in_time: frozenset[str] = frozenset(),
 ) -> ProbeDrives:
-    """Ask extraction for all the words that rules read.
+    """Probe extraction for all the words that rules read.
 
-    ``of_others`` are those about others that are kept of drives along lanes, ``in_time`` those that
-    are asked for along the roads of lanes that ego may change to, too.
+    ``of_others`` are the words about others that are kept from drives along lanes; ``in_time`` are
+    those that are also probed along the roads of lanes that ego may change to.
     """
     step_s = origin.recording.step_s
     reach = [own.s for row in graph.reach for own in row if own is not None]
@@ -163,7 +163,7 @@ def probe_drives(
             begins = drive.first_step - origin.start.step
             if number < len(lanes):
                 s = rows[number][1][0][begins : begins + drive.arrays.n_states]
-                # All that is said of others takes long to write
+                # Writing all words about others takes long
                 names = drive.arrays.world.keys() | (of_others & drive.arrays.about.keys())
                 of_lane = drive.arrays.part(names, drive.arrays.objects.keys())
                 lane_probes.append(LaneProbe(lanes[number], s, of_lane.trace().states))
@@ -185,11 +185,11 @@ def probe_drives(
 
 
 def _places(graph: NavigationGraph, origin: SceneOrigin, low: float, high: float) -> Floats:
-    """Places along the road, and one in whatever is shorter than between two of them."""
+    """Places along the road, plus one in everything shorter than the distance between two."""
     lanelets = [origin.recording.lanelets[name] for name in origin.way]
     borders = borders_along(lanelets, origin.line) - origin.ego_s
     crossings = np.array([surface.s for surface in graph.scenario.road.surfaces]).ravel()
-    # Who is on a crossing with any part is on it
+    # A vehicle with any part on a crossing is on it
     half = body_size(graph)[0] / 2
     there = origin.lanes.there
     begin_or_end = origin.lanes.s[1:-1][np.any(there[1:] != there[:-1], axis=1)] - origin.ego_s
@@ -201,7 +201,7 @@ def _places(graph: NavigationGraph, origin: SceneOrigin, low: float, high: float
 
 
 def _along_lanes(origin: SceneOrigin, s: Floats) -> Iterator[tuple[int, Row]]:
-    """Along the middle of each lane, wherever it is, in runs."""
+    """Along the middle of each lane, wherever it exists, in runs."""
     straight = origin.lanes.straight
     existing = origin.lanes.existing_at(s + origin.ego_s)
     for lane in range(len(straight) - 1):
@@ -226,9 +226,9 @@ def _lanes_beside(graph: NavigationGraph, origin: SceneOrigin) -> Iterator[float
 def _through_time(
     graph: NavigationGraph, count: int, step_s: float, beside: Iterable[float]
 ) -> Iterator[tuple[Row, Floats]]:
-    """Along ego's place across the road, at its speed, slower and faster, and in lanes ``beside``.
+    """Along ego's lateral place, at its speed, slower and faster, and in lanes ``beside``.
 
-    And then on along it: only who drives on shows which road it is on.
+    And then on along the road: only a drive that goes on shows which road it is on.
     """
     ego = graph.scenario.ego
     last = max(graph.scenario.road.s[1] - _BEYOND_M, 0.0)

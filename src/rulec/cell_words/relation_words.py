@@ -1,6 +1,6 @@
-"""Words about ego and another one, bounded for all places that ego may have in a cell.
+"""Words about ego and another participant, bounded over all places that ego may have in a cell.
 
-Each set or interval contains what extraction finds for any of them; see
+Each set or interval contains what extraction finds for any of these places; see
 ``extraction/signals/relations.py`` for what the words mean.
 """
 
@@ -46,13 +46,13 @@ RIGHT, SAME, LEFT = 1, 2, 4
 _ALL = 7
 _HAIR_M = 0.02
 _MAP_M = 2.0
-"""So far aside the map may be of where everybody drives."""
+"""The map may be displaced sideways by this (m) from where all traffic drives."""
 
 FLOWS = {
     "congested": USUAL.congested_kmh,
     "walking_pace_flow": USUAL.walking_pace_kmh,
 }
-"""Word -> the median speed (km/h) below which traffic is called so."""
+"""Word -> the median speed (km/h) below which it holds for traffic."""
 
 
 class Relations:
@@ -80,9 +80,9 @@ class Relations:
         return found.astype(np.int8)
 
     def _laterals(self) -> np.ndarray[Any, np.dtype[np.int8]]:
-        """By lanes: whom ego's middle is beside, and who reaches into none of its lanes.
+        """Sides by lanes: those that ego's middle is beside, and those in none of its lanes.
 
-        Who is hardly in its lane, but in the way of its body, is in the lane.
+        A participant that is hardly in ego's lane but in the way of its body is in the lane.
         """
         boxes, others, straight = self._boxes, self._others, self._straight
         begin, end = others.right[0], others.left[1]
@@ -94,9 +94,9 @@ class Relations:
         last = np.where(touches, count - 1 - others.perhaps[:, ::-1].argmax(axis=1), count - 1)
         right_edge = np.where(touches, straight[first], begin)
         left_edge = np.where(touches, straight[last + 1], end)
-        # Who reaches into ego's lane is in its way as far as ego's body is in theirs
+        # A participant that reaches into ego's lane is in its way as far as ego's body is in theirs
         right_bound, left_bound = (straight[own_lane] for own_lane in self._own_lanes(low, high))
-        # By how much is in doubt there, and what was so before counts to drives
+        # By how much is in doubt there, and drives consider what was so before
         loose = self._frame.place_m + _HAIR_M
         right = (high <= right_edge) & ((begin >= left_bound + loose) | (high + width < begin))
         left = (low >= left_edge) & ((end <= right_bound - loose) | (low - width > end))
@@ -106,10 +106,10 @@ class Relations:
         return np.where(self._surely_same(), SAME, found).astype(np.int8)
 
     def _surely_same(self) -> Flags:
-        """Flags of those in whose lanes ego's middle is wherever in the cell it is.
+        """Mask of others whose lanes contain ego's middle, wherever it is in the cell.
 
-        But for who reaches beyond ego's lane and may be clear of ego sideways. What places leave in
-        doubt is unknown to extraction.
+        Except those that reach beyond ego's lane and may be clear of ego sideways. Where the
+        tolerance of places decides, extraction has an unknown value.
         """
         others, loose, straight = self._others, self._frame.apart_d, self._straight
         begin, end = others.right[0], others.left[1]
@@ -120,7 +120,7 @@ class Relations:
         inside = (low + _HAIR_M >= straight[first]) & (high - _HAIR_M <= straight[last + 1])
         wide, reach = column(self._boxes.half_width[0]), USUAL.touching_m - loose
         right, left = self._own_lanes(low + _HAIR_M, high - _HAIR_M)
-        # Of several lanes the innermost bounds are those that are reached beyond first
+        # Of several lanes, the innermost bounds are exceeded first
         nearest = np.minimum(straight[right + 1], straight[left])
         farthest = np.maximum(straight[left - 1], straight[right])
         beyond = (end - nearest > reach) | (farthest - begin > reach)
@@ -129,14 +129,14 @@ class Relations:
         return same
 
     def _sides(self) -> Bounds:
-        """Between which places across the road (m) ego's middle is, by the lanes of drives."""
+        """The range of places (m) across the road of ego's middle, by the lanes of drives."""
         low, high = self._boxes.d
         return column(low) - self._aside_d, column(high) + self._aside_d
 
     def _own_lanes(self, low: Floats, high: Floats) -> tuple[NDArray[intp], NDArray[intp]]:
         """The right bound of the first lane in which ego's middle is, and the left one of the last.
 
-        As indices; ``low`` and ``high`` are the ends of where that is across the road (m).
+        As indices; ``low`` and ``high`` are the ends of its range across the road (m).
         """
         straight, count = self._straight, len(self._straight)
         right = np.clip(np.searchsorted(straight, low, "right") - 1, 0, count - 2)
@@ -144,14 +144,14 @@ class Relations:
 
     @cached_property
     def gaps(self) -> Bounds:
-        """The least and the greatest gap (m), below 0 beside each other."""
+        """The least and the greatest gap (m), negative where bodies are beside each other."""
         (low, high), (front, far_front), (rear, far_rear) = self._ahead, self.front, self.rear
         least = np.maximum(low - far_front, rear - high)
         inward = self._others.s[0] + self._frame.loose_s, self._others.s[1] - self._frame.loose_s
         return least, np.maximum(inward[0] - front, far_rear - inward[1])
 
     def words(self, names: frozenset[str]) -> Mapping[str, list[list[Any]]]:
-        """Name -> its values, by cell and other one."""
+        """Name -> its values, by cell and other participant."""
         found: dict[str, list[list[Any]]] = {}
         if "station" in names:
             found["station"] = _texts(self.stations, STATIONS)
@@ -172,11 +172,11 @@ class Relations:
         if "precedes" in names:
             found["precedes"] = _truths(~ahead, False)
         if "one_between" in names:
-            # Whoever is ahead in ego's lane may be nearer than one in another lane
+            # One ahead in ego's lane may be nearer than one in another lane
             nobody = np.broadcast_to(~ahead.any(axis=1, keepdims=True), ahead.shape)
             found["one_between"] = _truths(nobody, False)
         if "parts_soon" in names:
-            # What ego does next is what is being chosen: nobody is excused for it beforehand
+            # Ego's next move is what is being chosen: nobody is excused for it in advance
             found["parts_soon"] = _truths(np.ones(ahead.shape, dtype=bool), False)
         if "holds_up_oncoming" in names:
             clear = ~self._others.ever_come | self._within_own_half()[:, None]
@@ -203,9 +203,10 @@ class Relations:
         return self._frame.gap_to_oncoming_lanes(places, self._boxes.d)
 
     def flow(self, below_kmh: float) -> list[Any]:
-        """Whether traffic around ego is slower than this in the median, by cell.
+        """Whether the median speed of traffic around ego is below ``below_kmh``, by cell.
 
-        Where one may be much faster its lane may flow, and where nobody is others might.
+        A vehicle that may be much faster may make its lane flow, and a lane without vehicles may
+        have others.
         """
         others, limit = self._others, below_kmh / KMH
         near, far = self.gaps
@@ -219,7 +220,7 @@ class Relations:
         is_fast = (must & (low >= limit)).sum(axis=1) + (slow >= limit)
         no = (may.sum(axis=1) + 1 < USUAL.fewest) | (is_fast > may_be_slow)
         yes = (must.sum(axis=1) + 1 >= USUAL.fewest) & (is_slow > may_be_fast)
-        # On half of the lanes that there are
+        # On half of the lanes that exist
         one_lane = others.lanes & (others.perhaps.sum(axis=1, keepdims=True) == 1)
         used = (must & (high < limit)).astype(int) @ one_lane.astype(int) > 0
         surely, perhaps = self._frame.travel_lanes(self._boxes.s)
@@ -238,7 +239,7 @@ class Relations:
         wide, narrow = column(boxes.half_width[1]), column(boxes.half_width[0])
         low, high = column(boxes.d[0]), column(boxes.d[1])
         least = np.maximum(others.d[0] - high - wide, low - wide - others.d[1]) - loose
-        # Where lanes part it is the farthest of the places that they may have
+        # Where lanes part, it is the farthest of the possible places
         (_, nearer), (farther, _) = others.right, others.left
         most = np.maximum(nearer - low - narrow, high - narrow - farther) + loose
         return np.maximum(least, 0.0), np.maximum(most, 0.0)
@@ -246,7 +247,7 @@ class Relations:
     def _differences(self) -> Bounds:
         standing = USUAL.standing_kmh / KMH
         low, high = (np.asarray(speed) for speed in self._others.along)
-        # Who may stand has no speed
+        # A participant that may stand has no speed
         still = (np.minimum(np.abs(low), np.abs(high)) < standing) | (low * high < 0)
         low, high = (
             np.where(still, np.minimum(low, 0.0), low),
@@ -264,9 +265,9 @@ class Relations:
         return np.minimum(shortest, LONGEST_S), np.minimum(longest, LONGEST_S)
 
     def _may_be_ahead(self) -> Flags:
-        """Flags of who may be ahead in ego's lane, as wrong as places and the map may be.
+        """Mask of others that may be ahead in ego's lane, within the errors of places and map.
 
-        At one edge of a wide lane somebody at the other one is farther aside than these are wrong.
+        In a wide lane, two participants at opposite edges are farther apart than these errors.
         """
         boxes, others, aside = self._boxes, self._others, _MAP_M + self._frame.place_m
         low, high = column(boxes.d[0]) - aside, column(boxes.d[1]) + aside

@@ -27,29 +27,28 @@ from rulec.recordings.recording import Lanelet, Light, ObservedLight
 _FAR_M = 300.0
 _HAIR_M = 0.05
 _PARTS = 4
-"""In so many parts half of a body is looked at."""
+"""Half of a body is examined in this many parts."""
 
 _BENDS = np.radians(USUAL.turned_deg - 15.0)
-"""Whose way in a junction differs by less from its direction before goes straight on."""
+"""A way in a junction that turns by less than this goes straight on."""
 
 Flags: TypeAlias = NDArray[bool_]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OthersNow:
-    """Where others are at a time, a row each; NaN for who is not beside the road.
+    """Where others are at a time, a row each; NaN for those that are not beside the road.
 
-    ``s`` and ``d`` (m) are the ends of their bodies in the scene's coordinates, ``right`` and
-    ``left`` the least and the greatest place of either side across the road, for so long before and
-    after as a side of ego lasts at least. As long, ``lanes`` are those that they reach into for
-    sure, and ``perhaps`` those that they may. ``along`` are speeds along the
-    road, wrong as they may be (m/s). ``counts``: is it one who counts for ego, if it is near?
-    ``is_there``: is it, or was it and will it be, so soon that it was there all the time?
-    ``loose_s`` (m) says how far distances along the road may be wrong.
-    ``goes_along`` are vehicles that go ego's way for sure, ``may_go_along`` those that may,
-    ``may_ride_along`` cycles that may.
-    ``some_come``: does somebody move against ego's direction then, or later?
-    ``ever_come``: who does, whenever that is?
+    ``s`` and ``d`` (m) are the ends of their bodies in the scene's coordinates. ``right`` and
+    ``left`` are the least and the greatest place of either side across the road, over as long
+    before and after as the least duration of a side of ego. Over the same time, ``lanes`` are those
+    that they surely reach into, ``perhaps`` those that they may. ``along`` are the bounds of speeds
+    along the road (m/s). ``counts``: whether a participant counts for ego if it is near.
+    ``is_there``: whether it is there, or was and will be within so short a time that it counts as
+    there throughout. ``loose_s`` (m) is the possible error of distances along the road.
+    ``goes_along`` are vehicles that surely go ego's way, ``may_go_along`` those that may,
+    ``may_ride_along`` cycles that may. ``some_come``: whether any participant moves against ego's
+    direction then or later; ``ever_come``: which ones do at any time.
     """
 
     s: tuple[Floats, Floats]
@@ -73,7 +72,7 @@ class OthersNow:
 class LaneLight:
     """The lights at the end of a piece of a lane, ``end`` m along the scene's road.
 
-    ``drawn``: does the map have their line? ``goes_dark``: do they show nothing at times?
+    ``drawn``: whether the map has their line. ``goes_dark``: whether they show nothing at times.
     """
 
     lane: int
@@ -83,7 +82,7 @@ class LaneLight:
 
     @property
     def goes_dark(self) -> bool:
-        """Whether they may show nothing at times."""
+        """Whether the lights may show nothing at times."""
         return any(
             isinstance(light, ObservedLight) or "inactive" in dict(light.phases)
             for light in self.lights
@@ -91,19 +90,21 @@ class LaneLight:
 
 
 class RoadFrame:
-    """A scene's road, with everybody on it as extraction has them.
+    """A scene's road, with all participants on it as extraction has them.
 
-    ``apart_s`` (m) says how far coordinates along it may differ from those along another road on
-    the same lanes, ``apart_d`` how far those across it, ``loose_s`` and ``loose_d`` how far
-    distances may be wrong for that and since places are known to ``place_m`` only. ``has_rails``:
-    is there a level crossing on it? ``one_way``: does nobody come the other way on it, surely?
-    ``goes_straight``: does it turn in none of its junctions? ``crossings`` and ``junctions`` are
-    those of any road along its lanes, ``reasons`` both of each. On ``other_lanes`` not all of these
-    have the same lanes. ``lights`` are those of its lanes, ``leaving`` flags of those that lead to
-    another one, or come from there.
-    Ego is ``half_m`` long from its middle to its corners at most, starts ``ego_d`` m left of the
-    line, and gets to some ``lanes``, or to all.
-    Raises ValueError: no drive has such a road, or it meets itself.
+    ``apart_s`` (m) is how far coordinates along it may differ from those along another road on the
+    same lanes, ``apart_d`` the same across it; ``loose_s`` and ``loose_d`` are the possible errors
+    of distances, from that and from the error ``place_m`` of places. ``has_rails``: whether it has
+    a level crossing. ``one_way``: whether surely nobody comes the other way. ``goes_straight``:
+    whether it turns in none of its junctions. ``crossings`` and ``junctions`` are those of any road
+    along its lanes, ``reasons`` has both for each road. On ``other_lanes`` these roads do not all
+    have the same lanes. ``lights`` are those of its lanes; ``leaving`` is the mask of lanes that
+    lead to another road, or come from one.
+
+    Ego extends at most ``half_m`` from its middle to its corners, starts ``ego_d`` m left of the
+    line, and reaches some ``lanes``, or all.
+
+    Raises ValueError if no drive has such a road, or it meets itself.
     """
 
     def __init__(
@@ -145,7 +146,7 @@ class RoadFrame:
         differs = np.abs(widths - np.diff(self._straight)).max(initial=0.0)
         self.apart_d = _HAIR_M + min(float(differs), 1.0) / 2
         self.loose_d = self.place_m + self.apart_d
-        # On bends lines beside each other are not equally long
+        # In bends, lines beside each other differ in length
         headings = np.unwrap(origin.line.headings_at(origin.lanes.s[at]))
         across = float(self._straight[-1] - self._straight[0])
         turned = float(np.abs(np.diff(headings)).sum())
@@ -173,8 +174,8 @@ class RoadFrame:
     ) -> Floats:
         """How far (m) rectangles stay from where lanes of the other direction may lie.
 
-        They reach from one of the places along the road to the other, and from side to side. Beyond
-        a lane's end that is beside the lane that goes on.
+        They extend between the places along the road, and from side to side. Beyond the end of a
+        lane, lanes of the other direction may lie beside the lane that goes on.
         """
         lanes, first = self._origin.lanes, self._origin.ego_s
         straight, there = self._straight, lanes.there
@@ -190,24 +191,24 @@ class RoadFrame:
         return gap
 
     def line_apart(self, s: tuple[Floats, Floats]) -> Floats:
-        """How far (m) the two lines are apart, at most, each from one place to another."""
+        """The greatest distance (m) between the two lines, for each pair of places."""
         return self._most(self._line_d, s)
 
     def bounds_apart(self, s: tuple[Floats, Floats]) -> Floats:
-        """The same of the bounds of lanes."""
+        """The greatest distance (m) between lane bounds, for each pair of places."""
         return self._most(self._bounds_d, s)
 
     def bent(self, s: tuple[Floats, Floats]) -> Floats:
-        """How far (m) the middle of ego's body is beside ego's place, at most, where it bends.
+        """How far (m) the middle of ego's body is beside ego's place, at most, where roads bend.
 
-        To extraction the middle is halfway between the ends of the body across the road.
+        To extraction the middle is halfway between the body's ends across the road.
         """
         return self._most(self._bent_d, s)
 
     def travel_lanes(self, s: tuple[Floats, Floats]) -> tuple[Flags, Flags]:
-        """Flags of lanes (second axis) that are there to travel on for sure, and perhaps.
+        """Masks of lanes (second axis) that are surely, and perhaps, there to travel on.
 
-        Wherever ego is between two places, a row for each two.
+        Wherever ego is between two places, one row per pair.
         """
         lanes, first = self._origin.lanes, self._origin.ego_s
         begins, ends = (
@@ -226,7 +227,7 @@ class RoadFrame:
 
     @cached_property
     def _come(self) -> Flags:
-        """Flags of who counts and moves against ego's direction."""
+        """Mask of participants that count and move against ego's direction."""
         slowest = self.places.extents.along - self.places.tracks.speed_error
         come: Flags = self.places.counts & (slowest * KMH < -USUAL.standing_kmh)
         return come
@@ -234,7 +235,8 @@ class RoadFrame:
     def _with_partings(self, now: OthersNow, ego_s: float) -> OthersNow:
         """The others, with those beyond a parting in each lane that they may be in to a drive.
 
-        Ego has got to a place (m) at most, and to it those before a parting behind it are beyond.
+        ``ego_s`` (m) is ego's farthest place; from there, others before a parting behind it are
+        beyond it, too.
         """
         lanes, perhaps = now.lanes.copy(), now.perhaps.copy()
         sides = [side.copy() for side in (*now.d, *now.right, *now.left)]
@@ -261,7 +263,7 @@ class RoadFrame:
         )
 
     def _beyond(self, ego_s: float) -> Iterator[tuple[float, int, Sequence[int]]]:
-        """Beyond which place, which way, others are so many lanes farther left, perhaps."""
+        """Places of partings, the way beyond each, and shifts of others to the left, in lanes."""
         for parting in self._partings:
             yield parting.place, parting.way, parting.shifts
             if parting.way > 0 and parting.place < ego_s:
@@ -270,7 +272,7 @@ class RoadFrame:
     def at(self, seconds: float, ego_s: float = 0.0) -> OthersNow | None:
         """The others at a time of the scene; None before or after the recording.
 
-        Ego has got to a place (m) at most by then.
+        ``ego_s`` (m) is the farthest place that ego has reached by then.
         """
         column = self.probes.column(seconds)
         columns = np.unique([int(np.floor(column + 1e-6)), int(np.ceil(column - 1e-6))])
@@ -288,7 +290,7 @@ class RoadFrame:
 
         s0, s1 = hull(ends.s_min, ends.s_max)
         touching = places.thresholds.touching_m
-        # A side that one is on for less is taken for that before and after
+        # A side that lasts for less is replaced by the one before and after
         brief = fewest_states(LEAST_S["lateral"], self.probes.recording.step_s) - 1
         first, end = max(int(columns[0]) - brief, 0), int(columns[-1]) + brief + 1
         around = slice(first, end)
@@ -333,7 +335,7 @@ class RoadFrame:
         )
 
     def _straightened(self, left_of: Floats) -> Floats:
-        """The scene's coordinate across the road, from how far left of each bound places are."""
+        """The scene's coordinate across the road, from how far left of lane bounds places are."""
         straight = self._straight
         lane = np.clip((left_of >= 0).sum(axis=-1) - 1, 0, len(straight) - 2)
         low = np.take_along_axis(left_of, lane[..., None], -1)[..., 0]
@@ -346,7 +348,7 @@ class RoadFrame:
 
 
 def _bent(s: Floats, headings: Floats, half_m: float) -> Floats:
-    """How far (m) a line bends aside within so much of each of its places, at most."""
+    """How far (m) a line bends aside within ``half_m`` of each of its places, at most."""
     found: Floats = np.zeros(len(s))
     part = half_m / _PARTS
     for way in (1, -1):
@@ -359,7 +361,7 @@ def _bent(s: Floats, headings: Floats, half_m: float) -> Floats:
 
 
 def _leaving(rows: Sequence[Sequence[Lanelet | None]], way: int) -> Flags:
-    """Flags of lanes of a road, piece by piece, that somewhere go on, but not on it."""
+    """Mask of a road's lanes that somewhere go on, but not on this road."""
     found: Flags = np.zeros(len(rows[0]), dtype=bool)
     for row, onward in pairwise(rows):
         there = {lanelet.id for lanelet in onward if lanelet is not None}
@@ -369,7 +371,7 @@ def _leaving(rows: Sequence[Sequence[Lanelet | None]], way: int) -> Flags:
 
 
 def _lasting_lanes(road: DrivenRoad) -> Flags:
-    """Flags of lanes that nowhere are for cycles, nor shoulders; none where these may part two."""
+    """Mask of lanes that are never cycle lanes or shoulders; none if shoulders may divide them."""
     shoulders, cycles = (
         np.logical_or.reduce(lanes_of_type(road, kind)) for kind in (SHOULDER, CYCLE_LANE)
     )
@@ -378,7 +380,7 @@ def _lasting_lanes(road: DrivenRoad) -> Flags:
 
 
 def _shifted(flags: Flags, by: int) -> Flags:
-    """Flags of lanes (second axis), so many lanes farther left."""
+    """A mask of lanes (second axis), shifted left by ``by`` lanes."""
     found = np.zeros_like(flags)
     count = flags.shape[1]
     found[:, max(by, 0) : count + min(by, 0)] = flags[:, max(-by, 0) : count - max(by, 0)]
