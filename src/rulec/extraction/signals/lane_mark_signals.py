@@ -168,7 +168,7 @@ def _gets_over(context: DriveContext, on_it: Flags, outer: Flags) -> Flags:
 
 @once
 def _comes_from(context: DriveContext) -> tuple[NDArray[intp], NDArray[intp]]:
-    """Bits of the lines that ego reaches from their left, by state, and of those where unknown.
+    """Bits of the lines that ego reaches from their left, by state, and of those with unknown side.
 
     The side is the one on which its body last was clear of the line; before that, the one of its
     middle in the drive's first state.
