@@ -61,7 +61,7 @@ def test_names_are_those_that_all_drives_supply():
 
 def test_drives_without_a_verdict_are_kept_with_the_reason():
     error = RulecError(Diagnostic("R0502", "something is missing"))
-    nobody = NoDrive("4", "it is never on a lane that leads its way")
+    nobody = NoDrive("4", "it is never on a lane in its direction")
     counted = tally(nobody, DriveVerdict(drive("5"), NotJudged("5", error)))
     assert counted.not_judged == [nobody, NoDrive("5", "something is missing")]
     assert counted.judged == 0

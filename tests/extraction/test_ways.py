@@ -85,9 +85,9 @@ def test_a_gap_in_the_recording_parts_the_drive():
 @pytest.mark.parametrize(
     ("one", "why"),
     [
-        (along((10, 30), (20, 30)), "it is never on a lane that leads its way"),  # 28 m beside it
-        (along((20, 0), (10, 0), heading=pi), "it is never on a lane that leads its way"),
-        (along((10, 0)), "it is there at one moment only"),
+        (along((10, 30), (20, 30)), "it is never on a lane in its direction"),  # 28 m beside it
+        (along((20, 0), (10, 0), heading=pi), "it is never on a lane in its direction"),
+        (along((10, 0)), "it is recorded at one moment only"),
     ],
 )
 def test_who_drives_on_no_lane(one, why):

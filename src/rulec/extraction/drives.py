@@ -156,7 +156,7 @@ class Drives:
         row = next(k for k, body in enumerate(self._tracks.participants) if body.id == ego)
         body = self._tracks.participants[row]
         if 2 * len(body.states) < len(body.outlines):
-            yield NoDrive(ego, "it has no track: its places are sets that it may be in")
+            yield NoDrive(ego, "it has no track: only sets of places where it may be")
             return
         # The vehicle that the file names as ego drives itself, however close to another one
         is_ego = ego == self.recording.ego
@@ -193,7 +193,7 @@ class Drives:
         ego = self._tracks.participants[row].id
         if not stretches:
             is_brief = len(self._tracks.participants[row].states) < FEWEST_STATES
-            why = "there at one moment only" if is_brief else "never on a lane that leads its way"
+            why = "recorded at one moment only" if is_brief else "never on a lane in its direction"
             yield NoDrive(ego, f"it is {why}")
         for number, stretch in enumerate(stretches, 1):
             name = ego if number == 1 else f"{ego}#{number}"

@@ -130,8 +130,8 @@ def selected_drives(
     if not known and not request.egos:
         raise NOT_IN_RECORDING.error(
             SourceLocation(file),
-            f"nobody drives in it: {_who_is_there(recording)}",
-            help="give a recording of vehicles that move",
+            f"no vehicle drives in it: {_who_is_there(recording)}",
+            help="use a recording that contains moving vehicles",
         )
     for ego in request.egos:
         if ego not in known:
@@ -152,8 +152,8 @@ def _who_is_there(recording: Recording) -> str:
     standing = sum(body.standing for body in recording.participants)
     others = len(recording.participants) - standing
     if not standing + others:
-        return "it has a road, and nobody on it"
-    return f"{standing} of those in it stand for good, {others} go on foot or are unknown"
+        return "it contains a road but no participants"
+    return f"of its participants, {standing} never move and {others} are on foot or of unknown type"
 
 
 def _examples(known: tuple[str, ...]) -> str:
@@ -177,7 +177,7 @@ def assumption_options(texts: Iterable[str], vocabulary: Vocabulary) -> dict[str
             message = f"vocabulary `{vocabulary.name}` has no `{name}`"
             raise ValueError(hinted(message, name, known))
         if declaration.parameters:
-            raise ValueError(f"`{name}` is about objects; only what is about none can be assumed")
+            raise ValueError(f"`{name}` is about objects; assume only words that are not")
         values[name] = _value(value, declaration)
     return values
 

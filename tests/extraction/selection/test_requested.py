@@ -76,9 +76,10 @@ def test_where_nobody_drives_the_reason_is_said():
         selected_drives(recording(lanes(1), [walker, stands]), RequestedDrives(), "file")
     (found,) = raised.value.diagnostics
     assert found.message == (
-        "nobody drives in it: 1 of those in it stand for good, 1 go on foot or are unknown"
+        "no vehicle drives in it: of its participants, 1 never move and 1 are on foot or of "
+        "unknown type"
     )
-    with pytest.raises(RulecError, match="it has a road, and nobody on it"):
+    with pytest.raises(RulecError, match="it contains a road but no participants"):
         selected_drives(recording(lanes(1)), RequestedDrives(), "file")
 
 

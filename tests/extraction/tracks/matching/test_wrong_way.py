@@ -102,7 +102,7 @@ def test_who_keeps_left_on_the_other_carriageway_is_asked_as_before():
 def test_who_is_not_surely_driving_the_wrong_way_has_no_drive(lanes, ego):
     (answer,) = drives(recording(lanes, [ego, eastward(8, 100, 4.0)]))
     assert isinstance(answer, NoDrive)
-    assert "never on a lane that leads its way" in answer.why
+    assert "never on a lane in its direction" in answer.why
 
 
 def test_a_motorway_with_one_lane_is_one_way():
