@@ -1,8 +1,8 @@
 """The roads that drives have along the lanes of a scene's road.
 
-A drive that goes on in another lane has its road along that lane: the road may come from elsewhere
-behind it, lanes that part or join are counted from it, and it has the bounds, junctions and lanes
-of its own lanelets.
+A drive that goes on in another lane has its road along that lane: this may come from elsewhere,
+lanes that part or join are counted from it, and it has the bounds, junctions and lanes of its own
+lanelets.
 """
 
 from __future__ import annotations
@@ -29,8 +29,7 @@ _HAIR_M = 0.05
 class Parting:
     """A place (m) of the road beyond which lanes may differ, ahead (1) of ego or behind (-1).
 
-    ``shifts`` are the numbers of lanes by which they may lie farther left, ascending; empty if
-    unknown.
+    ``shifts`` are the possible numbers of lanes farther left, ascending; empty if unknown.
     """
 
     place: float
@@ -42,8 +41,7 @@ class Parting:
 class LaneRoads:
     """A scene's ``road`` and the ``others`` along those of its lanes that ego may reach.
 
-    The other roads begin at ego's place. ``piece`` is the number of the road's piece that ego is
-    on.
+    The other roads begin at ego's place, on the road's piece with the number ``piece``.
     """
 
     origin: SceneOrigin
@@ -72,8 +70,7 @@ class LaneRoads:
     def apart(self, line_s: Floats) -> tuple[Floats, Floats]:
         """How far (m) the scene's line and its lane bounds are from those of drives.
 
-        Where a road bends, each line along it cuts the corners in its own way, and lanes that part
-        overlap for a while.
+        In bends each line along a road cuts corners in its own way, and lanes that part overlap.
         """
         lanes, straight = self.origin.lanes, self.origin.lanes.straight
         there = np.pad(lanes.existing_at(line_s + self.origin.ego_s), ((0, 0), (1, 1)))
@@ -113,8 +110,7 @@ class LaneRoads:
     def partings(self) -> list[Parting]:
         """Where one lane becomes several, or several become one, ahead of ego and behind it.
 
-        A drive's own lanes beyond are those that its lane leads to or comes from, and ego may be in
-        any of these.
+        A drive's lanes beyond are those that its lane leads to or comes from; ego may be in any.
         """
         found = []
         for (before, after), border in zip(

@@ -152,8 +152,7 @@ def _ends(value: float | Interval) -> tuple[float, float]:
 class _Lane:
     """The words along a lane, in runs of places with the same words.
 
-    ``s`` are the places, ``run`` is the number of each place's run, ``said`` has the words of each
-    run.
+    ``s`` are the places, ``run`` is the number of each place's run, ``said`` has each run's words.
     """
 
     probe: LaneProbe

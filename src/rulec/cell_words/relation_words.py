@@ -205,8 +205,7 @@ class Relations:
     def flow(self, below_kmh: float) -> list[Any]:
         """Whether the median speed of traffic around ego is below ``below_kmh``, by cell.
 
-        A vehicle that may be much faster may make its lane flow, and a lane without vehicles may
-        have others.
+        A lane may flow where a vehicle may be much faster, and an empty lane may have others.
         """
         others, limit = self._others, below_kmh / KMH
         near, far = self.gaps

@@ -235,8 +235,7 @@ class RoadFrame:
     def _with_partings(self, now: OthersNow, ego_s: float) -> OthersNow:
         """The others, with those beyond a parting in each lane that they may be in to a drive.
 
-        ``ego_s`` (m) is ego's farthest place; from there, others before a parting behind it are
-        beyond it, too.
+        ``ego_s`` (m) is ego's farthest place; from there, others before a parting are beyond it.
         """
         lanes, perhaps = now.lanes.copy(), now.perhaps.copy()
         sides = [side.copy() for side in (*now.d, *now.right, *now.left)]

@@ -149,8 +149,7 @@ class DriveContext:
     def limit_mps(self) -> Floats:
         """The speed limit in the lane of ego's middle by state; infinity where the map has none.
 
-        Where the limit at ego's front is higher, that one: drivers who pass a sign speed up by
-        then.
+        Where the limit at ego's front is higher, that one: past a sign, drivers speed up by then.
         """
         front = self.places_at(self.ego_extents.s_max[0], self.ego_lane)
         own, ahead = (self._limits_at(*places) for places in (self.ego_places, front))

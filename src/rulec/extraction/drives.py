@@ -49,8 +49,7 @@ MOST_OF_ALL = 0.75
 """If at least this share of all places is needed, all are computed: the outlines are known then."""
 
 PART = 4
-"""A part lasts this many times its first drive; other drives that end within it share its
-places."""
+"""A part lasts this many times its first drive; drives that end within it share its places."""
 
 MOST_KEPT = 1 << 22
 """Most cells (participants × steps) that are kept for all roads; each takes some 150 bytes."""

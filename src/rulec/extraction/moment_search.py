@@ -100,8 +100,8 @@ def in_traces(
 def in_trace(trace: Trace, query: FormulaQuery, assumed: Assumptions, file: str) -> DriveMoments:
     """The moments of a trace.
 
-    Raises RulecError R0501 to R0506 if the trace is invalid, NotAMultipleError if a bound is no
-    multiple of its step.
+    Raises RulecError R0501 to R0506 for an invalid trace, NotAMultipleError for a bound between
+    steps.
     """
     trace = assumed.applied(trace) if assumed else trace
     check_trace(trace)

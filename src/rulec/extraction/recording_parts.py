@@ -23,13 +23,11 @@ from rulec.trace.plain_arrays import median
 from rulec.value_display import short_repr
 
 MOST_CELLS = 3 << 17
-"""About the most cells (participants × steps) of a part, unless single drives take nearly as
-many."""
+"""About the most cells (participants × steps) of a part, unless one drive takes nearly as many."""
 
 MOST_TIMES_ALONE = 2
 """In that case, up to this many times the cells of one of its drives alone. In a crowd nearly all
-participants are present for each other's drives, and small parts would process the same ones
-again."""
+participants are present for each other's drives; small parts would process the same ones again."""
 
 _ORDERS = ((0.2, 3), (0.5, 5))
 """Pairs (s, order): up to this step, differences of this order hardly show motion.
@@ -41,8 +39,7 @@ _TRACKS, _STATES, _ENOUGH = 32, 128, 20
 """To estimate noise: most tracks, most states of each, and fewest differences."""
 
 _MOVES_M = 0.3
-"""A participant that moved farther than this (m) over the differences' steps is not held in
-place."""
+"""A participant that moved farther (m) over the differences' steps is not held in place."""
 
 _OF_MEDIAN = 1.4826
 """The standard deviation of normal errors, divided by the median of their absolute values."""
@@ -244,5 +241,5 @@ def span_of(body: Participant) -> tuple[int, int]:
 
 
 def _moving(recording: Recording) -> Iterable[Participant]:
-    """The participants that have some place and do not stand for good."""
+    """The participants that have some place and can move."""
     return (body for body in recording.participants if body.outlines and not body.standing)

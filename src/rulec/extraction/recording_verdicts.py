@@ -35,8 +35,7 @@ MOST_STATES = 1 << 13
 def rounded_rulebooks(rulebook: CompiledRulebook, step_s: float) -> tuple[CompiledRulebook, ...]:
     """A rulebook at a recording's step, with bounds that are no multiples rounded down and up.
 
-    Rules whose automata are too large at so short a step are left out, so that the others can be
-    judged.
+    Rules whose automata are too large at so short a step are left out; others can be judged.
     """
     try:
         return rulebook.judgeable_at(step_s)

@@ -75,8 +75,7 @@ _OWN_LAMPS = frozenset(("front_fog_lamps", "headlamps", "rear_fog_lamps"))
 _ROAD_KINDS = frozenset(("built_up", "lane_kind", "road_class"))
 _ROAD_KINDS_OF_123D = _ROAD_KINDS - {"lane_kind"}
 _ARGOVERSE = _EITHER - _SIGNED - _LAMPS - _ROAD_KINDS
-"""Argoverse maps have lanes, marks and crossings; of objects the places, kinds and sizes are
-known."""
+"""Argoverse maps have lanes, marks and crossings; objects have places, kinds and sizes."""
 
 _NOT_BY_LANE_CENTRES = frozenset(
     (
@@ -121,8 +120,7 @@ TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     "argoverse-sensor": _ARGOVERSE,
     "123d": _ARGOVERSE | (_SIGNED - {"on_priority_road", "turn_on_red_sign"}) | _ROAD_KINDS_OF_123D,
 }
-"""Format -> words that some file of it can supply; a single file may lack signs, lamps or
-weather."""
+"""Format -> words that some file of it can supply; one may lack signs, lamps or weather."""
 
 
 def told_words(drives: SelectedDrives) -> frozenset[str]:

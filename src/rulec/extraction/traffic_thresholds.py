@@ -37,8 +37,7 @@ class Thresholds:
     stops_at_once_kmh: float = 20.0
     """A vehicle up to this speed can stop at once."""
     touching_m: float = TOUCHING_M
-    """A participant that reaches into a lane by less is not in it: positions are no more
-    accurate."""
+    """A participant that reaches into a lane by less is not in it: places are no more accurate."""
     changed_m: float = 0.3
     """A lane change is done when the vehicle's middle is this far beyond the mark."""
     at_edge_m: float = 0.4
@@ -56,18 +55,15 @@ class Thresholds:
     cycle_braking_mps2: float = 6.0
     rail_braking_mps2: float = 3.0
     disturbing_mps2: float = 2.0
-    """A vehicle that changes lanes is in the way of one that has to brake harder than this for
-    it."""
+    """A vehicle that changes lanes is in the way of one that has to brake harder for it."""
     cutting_in_mps2: float = 2.0
     """Largest lateral deceleration of a vehicle that moves into ego's lane."""
     parting_s: float = 4.0
-    """A vehicle in another lane than ego within this time is overtaken or leaves: its gap is
-    moot."""
+    """A vehicle in another lane within this time is overtaken or leaves: its gap is moot."""
     catching_up_s: float = 10.0
     """Ego is overtaking when it will be beside a slower vehicle within this time."""
     obstacle_m: float = 30.0
-    """Ego goes round a standing vehicle from this distance before it on, or ``parting_s`` before
-    it."""
+    """Ego goes round a standing vehicle from this far before it on, or from ``parting_s``."""
     passed_s: float = 2.0
     """And until ego is this far ahead of it, by time."""
     clearly_faster_kmh: float = 5.0
@@ -94,8 +90,7 @@ class Thresholds:
     entering_s: float = 0.5
     """And it steps onto the crossing if it will be there within this time."""
     side_road_m: float = 15.0
-    """Pedestrians crossing the road into which ego turns are at most this far behind the
-    junction."""
+    """Pedestrians crossing the road that ego turns into are this near behind the junction."""
     turned_deg: float = 45.0
     """Ego turns at a junction if its road changes direction by more than this."""
     preparing_s: float = 10.0
@@ -105,8 +100,7 @@ class Thresholds:
     approach_m: float = 50.0
     """Ego nears a junction, a narrowing or a level crossing from this distance before it on."""
     yielding_s: float = 1.0
-    """A participant reaching a place at least this long after ego left it is not in conflict with
-    ego."""
+    """A participant reaching a place this long after ego left it is not in conflict with ego."""
     held_up_s: float = 3.0
     """A participant held up by ego gets there at most this long after ego."""
     signalling_s: float = 5.0

@@ -22,8 +22,7 @@ _BESIDE_M = 0.5
 """Extra width (m) that passing a vehicle needs."""
 
 _BESIDE_WALKERS_M = 1.5
-"""Extra width (m) that passing people in the road needs; laws ask for 1 m to 2 m or just for enough
-room."""
+"""Extra width (m) that passing people in the road needs; laws ask for 1 m to 2 m or for enough."""
 
 _ALONG = np.cos(np.pi / 4)
 """Cosine of the largest angle to the road at which a pedestrian walks along it, either way."""

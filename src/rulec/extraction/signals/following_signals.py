@@ -147,8 +147,7 @@ def _back(context: DriveContext, cells: Cells) -> Flags:
 def _go_aside(context: DriveContext, cells: Cells, seen_last: Cells, left: NDArray[intp]) -> Flags:
     """Mask of cells whose participant moves aside, so that ego may be clear of it later.
 
-    ``seen_last`` are the cells in which it is last seen, ``left`` the number of states from then
-    on.
+    ``seen_last`` are the cells in which it is last seen, ``left`` the states from then on.
     """
     limits, known, others = context.thresholds, context.tolerances, context.extents
     own = context.ego_extents

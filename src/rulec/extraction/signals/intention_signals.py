@@ -1,8 +1,7 @@
 """Signals of what others show and do next: turning off, leaving a stop, overtaking.
 
-What a participant was about to do is known from what it did. Whether it signalled is known if the
-recording contains its lamps; otherwise it is unknown for participants that do what they should have
-signalled.
+What a participant was about to do is known from what it did. Whether it signalled is known if its
+lamps are recorded; otherwise it is unknown for those that do what they should have signalled.
 """
 
 from __future__ import annotations
@@ -200,8 +199,7 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
     """The signal of vehicles that have signalled to pull out to the far side, and do so soon.
 
     A vehicle on a lane that joins others has to leave it, and overtakes nobody by that. Unknown for
-    vehicles that ego does not catch up with: the vehicles change lanes one after the other, and do
-    not overtake.
+    vehicles that ego does not catch up with: they change lanes one after the other.
     """
     far = 1 if context.side == "right" else -1
     steps = round(context.thresholds.signalling_s / context.recording.step_s)

@@ -29,8 +29,7 @@ _SINGLE = (
     ("solid", "none"),
     ("none", "solid"),
 )
-"""Marks by which a line is single: it is the mark of both lanes, or of the one whose bound it
-is."""
+"""Marks of a single line: it is the mark of both lanes, or of the one whose bound it is."""
 
 _STEADY_MPS = 1.0
 """Below this speed the places of a vehicle do not show its direction."""
@@ -38,8 +37,7 @@ _STEADY_MPS = 1.0
 _EXACT_M = 0.1
 
 _MOVED_OFF_M, _STOOD_S = 1.0, 1.0
-"""The box of a parked vehicle drifts by less; a vehicle that stays in place for this long
-stands."""
+"""The box of a parked vehicle drifts by less; a vehicle in place for this long stands."""
 
 _Marks = tuple[LaneMark | None, LaneMark | None]
 

@@ -141,8 +141,7 @@ def safe_distances(context: DriveContext, cells: Cells) -> tuple[Floats, Floats]
 def _ahead(context: DriveContext, cells: Cells) -> tuple[Floats, Floats]:
     """The speeds (m/s) from which ego and others brake, for some cells.
 
-    A vehicle that turns off brakes on its own way, so its whole speed counts while it still goes
-    roughly ego's way.
+    A vehicle that turns off brakes on its own way: its whole speed counts while it goes ego's.
     """
     others = np.maximum(cells.of(context.extents.along), 0.0)
     turned = cells.of(context.extents.turned)

@@ -291,8 +291,7 @@ def _appears_there(context: DriveContext, rows: NDArray[intp], away: NDArray[int
 def _mostly_along(context: DriveContext, rows: NDArray[intp]) -> Flags:
     """Mask of participants in ``rows`` that have moved along the road in most recent steps.
 
-    Counted step by step: in means over a second, a collision that displaces a body at once lasts as
-    long.
+    By steps: in means over a second, a collision that displaces a body at once lasts as long.
     """
     least, step_s = context.thresholds.standing_kmh / KMH, context.recording.step_s
     others, spans = context.extents, context.spans
@@ -320,8 +319,7 @@ def _stays_aside(context: DriveContext) -> Flags:
     """Mask of vehicles that stand aside for as long as they are recorded.
 
     Their middles are beside the lanes of ego's road, or their sides at the road's edge with room
-    for all others in their lane. Vehicles that wait in a lane do not stand aside, however long they
-    wait.
+    for all others in their lane. Vehicles that wait in a lane do not stand aside, however long.
     """
     lanes, vehicles = context.existing_lanes, context.tracks.of_type("vehicle").nonzero()[0]
     aside = np.zeros(context.relevant.shape, dtype=bool)

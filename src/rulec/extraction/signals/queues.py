@@ -84,8 +84,7 @@ def _lane_lengths(context: DriveContext) -> tuple[Floats, Floats]:
 def _other_roads(road: DrivenRoad) -> Iterator[tuple[slice, list[int]]]:
     """Lanes of another road that ego's joins or leaves, and the range where they are not beside it.
 
-    They neither begin nor end there: beyond, on the map, there are more of them than of ego's lanes
-    that go on.
+    They do not begin or end there: beyond, on the map, they outnumber ego's that go on.
     """
     for piece, (before, after) in enumerate(pairwise(road.rows), 1):
         border = int(road.lanes.s.searchsorted(road.borders[piece]))
@@ -242,8 +241,7 @@ def _short_gaps(
 ) -> NDArray[intp]:
     """The number of short gaps between vehicles in a lane, by reading and row.
 
-    ``chosen`` entries of all vehicles around are in these ``rows``, which have ``counts`` entries
-    each.
+    ``chosen`` entries of all vehicles are in these ``rows``, with ``counts`` entries each.
     """
     around, longest = vehicles_around(context), int(counts.max())
     # One row per lane and state, which ends in NaN

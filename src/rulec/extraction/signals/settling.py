@@ -210,8 +210,7 @@ def with_one_change(
     """Codes without alternation in doubtful states between the sure codes before and after.
 
     Noise alternates: if all codes in between are one of these two, the later one holds from its
-    first occurrence. Rows with a column per state; the participant has to be ``there`` in all of
-    them.
+    first occurrence. Rows with a column per state; one has to be ``there`` in all of them.
     """
     if not doubtful.any():
         return codes

@@ -91,8 +91,7 @@ class DrivenRoad:
         """The speed limit of a lane; None if the map has none there.
 
         In a junction without a limit, the one before it if the same holds behind it and the road
-        turns by at most ``most_turned`` (rad): a sign stays valid for traffic that goes straight
-        on.
+        turns by at most ``most_turned`` (rad): a sign stays valid for traffic going straight on.
         """
         own = self.lanelet(piece, lane).limit_mps
         middle = (self.borders[piece] + self.borders[piece + 1]) / 2
@@ -153,8 +152,7 @@ class DrivenRoads:
     def along(self, way: Sequence[str]) -> tuple[DrivenRoad, int]:
         """The road of a chain of lanelets and the number of the chain's first piece in it.
 
-        The road is extended straight at both ends. Raises ValueError if the lanes cannot be laid
-        out along a line.
+        Extended straight at both ends. Raises ValueError if its lanes cannot be laid out.
         """
         behind, ahead = roads_beyond(self._recording, way)
         driven = pieces_of(self._recording, way, self._beside)
@@ -295,8 +293,7 @@ def junction_lanelets(recording: Recording) -> frozenset[str]:
 def _signed_joins(lanes: Sequence[Lanelet]) -> Iterator[tuple[Lanelet, ...]]:
     """Short lanelets that join, as onto a ring, where a sign makes one of them give way.
 
-    Includes the short lanelets that part from them, since traffic that leaves there is in nobody's
-    way.
+    Includes short ones that part from them: traffic that leaves there is in nobody's way.
     """
     short = {x.id: x for x in lanes if x.successors and lanelet_length(x) <= _WAY_M}
     known, joining = {lanelet.id: lanelet for lanelet in lanes}, defaultdict(list)

@@ -64,8 +64,7 @@ class Passage:
 class JunctionPassages:
     """All passages of a recording, by participant and by junction.
 
-    ``astray``: by junction, the row and the first and last column of participants in it that are on
-    no way of the map.
+    ``astray``: by junction, row and first and last column of participants in it on no way.
     """
 
     tracks: Tracks

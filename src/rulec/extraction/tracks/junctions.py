@@ -45,8 +45,7 @@ class JunctionWay:
     """A way through a junction: its lanelets end to end, from the junction's entry to its exit.
 
     ``entries`` and ``exits`` are the lanelets before and after it. ``road_headings``: the
-    directions (rad) in which the road arrives and leaves, where they differ from those of the way's
-    ends.
+    directions (rad) in which the road arrives and leaves, if not those of the way's ends.
     """
 
     lanelets: tuple[Lanelet, ...]
@@ -112,8 +111,7 @@ class Junction:
     def meeting(self, way: int, other: int) -> tuple[Interval, Interval] | None:
         """The intervals (m) of two ways in which they cross or join, one along each, or None.
 
-        Ways that part from the same lanelet do not cross; ways that share lanelets join before
-        them.
+        Ways from the same lanelet do not cross; ways that share lanelets join before them.
         """
         if (way, other) not in self._met:
             self._met[way, other] = _meeting(self.ways[way], self.ways[other])

@@ -29,8 +29,7 @@ _SOME_TIMES = 32
 """Only one state in this many is examined first."""
 
 _SOON_S = 2.0
-"""Participants are included this long (s), in addition to ``away_s``, before they come near a
-road."""
+"""Participants count this long (s), in addition to ``away_s``, before they come near a road."""
 
 _ONCOMING_COSINE = -0.7
 """Cosine of the angle to the road beyond which a vehicle counts as oncoming."""
@@ -180,8 +179,7 @@ def near_road(
 ) -> Flags:
     """Mask of where participants, in some rows and columns, are near enough to a road to count.
 
-    Includes the time shortly before and after, so that no participant that counts is absent in
-    between.
+    Includes shortly before and after: nobody that counts is absent in between.
     """
     reach = float(tracks.reaches.max(initial=0.0)) + _PIECES_M
     fastest = float(tracks.fastest.max(initial=0.0))

@@ -77,8 +77,7 @@ than 0.064 m/s (624 means). Lane bounds without a drawn line are known less well
 KEYFRAMES = Tolerances(0.3, 0.2)
 """Boxes that people drew twice a second, with places in between interpolated linearly.
 
-As above, from five scenes of nuScenes: 0.12 m, and 0.09 m/s (1,142 means); the size of a box is
-constant.
+As above, from five scenes of nuScenes: 0.12 m, and 0.09 m/s (1,142 means); boxes keep their size.
 """
 
 USUAL_ROUNDING = Rounding(0.01, 0.01)
@@ -154,8 +153,7 @@ def tolerances_of(
 def rounded_to(rounding: Rounding) -> Tolerances:
     """The tolerances of data that are exact except for rounding.
 
-    Each of two places may be wrong by half a unit along both axes, and so may a distance between
-    them.
+    Each of two places, and a distance between them, may be off by half a unit along both axes.
     """
     place_m = _DIAGONAL * rounding.place_m
     return Tolerances(place_m, place_m, rounding.speed_mps / 2)

@@ -32,8 +32,7 @@ Directions = tuple["bool | None", "bool | None"]
 class Surroundings:
     """The junctions, passages and carriageways of a recording.
 
-    ``computed`` caches results of signals about the recording, ``of_map`` those about its map and
-    roads alone.
+    ``computed`` caches signals' results about the recording, ``of_map`` those about its map.
     """
 
     recording: Recording
@@ -97,9 +96,8 @@ class Surroundings:
     def directions(self, lanelet: Lanelet) -> Directions:
         """Whether a carriageway is one-way, and whether a strip or barrier divides the road.
 
-        None means unknown. Decided by the nearest lane beside its middle that leads the other way.
-        A map without any such lane may have left them out. In a junction the roads that lead there
-        decide.
+        None is unknown. Decided by the nearest lane beside its middle that leads the other way. A
+        map without any may have left them out. In a junction the roads that lead there decide.
         """
         if lanelet.id not in self._directions:
             self._directions[lanelet.id] = self._computed(lanelet)

@@ -54,8 +54,7 @@ def towed_by(tracks: Tracks, row: int, step_s: float) -> str | None:
 def _near_enough(tracks: Tracks, row: int, columns: NDArray[intp]) -> NDArray[intp]:
     """The rows of other vehicles that may be near a participant all the time, by where it begins.
 
-    No number is farther from the mean of a sample than its standard deviation times the root of its
-    size.
+    No number is farther from a mean than the standard deviation times the root of the count.
     """
     first, last = columns[0], columns[-1]
     x, y = tracks.x[:, first], tracks.y[:, first]

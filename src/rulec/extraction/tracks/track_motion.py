@@ -16,12 +16,10 @@ _LEAST_PART = 0.7
 """If less motion than this is along the heading (as at 45°), the heading says nothing about it."""
 
 _AGREES, _STANDS_MPS = 0.05, 0.1
-"""Stated speeds are used if their mean differs from that of places by at most this part, or this
-much (m/s)."""
+"""Stated speeds are used if their mean differs from places' by at most this part, or this (m/s)."""
 
 _MEANS_ELSE = 0.5
-"""Stated speeds mean something else if the way by them differs by more than this part of the
-longer."""
+"""Stated speeds mean something else if they differ by more than this part of the longer way."""
 
 _TURNS = 0.1
 """A participant turns if its heading changes by more than this (rad) over a window."""

@@ -122,7 +122,7 @@ class Tracks:
     def widths(self) -> Floats:
         """The widths (m) of bodies across their headings, 0 where unknown.
 
-        Bodies that stand for good have one in the first column only.
+        Bodies that never move have one in the first column only.
         """
         return self._sizes(lambda x, y, cos, sin: y * cos - x * sin)
 
@@ -152,7 +152,7 @@ class Tracks:
     def where(self, flags: Flags) -> Tracks:
         """The tracks with participants present only where the mask holds.
 
-        Participants that stand for good stay present all the time.
+        Participants that never move stay present all the time.
         """
         same = copy(self)
         for name in _OF_BODIES.intersection(same.__dict__):
@@ -304,8 +304,7 @@ def tracks_of(
     """The tracks of all participants of a recording that have outlines.
 
     ``participants`` may replace the recording's. ``span`` is the first and last step of the arrays,
-    if these should cover more than the tracks; ``tolerances`` are the recording's, if already
-    known.
+    if not those of the tracks; ``tolerances`` are the recording's, if already known.
     """
     members = recording.participants if participants is None else participants
     bodies = tuple(body for body in members if body.outlines)

@@ -1,8 +1,7 @@
 """Signals of emergency vehicles on call: which are, whether one is near, whether ego makes way.
 
 Laws differ in what it means to be near and in the way. Only a vehicle that draws near behind ego,
-is beside it or comes towards it is surely near; only one that takes up ego's lane is surely in its
-way.
+is beside it or comes towards it is surely near; only one in its lane is surely in its way.
 """
 
 from __future__ import annotations
@@ -118,8 +117,7 @@ def _may_be_on_call(context: DriveContext) -> Flags:
 def _comes_near(context: DriveContext) -> Flags:
     """Mask of vehicles behind or beside ego, or coming towards it on its carriageway.
 
-    A vehicle that has come towards ego and is past it drives away, even while it waits at lights
-    there.
+    An oncoming vehicle that is past ego drives away, even while it waits at lights there.
     """
     station, against = relations.station(context), _against(context)
     directions = context.surroundings.directions
@@ -161,8 +159,7 @@ def _is_far(context: DriveContext) -> Flags:
 def _crosses_near(context: DriveContext) -> Flags:
     """Mask of states in which an emergency vehicle draws near on a crossing road.
 
-    It is unknown whether it needs ego's way then: its road may be that of a crossing, or pass above
-    or below.
+    Whether it then needs ego's way is unknown: its road may be a crossing's, or a bridge's.
     """
     tracks, limits = context.surroundings.tracks, context.thresholds
     rows = tracks.of_type("emergency_vehicle").nonzero()[0]

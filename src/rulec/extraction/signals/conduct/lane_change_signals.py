@@ -39,8 +39,7 @@ _JUMP_S = 0.5
 """Changes of lanes this long (s) before or after a jump are due to it."""
 
 _JUST_STOOD_S = 1.0
-"""A vehicle that stood this recently (s) has not driven over a mark since: it drifted while
-standing."""
+"""A vehicle that stood this recently (s) has not driven over a mark since: it drifted there."""
 
 _FORK_M = 15.0
 """Up to this far behind a fork its lanes overlap, and likewise before two lanes become one."""
@@ -217,8 +216,7 @@ def _changes(context: DriveContext) -> Flags:
 def _within_tolerance(context: DriveContext, changes: Flags) -> Flags:
     """Mask of changes for which the marks may be so far off that there is no change.
 
-    Before or after the change, up to the next one, ego's middle is never farther from the mark than
-    that.
+    Before or after it, up to the next change, ego's middle is never farther from the mark.
     """
     lane, left_of = context.steady_lane, context.ego_extents.left_of[0]
     error = context.tolerances.place_m + np.abs(context.map_offset_m)

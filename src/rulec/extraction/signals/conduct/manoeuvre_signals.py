@@ -149,8 +149,7 @@ def _driving_side(context: DriveContext) -> SignalColumns:
 def _goes_over(context: DriveContext, there: Flags, perhaps: Flags) -> Flags:
     """Mask of states between one surely on one half of the road and one surely on the other.
 
-    There only the moment is in doubt, unless ego stays near the middle for longer than
-    ``passed_s``.
+    There only the moment is in doubt, unless ego stays near the middle beyond ``passed_s``.
     """
     spans, own = context.spans, ~there & ~perhaps
     (own_before, own_after), (before, after) = (
@@ -179,8 +178,7 @@ def comes_back_over_middle(context: DriveContext) -> Flags:
 def goes_over_the_middle(context: DriveContext) -> Flags:
     """Mask of states in which ego is on both halves of a road, on its way to the other or back.
 
-    Up to ``passed_s`` before it is on the other half, or after. Driving at the edge of its own half
-    for long does not count.
+    Up to ``passed_s`` before or after it is on the other half, not while it keeps to the edge.
     """
     there, _ = oncoming_side(context)
     if not there.any():
@@ -217,8 +215,7 @@ def sides_beyond_far_edge(context: DriveContext, bodies: RoadExtents) -> tuple[F
 def oncoming_side(context: DriveContext) -> tuple[Flags, Flags]:
     """Masks of ego driving along the other half of a two-way road, and of perhaps doing so.
 
-    That half is beyond the far edge of the lanes of its direction; it has none in junctions and
-    beyond the map.
+    That half is beyond the far edge of the lanes of its direction; junctions have none.
     """
     beyond, loose = _beyond_far_edge(context), _loose(context)
     both_ways, not_told = two_way(context)
@@ -361,9 +358,8 @@ def _touches_junction(context: DriveContext, states: Flags) -> Flags:
 def _joins_road(context: DriveContext) -> SignalColumns:
     """Whether ego drives onto the road from where it stood beside it.
 
-    Unknown where ego comes from beside the road at an angle, or is there when first seen, since
-    there may be a road that the map leaves out; and where it turns round, since its road is not
-    certain yet.
+    Unknown where ego comes from beside the road at an angle, or is there when first seen, since the
+    map may leave out a road; and where it turns round, since its road is not certain yet.
     """
     outside = (beyond_near_edge(context) > _loose(context)) & _on_map(context)
     inside, joins = beyond_near_edge(context) <= 0, np.zeros(context.states, dtype=bool)

@@ -1,7 +1,7 @@
 """Signals of the lanes next to ego's: whether they are free, and whether that is known.
 
 The near one decides whether ego keeps to the kerb lane as it should, the far one whether it may
-pass another vehicle.
+pass.
 """
 
 from __future__ import annotations
@@ -31,8 +31,7 @@ from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import ranges
 
 _SOON_M = 10.0
-"""A vehicle within this distance behind ego, plus what it gains in ``passed_s``, is soon beside
-it."""
+"""A vehicle within this distance behind ego, plus its gain in ``passed_s``, is soon beside it."""
 
 _SOLID = frozenset({"solid", "double_solid"})
 
@@ -48,8 +47,7 @@ _CHANGE_S = 4.0
 """At the earliest, a change of lanes begins this long (s) before the middle crosses the mark."""
 
 _SOON_AGAIN = 2.0
-"""A move back is of no use if ego has to come out again within this many times
-``catching_up_s``."""
+"""A move back is of no use if ego has to come out within this many times ``catching_up_s``."""
 
 _STANDING_CAMERAS = frozenset(
     {
@@ -107,8 +105,7 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
 
     It cannot go there across a solid line, as beside lanes for turning off; nor to a bus lane, or
     across a cycle lane; nor, from a through lane, to a lane for joining or leaving; nor to one that
-    leads elsewhere at a junction that ego reaches within ``preparing_s``. A bus stays on its own
-    lane.
+    leads elsewhere at a junction within ``preparing_s``. A bus stays on its own lane.
     """
     limits, others, taken = (
         context.thresholds,
@@ -194,8 +191,7 @@ def _slower_ahead(context: DriveContext, lane: NDArray[intp], states: NDArray[in
 def _sorted_ahead(context: DriveContext) -> tuple[Flags, Flags]:
     """Masks: the next lane to the kerb leads elsewhere than ego; drivers choose lanes.
 
-    They do before lights and rings, and where one lane leads to several roads, from ``preparing_s``
-    before.
+    They do ``preparing_s`` before lights, rings, and where one lane leads to several roads.
     """
     lane, there = _next_lane(context, context.side)
     front, reach = context.ego_extents.s_max[0], _reach(context)

@@ -97,8 +97,7 @@ def _meanwhile(context: DriveContext, flags: Flags, during: Flags) -> Flags:
 def _close_behind(context: DriveContext) -> Flags:
     """Mask of states in which ego would soon reach a vehicle beside its way if that one stood.
 
-    Or a vehicle ahead that has gone to ego's side before it: of several that overtake another, all
-    wait for the first.
+    Or one ahead that has gone to ego's side before it: of several, all wait for the first.
     """
     _, near_side = _sides(context)
     reach = context.ego_extents.along * context.thresholds.signalling_s

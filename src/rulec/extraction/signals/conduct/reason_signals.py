@@ -46,8 +46,7 @@ _REACH_S, _GENTLE_MPS2 = 3.0, 4.0
 ``_GENTLE_MPS2``, and ``REACH_M``."""
 
 FOLLOWS_S, _FALLS_BACK_MPS = 3.0, 1.0
-"""Ego holds up a vehicle at most ``FOLLOWS_S`` behind, unless it is slower by
-``_FALLS_BACK_MPS``."""
+"""Ego holds up vehicles at most ``FOLLOWS_S`` behind, unless ``_FALLS_BACK_MPS`` slower."""
 
 _ROAD_M, _HALF, _CALLED_M = 15.0, 0.5, 100.0
 _FAR_SLOWER, _SLOWER = 0.5, 0.75
@@ -158,8 +157,7 @@ def _asked(context: DriveContext) -> tuple[Flags, Flags]:
 def _drives_on(context: DriveContext, stands: Flags) -> Flags:
     """Mask of states in which ego stands, and reaches ``_DRIVES_KMH`` later in its drive.
 
-    Not in a drive's first state: why ego stands there is unknown until it has had time to get
-    going.
+    Not in a drive's first state: why ego stands there is unknown until it could get going.
     """
     spans = context.spans
     drives = context.ego.speed[0] * KMH >= _DRIVES_KMH

@@ -23,8 +23,7 @@ _NO_ROOM_S, _DRAWS_AWAY_MPS = 0.3, 1.0
 """A vehicle this close (s) behind ego has no room to react, unless ego draws away from it."""
 
 _TOO_CLOSE_S = 1.0
-"""A vehicle that brakes for one coming in closer than this has to: half of what all laws ask
-for."""
+"""A vehicle that brakes for one coming in closer (s) has to: half of what all laws ask for."""
 
 _DRIFT_MPS = 0.2
 """A vehicle with a lower lateral speed keeps its lane."""
@@ -143,8 +142,7 @@ def _gives_way(
 def _comes_in_close(context: DriveContext, reaches: NDArray[intp], changes: NDArray[intp]) -> Flags:
     """Mask of vehicles close behind ego in its new lane, by way, unless ego gets slower there.
 
-    If the vehicle ahead does not brake, a vehicle that does had no other reason that ego did not
-    have, too.
+    If ego keeps its speed, they have no reason to brake that ego does not have, too.
     """
     own, behind = context.ego_extents.along[0], context.in_ego_lane[:, changes]
     close = relations.gap(context)[:, changes] < _TOO_CLOSE_S * context.extents.along[:, changes]

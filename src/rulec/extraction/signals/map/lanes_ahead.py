@@ -43,8 +43,7 @@ class Leads(Enum):
 class JunctionAhead:
     """A junction on ego's road, from ``low`` to ``high``, and where each lane before it leads.
 
-    ``turned`` is the angle (rad) by which ego's road turns there. ``lit``: whether there may be
-    lights.
+    ``turned`` is the angle (rad) by which ego's road turns there. ``lit``: it may have lights.
     """
 
     low: float

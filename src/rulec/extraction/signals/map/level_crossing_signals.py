@@ -15,8 +15,7 @@ from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.route import lanelet_length
 
 _SIGNS_M = 300.0
-"""Signs that warn of a level crossing are at most this far before it: beacons begin 240 m
-before."""
+"""Signs that warn of a level crossing are at most this far before it: beacons begin at 240 m."""
 
 Stretches = Sequence[tuple[float, float]]
 

@@ -79,8 +79,7 @@ def _could_let_in(context: DriveContext) -> Flags:
 def _there_with_ego(context: DriveContext, place: float) -> tuple[Flags, Flags]:
     """Masks of those at a narrowing, not ahead, when ego gets there; and of those lost by then.
 
-    The latter are not recorded then, or ego does not get there. Those ahead of ego then come before
-    it anyway.
+    The latter are not recorded then, or ego does not get there. Those ahead go first anyway.
     """
     arrives = context.spans.next_state(context.ego_extents.s_max[0] > place)
     never = arrives >= context.spans.end

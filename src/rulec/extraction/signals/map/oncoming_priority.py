@@ -15,8 +15,7 @@ _ONE_GIVES_WAY = _GIVES_WAY - {ALL_STOP}
 """Where all have to stop, the participant that came first goes first."""
 
 _CLEARED_S = 2.0
-"""A light that has been red for this long when a vehicle enters the junction was red at its
-line."""
+"""A light that has been red for this long as a vehicle enters the junction was red before."""
 
 
 def turns_far(context: DriveContext, passage: Passage) -> bool:

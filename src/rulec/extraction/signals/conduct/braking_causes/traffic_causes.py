@@ -1,8 +1,7 @@
 """What traffic may make ego brake, stand or be slow, and what surely does.
 
 A vehicle ahead in ego's lane makes it slow; it makes it brake hard only if ego would run into it,
-and stand only if it is near. A participant that comes to where ways cross makes ego wait if it gets
-there first.
+and stand only if it is near. A participant that gets first to where ways cross makes ego wait.
 """
 
 from __future__ import annotations
