@@ -16,7 +16,7 @@ OTHER_SIDE = Code(
 
 
 def other_side(scene: str, recorded: str, rulebook: str, side: str) -> RulecError:
-    """The error for a rulebook of the other side of traffic, none of whose words would be known."""
+    """The error for a rulebook for the other side of the road: it would have no known word."""
     return OTHER_SIDE.error(
         SourceLocation(scene),
         f"traffic keeps to the {recorded} here, and in `{rulebook}` to the {side}",

@@ -268,8 +268,8 @@ class _Words:
             else:
                 said = of_others.get(name, {}) | self._constants.get(name, {})
                 if name == "leads_elsewhere" and self._may_leave:
-                    # A participant that leaves the road for good has another one, on which they may
-                    # be or not
+                    # An ego that leaves the road for good has another one, on which others may be
+                    # or not
                     said = {}
                 words[name] = {item: said.get(item, about_all.get(name, UNKNOWN)) for item in items}
         return words

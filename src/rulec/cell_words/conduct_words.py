@@ -88,7 +88,7 @@ class ConductWords:
         return found
 
     def _holds_nobody_up(self) -> Flags:
-        """Cells where none follows near enough, or ego has a reason for any speed."""
+        """Cells where nobody follows near enough, or ego has a reason for any speed."""
         others, (near, _) = self._others, self._relations.gaps
         fastest = np.maximum(others.along[1], 0.0)
         follows = others.may_go_along & (self._relations.stations & IN_FRONT > 0)
@@ -138,7 +138,7 @@ class ConductWords:
         return own | self._frame.one_way
 
     def _meets_nobody(self) -> Flags:
-        """Cells where none is oncoming from now on; even a later one may meet ego in time."""
+        """Cells where nobody is oncoming from now on; even a later one may meet ego in time."""
         found: Flags = np.full(len(self._boxes.sideways), not self._others.some_come)
         return found
 

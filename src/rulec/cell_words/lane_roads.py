@@ -1,8 +1,7 @@
 """The roads that drives have along the lanes of a scene's road.
 
-A drive that goes on in another lane has its road along that lane: this may come from elsewhere,
-lanes that part or join are counted from it, and it has the bounds, junctions and lanes of its own
-lanelets.
+A drive that goes on in another lane has its road along that lane: it may come from elsewhere, lanes
+that part or join are counted from it, and it has its own lanelets' bounds, junctions and lanes.
 """
 
 from __future__ import annotations

@@ -178,7 +178,7 @@ class PlaceWords:
         return any(len(lane.said) > 1 for lane in self._lanes)
 
     def of_cells(self, boxes: EgoBoxes, behind: Floats | float = 0.0) -> list[Words]:
-        """The words of each cell of a layer, extended ``behind`` (m) it; equal ones are shared."""
+        """The words of each cell of a layer, and ``behind`` (m) it; equal ones are shared."""
         low = boxes.s[0] - LOOSE_M - behind
         high = boxes.s[1] + LOOSE_M
         first, last = lanes_of(boxes, self._straight)

@@ -26,7 +26,7 @@ from rulec.recordings.recording import Participant, Recording, Side
 from rulec.trace.end_to_end import UnlikeDrivesError
 
 MOST_CELLS = 1 << 18
-"""Drives are laid end to end up to this many cells; fewer mean more calls, more mean more
+"""Drives are laid end to end up to this many cells; fewer take more calls, more need more
 memory."""
 
 Block: TypeAlias = list[tuple[int, tuple[Drive | NoDrive, ...]]]

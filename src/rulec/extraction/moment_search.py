@@ -100,8 +100,7 @@ def in_traces(
 def in_trace(trace: Trace, query: FormulaQuery, assumed: Assumptions, file: str) -> DriveMoments:
     """The moments of a trace.
 
-    Raises RulecError R0501 to R0506 for an invalid trace, NotAMultipleError for a bound between
-    steps.
+    Raises RulecError R0501 to R0506 for an invalid trace, NotAMultipleError for a misfit bound.
     """
     trace = assumed.applied(trace) if assumed else trace
     check_trace(trace)

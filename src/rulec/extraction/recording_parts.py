@@ -241,5 +241,5 @@ def span_of(body: Participant) -> tuple[int, int]:
 
 
 def _moving(recording: Recording) -> Iterable[Participant]:
-    """The participants that have some place and can move."""
+    """The participants that have some place and are not static."""
     return (body for body in recording.participants if body.outlines and not body.standing)

@@ -84,8 +84,7 @@ class RecordingVerdicts(Rows):
     """The verdicts of a rulebook on a recording's drives, computed on demand.
 
     Bounds that are no multiples of the recording's step are rounded down and up. Raises RulecError
-    R0507 if the rulebook was compiled for another step, R0612 for a vehicle that the recording does
-    not contain.
+    R0507 if the rulebook was compiled for another step, R0612 for a vehicle that is not there.
     """
 
     def __init__(

@@ -59,7 +59,7 @@ class Thresholds:
     cutting_in_mps2: float = 2.0
     """Largest lateral deceleration of a vehicle that moves into ego's lane."""
     parting_s: float = 4.0
-    """A vehicle in another lane within this time is overtaken or leaves: its gap is moot."""
+    """A vehicle out of ego's lane within this time is passed or leaves: its gap is moot."""
     catching_up_s: float = 10.0
     """Ego is overtaking when it will be beside a slower vehicle within this time."""
     obstacle_m: float = 30.0

@@ -133,8 +133,7 @@ def _lane_count(context: DriveContext) -> SignalColumns:
     """The number of lanes, the largest at ego's rear, middle and front.
 
     A vehicle beside ego where ways part is no longer on ego's road once ego's middle is past that
-    place, and where a lane forks the lanes beside it may have no width for some metres on the road
-    of ego's way.
+    place, and where a lane forks the lanes beside it may have no width for some metres.
     """
     own = context.ego_extents
     places = own.s_min[0], own.s[0], own.s_max[0]

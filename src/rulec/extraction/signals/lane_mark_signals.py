@@ -246,8 +246,7 @@ def _across(context: DriveContext, low: Floats, high: Floats, other: tuple[float
     """Mask of the lines that a body lies across, by state; line ``k`` lies right of lane ``k``.
 
     ``low`` and ``high`` are how far (m) left of each line the body begins and ends. ``other`` is
-    the extra distance (m) that it has to reach beyond a line, and by state how far right it is
-    moved.
+    the extra distance (m) that it has to reach beyond a line, and by state its shift to the right.
     """
     more, right = other
     across = np.minimum(right[:, None] - low, high - right[:, None])
@@ -259,8 +258,7 @@ def _under(context: DriveContext, crossed: Flags, states: NDArray[intp] | slice)
     """What the lines are that ego crosses in some states, as a row of flags per state.
 
     The flags: a line is solid; a solid one is broken on the side from which ego comes; it is a
-    single one; a solid one is broken on one side alone and ego's side was not seen; some marks are
-    unknown.
+    single one; a solid one is broken on one side and ego's side was not seen; marks are unknown.
     """
     bits = crossed @ (1 << np.arange(crossed.shape[1]))
     from_left, unseen = (own[states] for own in _comes_from(context))

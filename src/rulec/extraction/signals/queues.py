@@ -40,7 +40,7 @@ _MOST = 0.5
 
 READINGS = range(3)
 MEASURED, STRICT, LOOSE = READINGS
-"""What counts as a short gap: as measured, certain despite errors, and possible or only to some."""
+"""Readings of a short gap: as measured, surely, and perhaps or only by some definitions."""
 
 
 def lanes_that_decide(context: DriveContext) -> Flags:
@@ -276,7 +276,7 @@ def dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     lanes = travel_lanes_first(context)
     decides = lanes & (lanes_that_decide(context).T | queues)
     all_queue = np.logical_and((queues | ~decides).all(axis=1), decides.any(axis=1))
-    # A few lanes say nothing about the others; where all traffic is recorded they are no queue
+    # A few lanes say nothing about the others; where all traffic is recorded there is no queue then
     few = 2 * decides.sum(axis=1) < lanes.sum(axis=0)
     whole = "arrivals" in context.recording.complete
     all_queue &= ~(few & whole)

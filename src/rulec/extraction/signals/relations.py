@@ -67,7 +67,7 @@ def _coded(least: Flags, most: Flags) -> Codes:
 
 @once
 def known_places(context: DriveContext) -> Cells:
-    """The cells of participants that are beside the road; relations to others mean nothing."""
+    """The cells of participants that are beside the road: no relation says anything of the rest."""
     return Cells.at(~np.isnan(context.extents.s_min))
 
 

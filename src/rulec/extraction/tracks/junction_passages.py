@@ -29,7 +29,7 @@ _FARTHEST_M = 2.5
 """A participant whose average distance (m) from a way's middle line is larger is not on it."""
 
 _SURE_M = 0.4
-"""The way is certain if no way that parts from it is farther away by less than this (m)."""
+"""A way is certain if every way that parts from it is farther away by at least this (m)."""
 
 _LARGEST_TURN = np.pi / 3
 
@@ -46,8 +46,7 @@ class Passage:
 
     ``way`` is the number of the way; ``sure`` is False if it may be another one. ``heading`` is the
     direction (rad) of approach when the front got there: the participant may have turned by the
-    time its middle is in the junction. ``whole``: whether both its entry and its exit were
-    recorded.
+    time its middle is in the junction. ``whole``: both its entry and its exit were recorded.
     """
 
     row: int

@@ -118,8 +118,7 @@ _MOST_SIGMAS = 4.0
 """One-sided, three in 100,000 errors exceed this many standard deviations.
 
 A drive has hundreds of states with independent errors, and one of them is enough for a violation:
-with three standard deviations, one in three of the drives that are exactly at a limit would be
-affected.
+with three standard deviations, one in three of the drives exactly at a limit would be hit.
 """
 _NGSIM = re.compile(r"USA_(US101|I80|Lanker|Peach)")
 

@@ -64,8 +64,7 @@ class Tracks:
     ``motion_of``, with their errors.
 
     ``on_lane`` and ``on_crosswalk``: whether the middle of a vulnerable road user is on a lane, of
-    any direction, or on a pedestrian crossing of the map. Pedestrians on the pavement are on no
-    lane.
+    any direction, or on a pedestrian crossing. Pedestrians on the pavement are on no lane.
     """
 
     participants: tuple[Participant, ...]
@@ -88,7 +87,7 @@ class Tracks:
 
     @cached_property
     def bodies(self) -> Bodies:
-        """The outlines of all participants; a single one, in the first column, if standing."""
+        """The outlines of all participants; a single one, in the first column, if static."""
         return _bodies(self, repeated=False)
 
     @cached_property
@@ -122,7 +121,7 @@ class Tracks:
     def widths(self) -> Floats:
         """The widths (m) of bodies across their headings, 0 where unknown.
 
-        Bodies that never move have one in the first column only.
+        Static bodies have one in the first column only.
         """
         return self._sizes(lambda x, y, cos, sin: y * cos - x * sin)
 
@@ -152,7 +151,7 @@ class Tracks:
     def where(self, flags: Flags) -> Tracks:
         """The tracks with participants present only where the mask holds.
 
-        Participants that never move stay present all the time.
+        Static participants stay present all the time.
         """
         same = copy(self)
         for name in _OF_BODIES.intersection(same.__dict__):

@@ -53,7 +53,7 @@ def _fog_lamps(context: DriveContext) -> SignalColumns:
 
 
 def _ego_on_call(context: DriveContext) -> SignalColumns:
-    """Ego's blue lights; only emergency vehicles have them, unless they are seen."""
+    """Ego's blue lights; unknown only for emergency vehicles whose lights are not recorded."""
     egos, spread = context.ego.participants, context.spans.spread
     may_be = spread([ego.type == "priorityVehicle" for ego in egos])
     shows = spread(["blue_light" in ego.shows for ego in egos])

@@ -52,8 +52,8 @@ def _lane_change(context: DriveContext) -> SignalColumns:
 
     Its body then swings over the lanes of the road that it enters. Unknown, too, where a lane has
     just forked or two become one, since ego may follow either; where ego stands, as its places
-    drift; where it is back at once; and where it begins its drive so near a mark that it may be
-    crossing it.
+    drift; where it is back at once; and where its drive begins so near a mark that it may be
+    crossing.
     """
     changes = _changes(context)
     unknown = changes != context.spans.changes(context.steady_lane_from_beside)
@@ -166,7 +166,7 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
     clear: Flags = ~np.logical_or.reduce(disturbed)
     unknown = unsure
     if not clear.all():
-        # Or may, by its speed
+        # Or may stand, by its speed's error
         slowest = context.ego.speed[0] - context.ego.speed_error[0]
         stands = slowest * KMH < context.thresholds.standing_kmh
         just_stood = round(_JUST_STOOD_S / context.recording.step_s)
@@ -301,7 +301,7 @@ def _disturbed(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Fla
     A vehicle beside ego must; so must one behind that would have to brake harder than
     ``disturbing_mps2`` after its reaction time to avoid ego, unless it has to brake as hard for one
     in between. Perhaps: vehicles whose lane forks in between, so that it is unknown whether they
-    come into ego's; and bodies that overlap half of ego's, which is ego's own box seen twice.
+    come into ego's; and bodies that overlap ego's by half, which are ego's own box seen twice.
     """
     limits = context.thresholds
     station, gap = relations.station(context)[:, states], relations.gap(context)[:, states]

@@ -1,7 +1,6 @@
 """Signals of the lanes next to ego's: whether they are free, and whether that is known.
 
-The near one decides whether ego keeps to the kerb lane as it should, the far one whether it may
-pass.
+The near one decides whether ego keeps to the kerb as it should, the far one whether it may pass.
 """
 
 from __future__ import annotations

@@ -219,7 +219,7 @@ def _before_joining(context: DriveContext) -> Flags:
 
 
 def _gains_speed(context: DriveContext) -> Flags:
-    """Mask of states in which ego is faster than ``smoothing_s`` before, or that new."""
+    """Mask of states in which ego is faster than ``smoothing_s`` before, or has just begun."""
     speed, spans = context.ego.speed[0], context.spans
     steps = _smoothing_steps(context)
     gains: Flags = speed > speed[np.maximum(spans.columns - steps, spans.first)]
@@ -231,7 +231,13 @@ def _smoothing_steps(context: DriveContext) -> int:
 
 
 def _sets_off(context: DriveContext) -> Flags:
-    """Mask of states in which ego is faster than ``smoothing_s`` before, or just began."""
+    """Mask of states in which ego has, or may have, set off, and still gains speed.
+
+    It stood up to ``setting_off_s`` ago; or it was no faster than ``_CRAWLS_MPS`` then or since it
+    has been gaining speed; or it has gained speed ever since its drive began. Before the drive it
+    may have stood if ``_SETS_OFF_MPS2`` would have given it its first speed; where all traffic is
+    recorded, only if that is a crawl.
+    """
     limits, speed, step_s = context.thresholds, context.ego.speed[0], context.recording.step_s
     spans, stood = context.spans, context.spans.latest(speed <= _CRAWLS_MPS).astype(float)
     at_first = speed[spans.first]

@@ -143,8 +143,8 @@ def _since(context: DriveContext, flags: Flags, seconds: float) -> Flags:
 def _asked(context: DriveContext) -> tuple[Flags, Flags]:
     """Masks of states in which ego brakes hard, and in which rules ask for a reason.
 
-    In the latter ego may brake hard, within a second, stands, or is slow; if no limit is known,
-    they are those in which a vehicle follows it.
+    In the latter ego may brake hard within a second, stands, or is slow; without a known limit it
+    counts as slow if a vehicle follows it.
     """
     acceleration, hard = context.ego.acceleration[0], -context.thresholds.braking_hard_mps2
     brakes = acceleration - context.ego.acceleration_error[0] <= hard

@@ -19,19 +19,16 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.junction_passages import Passage
 
 SLOWEST_MPS = 1.0
-"""A vehicle standing in a junction at its track's end is assumed to go on this fast; slower ones
-wait."""
+"""A vehicle standing in a junction at its track's end is taken to go on this fast; others wait."""
 
 _DRIVES_MPS = 3.0
 """A vehicle that drives more slowly in a junction may wait there."""
 
 _SLOWED = 0.9
-"""A vehicle that keeps more of its speed was not made to brake: speeds vary this much by
-themselves."""
+"""A vehicle that keeps more of its speed was not made to brake: speeds vary this much anyway."""
 
 _BENDS_MPS2 = 2.0
-"""A vehicle in a bend with this usual lateral acceleration may be slow because of the bend
-alone."""
+"""A vehicle in a bend with this usual lateral acceleration may be slow because of the bend."""
 
 _BRIEFLY_S = 1.0
 """Speeds are means over this time (s): shorter braking does not hold up a vehicle."""
@@ -40,8 +37,7 @@ _GRAZES_M = 0.15
 """Boxes that overlap by no more do not show that bodies do, since bodies have rounded corners."""
 
 _BEHIND_S = 0.3
-"""A vehicle that reaches a place this short a time before another one has left it passes behind
-it."""
+"""A vehicle that reaches a place this short a time before another has left it passes behind it."""
 
 _SEES_S = 2.0
 """This long before ego drives in, others may see that it will, and brake."""
@@ -50,8 +46,7 @@ _STRAIGHT_RAD = 0.3
 """A vehicle that turns by less goes straight on."""
 
 _LATE_S = 10.0
-"""A vehicle that comes this long after ego reached a place need not have been in sight as ego drove
-in."""
+"""A vehicle that comes this long after ego reached a place may not have been in sight before."""
 
 Passing: TypeAlias = tuple[Passage, float | None, float | None]
 """A passage, and when (in columns) it enters and leaves the place where ways meet."""
@@ -224,7 +219,7 @@ def _brakes_for(
 
 
 def _stood(context: DriveContext, own: Passage, first: int, last: float) -> bool:
-    """Whether ego stood between two columns: it may not have seen those that came then earlier."""
+    """Whether ego stood between two columns: it may have driven in before those that came then."""
     speed = context.surroundings.passages.tracks.speed[own.row, first : int(last) + 1]
     return bool((speed < SLOWEST_MPS).any())
 

@@ -177,11 +177,11 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
 def _waited_for(
     context: DriveContext, at: NDArray[intp], goes: NDArray[intp], off: Flags
 ) -> tuple[Flags, Flags]:
-    """Masks of pedestrians across before ego, at walking pace, is past or faster; and not yet.
+    """Masks of pedestrians for whom ego waits until they are across, and still waits at the end.
 
-    The first includes those across within ``entering_s``, the second those for which ego still
-    waits as the drive ends. Ego reaches them in the states ``at`` and is past in ``goes``; they are
-    out of its way where ``off``.
+    At walking pace, ego lets them across before it is past or faster, or ``entering_s`` later; it
+    still waits for others as the drive ends. Ego reaches them in the states ``at`` and is past in
+    ``goes``; they are out of its way where ``off``.
     """
     spans, last = context.spans, context.spans.end - 1
     slow = context.ego.speed[0] * KMH <= context.thresholds.walking_pace_kmh

@@ -132,11 +132,11 @@ def _traffic_lights(context: DriveContext) -> SignalColumns:
 
 @once
 def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
-    """The light for ego, empty where unknown which, and masks of crossing its line and perhaps so.
+    """The light for ego (empty if unknown), and masks of crossing its line: surely and perhaps.
 
-    In the state in which ego crosses the line, the light is still the one that it crosses. Perhaps
-    (last mask): where ego may have crossed it (``may_pass``), and for amber lights crossed at a
-    place where it is unknown whether ego approached slowly enough to stop at once.
+    In the state in which ego crosses the line, the light is still the one that it crosses. Perhaps:
+    where ego may have crossed it (``may_pass``), and for amber lights crossed at a place where it
+    is unknown whether ego approached slowly enough to stop at once.
     """
     front = own_front(context)
     colours = np.full(context.states, "no_light", dtype="<U11")

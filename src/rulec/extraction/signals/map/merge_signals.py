@@ -66,7 +66,7 @@ def _narrowings(context: DriveContext) -> SignalColumns:
 
 
 def _could_let_in(context: DriveContext) -> Flags:
-    """Mask of vehicles behind which ego comes by braking no harder than it may make others.
+    """Mask of vehicles that ego could let in, braking no harder than it may make others brake.
 
     From where it nears the narrowing. Whether the law asks for more from a vehicle that passes one
     that hardly moves is unknown.

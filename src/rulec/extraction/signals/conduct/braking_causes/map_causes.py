@@ -113,7 +113,7 @@ def _all_are_recorded(context: DriveContext) -> bool:
 
 
 def _goes_first(context: DriveContext, start: float) -> tuple[bool, bool]:
-    """Whether no traffic or sign has priority over ego on its road at a junction.
+    """Whether no traffic has priority over ego at a junction, and no sign makes it wait.
 
     And whether it has a light there.
     """
