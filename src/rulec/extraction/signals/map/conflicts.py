@@ -19,7 +19,7 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.junction_passages import Passage
 
 SLOWEST_MPS = 1.0
-"""A vehicle standing in a junction at its track's end is taken to go on this fast; others wait."""
+"""A slower vehicle waits; one standing in a junction as its track ends goes on this fast."""
 
 _DRIVES_MPS = 3.0
 """A vehicle that drives more slowly in a junction may wait there."""
