@@ -1,4 +1,4 @@
-"""Vocabularies: object types, enumerations, signals, quantities."""
+"""Vocabularies: object types, enumerations, signals and quantities."""
 
 from rulec.vocabulary.vocabulary_model import (
     Declaration,

@@ -1,4 +1,4 @@
-"""Dimensions and units with exact factors, and the units that rulebooks normally use."""
+"""Dimensions, units with exact factors, and a table of the units that rulebooks usually need."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from types import MappingProxyType
 class Dimension:
     """Physical dimension: a product of powers of base dimensions.
 
-    Length × 1/time is speed, the empty product a number.
+    Speed is length × 1/time; a plain number is the empty product.
 
-    ``exponents`` are pairs of a base dimension and its power, in any order; they are kept sorted,
-    one for each base and none of zero, so that equal dimensions are equal values.
+    ``exponents`` are pairs of a base dimension and its power, in any order. They are stored sorted,
+    with one pair per base and no zero powers, so that equal dimensions compare equal.
     """
 
     exponents: tuple[tuple[str, int], ...] = ()
@@ -29,7 +29,7 @@ class Dimension:
 
     @classmethod
     def of(cls, **powers: int) -> Dimension:
-        """``Dimension.of(length=1, time=-1)`` is speed."""
+        """The dimension with these powers: ``Dimension.of(length=1, time=-1)`` is speed."""
         return cls(tuple(powers.items()))
 
     def __mul__(self, other: Dimension) -> Dimension:
@@ -43,7 +43,7 @@ class Dimension:
 
     @property
     def name(self) -> str:
-        """In words: ``speed``; if it has none, as units are written: ``length^2/time``."""
+        """Its English name (``speed``), or a formula such as ``length^2/time`` if it has none."""
         if self in _NAMES:
             return _NAMES[self]
         above = [_power(base, power) for base, power in self.exponents if power > 0]
@@ -59,8 +59,8 @@ NUMBER = Dimension()
 LENGTH = Dimension.of(length=1)
 TIME = Dimension.of(time=1)
 MASS = Dimension.of(mass=1)
-# Angles in degrees and angles in radians are two dimensions: the ratio, π/180, is no fraction, and
-# numbers of rulebooks are compared exactly.
+# Angles in degrees and in radians are two dimensions: their ratio, π/180, is irrational, and
+# numbers in rulebooks are compared exactly.
 ANGLE = Dimension.of(angle=1)
 ANGLE_IN_RADIANS = Dimension.of(radian=1)
 SPEED = LENGTH / TIME
@@ -83,7 +83,7 @@ DIMENSIONS: Mapping[str, Dimension] = MappingProxyType(
         "frequency": FREQUENCY,
     }
 )
-"""The names of dimensions that a rulebook may write."""
+"""The names of dimensions that can be used in a rulebook."""
 
 _NAMES: dict[Dimension, str] = {
     # `distance` and `duration` come second, so that the names shown are `length` and `time`.
@@ -101,7 +101,7 @@ _NAMES: dict[Dimension, str] = {
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """Unit as written, with its exact size in base units.
+    """A unit as written, with its exact size in base units.
 
     The base units are metre, second, kilogram, degree (radian for angles in radians), kelvin,
     ampere, mole, candela, bit and pixel.
@@ -114,15 +114,15 @@ class Unit:
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """Reason why a known unit is refused, and its replacement."""
+    """Why a known unit cannot be used, and what to write instead."""
 
     text: str
     why: str
     instead: str
 
 
-# Spelled as Pint spells them: reading `km/h` does not take loading Pint and its registry, a quarter
-# of a second. Every row equals what Pint says; a test compares them.
+# Pint's spellings and sizes (a test compares every row with Pint). With this table, reading `km/h`
+# does not load Pint and its registry, which takes a quarter of a second.
 _ROWS: tuple[tuple[Dimension, str, str], ...] = (
     (LENGTH, "1", "m meter meters metre metres"),
     (LENGTH, "1000", "km kilometer kilometers kilometre kilometres"),
@@ -163,10 +163,10 @@ UNITS: Mapping[str, Unit] = MappingProxyType(
         for name in names.split()
     }
 )
-"""The common units without powers and divisions, by the name."""
+"""Common unit names without powers or divisions -> the unit."""
 
 COMPOSITE = ("km/h", "m/s", "m/s^2", "ft/s")
-"""Composed units that people most often mean when they mistype one."""
+"""Composed units, suggested when an unknown unit looks like a typing error."""
 
 _TON = (
     "a ton is 1000 kg, 2000 lb or 2240 lb, according to the country",
@@ -176,4 +176,4 @@ _TON = (
 REFUSED: Mapping[str, Refusal] = MappingProxyType(
     {name: Refusal(name, *_TON) for name in ("ton", "tons")}
 )
-"""Names that mean different units to different readers."""
+"""Unit names that mean different sizes to different readers."""

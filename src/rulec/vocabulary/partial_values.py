@@ -1,4 +1,4 @@
-"""Values that are not, or not exactly, known."""
+"""Values that are unknown or known only within bounds."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class UnknownValue(Enum):
     def __repr__(self) -> str:
         return "UNKNOWN"
 
-    # It is part of many keys, and an enumeration hashes its members' names anew each time.
+    # UNKNOWN is in many dictionary keys, and Enum hashes a member's name again on every call.
     __hash__ = object.__hash__
 
     def __bool__(self) -> bool:
@@ -25,21 +25,21 @@ class UnknownValue(Enum):
 
 
 UNKNOWN: Final = UnknownValue.UNKNOWN
-"""A value that the source cannot tell: any that its declaration and what else is known allow."""
+"""A value that the source does not provide: any that its declaration and the other values allow."""
 
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """A number known to lie between two others, bounds included.
+    """A number known to lie between two bounds, inclusive.
 
-    Raises ValueError if the bounds are not finite and in order.
+    Raises ValueError if the bounds are not finite or not in order.
     """
 
     low: float
     high: float
 
     def __post_init__(self) -> None:
-        # Graphs of many cells have ten thousands of them
+        # Fast path: large graphs have tens of thousands of intervals
         if type(self.low) is not float or type(self.high) is not float:
             expected("low", "float", self.low)
             expected("high", "float", self.high)
@@ -48,20 +48,20 @@ class Interval:
 
     @property
     def middle(self) -> float:
-        """The number half-way between the bounds, with no more decimals than it takes."""
+        """The midpoint of the bounds, rounded to nine decimals if that stays within them."""
         middle = (self.low + self.high) / 2
         short = round(middle, 9)
         return short if self.low <= short <= self.high else middle
 
     @property
     def error(self) -> float:
-        """How far the middle may be wrong."""
+        """The largest possible error of ``middle``: half the width."""
         return (self.high - self.low) / 2
 
 
 @dataclass(frozen=True, slots=True)
 class OneOf:
-    """A value of an enumeration known to be one of several, as in a cell of a graph."""
+    """An enumeration's value, known only to be one of ``values``, as in a cell of a graph."""
 
     values: frozenset[str]
 
@@ -70,4 +70,4 @@ UNKNOWN_TYPES = frozenset({UnknownValue, Interval, OneOf})
 
 Unknown = Literal[UnknownValue.UNKNOWN]
 PartialValue = bool | float | str | Unknown | Interval | OneOf
-"""What a state may say of a name: a value, what it is among or between, or that it is unknown."""
+"""What a state can give for a name: a value, a range or set that contains it, or UNKNOWN."""

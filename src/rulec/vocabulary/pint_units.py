@@ -1,4 +1,4 @@
-"""All other units: the Pint library's, exactly."""
+"""Units that are not in the table of common ones, read exactly from the Pint library."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from rulec.vocabulary.dimensions import REFUSED, Dimension, Refusal, Unit
 if TYPE_CHECKING:
     from pint import UnitRegistry
 
-# Pint rounds these to 50 digits. As root units of their own they show in every unit that is made of
-# them, so that nothing rounded passes for exact.
+# Pint rounds these to 50 digits. Defined as root units, they remain visible in every unit derived
+# from them, so that a rounded size cannot pass for an exact one.
 _IRRATIONAL = ("pi", "tansec", "ln10", "wien_x", "wien_u", "eulers_number")
 
 _BASES = {
@@ -36,9 +36,9 @@ _PLAIN_NUMBERS = ("count", "refractive_index_unit", "absorbance_unit")
 
 @lru_cache(maxsize=256)
 def pint_unit(name: str) -> Unit | Refusal | None:
-    """The unit that Pint knows as ``name``; None if unknown.
+    """Pint's unit ``name``, a name without powers or divisions; None if Pint does not know it.
 
-    ``name`` has no powers and no divisions.
+    A Refusal if Pint knows it but it is not an exact multiple of base units.
     """
     registry = _registry()
     if registry is None:
@@ -54,7 +54,7 @@ def pint_unit(name: str) -> Unit | Refusal | None:
             registry.Quantity(Fraction(n), name).to_root_units() for n in (0, 1, 2)
         )
     except Exception:
-        # Each kind of scale fails in its own way: logarithms, for one, do not take fractions.
+        # Each kind of scale fails differently: logarithms, for example, do not accept fractions.
         return _no_multiple(name)
     factor: Any = single.magnitude
     if not isinstance(factor, Fraction) or zero_units.magnitude or double.magnitude != 2 * factor:
@@ -64,7 +64,7 @@ def pint_unit(name: str) -> Unit | Refusal | None:
 
 @lru_cache(maxsize=1)
 def _registry() -> UnitRegistry[Any] | None:
-    """Pint's registry of units; None where Pint is missing or broken."""
+    """Pint's registry of units; None if Pint is missing or broken."""
     try:
         from importlib.resources import files  # 0.2 s, only for rare units
 
@@ -87,7 +87,7 @@ def _no_multiple(name: str) -> Refusal:
 
 
 def _exact(name: str, factor: Fraction, roots: dict[str, Any]) -> Unit | Refusal:
-    """The unit ``factor`` × powers of Pint's ``roots``, in base units."""
+    """The unit of size ``factor`` × powers of Pint's ``roots``, converted to base units."""
     powers = {root: Fraction(power) for root, power in roots.items()}
     for number in _PLAIN_NUMBERS:
         powers.pop(number, None)

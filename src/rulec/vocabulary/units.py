@@ -1,7 +1,7 @@
-"""Units of measure as rulebooks write them: `m`, `km/h`, `m/s^2`, `%`.
+"""Units of measure as written in rulebooks: `m`, `km/h`, `m/s^2`, `%`.
 
-Names and sizes are Pint's (case matters), exact as fractions. The common ones are in a table; Pint
-is loaded for the others only.
+Names and sizes are Pint's (case matters), with sizes as exact fractions. Common units come from a
+table; Pint is loaded only for others.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from fractions import Fraction
 from rulec.vocabulary.dimensions import COMPOSITE, NUMBER, REFUSED, UNITS, Refusal, Unit
 from rulec.vocabulary.pint_units import pint_unit
 
-# Pint's longest name has 41 letters; the limits keep hostile texts from costing time.
+# Pint's longest name has 41 letters; the limits keep hostile input from taking long.
 _LONGEST = 64
 _HIGHEST_POWER = 9
 
@@ -22,41 +22,45 @@ _FROM_RAISED = str.maketrans(_RAISED, "0123456789")
 
 
 def parse_unit(text: str) -> Unit | None:
-    """Parse a unit: `%`, `°`, or names with powers and divisions.
+    """Parse a unit: `%`, `°`, or names with integer powers, divided by `/`.
 
-    Powers are integers; names are chained by `/`.
-
-    `a/b/c` is `a/(b*c)`; `m²` is `m^2`. None if it is unknown, and if it is known but no exact
-    multiple of the base units, or not one unit only; `unit_refusal` then says why.
+    `a/b/c` is `a/(b*c)`; `m²` is `m^2`. None if the unit is unknown, or known but refused (not an
+    exact multiple of base units, or ambiguous); `unit_refusal` then gives the reason.
     """
     read = _read(text)
     return read if isinstance(read, Unit) else None
 
 
 def unit_refusal(text: str) -> Refusal | None:
-    """Reason why a known unit cannot be used (`degC`); otherwise None."""
+    """Why a known unit such as `degC` cannot be used; None if it can, or if it is unknown."""
     read = _read(text)
     return read if isinstance(read, Refusal) else None
 
 
 def known_unit_names() -> tuple[str, ...]:
-    """The common units, for "did you mean"; Pint knows a thousand more."""
+    """The common units, for "did you mean"; Pint knows about a thousand more."""
     return (*COMPOSITE, *UNITS)
 
 
 _KM_AN_HOUR = re.compile("km/?(t|tim|u|st|std|ч|год)", re.IGNORECASE)
-"""As where an hour is `time`, `uur`, `Stunde`; `t` and `u` alone are units of mass."""
+"""Kilometres per hour in languages where an hour is `time`, `uur` or `Stunde`.
+
+`t` and `u` alone are units of mass.
+"""
 
 
 def hour_in_another_language(text: str) -> str:
-    """Way out for a unit that says an hour in the letters of another language, as `km/t`."""
+    """Help text for km/h written with another language's abbreviation of hour, as `km/t`.
+
+    Else empty.
+    """
     return "an hour is `h`: did you mean `km/h`?" if _KM_AN_HOUR.fullmatch(text) else ""
 
 
 def _read(text: str) -> Unit | Refusal | None:
     if len(text) > _LONGEST:
         return None
-    if text in UNITS:  # also `%` and `°`, which cannot be parts of a chain
+    if text in UNITS:  # includes `%` and `°`, which cannot be part of a composed unit
         return UNITS[text]
     dimension, factor = NUMBER, Fraction(1)
     refused: Refusal | None = None

@@ -1,4 +1,4 @@
-"""The vocabulary as resolved data."""
+"""The vocabulary after name resolution."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from rulec.value_display import short_repr
 
 @dataclass(frozen=True, slots=True)
 class ObjectType:
-    """Type of traffic participant, perhaps a subtype of another one.
+    """Type of traffic participant; a subtype of ``parent`` if that is given.
 
-    Every object of it is also one of ``parent``.
+    Every object of a type is also an object of its parent.
     """
 
     name: str
@@ -25,10 +25,10 @@ class ObjectType:
 
 @dataclass(frozen=True, slots=True)
 class Enumeration:
-    """State, global or per object, with one of ``values`` at a time.
+    """A variable, global or per object, that has exactly one of ``values`` at a time.
 
-    ``parameters`` are the names of the object types it is about: none for a global one. Every value
-    is an atom of the language, so values are unique within a vocabulary.
+    ``parameters`` are the object types of its arguments, empty for a global one. Every value is an
+    atom of the language, so values are unique within a vocabulary.
     """
 
     name: str
@@ -52,7 +52,7 @@ class Signal:
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """Number with a unit (as written, ``km/h``), global or per object."""
+    """A number with a unit as written (``km/h``), global or per object."""
 
     name: str
     parameters: tuple[str, ...]
@@ -63,8 +63,11 @@ class Quantity:
 
 
 Declaration = Enumeration | Signal | Quantity
-"""What can be said of a state. ``constant``: it stays the same as long as a trace goes on.
-``presumed``: where no source tells it, its default holds, and verdicts name it."""
+"""Something that states give values for.
+
+``constant``: the value never changes within a trace. ``presumed``: where no source provides the
+value, the default holds and verdicts mention it.
+"""
 
 
 def values_of(declaration: Declaration) -> tuple[str, ...] | tuple[bool, ...]:
@@ -73,12 +76,12 @@ def values_of(declaration: Declaration) -> tuple[str, ...] | tuple[bool, ...]:
 
 
 def least_value(declaration: Declaration) -> bool | float | str:
-    """The first value, or zero."""
+    """The first value of an enumeration, False for a signal, 0 for a quantity."""
     return 0.0 if isinstance(declaration, Quantity) else values_of(declaration)[0]
 
 
 def default_value(declaration: Declaration) -> bool | float | str:
-    """The default, or else the least value."""
+    """The declared default, or ``least_value`` if there is none."""
     return least_value(declaration) if declaration.default is None else declaration.default
 
 
@@ -92,7 +95,7 @@ class Vocabulary:
     types: Mapping[str, ObjectType] = field(default_factory=lambda: MappingProxyType({}))
     declarations: Mapping[str, Declaration] = field(default_factory=lambda: MappingProxyType({}))
     implied: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: MappingProxyType({}))
-    """Signal -> those of the same objects that facts say it implies, where a state has none."""
+    """Signal -> signals of the same objects that facts say it implies, where a state omits them."""
 
     def __reduce__(self) -> tuple[type[Vocabulary], tuple[object, ...]]:
         # Read-only views of dictionaries cannot be pickled.
@@ -101,7 +104,7 @@ class Vocabulary:
 
     @cached_property
     def enumeration_of(self) -> Mapping[str, Enumeration]:
-        """Value name -> the enumeration it belongs to."""
+        """Each enumeration value's name -> its enumeration."""
         return {
             value: item
             for item in self.declarations.values()
@@ -111,7 +114,7 @@ class Vocabulary:
 
     @cached_property
     def constants(self) -> tuple[str, ...]:
-        """The names whose values stay the same as long as a trace goes on."""
+        """The names whose values never change within a trace."""
         return tuple(name for name, item in self.declarations.items() if item.constant)
 
     def ancestors(self, type_name: str) -> Iterator[str]:
@@ -122,7 +125,7 @@ class Vocabulary:
             current = self.types[current].parent
 
     def is_subtype(self, type_name: str, of: str) -> bool:
-        """Tell whether every ``type_name`` is also an ``of``: never, where it is not declared."""
+        """Whether every ``type_name`` is also an ``of``; False if ``type_name`` is not declared."""
         return of in self._above.get(type_name, ())
 
     @cached_property
@@ -133,14 +136,13 @@ class Vocabulary:
 def choices(
     types: Sequence[str], objects: Mapping[str, str], vocabulary: Vocabulary, whose: str = ""
 ) -> Iterator[tuple[str, ...]]:
-    """All choices of distinct objects for the types.
+    """All choices of distinct objects, one of each of the ``types``.
 
-    ``objects`` maps each object to its type.
+    ``objects`` maps each object to its type. Objects of a subtype fit, too. For no types there is
+    one choice, the empty one.
 
-    An object of a subtype fits, too. Of no types there is one choice, the empty one.
-
-    Raises RulecError R0718, which names ``whose`` they are, if there are more than the limit
-    `choices`.
+    Raises RulecError R0718 if there are more than the limit `choices`; the message names ``whose``
+    choices they are.
     """
     if len(types) > 1:
         CHOICES.within(number_of_choices(types, objects, vocabulary), None, whose)
@@ -163,11 +165,11 @@ def fitting_objects(
 def number_of_choices(
     types: Sequence[str], objects: Mapping[str, str], vocabulary: Vocabulary
 ) -> int:
-    """How many ``choices`` there are, without going through them.
+    """The number of ``choices``, computed without enumerating them.
 
-    Types are a forest, so what fits one is all, some or none of what fits another. Where the
-    narrower ones choose first, each has taken one from whatever is above it. Nothing is of a type
-    that is not declared, such as one in a vocabulary with mistakes.
+    Types form a forest, so the objects of one type contain, are among, or are disjoint from those
+    of another. If narrower types choose first, each has used up one object of every type above it.
+    A type that is not declared, as in a vocabulary with mistakes, has no objects.
     """
     if not vocabulary.types.keys() >= set(types):
         return 0

@@ -1,6 +1,6 @@
-"""Numbers that count as they are written, also where no float stands for them.
+"""Decimal numbers that keep their exact value even where no float represents them.
 
-A float stands for the decimal that Python writes for it, the shortest that is nearest to it. Most
+A float represents the decimal that Python prints for it: the shortest one nearest to it. Most
 numbers in files are such decimals.
 """
 
@@ -12,16 +12,20 @@ from fractions import Fraction
 from typing import Any
 
 _FEW_DIGITS = 15
-"""Of so many digits every decimal that is neither huge nor tiny is a float's own."""
+"""A decimal of at most this many digits is what Python prints for its float.
+
+Huge and tiny ones excepted.
+"""
 
 _MOST_DIGITS = 1000
-"""Digits, and powers of ten below 1, of a number that is read exactly."""
+"""Largest number of digits, and of decimal places before the first digit, that is read exactly."""
 
 
 class WrittenNumber(float):
-    """A number that no float stands for: ``exact``, and as a float the nearest one.
+    """A number that no float represents: its ``exact`` value and, as a float, the nearest one.
 
-    It equals what is exactly so large; nothing that a float stands for is.
+    It equals integers, fractions and other such numbers of the same exact value, but never a plain
+    float.
     """
 
     __slots__ = ("exact", "text")
@@ -29,7 +33,7 @@ class WrittenNumber(float):
     text: str
 
     def __new__(cls, exact: Fraction, text: str = "") -> WrittenNumber:
-        """The number, and how it was written, if it was. OverflowError if it is too large."""
+        """The number, with the text it was written as, if any. OverflowError if it is too large."""
         self = super().__new__(cls, exact)
         self.exact = exact
         self.text = text or float.__repr__(self)
@@ -52,7 +56,7 @@ class WrittenNumber(float):
         return False
 
     def __ne__(self, other: object) -> bool:
-        return not self == other  # float's own would compare the nearest ones
+        return not self == other  # float's own would compare the nearest floats
 
     def __lt__(self, other: Any) -> bool:
         return bool(self.exact < _exact(other))
@@ -71,7 +75,7 @@ class WrittenNumber(float):
 
     @property
     def neighbours(self) -> tuple[float, float]:
-        """The two floats next to each other between whose decimals it lies."""
+        """The two adjacent floats whose decimals enclose this number."""
         near = float(self)
         if _exact(near) < self.exact:
             return near, math.nextafter(near, math.inf)
@@ -93,9 +97,9 @@ def number_of(exact: Fraction) -> float:
 
 
 def number_written(text: str) -> float:
-    """The number that a decimal says, infinite if it is too large.
+    """The number that a decimal text represents; infinite if it is too large.
 
-    Raises ValueError if it has too many digits, or is too near to 0.
+    Raises ValueError if it has too many digits or is too close to 0.
     """
     number = float(text)
     if len(text) <= _FEW_DIGITS and "e" not in text and "E" not in text:
