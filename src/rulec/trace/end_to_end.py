@@ -1,7 +1,7 @@
-"""Drives laid end to end in arrays with a column per state: what looks back or ahead stays in one.
+"""Drives laid end to end in arrays with a column per state, and operations that respect their ends.
 
-Everything that is said of a single state is said of all of them by the same calls. Only what looks
-at other states has to know where a drive begins and ends; for one drive that is the whole array.
+What concerns single states is computed for all drives by the same calls. Only operations that look
+at other states need to know where a drive begins and ends; a single drive fills the whole array.
 """
 
 from __future__ import annotations
@@ -20,36 +20,36 @@ _Columns = NDArray[intp]
 
 
 class UnlikeDrivesError(Exception):
-    """Drives that say different names are not laid end to end."""
+    """Drives that provide different names: they cannot be laid end to end."""
 
 
 @dataclass(frozen=True, eq=False)
 class EndToEnd:
-    """Where drives are in ``n_states`` columns, the last axis of arrays; each begins at a bound.
+    """Where each drive lies in the ``n_states`` columns, the last axis of arrays.
 
-    ``bounds`` are where they begin, and where the last one ends.
+    ``bounds`` are the columns where the drives begin, and the end of the last one.
     """
 
     bounds: Sequence[int]
 
     @staticmethod
     def of_one(n_states: int) -> EndToEnd:
-        """One drive."""
+        """The columns of a single drive."""
         return EndToEnd((0, n_states))
 
     @property
     def n_drives(self) -> int:
-        """How many drives there are."""
+        """The number of drives."""
         return len(self.bounds) - 1
 
     @property
     def n_states(self) -> int:
-        """How many states they have together."""
+        """The number of states of all drives together."""
         return self.bounds[-1]
 
     @cached_property
     def slices(self) -> tuple[slice, ...]:
-        """The columns of each."""
+        """The columns of each drive."""
         return tuple(map(slice, self.bounds[:-1], self.bounds[1:]))
 
     @cached_property
@@ -69,7 +69,7 @@ class EndToEnd:
 
     @cached_property
     def number(self) -> _Columns:
-        """The number of the drive, by column."""
+        """The index of the drive, by column."""
         return np.arange(self.n_drives).repeat(self.lengths)
 
     @cached_property
@@ -79,19 +79,22 @@ class EndToEnd:
 
     @cached_property
     def end(self) -> _Columns:
-        """The column behind the last one of the drive, by column."""
+        """The column after the drive's last one, by column."""
         return self.spread(self.begins + self.lengths)
 
     @cached_property
     def begins_here(self) -> _Flags:
-        """Flags of the columns in which drives begin."""
+        """Mask of the columns in which drives begin."""
         flags = np.zeros(self.n_states, dtype=bool)
         flags[self.begins] = True
         return flags
 
     def latest(self, flags: _Flags) -> _Columns:
-        """The last state up to each in which a flag holds; the one before the drive for none."""
-        # What is between two flags is sooner laid out than found state by state
+        """For each state the column of the last state, up to it, where a flag holds.
+
+        If there is none in its drive, the column before the drive.
+        """
+        # Repeating a value for each gap between flags is faster than searching state by state
         edges = np.concatenate(((-1,), flags.ravel().nonzero()[0], (flags.size,)))
         lengths = edges[1:] - edges[:-1]
         lengths[0] -= 1
@@ -99,13 +102,13 @@ class EndToEnd:
         return np.maximum(latest, self.first - 1, out=latest)
 
     def next_state(self, flags: _Flags, beyond: int = 0) -> _Columns:
-        """The first state from each on in which a flag holds.
+        """For each state the column of the first state, from it on, where a flag holds.
 
-        For none it is the one behind the drive, and so many ``beyond``.
+        If there is none in its drive, the column after the drive's last one plus ``beyond``.
         """
         edges = np.concatenate(((-1,), flags.ravel().nonzero()[0], (flags.size - 1,)))
         lengths = edges[1:] - edges[:-1]
-        # Behind the last flag none is before any end
+        # After the last flag: larger than every drive's end
         edges[-1] += self.n_states + 1
         states = self._in_rows(edges[1:].repeat(lengths), flags)
         if beyond:
@@ -113,14 +116,14 @@ class EndToEnd:
         return np.minimum(states, self.end, out=states)
 
     def _in_rows(self, places: NDArray[intp], flags: _Flags) -> _Columns:
-        """Columns in each row, of places in all rows laid flat."""
+        """Columns within each row, from indices in the flattened array."""
         if flags.ndim == 1:
             return places
         begins = np.arange(0, flags.size, self.n_states).reshape(*flags.shape[:-1], 1)
         return places.reshape(flags.shape) - begins
 
     def within(self, flags: _Flags, steps: int, *, around: bool = False) -> _Flags:
-        """Flags that hold at a state or at most ``steps`` states later, or also earlier."""
+        """Mask of states where a flag holds then or up to ``steps`` later, or also earlier."""
         if not flags.any():
             return flags
         soon: _Flags = flags & (steps >= 0)
@@ -129,14 +132,14 @@ class EndToEnd:
         return soon | self.within_last(flags, steps) if around else soon
 
     def within_last(self, flags: _Flags, steps: int) -> _Flags:
-        """Flags that hold at a state or at most ``steps`` states before it."""
+        """Mask of states where a flag holds then or up to ``steps`` states earlier."""
         held: _Flags = flags & (steps >= 0)
         for shift, is_inside in self._shifts(steps):
             held[..., shift:] |= held[..., :-shift] & is_inside
         return held
 
     def most_of_last(self, values: NDArray[Any], steps: int) -> NDArray[Any]:
-        """The greatest value at a state and at most ``steps`` states before it."""
+        """The greatest value at each state and up to ``steps`` states before it."""
         most: NDArray[Any] = values.copy()
         for shift, is_inside in self._shifts(steps):
             earlier, later = most[..., :-shift], most[..., shift:]
@@ -144,11 +147,13 @@ class EndToEnd:
         return most
 
     def _shifts(self, steps: int) -> Iterator[tuple[int, _Flags]]:
-        """Shifts that join each state with so many to one side of it, each twice as many as before.
+        """Shifts that together join each state with ``steps`` states on one side of it.
 
-        With flags of pairs of columns so far apart that are of one drive.
+        Each doubles.
+
+        With each comes a mask of the pairs of columns that far apart that belong to the same drive.
         """
-        # Who looks farther than the longest drive sees no more
+        # A window longer than the longest drive adds nothing
         count, wanted = 1, min(steps, int(self.lengths.max()) - 1) + 1
         while count < wanted:
             shift = min(count, wanted - count)
@@ -156,14 +161,14 @@ class EndToEnd:
             count += shift
 
     def before(self, values: NDArray[Any]) -> NDArray[Any]:
-        """The values one state before, in a drive's first state its own."""
+        """Each state's value one state earlier; in a drive's first state its own value."""
         shifted = np.empty_like(values)
         shifted[..., 1:] = values[..., :-1]
         shifted[..., self.begins] = values[..., self.begins]
         return shifted
 
     def after(self, values: NDArray[Any]) -> NDArray[Any]:
-        """The values one state later, in a drive's last state its own."""
+        """Each state's value one state later; in a drive's last state its own value."""
         shifted = np.empty_like(values)
         shifted[..., :-1] = values[..., 1:]
         last = self.begins[1:] - 1
@@ -172,25 +177,31 @@ class EndToEnd:
         return shifted
 
     def enters(self, flags: _Flags) -> _Flags:
-        """Flags of states in which a flag holds that did not one state before."""
+        """Mask of states where a flag holds that did not one state earlier.
+
+        Never a drive's first state.
+        """
         entered: _Flags = flags & ~self.before(flags)
         return entered
 
     def changes(self, values: NDArray[Any]) -> _Flags:
-        """Flags of states in which a value is another one than one state before."""
+        """Mask of states whose value differs from the previous state's.
+
+        Never a drive's first state.
+        """
         changed: _Flags = values != self.before(values)
         return changed
 
     def any(self, flags: _Flags) -> _Flags:
-        """Whether a flag holds in any state of a drive, in all its columns."""
+        """Whether a flag holds in any state of a drive, by column."""
         return self.spread(np.logical_or.reduceat(flags, self.begins, axis=-1))
 
     def all(self, flags: _Flags) -> _Flags:
-        """Whether a flag holds in all states of a drive, in all its columns."""
+        """Whether a flag holds in all states of a drive, by column."""
         return self.spread(np.logical_and.reduceat(flags, self.begins, axis=-1))
 
     def count_of_last(self, flags: _Flags, steps: int) -> _Columns:
-        """In how many of so many states up to each, it among them, a flag holds."""
+        """In how many of the ``steps`` states up to and including each one a flag holds."""
         sums = np.zeros((*flags.shape[:-1], self.n_states + 1), dtype=intp)
         flags.cumsum(axis=-1, out=sums[..., 1:])
         since = np.maximum(self.columns + 1 - steps, self.first)
@@ -198,22 +209,22 @@ class EndToEnd:
         return counts
 
     def each(self, function: Callable[[slice], NDArray[Any]], axis: int = -1) -> NDArray[Any]:
-        """What a function finds for the columns of each drive, laid end to end."""
+        """A function's results for the columns of each drive, concatenated."""
         results = [function(columns) for columns in self.slices]
         return results[0] if len(results) == 1 else np.concatenate(results, axis=axis)
 
     def agreed(self, flags: Sequence[Any]) -> bool:
-        """A flag that all drives share. Raises UnlikeDrivesError if they do not."""
+        """The flag's value that all drives share. Raises UnlikeDrivesError if they differ."""
         values = {bool(flag) for flag in flags}
         if len(values) > 1:
             raise UnlikeDrivesError
         return values.pop()
 
     def spread(self, values: Sequence[Any] | NDArray[Any]) -> NDArray[Any]:
-        """A value for each drive, in all its columns."""
+        """Values of the drives, repeated in all columns of each."""
         return np.asarray(values).repeat(self.lengths, axis=-1)
 
     def those(self, drives: _Flags) -> Iterator[tuple[int, slice]]:
-        """The numbers and the columns of some drives, flagged by column."""
+        """The index and the columns of each drive marked in ``drives``, a mask by column."""
         for number in drives[self.begins].nonzero()[0].tolist():
             yield number, self.slices[number]

@@ -1,4 +1,4 @@
-"""Values told apart by identity, where equal ones are one object."""
+"""Keys that compare values by identity, for values that exist once."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Interned(Generic[T]):
-    """A key that equals those of the same object, which it keeps alive.
+    """A key equal to other keys of the very same object, which it keeps alive.
 
-    It takes no look into the value: to hash a layer of a graph by its nodes takes long.
+    The value is never inspected: hashing a layer of a graph by its nodes would take long.
     """
 
     value: T

@@ -1,4 +1,4 @@
-"""Several ranges of columns of arrays laid out one behind the other, as drives are looked at."""
+"""Several column ranges of arrays, placed side by side."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
 _SHORT = 48
-"""Columns of ranges that are shorter are picked one by one, others, and one, range by range."""
+"""Ranges of fewer columns (on average) are gathered column by column; longer ones are sliced."""
 
 _LONG = 200
-"""Of ranges that are longer those who are absent are found for each by itself."""
+"""Ranges of more columns (on average) have absent rows blanked range by range, not by a mask."""
 
 
 @dataclass(frozen=True, eq=False)
 class LaidOut:
-    """Some rows of arrays in several ranges of columns, one behind the other.
+    """Some rows of arrays in several column ranges, placed side by side.
 
-    ``absent`` are flags of who is so from a whole range, by row and column of what is laid out.
+    ``absent`` is a mask, by row and column of the result, of participants absent from a whole
+    range.
     """
 
     rows: NDArray[intp]
@@ -31,10 +32,10 @@ class LaidOut:
     absent: NDArray[bool_]
 
     def __call__(self, values: NDArray[Any]) -> NDArray[Any]:
-        """An array's part.
+        """An array's part in these rows and ranges.
 
-        Flags are false, sets empty and measures NaN for who is absent; a third axis stays the first
-        in memory.
+        Where a participant is absent, flags are False, sets empty and measures NaN. A third axis
+        stays first in memory.
         """
         by_lane = values.transpose(2, 0, 1) if values.ndim > 2 else values[None]
         own = by_lane.take(self.rows, axis=1)
@@ -49,11 +50,11 @@ class LaidOut:
         return own_part
 
     def of_rows(self, rows: NDArray[intp]) -> LaidOut:
-        """Some of the rows."""
+        """The same ranges of some of the rows."""
         return LaidOut(self.rows[rows], self.ranges, self.absent[rows])
 
     def at_third(self, places: NDArray[intp], *arrays: NDArray[float64]) -> list[NDArray[float64]]:
-        """Parts of arrays with one place of the third axis, by column; NaN as above."""
+        """Parts of 3-D arrays at one index of the third axis by column; NaN where absent."""
         n_rows, n_columns, _ = arrays[0].shape
         at = (places * n_rows + self.rows[:, None]) * n_columns + self.columns
         parts = [values.transpose(2, 0, 1).take(at) for values in arrays]
@@ -76,7 +77,7 @@ class LaidOut:
 
     @cached_property
     def _absent_in(self) -> list[tuple[slice, NDArray[intp]]]:
-        """The columns of each range in what is laid out, and who is absent from it."""
+        """Each range's columns in the result, and the rows that are absent from it."""
         bounds = np.cumsum([0, *(own.stop - own.start for own in self.ranges)]).tolist()
         return [
             (slice(begin, end), self.absent[:, begin].nonzero()[0])
@@ -92,7 +93,7 @@ def columns_of(ranges: Sequence[slice]) -> NDArray[intp]:
 def one_behind_the_other(
     values: NDArray[Any], ranges: Sequence[slice], columns: NDArray[intp]
 ) -> NDArray[Any]:
-    """An array's part in ranges of its last axis, whose ``columns`` are these."""
+    """An array's part in ``ranges`` of its last axis; ``columns`` are all their columns."""
     if len(ranges) > 1 and len(columns) < _SHORT * len(ranges):
         return values.take(columns, axis=-1)
     return np.concatenate([values[..., own] for own in ranges], axis=-1)

@@ -1,4 +1,7 @@
-"""What NumPy does slowly: functions for which it loads its masked arrays, and memory for arrays."""
+"""Replacements for slow NumPy functions, and reuse of freed memory.
+
+Some of NumPy's functions load its masked arrays.
+"""
 
 from __future__ import annotations
 
@@ -14,32 +17,32 @@ _Number = TypeVar("_Number", bound=np.generic)
 _INT16_MAX = np.iinfo(np.int16).max
 
 _MOST_EMPTY = 8
-"""Rows of groups, and tables of numbers, may take so many times the room of their values."""
+"""Padded rows, and tables of numbers, may be at most this many times the size of their values."""
 
 _MOST_KEPT_BYTES = 31 << 20
-"""A little less than glibc's greatest threshold."""
+"""Just below glibc's greatest threshold."""
 
 
 @cache
 def keep_freed_memory() -> None:
-    """Let what is freed be kept for the arrays that come next, once in a process.
+    """Make the C library keep freed memory for later arrays; takes effect once per process.
 
-    The C library of Linux gives back to the system what is free beyond a threshold, and to take it
-    again, page by page, is slow: it was a twelfth of the time of scores. It raises the threshold
-    when so much is freed at once, of which nothing is ever written.
+    On Linux it returns free memory beyond a threshold to the system, and getting it back page by
+    page is slow: that took a twelfth of the time of scoring. Freeing one large block, never written
+    to, raises the threshold.
     """
     np.empty(_MOST_KEPT_BYTES, dtype=np.uint8)
 
 
 def distinct(values: NDArray[_Number]) -> NDArray[_Number]:
-    """The different numbers in an array, ascending; without NaN."""
+    """The distinct numbers in an array without NaN, ascending."""
     ascending = values.flatten()
     ascending.sort()
     return ascending[are_new(ascending)]
 
 
 def are_new(ascending: NDArray[Any]) -> NDArray[np.bool_]:
-    """Flags of the first ones of those that are equal."""
+    """Mask of the first of each run of equal values in a sorted array."""
     are_new = np.empty(len(ascending), dtype=bool)
     are_new[:1] = True
     np.not_equal(ascending[1:], ascending[:-1], out=are_new[1:])
@@ -47,12 +50,12 @@ def are_new(ascending: NDArray[Any]) -> NDArray[np.bool_]:
 
 
 def zero_if_nan(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The numbers, all finite, with 0 for NaN; NumPy's ``nan_to_num`` takes four times as long."""
+    """The finite numbers, with 0 for NaN; NumPy's ``nan_to_num`` takes four times as long."""
     return np.where(np.isnan(values), 0.0, values)
 
 
 def begin_runs(ascending: NDArray[np.intp]) -> NDArray[np.bool_]:
-    """Flags of those of ascending whole numbers that are no one more than the one before."""
+    """Mask of where runs of consecutive numbers begin in ascending whole numbers."""
     begin = np.empty(len(ascending), dtype=bool)
     begin[:1] = True
     np.greater(ascending[1:] - ascending[:-1], 1, out=begin[1:])
@@ -60,9 +63,9 @@ def begin_runs(ascending: NDArray[np.intp]) -> NDArray[np.bool_]:
 
 
 def places_among(values: NDArray[_Number]) -> NDArray[np.intp]:
-    """The place of each number of an array among the different ones, ascending; without NaN."""
+    """The index of each number of an array among its distinct ones, ascending; without NaN."""
     if values.dtype.kind in "iu" and len(values) and values.min() >= 0:
-        # Small whole numbers need no order
+        # Small whole numbers can be ranked without sorting
         numbers = values.astype(np.intp)
         n_numbers = int(numbers.max()) + 1
         if n_numbers <= _MOST_EMPTY * len(numbers):
@@ -73,7 +76,7 @@ def places_among(values: NDArray[_Number]) -> NDArray[np.intp]:
 
 
 def median(values: NDArray[Any]) -> float:
-    """The median of the numbers in an array, of which there is one at least; NaN if one is."""
+    """The median of a non-empty array; NaN if it contains NaN."""
     ascending = np.sort(values, axis=None)
     middle = len(ascending) // 2
     if np.isnan(ascending[-1]):
@@ -82,15 +85,15 @@ def median(values: NDArray[Any]) -> float:
 
 
 def most_frequent(values: NDArray[np.integer[Any]]) -> int:
-    """The number that is in an array most often: of several the first."""
+    """The most frequent number in an array; of several, the one that appears first."""
     _, places, counts = np.unique(values, return_inverse=True, return_counts=True)
     return int(values[counts[places].argmax()])
 
 
 def quantile(values: NDArray[Any], share: float) -> float:
-    """The number that a share of those in an array are below, of which there is one at least.
+    """The quantile at ``share`` (0 to 1) of a non-empty array; NaN if it contains NaN.
 
-    Between two of them it is on the line through both; NaN if one is.
+    Interpolated linearly between neighbouring values.
     """
     ascending = np.sort(values, axis=None)
     if np.isnan(ascending[-1]):
@@ -104,17 +107,17 @@ def quantile(values: NDArray[Any], share: float) -> float:
 def ranges(
     begins: NDArray[np.intp], lengths: NDArray[np.intp]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Whole numbers from each beginning on, so many each, one range after the other.
+    """Ranges of whole numbers, each from its beginning on and of its length, concatenated.
 
-    With where each range begins among them.
+    With where each range begins in the result.
     """
     firsts = lengths.cumsum() - lengths
     return np.arange(int(lengths.sum())) + (begins - firsts).repeat(lengths), firsts
 
 
 def in_order(groups: NDArray[np.intp]) -> NDArray[np.intp]:
-    """The places of whole numbers in ascending order; equal ones stay in theirs."""
-    # Small ones are sorted in linear time
+    """The indices that sort whole numbers in ascending order; equal ones keep their order."""
+    # NumPy sorts 16-bit integers in linear time
     numbers = groups if groups.max(initial=0) > _INT16_MAX else groups.astype(np.int16)
     if bool((numbers[1:] >= numbers[:-1]).all()):
         return np.arange(len(groups))
@@ -124,7 +127,7 @@ def in_order(groups: NDArray[np.intp]) -> NDArray[np.intp]:
 def medians(
     groups: NDArray[np.intp], values: NDArray[np.float64], count: int
 ) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """The median and the size of each of so many groups, NaN of an empty one."""
+    """The median and the size of each of ``count`` groups; an empty group's median is NaN."""
     sizes = np.bincount(groups, minlength=count)
     order, begins, rows = _in_rows(groups, values)
     middles = np.full(count, np.nan)
@@ -148,14 +151,15 @@ def medians_hold(
     count: int,
     holds: Callable[[NDArray[np.float64]], NDArray[np.bool_]],
 ) -> NDArray[np.bool_]:
-    """Whether something holds of the median of each of so many groups; not of an empty one.
+    """Whether a condition holds for the median of each of ``count`` groups; False for an empty one.
 
-    It ``holds`` of all numbers below one, so that it is enough to count those of which it does.
+    It ``holds`` for all numbers below some limit and no others, so that counting the values it
+    holds for is usually enough.
     """
     sizes = np.bincount(groups, minlength=count)
     twice = 2 * np.bincount(groups.take(holds(values).nonzero()[0]), minlength=count)
     hold = twice > sizes
-    # Where it holds of one half the median is between that and the other one
+    # Where it holds for exactly half of the values, the median lies between the two halves
     halves = (twice == sizes) & (sizes > 0)
     if halves.any():
         own = halves[groups].nonzero()[0]
@@ -166,10 +170,10 @@ def medians_hold(
 def _in_rows(
     groups: NDArray[np.intp], values: NDArray[np.float64]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.float64] | None]:
-    """The order by groups, where each of them begins in it, and its values in a row.
+    """The order by groups, where each group begins in it, and each group's values as a row.
 
-    Rows end in NaN, which sorts behind everything. They are None where groups are so unlike in
-    size that rows would be mostly empty.
+    Rows are padded with NaN, which sorts last. They are None if group sizes differ so much that
+    rows would be mostly padding.
     """
     order = in_order(groups)
     is_new = are_new(groups[order])
@@ -184,7 +188,7 @@ def _in_rows(
 
 
 def _sizes(begins: NDArray[np.intp], end: int) -> NDArray[np.intp]:
-    """From where each group begins, and all end, how many there are in each."""
+    """The size of each group, from where each begins and the last one ends."""
     sizes = np.empty_like(begins)
     np.subtract(begins[1:], begins[:-1], out=sizes[:-1])
     sizes[-1:] = end - begins[-1:]

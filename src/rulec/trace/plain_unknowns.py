@@ -1,4 +1,4 @@
-"""States of which a file can tell no more than that something is unknown."""
+"""Traces reduced to the unknown values that files can hold."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rulec.vocabulary.partial_values import UNKNOWN, OneOf
 
 
 def with_plain_unknowns(trace: Trace) -> Trace:
-    """The trace in which a value that is one of several is unknown; files have no such values."""
+    """The trace with UNKNOWN for values known to be one of several, which files cannot hold."""
     states = [_plain(state) for state in trace.states]
     same = all(new is old for new, old in zip(states, trace.states, strict=True))
     return trace if same else replace(trace, states=tuple(states))

@@ -1,4 +1,4 @@
-"""Columns of traces that stand one after the other in the same arrays, a part for each trace."""
+"""Traces stored one after another in the same arrays."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import Any
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SharedColumns(Mapping[str, Any]):
-    """A trace's part of columns, arrays or pairs of such, which is cut out when it is asked for.
+    """One trace's part of shared columns (arrays or pairs of arrays), sliced on access.
 
-    ``states`` is the part of columns with a value for each state, ``cells`` that of those in
-    ``about``, which have some for each object.
+    ``states`` is its part of columns with a value per state, ``cells`` its part of those in
+    ``about``, which have values per object and state.
     """
 
     columns: Mapping[str, Any]
@@ -35,11 +35,11 @@ class SharedColumns(Mapping[str, Any]):
         return len(self.columns)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Elsewhere the other traces are not wanted
+        # Another process needs only this trace's part
         return dict, (dict(self),)
 
     def is_before(self, other: Mapping[str, Any]) -> bool:
-        """Whether the other part follows in the same columns."""
+        """Whether ``other`` is the part that follows this one in the same columns."""
         return (
             isinstance(other, SharedColumns)
             and other.columns is self.columns
@@ -48,6 +48,6 @@ class SharedColumns(Mapping[str, Any]):
         )
 
     def up_to(self, last: SharedColumns) -> SharedColumns:
-        """This part and all up to a later one of the same columns."""
+        """This part and all parts up to a later one of the same columns."""
         states = slice(self.states.start, last.states.stop)
         return replace(self, states=states, cells=slice(self.cells.start, last.cells.stop))

@@ -1,4 +1,4 @@
-"""One trace as arrays: values of the world, and of each object."""
+"""One trace as arrays: values of the world and of each object."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ Places = NDArray[np.intp] | Flags | slice
 class TraceArrays:
     """A trace of ``n_states`` states, ``step_s`` seconds apart, as arrays.
 
-    ``objects`` are its objects with their types, ``spans`` (objects x 2) the first and the last
-    state in which each is there. ``world`` has for a name a value for each state; ``about`` has
-    those of the first object in the states of its span, then those of the second one, and so on:
-    object ``i``'s begin at ``starts[i]``. Values are Booleans, numbers, or places in ``texts``.
+    ``objects`` maps each object to its type; ``spans`` (objects x 2) holds the first and the last
+    state in which each is present. ``world`` has for a name one value per state; ``about`` has the
+    values for the first object in the states of its span, then those for the second one, and so on:
+    object ``i``'s begin at ``starts[i]``. Values are Booleans, numbers, or indices into ``texts``.
 
-    Of the shapes of their names' values are ``unknown``: where a value is not known; ``absent``:
-    where nothing is said; ``bounds``: the least and the greatest that a number may be, which stand
-    for its values. ``only`` are the objects that a name is said of, all if it is not there.
+    These have the shape of their name's values: ``unknown`` marks unknown values, ``absent`` those
+    that are not given; ``bounds`` are the least and the greatest value that a number can have, used
+    instead of its values. ``only`` marks the objects that a name is given for; without it, all.
     ``ends`` and ``told`` are as in a ``Trace``.
     """
 
@@ -62,24 +62,27 @@ class TraceArrays:
     __hash__ = None  # type: ignore[assignment]
 
     def since(self, state: int) -> TraceArrays:
-        """The trace from a state on, as if nothing were known of what was before."""
+        """The trace from a state on, as if nothing were known about earlier states."""
         if not state:
             return self
         return self._of_states(np.arange(state, self.n_states), slice(state, None))
 
     def at(self, states: Sequence[int]) -> TraceArrays:
-        """The trace of some of its states, ascending and each once, and of who is there in any."""
+        """The trace of some states (ascending, distinct), and the objects present in any."""
         chosen = np.array(states, dtype=np.intp)
         return self._of_states(chosen, chosen)
 
     def _of_states(self, chosen: NDArray[np.intp], states: Places) -> TraceArrays:
-        """The trace of the chosen states, whose columns of the world are ``states``."""
+        """The trace of the ``chosen`` states.
+
+        ``states`` selects the same in columns of the world.
+        """
         first = chosen.searchsorted(self.spans[:, 0])
         last = chosen.searchsorted(self.spans[:, 1], side="right") - 1
         there = first <= last
         stays = np.zeros(self.n_states, dtype=bool)
         stays[chosen] = True
-        # Of each object's value the state that it is in
+        # The state that each value in `about` belongs to
         starts = self.starts
         state_of = np.arange(starts[-1]) + (self.spans[:, 0] - starts[:-1]).repeat(np.diff(starts))
         part = self._cut(states, stays[state_of], there, self.world.keys() | self.about.keys())
@@ -87,7 +90,10 @@ class TraceArrays:
         return replace(part, n_states=len(chosen), spans=spans)
 
     def _cut(self, states: Places, cells: Places, there: Flags, names: Set[str]) -> TraceArrays:
-        """What names say in some states and, in ``cells``, of some objects."""
+        """The values of ``names``: of the world in ``states``, of objects in ``cells``.
+
+        ``there`` marks the objects to keep.
+        """
 
         def part(name: str, values: Array) -> Array:
             return values[states if name in self.world else cells]
@@ -114,7 +120,7 @@ class TraceArrays:
 
     @property
     def is_partial(self) -> bool:
-        """Whether anything that is said is not, or not exactly, known."""
+        """Whether any given value is unknown or known only within bounds."""
         partial = [
             *self.unknown.items(),
             *((name, low != high) for name, (low, high) in self.bounds.items()),
@@ -122,11 +128,11 @@ class TraceArrays:
         return any(bool((flags & self._is_given(name)).any()) for name, flags in partial)
 
     def says(self, name: str) -> bool:
-        """Whether some state says a name."""
+        """Whether a name is given, even as unknown, in some state."""
         return (name in self.world or name in self.about) and bool(self._is_given(name).any())
 
     def _is_given(self, name: str) -> Flags:
-        """Where a name is said."""
+        """Mask of a name's values that are given, even as unknown."""
         column = self.world[name] if name in self.world else self.about[name]
         given = np.ones(len(column), dtype=bool)
         if name in self.absent:
@@ -136,17 +142,17 @@ class TraceArrays:
         return given
 
     def said_by(self, names: Set[str]) -> TraceArrays:
-        """What is said by these names only."""
+        """The trace with the values of these names only."""
         every = np.ones(len(self.objects), dtype=bool)
         return self._cut(slice(None), slice(None), every, names)
 
     def part(self, names: Set[str], items: Set[str]) -> TraceArrays:
-        """What is said by these names, of the world and of these objects."""
+        """The trace with these names and objects only."""
         kept = np.array([item in items for item in self.objects], dtype=bool)
         return self._cut(slice(None), kept.repeat(np.diff(self.starts)), kept, names)
 
     def trace(self) -> Trace:
-        """The trace with its states."""
+        """The trace with its states as mappings."""
         states: list[dict[str, Any]] = [{} for _ in range(self.n_states)]
         for name, column in self.world.items():
             for state, value in zip(states, self._values(name, column), strict=True):
@@ -182,7 +188,7 @@ class TraceArrays:
         )
 
     def _values(self, name: str, column: Array) -> list[Any]:
-        """The values of a name as states have them."""
+        """A name's values in the form that states have; ``_NOTHING`` where it is not given."""
         values: list[Any] = column.tolist()
         if name in self.texts:
             texts = self.texts[name]
@@ -204,4 +210,4 @@ def starts_of(spans: NDArray[np.intp]) -> NDArray[np.intp]:
 
 
 _NOTHING = object()
-"""Stands for what is not said."""
+"""Stands for a value that is not given."""

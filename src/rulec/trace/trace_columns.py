@@ -1,8 +1,8 @@
 """Many traces as columns, one array per name.
 
-The states of all traces stand one after the other in *time-major* order: the first states of all
-traces, then the second states of those that have one, and so on, longer traces first. So the states
-of one step lie side by side, whatever the traces' lengths, and nothing is padded.
+The states of all traces are stored in *time-major* order: the first states of all traces, then the
+second states of those that have one, and so on, longer traces first. So the states of one step are
+adjacent, whatever the traces' lengths, and there is no padding.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from rulec.trace.trace_model import State
 from rulec.value_display import short_repr
 
 Key = tuple[str, tuple[str, ...]]
-"""A name of the vocabulary, and the objects that it is about."""
+"""A vocabulary name and the objects it is about."""
 
 Array = NDArray[Any]
 
@@ -27,9 +27,9 @@ Array = NDArray[Any]
 class Layout:
     """Positions of the states of many traces in a column.
 
-    ``lengths`` (int64, one for each trace) are how many states the traces have: 1 or more, in
-    descending order. ``starts`` (int64, one more than the longest trace has states): the states of
-    step t stand at ``starts[t]`` to ``starts[t + 1]``, that of trace i at ``starts[t] + i``.
+    ``lengths`` (int64, one per trace) are the traces' numbers of states: 1 or more, in descending
+    order. ``starts`` (int64, one more than the longest trace has states): the states of step t are
+    at ``starts[t]`` up to before ``starts[t + 1]``, that of trace i at ``starts[t] + i``.
     """
 
     lengths: NDArray[np.int64]
@@ -51,34 +51,34 @@ class Layout:
         return int(self.starts[-1])
 
     def active(self, step: int) -> int:
-        """Number of traces that have this step; they come first."""
+        """Number of traces that have this step; they are the first ones."""
         return int(self.starts[step + 1] - self.starts[step]) if step < self.n_steps else 0
 
     def places(self, trace: int, first: int = 0, last: int | None = None) -> NDArray[np.int64]:
-        """Positions of a trace's states, from one to another or its end."""
+        """Positions of a trace's states from ``first`` to ``last`` (inclusive), or to its end."""
         end = int(self.lengths[trace]) if last is None else last + 1
         result: NDArray[np.int64] = self.starts[first:end] + trace
         return result
 
     def traces_at(self, places: NDArray[np.int64]) -> NDArray[np.int64]:
-        """The traces whose states stand at these places."""
+        """The traces whose states are at these positions."""
         steps = self.starts.searchsorted(places, side="right") - 1
         result: NDArray[np.int64] = places - self.starts[steps]
         return result
 
 
 def layout_of(lengths: Sequence[int] | NDArray[Any]) -> Layout:
-    """Layout of traces of these lengths, descending; ValueError for others."""
+    """The layout of traces of these lengths; ValueError if they do not descend."""
     try:
         given = np.asarray(lengths)
-        # Not dates, nor fractions; nothing at all is an array of floats
+        # Dates and fractions are refused; an empty sequence becomes an array of floats
         result = given.astype(np.int64, casting="same_kind" if given.size else "unsafe")
     except (TypeError, ValueError, OverflowError):
         raise ValueError("lengths of traces are whole numbers, such as [4, 4, 3]") from None
     if result.ndim != 1 or (len(result) and result[-1] < 1) or (np.diff(result) > 0).any():
         raise ValueError("lengths of traces descend, and each is at least 1")
     longest = int(result[0]) if len(result) else 0
-    # At step t those are active that are longer than t.
+    # The traces longer than t are active at step t.
     active = len(result) - result[::-1].searchsorted(np.arange(longest), side="right")
     return Layout(result, np.concatenate([[0], active.cumsum()]).astype(np.int64))
 
@@ -88,14 +88,14 @@ class TraceColumns:
     """Traces over the same objects.
 
     ``values`` has an array of ``layout.n_states`` entries for each ``Key``: Booleans (``bool``) for
-    a signal, places in the declared ``values`` (``uint8`` or wider) for an enumeration, numbers
-    (``float64``, each standing for the decimal that Python writes for it) for a quantity. What has
-    no array takes its declared default in every state. ``objects`` maps object to type, ``present``
-    an object that is not there all the time to its first and last step (from 0, inclusive), as in a
-    ``Trace``. States are ``step_s`` seconds apart.
+    a signal, indices into the declared ``values`` (``uint8`` or wider) for an enumeration, numbers
+    (``float64``, each standing for the decimal that Python prints for it) for a quantity. A name
+    without an array has its declared default in every state. ``objects`` maps object to type;
+    ``present`` maps an object that is not always present to its first and last step (from 0,
+    inclusive), as in a ``Trace``. States are ``step_s`` seconds apart.
 
-    Where a value is ``unknown`` its entry means nothing; a number known as an interval lies between
-    its entries in ``values`` and in ``upper``.
+    Where a value is ``unknown``, its entry means nothing; a number known as an interval lies
+    between its entries in ``values`` and in ``upper``.
     """
 
     __repr__ = short_repr
@@ -111,11 +111,11 @@ class TraceColumns:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TraceCells:
-    """Traces as walks: each state is one of a few ``states``.
+    """Traces whose states are taken from a small set, such as walks through the nodes of a graph.
 
-    ``cells`` (unsigned integers, ``layout.n_states`` of them) are places in ``states``. ``there``
-    has for each of these the objects that are there in it, with their types; it is empty if all
-    are there in all. The rest is as in ``TraceColumns``.
+    ``cells`` (unsigned integers, ``layout.n_states`` of them) are indices into ``states``.
+    ``there`` gives for each of these the objects present in it, with their types; it is empty if
+    all are present in all. The rest is as in ``TraceColumns``.
     """
 
     __repr__ = short_repr
@@ -130,5 +130,5 @@ class TraceCells:
 
 
 def smallest_unsigned(n_values: int) -> np.dtype[Any]:
-    """The narrowest unsigned integers that tell so many values apart."""
+    """The narrowest unsigned integer type that can number ``n_values`` values."""
     return np.min_scalar_type(max(n_values - 1, 0))

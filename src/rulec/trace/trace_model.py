@@ -18,20 +18,20 @@ from rulec.vocabulary.partial_values import PartialValue
 Value = bool | float | str
 
 State = Mapping[str, "PartialValue | Mapping[str, PartialValue]"]
-"""Vocabulary name -> its value, or for a per-object name object -> value."""
+"""Vocabulary name -> its value; for a per-object name, object -> value."""
 
 Ending = Literal["complete", "cut"]
-"""How a trace ends: it is over, or whoever recorded it stopped, and had begun in the middle."""
+"""``complete``, or ``cut``: the recording began and ended in the middle of what happened."""
 
 
 @dataclass(frozen=True, slots=True)
 class Trace:
     """A finite sequence of states, ``step_s`` seconds apart.
 
-    ``objects`` maps each object's id to its type. ``present`` gives, for an object that is not
-    there all the time, the first and the last state (both from 0, inclusive) in which it is.
-    ``told`` are the names that its source can tell, None for all: any other one is unknown.
-    ``place`` is where it was read, for messages.
+    ``objects`` maps each object's id to its type. ``present`` maps an object that is not always
+    present to the first and the last state (from 0, inclusive) in which it is. ``told`` are the
+    names that the source provides, None for all; every other name is unknown. ``place`` is where
+    the trace was read, for messages.
     """
 
     __repr__ = short_repr
@@ -51,10 +51,10 @@ class TraceGraph:
     """A layered directed graph whose paths from ``start`` to ``goals`` are traces.
 
     ``states[p][i]`` is the state of node ``i`` of layer ``p``; ``successors[p][i]`` are the indices
-    in layer ``p + 1`` of its followers, ascending, ``weights[p][i]`` the whole-number costs of
+    of its successors in layer ``p + 1``, ascending, ``weights[p][i]`` the whole-number costs of
     these edges, in the unit ``cost_unit`` (1/s), and ``margins[p][i]`` their time margins in layers
-    (None for staying). ``objects``, ``present`` (in layers) and ``told`` are as in a trace. All
-    nodes say the same of a constant.
+    (None for staying). ``objects``, ``present`` (in layers) and ``told`` are as in a trace. A
+    constant has the same value in all nodes.
     """
 
     __repr__ = short_repr
@@ -75,7 +75,7 @@ class TraceGraph:
 def paths(graph: TraceGraph) -> Iterator[tuple[int, ...]]:
     """Paths from start to goals, as node indices, in ascending order.
 
-    Lazily and in memory bounded by the graph: dead ends are known before they are entered.
+    Generated lazily, in memory bounded by the graph: dead ends are never entered.
     """
     alive = _alive(graph)
     last = len(graph.states) - 1
@@ -103,7 +103,7 @@ def _onward(graph: TraceGraph, alive: Sequence[set[int]], path: Sequence[int]) -
 
 
 def _alive(graph: TraceGraph) -> list[set[int]]:
-    """For each layer the nodes from which a goal can be reached."""
+    """For each layer, the nodes from which a goal can be reached."""
     alive = [set(graph.goals)]
     for successors in reversed(graph.successors):
         following = alive[-1]
@@ -126,17 +126,17 @@ def trace_of(graph: TraceGraph, path: Sequence[int], name: str) -> Trace:
 
 
 def check_trace(trace: Trace) -> None:
-    """Check states, step, and presence. Raises R0501, R0505, R0506."""
+    """Check a trace's states, step and presence. Raises R0501, R0505, R0506."""
     check_frame(trace)
     for number, state in enumerate(trace.states):
-        # Asking for a mapping takes far longer than asking for a dictionary.
+        # A test for Mapping takes far longer than one for dict.
         if type(state) is not dict and not isinstance(state, Mapping):
             raise NOT_A_TRACE.error(trace.place, f"state {number} is no object of names and values")
     check_presence(trace)
 
 
 def check_frame(trace: Trace) -> None:
-    """Check all of a trace but states and presence."""
+    """Check everything about a trace except its states and presence."""
     _check_kinds(trace)
     if not trace.states:
         raise NO_STATES.error(
@@ -149,7 +149,7 @@ def check_frame(trace: Trace) -> None:
 
 
 def _check_kinds(trace: Trace) -> None:
-    # Whoever writes one in Python may have put in anything
+    # A trace made in Python may contain anything
     states: object = trace.states
     step: object = trace.step_s
     name: object = trace.id
@@ -162,7 +162,7 @@ def _check_kinds(trace: Trace) -> None:
     wrong = ""
     if trace.place is not None:
         expected("place", "SourceLocation", trace.place)
-    # Asking for a mapping, a sequence or a number takes far longer than asking for a kind.
+    # Tests for abstract classes take far longer than those for concrete types.
     if type(states) not in (tuple, list) and (
         not isinstance(states, Sequence) or isinstance(states, str | bytes)
     ):
@@ -183,7 +183,7 @@ def _check_kinds(trace: Trace) -> None:
 
 
 def plain_step_s(trace: Trace) -> float:
-    """The step (s) as files have it, though a program may have given a fraction."""
+    """The step in seconds as files hold it: an int or a float, even if given as a fraction."""
     step_s: object = trace.step_s
     return step_s if isinstance(step_s, int) else float(trace.step_s)
 
@@ -195,7 +195,7 @@ def _is_span(given: object) -> bool:
 
 
 def check_presence(trace: Trace) -> None:
-    """Check the presence of a trace's objects."""
+    """Check in which states a trace's objects are present. Raises R0501, R0505."""
     for name, span in trace.present.items():
         if not _is_span(span):
             message = (

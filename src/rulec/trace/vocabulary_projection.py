@@ -1,8 +1,8 @@
 """Projection of supplied values onto what a rulebook's vocabulary declares.
 
-Nobody has written a recording or a partition for one rulebook: their objects get the most specific
-type that the vocabulary knows, and names that it does not declare, or means otherwise, are left
-out. What an author has written is kept, so that validation can report it.
+Recordings and partitions are not written for a particular rulebook: their objects get the most
+specific type that the vocabulary declares, and names that it does not declare, or declares
+differently, are dropped. What an author wrote is kept, so that validation can report it.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ RECORDED_UNITS = {
     "ego_length": "m",
     "visibility": "m",
 }
-"""The units of the quantities that recordings supply."""
+"""The units of the quantities that recordings provide."""
 
 MEASURED = RECORDED_UNITS.keys() - {"limit", "minimum_limit", "ego_length", "visibility"}
-"""Those of them that are measured, to a tolerance."""
+"""The recorded quantities that are measured, within a tolerance."""
 
 UNTOLD_VALUES: Mapping[str, frozenset[str]] = {
     "light": frozenset(("flashing_amber", "flashing_red", "red_cross")),
@@ -43,27 +43,33 @@ UNTOLD_VALUES: Mapping[str, frozenset[str]] = {
     "surface": frozenset(("tram_track",)),
     "crossing_kind": frozenset(("unmarked_crossing",)),
 }
-"""Enumeration -> values that no format has: where another one is told, it may be one of these."""
+"""Enumeration -> values that no format provides.
+
+Where another is recorded, it may be one of these.
+"""
 
 UNTOLD_TYPES = frozenset({"school_bus", "maintenance_vehicle", "moped", "horse_rider"})
-"""Types of objects that no format has: one of a type above may be of these."""
+"""Types that no format provides; an object recorded as a supertype may be of one of these."""
 
 _Signal = PartialValue | Mapping[str, PartialValue]
 
 
 def known_type(types: Iterable[str], vocabulary: Vocabulary) -> str | None:
-    """Most specific of an object's types that the vocabulary declares."""
+    """The first, most specific, of an object's types that the vocabulary declares; None if none."""
     return next((name for name in types if name in vocabulary.types), None)
 
 
 def known_types(objects: Mapping[str, Sequence[str]], vocabulary: Vocabulary) -> dict[str, str]:
-    """The type of each object of which the vocabulary declares one."""
+    """The type of each object that has one declared in the vocabulary."""
     types = {name: known_type(own, vocabulary) for name, own in objects.items()}
     return {name: own for name, own in types.items() if own is not None}
 
 
 def told_types(types: Iterable[str], vocabulary: Vocabulary) -> frozenset[str]:
-    """The types that are told where objects of these types are; none if no object is in doubt."""
+    """The vocabulary's types that are certain, or ruled out, for objects of ``types``.
+
+    Empty if no type is in doubt.
+    """
     doubtful = {
         name
         for name in UNTOLD_TYPES & vocabulary.types.keys()
@@ -74,14 +80,14 @@ def told_types(types: Iterable[str], vocabulary: Vocabulary) -> frozenset[str]:
 
 
 def is_about(declaration: Declaration, own_type: str | None, vocabulary: Vocabulary) -> bool:
-    """Test whether objects of a type may be the first parameter."""
+    """Whether an object of a type can be the declaration's first argument, if it has any."""
     if own_type is None or own_type not in vocabulary.types:
         return False
     return not declaration.parameters or vocabulary.is_subtype(own_type, declaration.parameters[0])
 
 
 def fits(name: str, values: Iterable[Value], declaration: Declaration) -> bool:
-    """Test whether recorded values fit a declaration, unit included."""
+    """Whether recorded values fit a declaration, including its unit."""
     match declaration:
         case Signal():
             return all(isinstance(value, bool) for value in values)
@@ -98,11 +104,12 @@ def project_graph(
     supplied: Set[str],
     recorded: Mapping[str, Sequence[str]] | None = None,
 ) -> TraceGraph:
-    """Traces in the words of a vocabulary.
+    """The graph reduced to a vocabulary's names and types.
 
-    ``supplied`` are the names that a partition supplies: they are left out where the vocabulary
-    does not declare them, and their objects where it means others. ``recorded`` are the types of
-    each object, most specific first, if the scene was recorded: then all names are looked at.
+    ``supplied`` are the names that a partition supplies: they are dropped if the vocabulary does
+    not declare them, and so are their values for objects that its declaration is not about.
+    ``recorded`` gives the types of each object, most specific first, if the scene was recorded:
+    then all names are filtered.
     """
     objects = dict(traces.objects) if recorded is None else known_types(recorded, vocabulary)
     if not vocabulary.types:
@@ -117,7 +124,7 @@ def project_graph(
 
 
 class _StateProjection:
-    """Projection of states onto a vocabulary; shared values once."""
+    """Projects states onto a vocabulary, each shared value only once."""
 
     def __init__(
         self,
@@ -129,7 +136,7 @@ class _StateProjection:
         self._vocabulary = vocabulary
         self._supplied = supplied
         self._recorded = recorded is not None
-        # Types that an author has written and the vocabulary lacks are reported by validation
+        # Validation reports types written by an author that the vocabulary does not declare
         self._types: dict[str, str | None] = (
             {name: own for name, own in objects.items() if own in vocabulary.types}
             if recorded is None
@@ -139,12 +146,12 @@ class _StateProjection:
         self._projected: dict[tuple[str, int], tuple[_Signal, _Signal | None]] = {}
 
     def state(self, state: State) -> State:
-        """Part of a state that the vocabulary declares."""
+        """The part of a state that the vocabulary declares."""
         kept: dict[str, _Signal] = {}
         for name, value in state.items():
             key = (name, id(value))
             if key not in self._projected:
-                # The value stays beside its projection, so that no other one is given its id
+                # Keeping the value alive prevents another one from getting its id
                 self._projected[key] = (value, self._value(name, value))
             projected = self._projected[key][1]
             if projected is not None:
@@ -152,7 +159,7 @@ class _StateProjection:
         return kept
 
     def _value(self, name: str, value: _Signal) -> _Signal | None:
-        """Value without objects that its name is not about, or None."""
+        """A value without the objects that its name is not about; None if the name is dropped."""
         declaration = self._vocabulary.declarations.get(name)
         by_partition = name in self._supplied
         if not (by_partition or self._recorded):
@@ -185,9 +192,9 @@ def _fits(name: str, value: _Signal, declaration: Declaration) -> bool:
 
 
 def values_lacking(types: frozenset[str]) -> frozenset[str]:
-    """The values that a map with lanelets of these types does not tell, as others do.
+    """The values that a map with lanelets of these types does not provide, but other maps do.
 
-    One without lanes for cycles may have left them out.
+    A map without bicycle lanes may have omitted them.
     """
     return frozenset() if "bicycleLane" in types else frozenset({"cycle_lane"})
 
@@ -195,9 +202,9 @@ def values_lacking(types: frozenset[str]) -> frozenset[str]:
 def with_told_values(
     names: frozenset[str], vocabulary: Vocabulary, lacking: frozenset[str] = frozenset()
 ) -> frozenset[str]:
-    """The names, and the values that can be told of those of which not all can be.
+    """The names, and the provided values of enumerations that formats provide only in part.
 
-    Values that are ``lacking`` could be told by other files than this one.
+    Other files than this one could provide the ``lacking`` values.
     """
     tellable = set(names)
     for name in UNTOLD_VALUES.keys() & names:
