@@ -1,8 +1,9 @@
-"""Lines of JSON with traces whose states are written alike, read together as columns.
+"""Traces in JSON lines whose states are written alike, read together as columns.
 
-Most programs write all states of a trace with the same names in the same order, so that only values
-differ. What stands between values is compared with that of the state before, all states at once,
-and the values are read where they have to be. Whatever is written otherwise is left to be decoded.
+Most programs write all states of a trace with the same names in the same order, so that only the
+values differ. The text between values is compared with that of the previous state, for all states
+at once, and the values are read from their expected positions. Lines written otherwise are left to
+be decoded one by one.
 """
 
 from __future__ import annotations
@@ -23,27 +24,27 @@ from rulec.trace.formats.table_blocks import Coded, Column, Numbers
 from rulec.trace.trace_model import Trace
 
 FEWEST_STATES = 32
-"""Fewer states of one kind are not worth it."""
+"""With fewer states of one form, reading them together does not pay."""
 
 _STYLES = ((b", ", b": "), (b",", b":"))
-"""What stands between members, and between a name and its value."""
+"""What separates members, and a name from its value."""
 
 _END = b"\0"
-"""It stands in no JSON."""
+"""A byte that no JSON contains."""
 
 _DECODE = msgspec.json.Decoder(dict[str, Any]).decode
 
 ColumnPath: TypeAlias = tuple[str, tuple[int, ...]]
-"""A name, and the places of the objects that it is about among the trace's."""
+"""A name, and the indices of the objects it is about among the trace's objects."""
 
 
 HeadingReader: TypeAlias = Callable[[bytes], tuple[str, float, Mapping[str, str]] | None]
-"""It reads a trace's name, step (s) and objects from a line without states, None if it has more."""
+"""Reads a trace's name, step (s) and objects from a line without states; None if it has more."""
 
 
 @dataclass(frozen=True, slots=True)
 class LineHeading:
-    """What a line says beside its states, of objects that are there all the time."""
+    """What a line contains besides its states; the objects are present all the time."""
 
     id: str
     step_s: float
@@ -52,10 +53,10 @@ class LineHeading:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AlikeLines:
-    """Traces whose columns are the same but for their objects' names.
+    """Traces that have the same columns except for the names of objects.
 
-    ``lines`` are places of their lines, ``lengths`` how many states each has, ``headings`` what
-    else they say. In ``columns`` states of one trace stand together, traces in their order.
+    ``lines`` are the indices of their lines, ``lengths`` their numbers of states, ``headings`` what
+    else the lines contain. ``columns`` hold the states of one trace after another, in this order.
     """
 
     lines: Places
@@ -65,7 +66,9 @@ class AlikeLines:
 
 
 def placed_among(places: Mapping[int, int], alike: AlikeLines, first: int) -> AlikeLines:
-    """Lines with their places among items; one without a name is called by its number.
+    """The traces with indices of items instead of lines.
+
+    A trace without a name gets its line number.
 
     ``first`` is the number of the first line.
     """
@@ -79,10 +82,10 @@ def placed_among(places: Mapping[int, int], alike: AlikeLines, first: int) -> Al
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LineBlock(Sequence["Trace | RulecError"]):
-    """Traces of some lines; those that are ``alike`` are first decoded when they are asked for.
+    """The traces of some lines; those in ``alike`` are only decoded when asked for.
 
-    ``items`` has None for these; ``decode`` decodes the one at a place. The ``lines`` of what is
-    alike are places among the items.
+    ``items`` has None for these, and ``decode`` decodes the one at an index. The ``lines`` of each
+    of ``alike`` are indices of items.
     """
 
     items: Sequence[Trace | RulecError | None]
@@ -105,9 +108,10 @@ class LineBlock(Sequence["Trace | RulecError"]):
 
 @dataclass(frozen=True, slots=True)
 class _Form:
-    """How a state is written: what stands before each of its values, and behind the last.
+    """How a state is written: the text before each of its values and after the last.
 
-    It is so many bytes ``text``, in which an object's name is ``%s``, whose objects are ``named``.
+    ``text`` joins these, with ``_END`` in place of each value and ``%s`` in place of each object's
+    name; ``named`` are the indices of these objects.
     """
 
     comma: bytes
@@ -117,13 +121,13 @@ class _Form:
     n_quotes: int
 
     def between(self, names: Sequence[bytes]) -> tuple[bytes, ...]:
-        """What stands between values for objects of these names, and before the next state."""
+        """The text before each value and before the next state, for objects of these names."""
         return tuple((self.text % tuple([names[place] for place in self.named])).split(_END))
 
 
 @dataclass(frozen=True, slots=True)
 class _Outline:
-    """A line with its ``states`` as bytes, and what stands between their values."""
+    """A line with its ``states`` as bytes, and the text between their values."""
 
     line: int
     heading: LineHeading
@@ -133,7 +137,7 @@ class _Outline:
 
 
 def alike_lines(lines: Sequence[bytes], heading_of: HeadingReader) -> Iterator[AlikeLines]:
-    """The lines that can be read together, by their kinds."""
+    """The lines that can be read together, grouped by form."""
     kinds: dict[tuple[object, ...], list[_Outline]] = {}
     form: _Form | None = None
     for number, line in enumerate(lines):
@@ -156,7 +160,10 @@ def _outlined(
     heading_of: HeadingReader,
     usual: _Form | None,
 ) -> _Outline | None:
-    """A line, whose first state is probably of the ``usual`` form; None if it is unusual."""
+    """The outline of a line, whose first state probably has the ``usual`` form.
+
+    None if irregular.
+    """
     styles = _STYLES if usual is None or usual.comma == _STYLES[0][0] else _STYLES[::-1]
     places = ((line.find(b'"states"' + colon + b"["), comma, colon) for comma, colon in styles)
     begin, comma, colon = next((place for place in places if place[0] >= 0), (-1, b"", b""))
@@ -181,16 +188,16 @@ def _outlined(
         form = _form_of(first, comma, colon, heading.objects)
     if form is None or any(place >= len(names) for place in form.named):
         return None
-    # A view, for states are most of a line, and copied once they are joined.
+    # A view: states are most of a line, and joining them copies them anyway.
     states = memoryview(line)[begin:end]
     return _Outline(number, heading, states, form, form.between(names))
 
 
 def _form_of(first: bytes, comma: bytes, colon: bytes, objects: Mapping[str, str]) -> _Form | None:
-    """How a state is written; None if it is unusual."""
+    """How a state is written; None if it is irregular."""
     try:
         state = _DECODE(first)
-    except (ValueError, RecursionError):  # msgspec's errors are the former, and Unicode's
+    except (ValueError, RecursionError):  # msgspec's and Unicode's errors are ValueErrors
         return None
     parts = _Parts(comma, colon, {name: place for place, name in enumerate(objects)})
     if not parts.add_state(state) or not parts.paths:
@@ -207,17 +214,17 @@ def _form_of(first: bytes, comma: bytes, colon: bytes, objects: Mapping[str, str
 
 
 class _Parts:
-    """What stands between the values of a state that is written in a style."""
+    """The text between the values of a state that is written in a given style."""
 
     def __init__(self, comma: bytes, colon: bytes, places: Mapping[str, int]) -> None:
-        self.text = bytearray()  # which grows in place: a state may have any number of names
+        self.text = bytearray()  # grows in place: a state may have any number of names
         self.paths: list[ColumnPath] = []
         self.named: list[int] = []
         self._comma, self._colon = comma, colon
         self._places = places
 
     def add_state(self, state: Mapping[str, Any]) -> bool:
-        """Add the parts of a state; False if something about it is unusual."""
+        """Add the parts of a state; False if it is irregular."""
         self.text += b"{"
         for number, (name, value) in enumerate(state.items()):
             if ":" in name or '"' in name:
@@ -247,7 +254,7 @@ class _Parts:
 
 
 def _together(outlines: Sequence[_Outline]) -> AlikeLines | None:
-    """Those lines that are written alike in all their states; None of too few states."""
+    """The lines whose states are all written alike; None if they have too few states."""
     form, between = outlines[0].form, outlines[0].between
     colons_before = np.cumsum([part.count(b":") for part in between])
     n_colons = int(colons_before[-1])
@@ -265,7 +272,7 @@ def _together(outlines: Sequence[_Outline]) -> AlikeLines | None:
         return None
     line_of = np.repeat(np.arange(len(outlines)), lengths)
     first = np.cumsum(lengths) - lengths
-    # A value begins behind the last colon of what stands before it.
+    # A value begins after the last colon of the text before it.
     behind = len(between[0]) - between[0].rindex(b":")
     begins = colons.reshape(-1, n_colons)[:, colons_before[:-1] - 1] + behind
     heads = begins[:, 0] - len(between[0])
@@ -279,7 +286,7 @@ def _together(outlines: Sequence[_Outline]) -> AlikeLines | None:
     columns = {}
     paths: list[ColumnPath | None] = [*form.paths, None]
     for place, (path, before) in enumerate(zip(paths, befores, strict=True)):
-        # One look takes what stands between two values and the value behind it.
+        # One access reads the text between two values and the value after it.
         width = len(between[place])
         starts = before + width
         stops = starts if path is None else befores[place + 1]
@@ -309,11 +316,11 @@ def _together(outlines: Sequence[_Outline]) -> AlikeLines | None:
 
 
 _FIRST_IN_JSON = 32
-"""The first byte that a text in JSON may have as it is."""
+"""The least byte that may appear unescaped in a JSON string."""
 
 
 def _joined(outlines: Sequence[_Outline], comma: bytes) -> tuple[Bytes, Places, Places]:
-    """All states, each with a comma behind it; where colons stand, and where lines end."""
+    """All states, each followed by a comma; the positions of colons, and where lines end."""
     parts: list[bytes | memoryview] = [b" " * PADDING]
     for outline in outlines:
         parts += outline.states, comma

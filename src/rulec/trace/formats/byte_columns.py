@@ -1,4 +1,4 @@
-"""Values of JSON that stand somewhere in bytes, read as columns."""
+"""Columns of values read from given positions in JSON text."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from rulec.trace.formats.byte_words import (
 from rulec.trace.formats.table_blocks import Coded, Column, Numbers
 
 PADDING = 64
-"""So many bytes have to stand before the first value, and behind the last."""
+"""The text needs this many bytes before the first value and after the last."""
 
 _MOST_DIGITS = 15
-"""Of so many digits every decimal is a float's own; so many fit into a float's 53 bits, too."""
+"""Decimals of at most this many digits are exact floats, and their digits fit a float's 53 bits."""
 
 _LONGEST_NUMBER = 17
 _LONGEST_WRITTEN = 24
-"""Python writes no longer number."""
+"""Python writes no number with more characters."""
 
 _LONGEST_TEXT = PADDING
 _MOST_TEXTS = 32
-"""Of a column with more different texts the rest is read one by one, elsewhere."""
+"""In a column with more distinct texts, the rest is left to be read one by one."""
 
 _TINY = 1e-290
 _ZERO, _POINT, _MINUS, _QUOTE = b'0.-"'
@@ -40,28 +40,31 @@ _TRUE, _FALSE = b"true", b"false"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReadColumn:
-    """A column, and where its values are ``read``; the others are arbitrary."""
+    """A column and a mask of the values that were ``read``; the others are arbitrary."""
 
     column: Column
     read: NDArray[np.bool_]
 
 
 def bytes_from(text: Bytes, starts: Places, width: int) -> NDArray[np.bytes_]:
-    """So many bytes from each place on, any where there are none; ``text`` has no null in it."""
+    """``width`` bytes from each start on; arbitrary where the text ends before.
+
+    ``text`` must not contain null bytes.
+    """
     windows = np.ndarray((len(text) - width + 1,), f"S{width}", text, strides=(1,))
-    # ``take`` would first write out all windows.
+    # ``take`` would first copy all windows.
     taken: NDArray[np.bytes_] = windows[starts.clip(0, len(windows) - 1)]
     return taken
 
 
 def column_words(text: Bytes, starts: Places, ends: Places, before: int) -> Words:
-    """The words that hold values and end with them, behind so many words that stand before."""
+    """For each value the ``before`` words that precede it, then the words that contain it."""
     longest = int((ends - starts).max().clip(1, _LONGEST_TEXT))
     return words_from(text, starts - BYTES * before, before + words_for(longest))
 
 
 def read_values(text: Bytes, starts: Places, ends: Places, words: Words) -> ReadColumn:
-    """The values of a column, all truth values, all numbers or all texts; others are not read.
+    """The values of a column that are all Booleans, all numbers or all texts; others are not read.
 
     ``words`` are those of ``column_words`` from the values on.
     """
@@ -81,7 +84,7 @@ def _truths(lengths: Places, words: Words) -> ReadColumn:
 
 
 def _numbers(text: Bytes, starts: Places, ends: Places, words: Words) -> ReadColumn:
-    """Numbers of few digits together, exactly; others one by one."""
+    """Numbers with few digits, converted together and exactly; others one by one."""
     lengths = ends - starts
     is_negative = begin_with(words, b"-")
     if lengths.max() <= BYTES and not is_negative.any():
@@ -100,7 +103,7 @@ def _decimals(
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     lengths = ends - starts
     width = min(int(lengths.max()), _LONGEST_NUMBER)
-    # A column for each byte counted from the end, so that all digits of one weight lie together.
+    # One row per byte position, aligned at the end, so that digits of one weight are adjacent.
     rows = bytes_from(text, ends - width, width).view(np.uint8).reshape(-1, width)
     characters = np.ascontiguousarray(rows.T)
     digits = characters - np.uint8(_ZERO)
@@ -132,18 +135,18 @@ def _decimals(
 
 
 def _own(written: bytes) -> float | None:
-    """The number that is written, if its float stands for it; None for all that is unusual."""
+    """The number if Python writes its float the same way; None for anything unusual."""
     try:
         number = float(written)
     except ValueError:
         return None
-    # What Python writes is JSON, but for what is no number.
+    # What Python writes is valid JSON, except for infinity and NaN.
     is_own = repr(number).encode() == written and abs(number) > _TINY
     return number if is_own and number - number == 0 else None
 
 
 def _texts(text: Bytes, starts: Places, ends: Places, words: Words) -> ReadColumn:
-    """Few texts that are met again and again."""
+    """Texts of which only a few are distinct."""
     lengths = ends - starts
     codes = np.full(len(starts), -1, dtype=np.int64)
     values: list[str] = []
@@ -161,7 +164,10 @@ _NO_TEXT = -2
 
 
 def _code(written: bytes, values: list[str]) -> int:
-    """The place of one more text among ``values``, to which it is added if it is one."""
+    """The index of a newly added text in ``values``.
+
+    ``_NO_TEXT`` if it is not a plain JSON string.
+    """
     inner = written[1:-1]
     if len(written) < 2 or written[:1] + written[-1:] != b'""' or b'"' in inner:
         return _NO_TEXT

@@ -1,6 +1,6 @@
-"""Bytes of a text taken eight at a time, as integers: what numpy compares and reckons with at once.
+"""A text's bytes taken eight at a time as integers, which NumPy compares and computes at once.
 
-The first byte of a word is its lowest.
+The first byte of a word is the lowest.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ Places = NDArray[np.int64]
 Words = NDArray[np.uint64]
 
 BYTES: int = 8
-"""Bytes of a word."""
+"""Bytes per word."""
 
 _POWERS_OF_TEN = 10.0 ** np.arange(BYTES + 1)
 _ZEROS, _POINTS, _SIXES, _ONES, _HIGH, _LOW = (
@@ -21,25 +21,31 @@ _ZEROS, _POINTS, _SIXES, _ONES, _HIGH, _LOW = (
 )
 _ALL = ~np.uint64(0)
 _POINT_AT = np.uint64(0x80) << np.arange(0, 64, 8, dtype=np.uint64)
-"""Words in which the highest bit of one byte is set."""
+"""Words in which only the highest bit of one byte is set, from the first byte to the last."""
 
 
 def words_for(width: int) -> int:
-    """How many words hold so many bytes."""
+    """The number of words that hold ``width`` bytes."""
     return -(-width // BYTES)
 
 
 def words_from(text: Bytes, starts: Places, count: int) -> Words:
-    """So many words from each place on, any where there are none; (places, words)."""
+    """``count`` words from each start on, as (starts, words).
+
+    Arbitrary where the text ends before.
+    """
     size = max(count, 1) * BYTES
     windows = np.ndarray((len(text) - size + 1,), f"V{size}", text, strides=(1,))
-    # ``take`` would first write out all windows.
+    # ``take`` would first copy all windows.
     words: Words = windows[starts.clip(0, len(windows) - 1)].view("<u8")
     return words.reshape(len(starts), size // BYTES)
 
 
 def end_as_before(words: Words, width: int) -> NDArray[np.bool_]:
-    """Where the last so many bytes are those of the row before; for all rows but the first."""
+    """Mask of rows whose last ``width`` bytes equal those of the row before.
+
+    Without the first row.
+    """
     same = np.ones(max(len(words) - 1, 0), dtype=bool)
     masks = np.frombuffer((b"\xff" * width).rjust(BYTES * words.shape[1], b"\0"), "<u8")
     for place, mask in enumerate(masks):
@@ -48,7 +54,7 @@ def end_as_before(words: Words, width: int) -> NDArray[np.bool_]:
 
 
 def begin_with(words: Words, written: bytes) -> NDArray[np.bool_]:
-    """Where words begin with these bytes."""
+    """Mask of the rows of words that begin with these bytes."""
     same = np.ones(len(words), dtype=bool)
     masks, parts = _word_of(b"\xff" * len(written)), _word_of(written)
     for place, (mask, part) in enumerate(zip(masks, parts, strict=True)):
@@ -63,22 +69,22 @@ def _word_of(written: bytes) -> Words:
 def short_decimals(
     words: NDArray[np.uint64], lengths: Places
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Numbers without a sign of one to eight bytes, and where they are such as JSON has them.
+    """The values of unsigned numbers of one to eight bytes, and a mask of those valid in JSON.
 
-    Words begin with them. All digits are reckoned with at once: their neighbours first, then
-    pairs, then fours.
+    Each word begins with its number. All digits are combined at once: first neighbours, then pairs,
+    then fours.
     """
     unused = (BYTES * (BYTES - lengths)).astype(np.uint64)
     first = words & np.uint64(0xFF)
-    # They end where the word ends, behind noughts.
+    # Shift the numbers to the end of their words, after zeros.
     words = (words << unused) | (_ZEROS & ~(_ALL << unused))
-    # The highest bit of each byte that is a point.
+    # Set the highest bit of each byte that is a decimal point.
     others = words ^ _POINTS
     points = ~(((others & _LOW) + _LOW) | others | _LOW)
     has_point = points != 0
     behind = np.where(has_point, BYTES - 1 - np.searchsorted(_POINT_AT, points), 0)
     before = lengths - behind - has_point
-    # What stands before the point moves to where it was.
+    # Move the digits before the point by one byte, over the point.
     lower = (points >> np.uint64(7)) - np.uint64(1)
     higher = ~((points << np.uint64(1)) - np.uint64(1))
     moved = (words & higher) | ((words & lower) << np.uint64(8)) | np.uint64(0x30)

@@ -1,4 +1,4 @@
-"""Traces as CSV: columns' names first, then rows of cells."""
+"""Traces as CSV: a line of column names, then rows of cells."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
 from rulec.vocabulary.written_numbers import WrittenNumber, number_written
 
 LARGE_BYTES = 1 << 19
-"""Of a smaller file the rows are read sooner than Arrow is."""
+"""Reading the rows of a smaller file takes less time than loading Arrow."""
 
 _LONGEST_HEAD_BYTES = 1 << 16
 
@@ -30,7 +30,7 @@ _WORDS_OF_VALUES: dict[str, PartialValue] = {"true": True, "false": False, "?": 
 def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
     """Read the traces of a CSV file, or why they are bad (R0509).
 
-    A large file is read in blocks, if Arrow is installed.
+    A large file is read in blocks if Arrow is installed.
     """
     error = _no_table(stream, file)
     if error is not None:
@@ -66,7 +66,7 @@ def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
 
 
 def _columns_if_large(stream: IO[bytes]) -> list[str] | None:
-    """Columns of a large plain file, which are read; None of others."""
+    """The columns of a large plain file, of which the first line is consumed; None for others."""
     if not stream.seekable() or find_spec("pyarrow") is None:
         return None
     start = stream.tell()
@@ -112,7 +112,7 @@ def _table(columns: Sequence[str], file: str) -> tables.Table:
 
 
 def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[tables.Row]:
-    """Rows from line ``number`` on, the header included. Raises RulecError R0509."""
+    """Rows from line ``number`` on; line 1 is the header. Raises RulecError R0509."""
     text = io.TextIOWrapper(stream, "utf-8-sig" if number == 1 else "utf-8", newline="")
     arriving = _Lines(text)
     lines = csv.reader(arriving, strict=True)
@@ -130,8 +130,8 @@ def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[tables.Row]:
         message = f"from here on the file cannot be read as CSV: {words}"
         raise tables.problem(message, SourceLocation(file, number), _QUOTES) from None
     finally:
-        with suppress(ValueError):  # who has read enough may have closed the stream
-            text.detach()  # the stream is its owner's
+        with suppress(ValueError):  # the caller may have closed the stream already
+            text.detach()  # the caller owns the stream: do not close it
 
 
 _WORDS = {
@@ -146,7 +146,7 @@ _QUOTES = "what stands in quotes ends with quotes; is one missing, or has the fi
 
 @dataclass(slots=True)
 class _Lines(Iterator[str]):
-    """Lines of a text, of which a row takes one or several; so far it has ``row`` characters."""
+    """Lines of a text; ``row`` counts the characters of the current row, which may have several."""
 
     text: io.TextIOWrapper
     row: int = 0
@@ -164,7 +164,7 @@ class _Lines(Iterator[str]):
 
 
 def _not_utf8(stream: IO[bytes], place: SourceLocation, reason: UnicodeDecodeError) -> RulecError:
-    """The first byte that is no UTF-8, in a pipe about where."""
+    """Error for the first byte that is not UTF-8; its place is only approximate in a pipe."""
     byte, where = reason.object[reason.start], "here or further on "
     if stream.seekable():
         stream.seek(0)
@@ -187,7 +187,7 @@ def _value(cell: str) -> PartialValue:
 def write_csv(
     rows: Iterable[Sequence[tables.Cell]], columns: Sequence[str], stream: IO[bytes]
 ) -> None:
-    """Write a table: its columns' names, then its rows."""
+    """Write a table: its column names, then its rows."""
     text = io.TextIOWrapper(stream, "utf-8", newline="")
     try:
         lines = csv.writer(text, lineterminator="\n")
@@ -195,7 +195,7 @@ def write_csv(
         for row in rows:
             lines.writerow([_cell(value) for value in row])
     finally:
-        text.detach()  # which writes what is left
+        text.detach()  # also flushes
 
 
 def _cell(value: tables.Cell) -> str:
@@ -209,7 +209,7 @@ def _cell(value: tables.Cell) -> str:
         case float():
             return float.__repr__(value)
         case list():
-            return " ".join(value) or " "  # an empty cell says nothing
+            return " ".join(value) or " "  # an empty cell would mean that no list is given
         case _ if value is UNKNOWN:
             return UNKNOWN.value
         case _:

@@ -1,4 +1,4 @@
-"""Lines of JSON, decoded, and diagnostics for those refused."""
+"""Decoding of JSON lines, and diagnostics for lines that are refused."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from rulec.trace.formats.stream_lines import not_utf8, placed
 from rulec.trace.trace_messages import NOT_A_TRACE
 
 LONGEST_LINE_BYTES = 128 << 20
-"""A longer line is refused: it is a file or a stream that lacks its line ends."""
+"""A longer line is refused: the file or stream has no line ends."""
 
 _MOST_SEARCHED = 1 << 24
-"""Of a longer line nobody is told in which state it ends."""
+"""For a longer line the message does not say in which state it ends."""
 
 _UNKNOWN_FIELD = re.compile(r"unknown field `(.*?)`(?! - at)", re.DOTALL)
 _UNKNOWN_CHOICE = re.compile(r"nvalid enum value '.*' - at `\$\.(\w+)`", re.DOTALL)
@@ -34,7 +34,7 @@ Record = TypeVar("Record", bound=msgspec.Struct)
 
 @dataclass(frozen=True)
 class Kind(Generic[Record]):
-    """Expected content of lines: ``"trace"``, its structure, an example."""
+    """What lines should contain: its name, such as ``"trace"``, the structure, an example."""
 
     name: str
     structure: type[Record]
@@ -59,7 +59,7 @@ class Kind(Generic[Record]):
             return self._refused(problem, line, place)
 
     def bad(self, message: str, place: SourceLocation, help_text: str = "") -> RulecError:
-        """Error R0501: the line at this place is none."""
+        """Error R0501: the line at this place is not of this kind."""
         return NOT_A_TRACE.error(place, message, help=help_text or self.example)
 
     def _refused(self, problem: Exception, line: bytes, place: SourceLocation) -> RulecError:
@@ -101,7 +101,7 @@ class Kind(Generic[Record]):
 
 
 def rows_of_tracks(line: bytes, place: SourceLocation) -> RulecError | None:
-    """The error (R0501) that a line is a row of tracks, or a list of such; None if it is not."""
+    """Error R0501 if a line is a row of tracks or a list of such rows; otherwise None."""
     if b'"states"' in line or len(line) > LONGEST_LINE_BYTES:
         return None
     try:
@@ -121,7 +121,10 @@ def rows_of_tracks(line: bytes, place: SourceLocation) -> RulecError | None:
 
 
 def _answer_of_rulec(line: bytes) -> str:
-    """What a line is that `rulec verify` has written, and what reads it; empty if it is none."""
+    """Help for a line that `rulec verify` has written, saying what reads it.
+
+    Empty for other lines.
+    """
     if b'"outcome":' in line:
         return "it is a finding of `rulec verify`, which `rulec rates` counts"
     if b'"satisfied":' in line:
@@ -138,8 +141,8 @@ def _spelling(text: bytes) -> str:
 
 
 def is_beginning(line: bytes) -> bool:
-    """Test whether a line is correct but ends too early."""
-    # In the middle of a number, such as `0.`, it takes a digit to say so.
+    """Whether a line is valid JSON so far but ends too early."""
+    # If it ends within a number, such as `0.`, that is recognised only with another digit.
     return _is_truncated(line) or _is_truncated(line + b"0")
 
 
@@ -154,10 +157,10 @@ def _is_truncated(line: bytes) -> bool:
 def middle_of(line: bytes) -> str:
     """Where a trace is cut off, such as ``state 6 of trace `t1` ``."""
     open_: list[int | bytes | None] = []
-    """For every list that has begun the place in it, for every object the key, if it has one."""
+    """The current index for each open list, the current key (if read) for each open object."""
     called = b""
     begun: int | None = None
-    """Where the text that it is in has begun."""
+    """Where the current string began; None outside of strings."""
     for match_ in _MARK.finditer(line) if len(line) <= _MOST_SEARCHED else ():
         mark = match_[0]
         if mark == b'"' and begun is None:

@@ -43,7 +43,7 @@ class _Record(_Header):
 
 
 class _Outline(_Header):
-    """Trace whose states are not decoded yet."""
+    """A trace whose states are not decoded yet."""
 
     states: list[msgspec.Raw]
 
@@ -52,7 +52,7 @@ _TRACE = json_line_problems.Kind(
     "trace", _Record, 'a trace is a line such as {"id": "t1", "states": [{…}, {…}]}'
 )
 _OF_TEXTS = (".md", ".markdown", ".txt", ".rst", ".html", ".py", ".rules", ".toml", ".yml", ".yaml")
-"""How files end that are mostly written for people, of which not every line need be complained."""
+"""Endings of files usually written for people: one message is enough, not one for each line."""
 
 _OUTLINE_DECODER = msgspec.json.Decoder(_Outline)
 
@@ -60,14 +60,14 @@ _OUTLINE_DECODER = msgspec.json.Decoder(_Outline)
 def read_chunks(
     stream: IO[bytes], file: str, *, together: bool = False
 ) -> Iterator[Sequence[Trace | RulecError]]:
-    """Read traces, one a line, a block of the stream at a time.
+    """Read traces, one per line, one block of the stream at a time.
 
-    With ``together`` those that are written alike become the columns of a ``LineBlock``.
+    With ``together``, traces whose states are written alike become columns of a ``LineBlock``.
 
-    Of a pipe that is what has arrived. For every line that is not blank there is a Trace, or the
-    RulecError (R0501, R0718) that says why it is none; for a stream without any trace one
-    RulecError (R0501). The stream is called ``file`` in messages. States that are written alike
-    are the same object, as far as there is room to remember them.
+    A block of a pipe is what has arrived. Each line that is not blank gives a Trace, or the
+    RulecError (R0501, R0718) that says why it is not one; a stream without any trace gives one
+    RulecError (R0501). Messages call the stream ``file``. States with the same text are the same
+    object, as long as there is room to remember them.
     """
     number = result = 0
     read_state = _StateReader()
@@ -120,14 +120,14 @@ def read_chunks(
 
 
 def _objects_in(line: bytes, most: int) -> int:
-    """JSON objects of a line, if it can have more than ``most``."""
+    """The number of JSON objects in a line; 0 if it is too short to contain more than ``most``."""
     return line.count(b"{") if len(line) > 2 * most else 0
 
 
 def _alike(lines: Sequence[bytes], together: bool) -> Sequence[AlikeLines]:
     if not together:
         return []
-    # numpy, 60 ms: not for a running trace.
+    # Loads numpy, 60 ms, which a running trace does not need.
     from rulec.trace.formats.alike_lines import alike_lines
 
     return list(alike_lines(lines, _heading))
@@ -140,8 +140,8 @@ def _block(
     places: Mapping[int, int],
     before: SourceLocation,
 ) -> LineBlock:
-    """The items of lines behind the one ``before``, of which ``places`` has those of lines."""
-    # As above: not for a running trace.
+    """The items of the lines after ``before``; ``places`` maps a line's index to its item's."""
+    # Loads numpy, see above.
     from rulec.trace.formats.alike_lines import LineBlock, placed_among
 
     line_at = {place: index for index, place in places.items()}
@@ -157,10 +157,10 @@ def _block(
 
 
 def _heading(line: bytes) -> tuple[str, float, Mapping[str, str]] | None:
-    """A trace's name, step and objects, if nothing is unusual beside its states."""
+    """A trace's name, step and objects; None if something besides its states is unusual."""
     try:
         read = _OUTLINE_DECODER.decode(line)
-    except (ValueError, RecursionError):  # msgspec's errors are the former
+    except (ValueError, RecursionError):  # msgspec's errors are ValueErrors
         return None
     is_usual = read.ends == "complete" and read.told is None and not read.present
     if not is_usual or not 0 < read.step_s < math.inf or may_be_no_float(line):
@@ -170,14 +170,14 @@ def _heading(line: bytes) -> tuple[str, float, Mapping[str, str]] | None:
 
 @dataclass(slots=True)
 class _Torn:
-    """Line with the beginning of a trace that may go on below."""
+    """A line with the beginning of a trace that may continue on the next lines."""
 
     line: bytes
     place: SourceLocation
     goes_on: bool = False
 
     def error(self, *, at_the_end: bool) -> RulecError:
-        """Diagnostic, which depends on the lines that follow."""
+        """The diagnostic, which depends on the lines that follow."""
         cut = f"the line ends in the middle of {json_line_problems.middle_of(self.line)}"
         place = placed(self.place, self.line, len(self.line) - 1)
         if self.goes_on:
@@ -217,12 +217,12 @@ def _trace(line: bytes, place: SourceLocation, read_state: _StateReader) -> Trac
     if may_be_no_float(line):
         return _as_written(line, place)
     if read_state.pays and len(line) <= json_line_problems.LONGEST_LINE_BYTES:
-        with suppress(ValueError, RecursionError):  # msgspec's errors are, too
+        with suppress(ValueError, RecursionError):  # msgspec's errors are ValueErrors
             outline = _OUTLINE_DECODER.decode(line)
             read_state.read += len(outline.states)
             if BOUNDS.isdisjoint(outline.objects):
                 return _made(outline, [read_state[bytes(raw)] for raw in outline.states], place)
-    # Read as a whole, it says what is wrong.
+    # Decoding the whole line also finds what is wrong with it.
     record = _TRACE.read(line, place)
     if isinstance(record, RulecError):
         return record
@@ -241,7 +241,7 @@ def _of_record(record: _Record, place: SourceLocation) -> Trace | RulecError:
 
 
 def _as_written(line: bytes, place: SourceLocation) -> Trace | RulecError:
-    """The trace of a line with numbers that are perhaps no floats."""
+    """The trace of a line that may contain numbers that no float represents."""
     record = _TRACE.read(line, place)
     if isinstance(record, RulecError):
         return record
@@ -267,14 +267,14 @@ def _made(record: _Header, states: Sequence[State], place: SourceLocation) -> Tr
 
 
 def _is_plain(text: bytes) -> bool:
-    """Whether all that JSON says is known: then what is decoded is a state."""
+    """Whether JSON has no unknown values, intervals or escapes: decoded, it is a state as it is."""
     return (
         b"null" not in text and b'"from"' not in text and b'"to"' not in text and b"\\" not in text
     )
 
 
 class _StateReader(dict[bytes, State]):
-    """Decoder of states that decodes equal ones once while that pays."""
+    """Decodes states, and equal texts only once as long as that saves time."""
 
     _MOST = 1 << 16
     _LONGEST = 1 << 12
@@ -292,7 +292,7 @@ class _StateReader(dict[bytes, State]):
         self._met += 1
         few = self._met < self._FEW or self._met * 2 < self.read
         if self._met > self._MOST or len(text) > self._LONGEST or not few:
-            # There is no end to them: what is remembered is of no use.
+            # Too many distinct states: remembering them does not pay.
             self.pays = False
             self.clear()
         else:
@@ -301,7 +301,7 @@ class _StateReader(dict[bytes, State]):
 
 
 def write_traces(traces: Iterable[Trace], stream: IO[bytes]) -> int:
-    """Write traces, one a line, and return how many."""
+    """Write traces, one per line, and return their number."""
     encoder = msgspec.json.Encoder(enc_hook=as_written)
     count = 0
     for count, trace in enumerate(traces, 1):  # noqa: B007 - the count is the result
@@ -324,7 +324,7 @@ def write_traces(traces: Iterable[Trace], stream: IO[bytes]) -> int:
 
 @dataclass(frozen=True, slots=True)
 class LiveState:
-    """State with its objects, their types, and its source location."""
+    """A state with its objects' types and its source location."""
 
     state: State
     objects: dict[str, str]
@@ -344,8 +344,8 @@ _STATE = json_line_problems.Kind(
 def read_live(stream: IO[bytes], file: str) -> Iterator[LiveState | RulecError]:
     """Read the states of a stream as their lines arrive.
 
-    For every line that is not blank there is a LiveState, or the RulecError (R0501) that says why
-    it is none; the stream is called ``file`` in messages.
+    Each line that is not blank gives a LiveState, or the RulecError (R0501) that says why it is not
+    one; messages call the stream ``file``.
     """
     lines = chain.from_iterable(lines_as_they_come(stream, json_line_problems.LONGEST_LINE_BYTES))
     for number, line in enumerate(lines, 1):

@@ -1,4 +1,4 @@
-"""Numbers in JSON that no float stands for."""
+"""Numbers in JSON that no float represents."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from rulec.vocabulary.written_numbers import WrittenNumber, number_written
 _DIGIT = ord("0")
 _DIGITS = bytes(_DIGIT if chr(byte) in "0123456789" else 32 for byte in range(256))
 _MANY = b"0" * 16
-"""Fewer digits than these are those of a float, but for tiny ones."""
+"""Numbers with fewer digits are exact floats, except tiny ones."""
 
 _LONG = re.compile(rb"[0-9](?:\.?[0-9]){15,}(?:[eE][-+]?[0-9]+)?")
 _TINY = re.compile(rb"[eE]-0*(?:29[0-9]|[3-9][0-9]{2}|[0-9]{4})")
 
 
 def may_be_no_float(line: bytes) -> bool:
-    """Whether there are numbers in JSON that are other decimals than those of floats.
+    """Whether JSON contains numbers that may not be exactly a float's decimal.
 
-    It says so, too, of a text that looks like one.
+    Also True for a text that looks like such a number.
     """
     digits = line.translate(_DIGITS, b".")
     if _MANY in digits and not all(map(_is_own, _LONG.findall(line))):
@@ -32,15 +32,15 @@ def may_be_no_float(line: bytes) -> bool:
 
 
 def _is_own(written: bytes) -> bool:
-    """Whether a decimal is the very one that its float is written as."""
+    """Whether a decimal is exactly what Python writes for its float."""
     text = written.decode()
     return float.__repr__(float(text)) == text
 
 
 def exactly(line: bytes) -> dict[str, Any]:
-    """An object in JSON, which is one, with all numbers as they are written.
+    """The JSON object in a line, with all numbers exactly as written.
 
-    Raises ValueError for a number that is too long, or too near to 0.
+    Raises ValueError for a number that is too long or too close to 0.
     """
     decoded: dict[str, Any] = json.loads(line, parse_float=number_written, parse_int=_whole)
     return decoded
@@ -52,7 +52,7 @@ def _whole(text: str) -> float:
 
 
 def as_written(value: object) -> object:
-    """What an encoder writes for a number that no float stands for."""
+    """What an encoder writes for numbers it does not know: a WrittenNumber, or NumPy's floats."""
     if isinstance(value, WrittenNumber):
         return msgspec.Raw(str(value).encode())
     if isinstance(value, float):  # NumPy's

@@ -1,4 +1,4 @@
-"""Values that are not known, in JSON: ``null``, and intervals as ``{"from": 1, "to": 2}``."""
+"""Values not exactly known, in JSON: ``null``, and intervals as ``{"from": 1, "to": 2}``."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ BOUNDS = frozenset({"from", "to"})
 
 
 def from_json(state: Mapping[str, Any], objects: Collection[str]) -> State:
-    """The state that decoded JSON stands for.
+    """The state that decoded JSON represents.
 
-    What has no other keys than `from` and `to` is an interval, unless all of them are ``objects``.
-    Raises ValueError, with what is wrong, where it is none.
+    A mapping with no keys besides `from` and `to` is an interval, unless all of its keys are
+    ``objects``. Raises ValueError, saying what is wrong, if such an interval is invalid.
     """
     named = BOUNDS.intersection(objects)
     return {name: _value_of(value, name, named) for name, value in state.items()}
@@ -39,7 +39,7 @@ def _value_of(value: Any, name: str, named: frozenset[str]) -> Any:
 
 
 def to_json(state: State) -> dict[str, Any]:
-    """What JSON writes for a state."""
+    """A state in the form that is encoded as JSON."""
     return {name: _written(value) for name, value in state.items()}
 
 

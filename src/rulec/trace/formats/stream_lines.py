@@ -1,4 +1,4 @@
-"""Lines of a stream, their locations, and files without any traces."""
+"""Lines of a stream, their locations, and recognition of files that contain no traces."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _BLOCK_BYTES = 1 << 22
 _LONG_LINE = 1 << 10
 
 _MOST_SKIPPED = 1 << 32
-"""Bytes of a line that is too long anyway: one that is longer than this never ends."""
+"""Bytes of an overlong line that are skipped; one that is longer is taken to never end."""
 
 _MOST_SHOWN = 1 << 20
-"""A longer line is not shown, not even in part."""
+"""A longer line is not quoted in messages, not even in part."""
 
 
 class _Arriving(Protocol):
@@ -26,9 +26,9 @@ class _Arriving(Protocol):
 def lines_as_they_come(stream: IO[bytes], longest: int) -> Iterator[list[bytes]]:
     """The lines of a stream, without their line feeds, in lists.
 
-    It waits only while no line is complete, so who writes into a pipe line by line is answered line
-    by line. Of a line of more than ``longest`` bytes there is a part that is longer than that, and
-    behind one that does not end, as on ``/dev/zero``, nothing.
+    Waits only while no line is complete, so that a program writing line by line into a pipe is
+    answered line by line. Of a line of more than ``longest`` bytes there is only a part, longer
+    than that; after a line that never ends, as in ``/dev/zero``, reading stops.
     """
     arriving = cast("_Arriving", stream)
     parts: list[bytes] = []
@@ -48,7 +48,7 @@ def lines_as_they_come(stream: IO[bytes], longest: int) -> Iterator[list[bytes]]
 def _split(block: bytes) -> list[bytes]:
     if block.find(b"\n") < _LONG_LINE:
         return block.split(b"\n")
-    # The same, but ``split`` looks at each byte by itself: of long lines it takes five times.
+    # The same result, but five times as fast as ``split`` for long lines.
     lines, begin = [], 0
     while (end := block.find(b"\n", begin)) >= 0:
         lines.append(block[begin:end])
@@ -58,7 +58,7 @@ def _split(block: bytes) -> list[bytes]:
 
 
 def not_utf8(line: bytes) -> int | None:
-    """The place of the first byte that is not UTF-8."""
+    """The index of the first byte that is not UTF-8; None if all are."""
     try:
         line.decode()
     except UnicodeDecodeError as reason:
@@ -67,14 +67,14 @@ def not_utf8(line: bytes) -> int | None:
 
 
 def placed(place: SourceLocation, line: bytes, byte: int) -> SourceLocation:
-    """The place of a line's byte, with the line."""
+    """The location of a byte in a line, with the line as excerpt."""
     column = len(line[:byte].decode("utf-8", "replace")) + 1
     text = line.decode("utf-8", "replace").rstrip("\r\0") if len(line) < _MOST_SHOWN else ""
     return replace(place, column=column, end_line=place.line, end_column=column + 1, excerpt=text)
 
 
 class Foreign(NamedTuple):
-    """Kind of a foreign file, and the way out."""
+    """What a foreign file is, and what to do about it."""
 
     noun: str
     help: str
@@ -103,12 +103,12 @@ _TEXT = frozenset(b"\t\n\r\f")
 
 
 def packed(beginning: bytes) -> Foreign | None:
-    """Kind of container that a file with this beginning is."""
+    """The kind of container that begins like this; None if it is none that is known."""
     return next((kind for mark, kind in _BEGINNINGS.items() if beginning.startswith(mark)), None)
 
 
 def foreign(beginning: bytes) -> Foreign | None:
-    """Kind of file with this beginning; None for UTF-8 text."""
+    """The kind of foreign file that begins like this; None for UTF-8 text."""
     some = beginning[:1000]
     kind = packed(beginning)
     if kind is None and _is_utf16(some):
@@ -119,6 +119,6 @@ def foreign(beginning: bytes) -> Foreign | None:
 
 
 def _is_utf16(some: bytes) -> bool:
-    """Test whether nearly every other byte is 0."""
+    """Whether nearly every other byte is 0."""
     zeros = sorted((some[::2].count(0), some[1::2].count(0)))
     return len(some) > 3 and zeros[0] == 0 and zeros[1] * 2 > 0.9 * len(some)

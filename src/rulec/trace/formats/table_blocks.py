@@ -1,4 +1,4 @@
-"""Blocks of a table: whole traces as columns, and when their objects are there."""
+"""Blocks of a table: whole traces as columns, and when their objects are present."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
 
 
 class OddTableError(Exception):
-    """Table that has to be read row by row, or refused."""
+    """The table has to be read row by row, or refused."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Coded:
-    """A column in which few values are met again and again.
+    """A column with few distinct values.
 
-    ``codes`` (signed integers) are for each row a place in ``values``, or -1 for an empty cell.
-    Those that tell things apart are distinct.
+    ``codes`` (signed integers) give each row's index in ``values``, or -1 for an empty cell. In
+    columns that identify something, values are distinct.
     """
 
     codes: NDArray[Any]
@@ -33,20 +33,20 @@ class Coded:
 
     @property
     def given(self) -> NDArray[np.bool_]:
-        """The rows whose cell is not empty."""
+        """Mask of the rows whose cell is not empty."""
         return self.codes >= 0
 
     def given_at(self, rows: slice) -> NDArray[np.bool_]:
-        """Which of some rows have a cell that is not empty, without a look at all the others."""
+        """Mask of those of some rows whose cell is not empty, without looking at the others."""
         result: NDArray[np.bool_] = self.codes[rows] >= 0
         return result
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Numbers:
-    """Column of ``float64``; cells that are not ``given`` are arbitrary.
+    """A column of ``float64``; cells that are not ``given`` are arbitrary.
 
-    They are ``whole`` if the table has whole numbers.
+    ``whole``: the table has integers.
     """
 
     numbers: NDArray[np.float64]
@@ -54,7 +54,7 @@ class Numbers:
     whole: bool = False
 
     def given_at(self, rows: slice) -> NDArray[np.bool_]:
-        """Which of some rows have a cell that is not empty."""
+        """Mask of those of some rows whose cell is not empty."""
         return self.given[rows]
 
 
@@ -63,14 +63,14 @@ Column = Coded | Numbers
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Block(Sequence["Trace | RulecError"]):
-    """Traces whose rows stand together, first read when they are asked for.
+    """Traces in consecutive rows, each read only when asked for.
 
-    ``columns`` has what is in the ``table``'s columns. ``starts`` are the rows with which traces
-    begin, counted from 0, and how many rows there are. ``rows`` gives those from one to another
-    (exclusive) as ``traces_in`` reads them. ``partial`` are the traces of which something is not
-    known or no float, ``unsaid`` those of them of which the columns do not say it; ``unknown`` are
-    the rows in which a name's value is. With an ``outline`` nothing else is odd, and traces are
-    made from it and from columns.
+    ``columns`` holds the ``table``'s columns. ``starts`` are the rows, from 0, where traces begin,
+    then the number of rows. ``rows`` gives those from one row to another (exclusive) as
+    ``traces_in`` reads them. ``partial`` are the traces with something unknown or a number that no
+    float represents; ``unsaid`` are those of them for which the columns do not show it. ``unknown``
+    are the rows in which a name's value is unknown. With an ``outline`` nothing else is irregular,
+    and traces are made from it and the columns.
     """
 
     table: tables.Table
@@ -105,7 +105,7 @@ class Block(Sequence["Trace | RulecError"]):
         return self._read(0, int(self.starts[-1]))
 
     def step_s(self, place: int) -> float:
-        """Step of a trace (s), if nothing about it is odd."""
+        """The step of a trace in seconds, if nothing about it is irregular."""
         column, row = self.columns.get(STEP_S), int(self.starts[place])
         if column is None or not column.given_at(slice(row, row + 1)).all():
             return 1.0
@@ -117,28 +117,28 @@ class Block(Sequence["Trace | RulecError"]):
 
 
 def trace_starts(traces: Coded) -> NDArray[np.int64]:
-    """The rows with which traces begin, by the column that names them."""
+    """The rows where traces begin, from the column of trace names."""
     codes = traces.codes
     changes = np.flatnonzero(codes[1:] != codes[:-1]) + 1
     return np.concatenate([np.zeros(min(len(codes), 1), np.int64), changes])
 
 
 Rows = NDArray[np.int64]
-"""A number for each row."""
+"""An integer for each row."""
 
 NOBODY = -1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BlockPresence:
-    """Objects of each trace, and the object of each row.
+    """The objects of each trace, and those that each row is about.
 
-    Each row has its ``trace``, its ``step``, and the objects that it is about: ``item`` and
-    ``other`` are places among its trace's objects, in the order of their first rows, or NOBODY.
+    Each row has its ``trace``, its ``step``, and the objects it is about: ``item`` and ``other``
+    are indices among its trace's objects, in the order of their first rows, or NOBODY.
 
     Each trace has ``names``, a ``length`` in states, a step in seconds, and from ``starts`` on its
-    objects: their ``objects`` names, ``types``, and in ``stretches`` the first and the last state
-    in which they are, twice NOBODY for those that are there all the time.
+    objects: their names (``objects``), their ``types``, and in ``stretches`` the first and last
+    state in which each is present, or twice NOBODY if it always is.
     """
 
     trace: Rows
@@ -158,14 +158,17 @@ class BlockPresence:
         return tuple(self.objects[self.starts[trace] : self.starts[trace + 1]])
 
     def shape_of(self, trace: int) -> tuple[object, ...]:
-        """Shape that traces share whatever their lengths and objects' names."""
+        """A value that is equal for traces with the same step, object types and presence.
+
+        Lengths and objects' names may differ.
+        """
         there = slice(self.starts[trace], self.starts[trace + 1])
         types = tuple(self.types[there])
         return float(self.step_s[trace]), types, self.stretches[there].tobytes()
 
 
 def outlined(block: Block) -> BlockPresence:
-    """Objects and presence of a block. Raises OddTableError."""
+    """The objects and presence of a block. Raises OddTableError."""
     starts, n_rows = block.starts, int(block.starts[-1])
     names = _names(block.columns[TRACE])
     trace = np.repeat(np.arange(len(block)), np.diff(starts))
@@ -218,7 +221,7 @@ def outlined(block: Block) -> BlockPresence:
 
 
 def _outlined_trace(block: Block, outline: BlockPresence, place: int) -> Trace | None:
-    """A trace from its columns; None if something is said twice."""
+    """A trace made from its columns; None if a value is given twice."""
     start, stop = block.starts[place : place + 2].tolist()
     rows = slice(start, stop)
     steps, names = outline.step[rows].tolist(), outline.objects_of(place)
@@ -255,7 +258,7 @@ def _outlined_trace(block: Block, outline: BlockPresence, place: int) -> Trace |
 def _values_in_rows(
     block: Block, start: int, stop: int
 ) -> Iterator[tuple[str, Rows, Sequence[PartialValue]]]:
-    """What is said of each name in rows, counted from the first one."""
+    """The given values of each name, and their rows counted from ``start``."""
     for name in block.table.names:
         column = block.columns[name]
         where = np.flatnonzero(column.given_at(slice(start, stop)))
@@ -266,7 +269,7 @@ def _values_in_rows(
 
 
 def cells_of(column: Column, rows: Rows) -> list[Any]:
-    """The values of a column in rows that have some."""
+    """A column's values in rows whose cell is not empty."""
     if isinstance(column, Coded):
         return [column.values[code] for code in column.codes[rows].tolist()]
     numbers = column.numbers[rows]
@@ -296,11 +299,11 @@ def _steps(column: Column) -> Rows:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _ObjectNumbers:
-    """Numbers of objects, in the order of their first rows among those that are about some.
+    """Objects numbered in the order of their first rows, among rows that are about an object.
 
-    ``numbers`` are those of the rows, ``first`` the first row of each. ``_of_key`` has the numbers
-    by keys, -1 for those that are none; a key is a name's code alone if each is met in one trace
-    only, which is ``_owner`` then.
+    ``numbers`` are the rows' objects, ``first`` the first row of each object. ``_of_key`` maps keys
+    to numbers, -1 for none; a key is the code of a name alone if each name appears in one trace
+    only, which is then its ``_owner``.
     """
 
     numbers: Rows
@@ -311,7 +314,7 @@ class _ObjectNumbers:
 
     @classmethod
     def of(cls, trace: Rows, codes: NDArray[Any], n_traces: int, n_codes: int) -> _ObjectNumbers:
-        """The numbers of the objects of rows of traces."""
+        """The numbers of the objects in rows of these traces with these codes of names."""
         owner_of_code = np.full(n_codes, -1)
         owner_of_code[codes] = trace
         owner: Rows | None = owner_of_code
@@ -320,7 +323,7 @@ class _ObjectNumbers:
             owner, keys, n_keys = None, trace * n_codes + codes, n_traces * n_codes
             if n_keys > _MOST_KEYS * max(len(keys), 1):
                 raise OddTableError
-        # What is written last stays.
+        # Written in reverse, so that each key's first row remains.
         first_of_key = np.full(n_keys, -1)
         first_of_key[keys[::-1]] = np.arange(len(keys))[::-1]
         met = np.flatnonzero(first_of_key >= 0)
@@ -331,7 +334,7 @@ class _ObjectNumbers:
         return cls(number_of_key[keys], first[order], number_of_key, owner, n_codes)
 
     def of_others(self, trace: Rows, codes: NDArray[Any]) -> Rows:
-        """The numbers of objects of traces, -1 for those that are none."""
+        """The numbers of the objects that these codes name in these traces; -1 for none."""
         if not len(self.first):
             return np.full(len(trace), -1)
         if self._owner is None:
@@ -340,7 +343,7 @@ class _ObjectNumbers:
 
 
 _MOST_KEYS = 64
-"""So many times as many pairs of traces and names as there are rows may be told apart."""
+"""The limit of pairs of trace and name to be numbered, as a multiple of the rows."""
 
 
 def _others(
@@ -364,7 +367,10 @@ def _others(
 
 
 def _step_s(column: Column | None, trace: Rows, starts: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Said in no row of the block, or in all."""
+    """The step of each trace in seconds, given in all rows of the block or in none.
+
+    Raises OddTableError otherwise.
+    """
     n_traces = len(starts) - 1
     if column is None or not column.given.any():
         return np.ones(n_traces)

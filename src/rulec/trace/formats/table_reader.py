@@ -1,4 +1,4 @@
-"""Traces as rows, one a state and object (docs/traces.md)."""
+"""Traces as rows, one for each state and object (docs/traces.md)."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ TRACE, STEP, STEP_S = "trace", "step", "step_s"
 OBJECT, TYPE, OTHER = "object", "type", "other"
 ENDS, TOLD, UNKNOWN_NAMES = "ends", "told", "unknown"
 PARTIAL = (ENDS, TOLD, UNKNOWN_NAMES)
-"""Columns about what is not known."""
+"""Columns about what is unknown."""
 
 OWN = (TRACE, STEP, STEP_S, OBJECT, TYPE, OTHER, *PARTIAL)
-"""The columns that are no names of a vocabulary."""
+"""The columns that are not names of a vocabulary."""
 
 FROM, TO = ".from", ".to"
-"""How the columns of an interval's bounds end."""
+"""Endings of the columns for an interval's bounds."""
 
 NAMES = frozenset((TRACE, STEP, OBJECT, TYPE, OTHER))
-"""Those of them that tell things apart."""
+"""The columns whose cells identify something."""
 
 LONGEST_ROW = 1 << 23
-"""Characters of a row as text, however many lines it takes."""
+"""The greatest length of a row in characters, however many lines it spans."""
 
 Row = tuple[int, Sequence[Any]]
-"""Its number, for messages, and its cells; an empty cell is None or the empty text."""
+"""A row's number, for messages, and its cells; an empty cell is None or the empty text."""
 
 Cell = PartialValue | list[str] | None
-"""What is written into a table."""
+"""What can be written into a table."""
 
 _NUMBERS = (int, float, WrittenNumber)
 
@@ -49,10 +49,10 @@ _MOST_STATES = 1 << 16
 
 @dataclass(frozen=True)
 class Table:
-    """Meaning of the cells of a table's rows.
+    """How to interpret the rows of a table.
 
-    ``columns`` are the names of all columns. ``value`` makes a value of a cell that is not empty,
-    ``place`` tells where a row is by its number. ``has_texts``: all cells are texts.
+    ``columns`` are the names of all columns. ``value`` turns a non-empty cell into a value,
+    ``place`` a row's number into its location. ``has_texts``: all cells are texts.
     """
 
     columns: tuple[str, ...]
@@ -62,7 +62,7 @@ class Table:
 
     @cached_property
     def at(self) -> dict[str, int]:
-        """Index of each column by its name."""
+        """The index of each column."""
         return {name: place for place, name in enumerate(self.columns)}
 
     @cached_property
@@ -73,13 +73,13 @@ class Table:
 
     @cached_property
     def intervals(self) -> dict[str, tuple[int, int]]:
-        """Name -> the columns of its bounds."""
+        """Name -> the indices of the columns with its bounds."""
         at = self.at
         names = [name.removesuffix(FROM) for name in at if name.endswith(FROM)]
         return {name: (at[name + FROM], at[name + TO]) for name in names if name + TO in at}
 
     def cell(self, cells: Sequence[Any], column: str) -> Any:
-        """A row's cell in a column that may be missing."""
+        """A row's cell in a column; None if there is no such column."""
         place = self.at.get(column)
         return None if place is None else cells[place]
 
@@ -92,7 +92,7 @@ _IN_METRES = (
 
 
 def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
-    """Check (R0509) that columns are named, distinct, with trace and step."""
+    """Check (R0509) that columns are named, distinct, and include `trace` and `step`."""
     times = Counter(columns)
     for name in columns:
         if not name:
@@ -124,17 +124,17 @@ _FORM = "the first columns are `trace`, `step`, `object`, `type`; further ones a
 
 
 def problem(message: str, place: SourceLocation, help_text: str = "") -> RulecError:
-    """Rows that are no traces (R0509)."""
+    """Error R0509: the rows are not traces."""
     return NOT_A_TABLE.error(place, message, help=help_text)
 
 
 def traces_in(
     rows: Iterable[Row], table: Table, file: SourceLocation
 ) -> Iterator[Trace | RulecError]:
-    """Read the traces of a table, or each one's first mistake.
+    """Read the traces of a table; for a bad one, its first mistake.
 
-    If ``rows`` raise a RulecError, it takes the place of the trace that they were about. A table
-    without any trace gives one RulecError (R0509), about the ``file``.
+    If ``rows`` raises a RulecError, that replaces the trace being read. A table without any trace
+    gives one RulecError (R0509), about the ``file``.
     """
     known: dict[object, State] = {}
     at = table.at.get(TRACE, 0)
@@ -149,7 +149,7 @@ def traces_in(
             else:
                 yield _Building(name, table, known).read(own)
     except RulecError as error:
-        # Who knows what else there was about the last trace.
+        # The last trace may have had further rows that cannot be read.
         yield error
         return
     if is_empty_table:
@@ -232,7 +232,7 @@ class _Building:
         if is_empty(step_s):
             return
         value = self._value(step_s, number)
-        # What is no number is not even equal to itself.
+        # NaN is not equal to itself.
         if type(value) not in _NUMBERS or value != value:
             raise self._problem(f"`step_s` is {_shown(step_s)}; it is a number of seconds", number)
         if self.step_s is not None and self.step_s != value:
@@ -370,12 +370,12 @@ class _Building:
 
 
 def is_empty(cell: Any) -> bool:
-    """Test whether a cell has no value."""
+    """Whether a cell is empty."""
     return cell is None or cell == ""
 
 
 def whole(cell: Any) -> int | None:
-    """Number of a step; None if the cell holds none."""
+    """The whole number in a cell, as for a step; None if it contains none."""
     if isinstance(cell, str):
         return int(cell) if cell.isascii() and cell.isdigit() and len(cell) < 19 else None
     return cell if isinstance(cell, int) and not isinstance(cell, bool) else None
@@ -387,7 +387,7 @@ def _shown(cell: Any) -> str:
 
 
 def in_chunks(traces: Iterable[Trace | RulecError]) -> Iterator[list[Trace | RulecError]]:
-    """Group traces into lists of some thousand states."""
+    """Group traces into lists of about ``_MOST_STATES`` states."""
     chunk: list[Trace | RulecError] = []
     n_states = 0
     for trace in traces:

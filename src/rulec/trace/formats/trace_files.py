@@ -1,4 +1,4 @@
-"""Files of traces: formats, reading and writing."""
+"""Files of traces: their formats, reading and writing."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue, Unk
 Format = Literal["jsonl", "csv", "parquet"]
 
 Kinds = Mapping[str, type]
-"""For each name that states speak of what its values are: ``bool``, ``float`` or ``str``.
+"""The type of each name's values in states: ``bool``, ``float`` or ``str``.
 
-An interval's bounds have names of their own, as columns of tables have.
+An interval's bounds have names of their own, as they have columns of their own in tables.
 """
 
 
 def format_of(file: str) -> Format:
-    """Format by the ending of a file's name, packed or not, else JSON Lines."""
+    """The format by a file name's ending, without `.gz`; JSON Lines if it is another."""
     match PurePath(file.lower().removesuffix(".gz")).suffix:
         case ".csv":
             return "csv"
@@ -38,9 +38,9 @@ def format_of(file: str) -> Format:
 
 
 def read_traces(path: str | Path, form: Format | None = None) -> Iterator[Trace | RulecError]:
-    """Read the traces of a file, whose name's ending says its format where none is named.
+    """Read the traces of a file; without ``form``, the file name's ending decides the format.
 
-    In place of a bad one stands the RulecError that says why.
+    A bad trace is replaced by the RulecError that says why.
     """
     with opened(Path(path)) as stream:
         for chunk in read_chunks(stream, str(path), form or format_of(str(path))):
@@ -50,10 +50,11 @@ def read_traces(path: str | Path, form: Format | None = None) -> Iterator[Trace 
 def read_chunks(
     stream: IO[bytes], file: str, form: Format, *, together: bool = False
 ) -> Iterator[Sequence[Trace | RulecError]]:
-    """Read the traces of a stream in chunks; of a table perhaps a ``Block``.
+    """Read the traces of a stream in chunks; chunks of a table may be a ``Block``.
 
-    Those to be judged ``together`` may come as a ``LineBlock``, too. In place of a bad one stands
-    the RulecError that says why. Raises RulecError R0706 for Parquet that cannot be read here.
+    With ``together``, chunks of JSON may be a ``LineBlock``, for traces to be judged together. A
+    bad trace is replaced by the RulecError that says why. Raises RulecError R0706 if Parquet cannot
+    be read here.
     """
     if form == "jsonl":
         yield from json_lines.read_chunks(stream, file, together=together)
@@ -70,11 +71,10 @@ def write_traces(
     *,
     partial: bool = False,
 ) -> None:
-    """Write traces; ``kinds`` are those of all names that they speak of.
+    """Write traces; ``kinds`` are the types of all names in them.
 
-    ``partial``: tables have room for what is not known of traces.
-    Raises RulecError R0706 if Parquet cannot be written here. Raises ValueError if a name cannot be
-    a column.
+    ``partial``: tables get columns for what is unknown. Raises RulecError R0706 if Parquet cannot
+    be written here, ValueError if a name cannot be a column.
     """
     if form == "jsonl":
         json_lines.write_traces(traces, stream)
@@ -101,7 +101,7 @@ _WRITABLE = (bool, int, float, str, Interval, UnknownValue)
 
 
 def check_writable(trace: Trace) -> None:
-    """Refuse values that no format of traces has. Raises RulecError R0501."""
+    """Refuse values that no format of traces can hold. Raises RulecError R0501."""
     for pair in trace.objects.items():
         if not all(isinstance(text, str) for text in pair):
             message = f"`objects` has names and types, not {brief(pair[0])} and {brief(pair[1])}"
@@ -118,7 +118,7 @@ def check_writable(trace: Trace) -> None:
 
 
 def kinds_in(states: Iterable[State]) -> dict[str, type]:
-    """Kinds of all names that states speak of, in order."""
+    """The types of all names that appear in states, in order."""
     kinds: dict[str, type] = {}
     unknown: dict[str, type] = {}
     for state in states:
@@ -134,13 +134,13 @@ def kinds_in(states: Iterable[State]) -> dict[str, type]:
 
 
 def with_bounds(kinds: Kinds, names: Collection[str]) -> dict[str, type]:
-    """The kinds with those of the bounds of numbers among these names."""
+    """The types, with those of the bounds of numbers among these names."""
     bounds = {name + end: float for name in kinds if name in names for end in (FROM, TO)}
     return {**kinds, **bounds}
 
 
 def is_partial(trace: Trace) -> bool:
-    """Tell whether something about a trace is not known."""
+    """Whether something in a trace is unknown."""
     return (
         trace.ends != "complete"
         or trace.told is not None
@@ -162,7 +162,7 @@ def _leaves(value: Any, most_objects: int = 2) -> Iterator[PartialValue]:
 
 
 def columns_for(kinds: Kinds) -> list[str]:
-    """Columns of a table for these names; ValueError if one is double."""
+    """The columns of a table for these names; ValueError if one is a reserved column."""
     taken = [name for name in kinds if name in OWN]
     if taken:
         raise ValueError(f"`{taken[0]}` is a column of its own and cannot be a name")
@@ -170,9 +170,9 @@ def columns_for(kinds: Kinds) -> list[str]:
 
 
 def rows_of(trace: Trace, columns: Sequence[str]) -> Iterator[list[Any]]:
-    """Rows of a trace for ``columns_for`` names: of states, of their objects, of pairs.
+    """The rows of a trace for ``columns_for`` names: per state, per object, per pair of objects.
 
-    What is said of objects that are not there is left out; no rule reads it.
+    Values about absent objects are omitted; no rule reads them.
     """
     own = [name for name in columns if name in PARTIAL]
     names = columns[len(OWN) - len(PARTIAL) + len(own) :]
@@ -209,7 +209,7 @@ def rows_of(trace: Trace, columns: Sequence[str]) -> Iterator[list[Any]]:
 
 
 def _beside(item: str, state: State) -> set[str]:
-    """The few objects of which something is said together with an object."""
+    """The other objects that have values together with an object."""
     about: list[Any] = [x.get(item) for x in state.values() if isinstance(x, Mapping)]
     return {other for value in about if isinstance(value, Mapping) for other in value}
 

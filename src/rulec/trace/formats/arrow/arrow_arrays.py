@@ -1,7 +1,8 @@
-"""Arrow's arrays as numpy's, from their buffers.
+"""Arrow arrays as NumPy arrays, taken directly from their buffers.
 
-Arrow's own ways load pandas, where that is installed, which takes longer than to read most files.
-Its functions are called by their names, for ``pyarrow.compute`` describes all of them first, 30 ms.
+Arrow's own conversions load pandas where it is installed, which takes longer than reading most
+files. Arrow's functions are called by name because ``pyarrow.compute`` first generates a
+description of each (30 ms).
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from pyarrow._compute import CastOptions, DictionaryEncodeOptions, call_function
 
 
 def given_in(array: Any) -> NDArray[np.bool_]:
-    """Where an array has a value."""
+    """Mask of the cells that have a value."""
     if types.is_null(array.type):
         return np.zeros(len(array), dtype=bool)
     validity = array.buffers()[0]
@@ -27,7 +28,7 @@ def given_in(array: Any) -> NDArray[np.bool_]:
 
 
 def numbers_in(array: Any) -> NDArray[Any]:
-    """The numbers of an array, anything where there is none."""
+    """The numbers of an array, arbitrary where a value is missing."""
     buffer = array.buffers()[1]
     kind = np.dtype(str(array.type).replace("double", "float64"))
     if buffer is None:
@@ -36,13 +37,13 @@ def numbers_in(array: Any) -> NDArray[Any]:
 
 
 def truths_in(array: Any) -> NDArray[np.bool_]:
-    """The truth values of an array, anything where there is none."""
+    """The Booleans of an array, arbitrary where a value is missing."""
     buffer = array.buffers()[1]
     return np.zeros(len(array), dtype=bool) if buffer is None else _bits(buffer, array)
 
 
 def ends_in(array: Any) -> NDArray[np.int32]:
-    """Where the first text of an array begins, and where each of them ends."""
+    """The byte where the first text of an array begins, then where each text ends."""
     buffer = array.buffers()[1]
     if buffer is None:
         return np.zeros(len(array) + 1, dtype=np.int32)
@@ -50,27 +51,27 @@ def ends_in(array: Any) -> NDArray[np.int32]:
 
 
 def lengths_in(array: Any) -> NDArray[np.int32]:
-    """The bytes of each text of an array."""
+    """The length of each text of an array, in bytes."""
     return np.diff(ends_in(array))
 
 
 def list_lengths_in(array: Any) -> Any:
-    """How many values each list of an array has, as Arrow's array."""
+    """The number of values in each list of an array, as an Arrow array."""
     return call_function("list_value_length", [array])
 
 
 def cast_to(array: Any, kind: Any) -> Any:
-    """An array as one of another type. Raises ArrowInvalid."""
+    """The array cast to another type. Raises ArrowInvalid."""
     return call_function("cast", [array], CastOptions.safe(kind))
 
 
 def are_equal(array: Any, other: Any) -> NDArray[np.bool_]:
-    """Where an array has a value, and the same as another one or as a scalar."""
+    """Mask of the cells that have a value equal to that of another array, or to a scalar."""
     return flags_in(call_function("equal", [array, other]))
 
 
 def codes_in(array: Any) -> tuple[NDArray[Any], Sequence[Any]]:
-    """For each cell a place among distinct values, or -1 for none, and these values."""
+    """Each cell's index among the distinct values, -1 if missing, and these values."""
     if types.is_null(array.type):
         return np.full(len(array), -1), ()
     is_dictionary = types.is_dictionary(array.type)
@@ -80,10 +81,10 @@ def codes_in(array: Any) -> tuple[NDArray[Any], Sequence[Any]]:
     codes, values = numbers_in(encoded.indices), encoded.dictionary.to_pylist()
     if codes.dtype != np.int32:
         codes = codes.astype(np.int64, copy=False)
-    # There may be no cells, or no values; codes of what is not given are arbitrary.
+    # There may be no cells, or no values; the codes of missing cells are arbitrary.
     if encoded.indices.null_count:
         codes = np.where(given_in(encoded.indices), codes, -1)
-    if is_dictionary:  # whose values need not be distinct
+    if is_dictionary:  # a dictionary's values need not be distinct
         places = {value: place for place, value in enumerate(dict.fromkeys(values))}
         if len(places) < len(values) or None in places:
             own = np.array([-1 if value is None else places[value] for value in values] or [-1])
@@ -93,14 +94,14 @@ def codes_in(array: Any) -> tuple[NDArray[Any], Sequence[Any]]:
 
 
 def runs_in(array: Any) -> tuple[NDArray[Any], Sequence[Any]]:
-    """As ``codes_in``, sooner of cells of which many in a row are the same."""
+    """As ``codes_in``, but faster if many consecutive cells are the same."""
     runs = call_function("run_end_encode", [array])
     codes, values = codes_in(runs.values)
     return np.repeat(codes, np.diff(numbers_in(runs.run_ends), prepend=0)), values
 
 
 def one_in(array: Any) -> tuple[NDArray[np.int8], str] | None:
-    """As ``codes_in`` of texts that are all the same, None of others."""
+    """Each cell's code (0, or -1 if empty) and the text, if all texts are the same; else None."""
     ends, data = ends_in(array), array.buffers()[2]
     lengths = np.diff(ends)
     size = int(lengths.max(initial=0))
@@ -108,14 +109,14 @@ def one_in(array: Any) -> tuple[NDArray[np.int8], str] | None:
     if not size or size * np.count_nonzero(given) != ends[-1] - ends[0]:
         return None
     text = np.frombuffer(data, np.uint8)[ends[0] : ends[-1]]
-    # So long are all of them.
+    # All of them have this length.
     if (text[size:] != text[:-size]).any():
         return None
     return given.astype(np.int8) - np.int8(1), text[:size].tobytes().decode()
 
 
 def cells_in(column: Any) -> NDArray[Any]:
-    """A table's column: numbers, NaN where one is missing, or objects, None where one is."""
+    """A table's column: numbers with NaN where missing, or objects with None where missing."""
     array = whole_array(column)
     kind = array.type.value_type if types.is_dictionary(array.type) else array.type
     if types.is_string(kind) or types.is_large_string(kind):
@@ -131,24 +132,24 @@ def cells_in(column: Any) -> NDArray[Any]:
 
 
 def flags_in(column: Any) -> NDArray[np.bool_]:
-    """Where a column of truth values has a true one."""
+    """Mask of the cells of a Boolean column that are True."""
     array = whole_array(column)
     return truths_in(array) & given_in(array)
 
 
 def whole_array(column: Any) -> Any:
-    """A column of a table, which may be in pieces, as one array."""
+    """A table's column, which may be chunked, as one array."""
     return column.combine_chunks() if isinstance(column, pyarrow.ChunkedArray) else column
 
 
 def array_of_truths(flags: NDArray[np.bool_]) -> Any:
-    """Truth values as Arrow's array."""
+    """Booleans as an Arrow array."""
     bits = pyarrow.py_buffer(np.packbits(flags, bitorder="little"))
     return pyarrow.Array.from_buffers(pyarrow.bool_(), len(flags), [None, bits])
 
 
 def one_text(text: str) -> Any:
-    """A text as Arrow's scalar."""
+    """A text as an Arrow scalar."""
     data = text.encode()
     ends = pyarrow.py_buffer(np.array([0, len(data)], dtype=np.int32))
     whole = [None, ends, pyarrow.py_buffer(data)]
@@ -163,7 +164,7 @@ def _bits(buffer: Any, array: Any) -> NDArray[np.bool_]:
 
 
 def with_plain_texts(rows: Any) -> Any:
-    """Rows of a table or batch in which no texts are views, which not all of Arrow takes."""
+    """The table or batch with string views as plain strings; not all of Arrow accepts views."""
     is_view = types.is_string_view
     if not any(map(is_view, rows.schema.types)):
         return rows

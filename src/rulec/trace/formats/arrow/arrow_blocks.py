@@ -1,4 +1,4 @@
-"""Tables in pieces, cut where traces end, with columns as arrays."""
+"""Tables that arrive in pieces, cut where traces end, with columns as arrays."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ Piece = Any
 CodesReader = Callable[[Any], tuple[NDArray[Any], Sequence[Any]]]
 
 _SHORT = 15
-"""Numbers of so many characters are floats, but for tiny ones with an exponent."""
+"""Numbers of at most this many characters are exact floats, except tiny ones with an exponent."""
 
 _TINY = 1e-290
 
@@ -61,7 +61,7 @@ _DIGIT = re.compile(r"\A[-+.]?[0-9]")
 
 
 class WholeTraces(NamedTuple):
-    """A piece with whose end a trace ends, too; others follow."""
+    """A piece that ends where a trace ends; further traces follow."""
 
     piece: Piece
 
@@ -72,11 +72,11 @@ def cut(
     first: int,
     file: SourceLocation,
 ) -> Iterator[Sequence[Trace | RulecError]]:
-    """Cut a table into traces: blocks, or lists of rows.
+    """Cut a table into traces: blocks, or lists of traces read row by row.
 
-    ``pieces`` may end with rows, which are then read one by one, or with an error, which takes the
-    place of the trace that may have gone on there. ``first`` is the first row's number. A table
-    without any trace gives one RulecError, as from ``traces_in``.
+    ``pieces`` may end with an iterator of rows, which are read one by one, or with an error, which
+    replaces the trace that may have continued there. ``first`` is the number of the first row. A
+    table without any trace gives one RulecError, as from ``traces_in``.
     """
     waiting: list[Piece] = []
     most = STATES.value()
@@ -110,7 +110,7 @@ def cut(
 
 
 def _last_start(waiting: Sequence[Piece], piece: Piece, table: Table) -> int | None:
-    """Start of the last trace of a piece; None if earlier."""
+    """The row where a piece's last trace begins; None if no trace has ended before it."""
     at = table.at[TRACE]
     names = piece.column(at)
     start = start_of_last(names)
@@ -119,10 +119,10 @@ def _last_start(waiting: Sequence[Piece], piece: Piece, table: Table) -> int | N
 
 
 def start_of_last(names: Any) -> int:
-    """The row with which the last trace begins, by the column that names them."""
+    """The row where the last trace begins, from the column of trace names."""
     if not types.is_string(names.type) or not names[-1].as_py():
         return int(blocks.trace_starts(coded(names))[-1])
-    # Its name is looked for, which takes less than to tell all names apart.
+    # Searching backwards for another name is faster than encoding all names.
     for size in (_FEW_ROWS, len(names)):
         begin = max(len(names) - size, 0)
         others = np.flatnonzero(~are_equal(names.slice(begin), names[-1]))
@@ -142,7 +142,7 @@ def _block(
     partial = _partial_rows(whole, table)
     try:
         columns = columns_of(whole, table)
-    except (blocks.OddTableError, ValueError):  # a number that cannot be
+    except (blocks.OddTableError, ValueError):  # ValueError: a number outside the limits
         return list(traces_in(_rows([whole], first, table), table, file))
     is_odd = np.zeros(len(whole), dtype=bool)
     for column in columns.values():
@@ -177,7 +177,7 @@ def _block(
 
 
 def _unknown_rows(piece: Piece, table: Table) -> Mapping[str, NDArray[np.int64]] | None:
-    """The rows in which a name's value is unknown; None if not all is said in lists."""
+    """Name -> rows in which its value is unknown; None if the names are not in plain lists."""
     if UNKNOWN_NAMES not in table.at:
         return {}
     lists = piece.column(table.at[UNKNOWN_NAMES])
@@ -194,7 +194,7 @@ def _unknown_rows(piece: Piece, table: Table) -> Mapping[str, NDArray[np.int64]]
 
 
 def _partial_rows(piece: Piece, table: Table) -> NDArray[np.bool_]:
-    """The rows that say of bounds, of what is told or of the end that something is not known."""
+    """Mask of the rows that give an interval's bounds, ``told`` or ``ends``."""
     rows = np.zeros(len(piece), dtype=bool)
     bounds = chain.from_iterable(table.intervals.values())
     own = [table.at[name] for name in PARTIAL if name in table.at and name != UNKNOWN_NAMES]
@@ -206,7 +206,7 @@ def _partial_rows(piece: Piece, table: Table) -> NDArray[np.bool_]:
 
 
 def _odd_values(column: blocks.Column) -> NDArray[np.bool_] | bool:
-    """The rows with what is unknown, or with numbers that no float stands for."""
+    """Mask of the rows with unknown values or with numbers that no float represents."""
     if isinstance(column, blocks.Numbers) or isinstance(column.values, range):
         return False
     which = [value is UNKNOWN or type(value) is WrittenNumber for value in column.values]
@@ -223,7 +223,7 @@ def _rows(pieces: Iterable[Piece], first: int, table: Table) -> Iterator[Row]:
 
 
 def _as_texts(piece: Piece) -> Piece:
-    """A piece with its truth values as they are written."""
+    """A piece with its Boolean columns as text."""
     columns = [
         cast_to(column, pyarrow.string()) if types.is_boolean(column.type) else column
         for column in piece.columns
@@ -232,7 +232,7 @@ def _as_texts(piece: Piece) -> Piece:
 
 
 def columns_of(piece: Any, table: Table) -> Mapping[str, blocks.Column]:
-    """The columns of a piece (a record batch). Raises OddTableError."""
+    """The columns of a record batch as arrays. Raises OddTableError."""
     columns: dict[str, blocks.Column] = {}
     for name in (*OWN, *table.names):
         if name in PARTIAL or name not in table.at:
@@ -258,7 +258,7 @@ def columns_of(piece: Any, table: Table) -> Mapping[str, blocks.Column]:
 
 
 def coded(array: Any, codes_in: CodesReader = codes_in) -> blocks.Coded:
-    """Column of dictionary codes; empty texts are no value."""
+    """A column as codes of its distinct values; empty texts count as missing."""
     codes, values = codes_in(array)
     if "" in values:
         codes = np.where(codes == values.index(""), -1, codes)
@@ -268,20 +268,20 @@ def coded(array: Any, codes_in: CodesReader = codes_in) -> blocks.Coded:
 def _numbers(array: Any) -> blocks.Numbers:
     try:
         numbers = numbers_in(cast_to(array, pyarrow.float64()))
-    except pyarrow.ArrowInvalid:  # floats cannot tell such whole numbers apart
+    except pyarrow.ArrowInvalid:  # integers too large for exact floats
         raise blocks.OddTableError from None
     return blocks.Numbers(numbers, given_in(array), whole=types.is_integer(array.type))
 
 
 def _whole(array: Any) -> blocks.Coded | None:
-    """Steps as places among themselves; None if their texts say something else."""
+    """Steps as codes that equal them; None if they are not plain whole numbers."""
     if types.is_string(array.type):
         lengths = lengths_in(array)
         try:
             array = cast_to(array, pyarrow.int64())
         except pyarrow.ArrowInvalid:
             return None
-        # Arrow reads `0x10` and `-0`, too.
+        # Arrow also accepts `0x10` and `-0`.
         if ((lengths != _n_digits(numbers_in(array))) & given_in(array)).any():
             return None
     if not types.is_int64(array.type):
@@ -299,7 +299,7 @@ def _n_digits(steps: NDArray[np.int64]) -> NDArray[np.int8]:
 
 
 def _texts_read(array: Any, value: Callable[[str], PartialValue]) -> blocks.Column:
-    """A column of texts, or of the numbers that they say."""
+    """A column of values read from texts, or of numbers if all texts are numbers."""
     column = _one_text(array, value) or _numbers_said(array)
     if column is not None:
         return column
@@ -308,25 +308,25 @@ def _texts_read(array: Any, value: Callable[[str], PartialValue]) -> blocks.Colu
 
 
 def _one_text(array: Any, value: Callable[[str], PartialValue]) -> blocks.Coded | None:
-    """A column in which all texts are the same; None if they are not."""
+    """A column in which all texts are the same; None if they differ."""
     same = one_in(array)
     return None if same is None else blocks.Coded(same[0], [value(same[1])])
 
 
 def _numbers_said(array: Any) -> blocks.Numbers | None:
-    """The numbers of a column in which each text is the decimal that its float stands for."""
+    """The numbers of a column if each text is exactly a float's decimal; else None."""
     lengths = lengths_in(array)
     given = lengths > 0
-    # It takes Arrow long to refuse texts that are none.
+    # Arrow takes long to refuse texts that are not numbers.
     if not given.any() or not _DIGIT.search(array[int(given.argmax())].as_py()):
         return None
     try:
         floats = cast_to(array, pyarrow.float64())
-    except pyarrow.ArrowInvalid:  # of numbers there are some that Arrow does not read, such as `.5`
+    except pyarrow.ArrowInvalid:  # texts, or numbers that Arrow does not read, such as `.5`
         return None
     numbers = numbers_in(floats)
     sizes = np.abs(np.where(given, numbers, 1.0))
-    # Arrow reads `nan`; and what is written with an exponent may be nearer to 0 than any float.
+    # Arrow accepts `nan`, and a number with an exponent may be closer to 0 than any float.
     if not np.isfinite(sizes.max()):
         return None
     if not sizes.min() > _TINY and _has_exponents(array):

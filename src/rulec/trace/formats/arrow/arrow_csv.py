@@ -22,7 +22,10 @@ _NEAR_BYTES = 1 << 17
 _LONGEST_CELL = 1 << 17
 
 _SMALL_PART = 1 << 4
-"""A trace that begins so late in a block is read with the next one, which spares copies."""
+"""A last trace with less than this part (1/16) of a block's rows is read with the next block.
+
+That saves copies.
+"""
 
 _CELLS_TOGETHER = 1 << 6
 _CELLS_LOOKED_AT = 1 << 4
@@ -35,16 +38,17 @@ _TRUTHS = frozenset({"true", "false"})
 RowsFrom = Callable[[IO[bytes], int], Iterator[Row]]
 
 Types = Mapping[str, Any]
-"""Arrow's type of each column."""
+"""The Arrow type of each column."""
 
 
 def pieces(
     stream: IO[bytes], columns: Sequence[str], number: int, rows_from: RowsFrom
 ) -> Iterator[Piece | WholeTraces | Iterator[Row]]:
-    """The rows of a stream from here on, as pieces for ``cut``.
+    """The rows of a stream from its current position, as pieces for ``cut``.
 
-    ``number`` is the line that comes next. ``rows_from`` reads the stream from a line with that
-    number on row by row; it has the last word, on the first block that is not plain and the rest.
+    ``number`` is the number of the next line. ``rows_from`` reads the stream row by row from a line
+    with a given number on; it takes over at the first block that is not plain, and so decides
+    whether anything is wrong.
     """
     offset = stream.tell()
     texts: Types = dict.fromkeys(columns, pyarrow.string())
@@ -74,9 +78,9 @@ def pieces(
 
 
 class _Blocks:
-    """Blocks of whole lines of a stream, one after the other in the same memory.
+    """Blocks of whole lines of a stream, one after another in the same memory.
 
-    It is a part of the time to ask for new memory. Bytes of a block hold until the next is read.
+    Allocating memory for each would take noticeable time. A block is valid until the next is read.
     """
 
     def __init__(self, stream: IO[bytes]) -> None:
@@ -86,7 +90,7 @@ class _Blocks:
         self._begin = self._end = 0
 
     def read(self) -> Bytes:
-        """The next block, empty at the end; one with a line that is too long is cut somewhere."""
+        """The next block, empty at the end; a line that is too long is cut at some point."""
         rest = self._whole[self._begin : self._end].copy()
         self._whole[: len(rest)] = rest
         self._begin, self._end, end = 0, len(rest), 0
@@ -99,12 +103,12 @@ class _Blocks:
         return self._whole[: end or self._end]
 
     def drop(self, size: int) -> None:
-        """Begin the next block behind so many bytes of this one."""
+        """Let the next block begin after ``size`` bytes of this one."""
         self._begin = size
 
 
 def _end_of_lines(text: Bytes, least: int) -> int:
-    """The end of the last line that ends behind ``least``; 0 if none does."""
+    """The end of the last line that ends after ``least``; 0 if none does."""
     for size in (_NEAR_BYTES, len(text)):
         begin = max(least, len(text) - size)
         ends = np.flatnonzero(text[begin:] == _LF)
@@ -114,7 +118,7 @@ def _end_of_lines(text: Bytes, least: int) -> int:
 
 
 def _start_of_line(text: Bytes, count: int) -> int:
-    """Where the last lines begin, so many that all end."""
+    """Where the last ``count`` lines begin, all of which end with a line feed."""
     begin, ends = len(text), np.zeros(0, dtype=np.intp)
     while len(ends) <= count:
         begin = max(begin - _NEAR_BYTES, 0)
@@ -123,7 +127,7 @@ def _start_of_line(text: Bytes, count: int) -> int:
 
 
 class _Plain(NamedTuple):
-    """How many lines a block has, and whether quotes and what is not ASCII."""
+    """The number of lines in a block, whether it has quotes, and whether it is ASCII only."""
 
     n_lines: int
     has_quotes: bool
@@ -131,9 +135,9 @@ class _Plain(NamedTuple):
 
 
 def _plain_lines(lines: Bytes) -> _Plain | None:
-    """What is to be known of lines; None if Arrow and the csv module might not cut them alike.
+    """Properties of a block; None if Arrow and the csv module might split its lines differently.
 
-    Blank lines are told by the number of rows.
+    Blank lines are detected later, from the number of rows.
     """
     head = lines[:3].tobytes()
     if head.startswith((b"\n", b"\r", _MARK)):
@@ -141,7 +145,7 @@ def _plain_lines(lines: Bytes) -> _Plain | None:
     begin, end = int(lines[0] == _QUOTE), int(lines[-1] == _QUOTE)
     n_quotes, n_lines = 0, int(lines[-1] != _LF)
     has_returns, is_ascii = False, True
-    # In pieces that stay near to the processor; each begins with the last byte of the one before.
+    # In pieces that fit the processor's cache; each overlaps the next by one byte.
     for start in range(0, len(lines), _NEAR_BYTES):
         text = lines[start : start + _NEAR_BYTES + 1]
         if not text.min():
@@ -166,18 +170,18 @@ def _plain_lines(lines: Bytes) -> _Plain | None:
 
 
 def _parsed(lines: Bytes, plain: _Plain, kinds: Types) -> Piece | None:
-    """The cells by the kinds of their columns; None if there is something wrong with them."""
+    """The block's cells in columns of these types; None if something is wrong with them."""
     try:
         table = csv.read_csv(
             pyarrow.BufferReader(pyarrow.py_buffer(lines)),
             csv.ReadOptions(use_threads=False, block_size=len(lines) + 1, column_names=list(kinds)),
-            # Lines that end within quotes are told by their number, which is a third faster.
+            # Line ends within quotes are detected from the number of rows, which is a third faster.
             csv.ParseOptions(
                 quote_char='"' if plain.has_quotes else False,
                 newlines_in_values=bool(lines[-1] != _LF),
             ),
             csv.ConvertOptions(
-                # All of ASCII is UTF-8, which is seen sooner of a block than of its cells.
+                # ASCII is UTF-8, and checking a block is faster than checking its cells.
                 check_utf8=not plain.is_ascii,
                 column_types=kinds,
                 null_values=[""],
@@ -190,22 +194,22 @@ def _parsed(lines: Bytes, plain: _Plain, kinds: Types) -> Piece | None:
         return None
     (piece,) = table.combine_chunks().to_batches(max_chunksize=len(table))
     if len(piece) != plain.n_lines:
-        return None  # there are lines within quotes, or blank ones
+        return None  # there are line ends within quotes, or blank lines
     return piece if all(map(_are_short, piece.columns)) else None
 
 
 def _are_short(column: Any) -> bool:
-    """Whether no cell of a column is longer than the csv module reads."""
+    """Whether no cell of a column is longer than the csv module accepts."""
     if not types.is_string(column.type):
         return True
     ends = ends_in(column)
-    # Of many cells most often all together are not that long.
+    # Usually even many cells together are not that long, which is faster to check.
     together = np.append(ends[::_CELLS_TOGETHER], ends[-1:])
     return any(np.diff(some).max(initial=0) <= _LONGEST_CELL for some in (together, ends))
 
 
 def _truths_in(piece: Piece) -> Types:
-    """The type of truth values for each column that seems to hold nothing else."""
+    """The Boolean type for each column that seems to contain only true and false."""
     names = zip(piece.schema.names, piece.columns, strict=True)
     values = ((name, column) for name, column in names if name not in OWN)
     return {name: pyarrow.bool_() for name, column in values if _seem_truths(column)}

@@ -1,6 +1,6 @@
-"""Arrow's arrays of Python's values, from buffers.
+"""Arrow arrays built from Python values through buffers.
 
-Arrow's own ways load pandas, where that is installed: 0.3 s and 40 MB.
+Arrow's own constructors load pandas where it is installed: 0.3 s and 40 MB.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import pyarrow
 
 
 def array_of_numbers(cells: Sequence[float | None], kind: type) -> Any:
-    """Whole numbers or floats, by their ``kind``, some of them missing."""
+    """An array of integers or floats, by ``kind``, of which some may be missing."""
     of, dtype = (pyarrow.int64(), np.int64) if kind is int else (pyarrow.float64(), np.float64)
     given = np.array([cell is not None for cell in cells], dtype=bool)
     numbers = np.array([cell or 0 for cell in cells], dtype=dtype)
@@ -23,7 +23,7 @@ def array_of_numbers(cells: Sequence[float | None], kind: type) -> Any:
 
 
 def array_of_texts(cells: Sequence[str]) -> Any:
-    """Texts; of surrogate pairs, which UTF-8 does not have, halves are written out."""
+    """An array of texts; unpaired surrogates, which UTF-8 cannot encode, are escaped."""
     known = {cell: cell.encode("utf-8", "backslashreplace") for cell in {*cells}}
     texts = [known[cell] for cell in cells]
     buffers = [None, _ends(texts), pyarrow.py_buffer(b"".join(texts))]
@@ -31,14 +31,14 @@ def array_of_texts(cells: Sequence[str]) -> Any:
 
 
 def array_of_lists(cells: Sequence[Sequence[str]]) -> Any:
-    """Lists of texts."""
+    """An array of lists of texts."""
     kind = pyarrow.list_(pyarrow.string())
     texts = array_of_texts([*chain.from_iterable(cells)])
     return pyarrow.Array.from_buffers(kind, len(cells), [None, _ends(cells)], children=[texts])
 
 
 def _ends(cells: Sequence[Sequence[object]]) -> Any:
-    """Where each cell ends, after where the first one begins."""
+    """Offsets: where the first cell begins, then where each cell ends."""
     ends = np.zeros(len(cells) + 1, dtype=np.int32)
     np.cumsum([len(cell) for cell in cells], out=ends[1:])
     return pyarrow.py_buffer(ends)

@@ -1,4 +1,4 @@
-"""Traces as Parquet, in the columns of CSV."""
+"""Traces as Parquet, with the same columns as in CSV."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 _ROWS_AT_ONCE = 1 << 17
 
 LARGEST_GROUP, _LARGE_CELL = 1 << 26, 1 << 10
-"""Bytes of a row group, beside those of cells that are long already."""
+"""Bytes that a row group may have unpacked, plus bytes per cell."""
 
 _MARK = b"PAR1"
-"""How Parquet begins and ends."""
+"""The first and last bytes of a Parquet file."""
 
 _AGAIN = "write or copy the file again"
 
@@ -40,7 +40,7 @@ _AGAIN = "write or copy the file again"
 def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecError]]:
     """Read the traces of a Parquet file, or why they are bad (R0509).
 
-    Raises RulecError R0706 if pyarrow is missing, or the stream is a pipe.
+    Raises RulecError R0706 if pyarrow is missing, or if the stream is a pipe.
     """
     if not stream.seekable():
         message = "Parquet has its table of contents at the end, so it cannot be read from a pipe"
@@ -59,7 +59,7 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
         check_types(schema, pyarrow, file)
         _check_sizes(source.metadata, file)
         stream.seek(start)
-        # Few texts are met again and again; told apart by codes they need not be compared.
+        # Texts repeat; read as dictionary codes, they need not be compared.
         source = parquet.ParquetFile(stream, read_dictionary=_texts(schema, pyarrow))
     except RulecError as error:
         yield [error]
@@ -78,9 +78,9 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
 
 
 def _check_sizes(metadata: Any, file: str) -> None:
-    """Refuse cells that are decoded as a whole and take gigabytes, packed into a few bytes."""
+    """Refuse row groups that unpack from a few bytes to gigabytes: they are decoded as a whole."""
     for group in (metadata.row_group(number) for number in range(metadata.num_row_groups)):
-        # Not those of single columns: what is wrong with their statistics would end the process
+        # Not the sizes of single columns: damaged statistics in them would crash the process
         size = abs(group.total_byte_size)
         if size > LARGEST_GROUP + _LARGE_CELL * group.num_rows * group.num_columns:
             message = f"{group.num_rows:,} rows in one group have {size:,} bytes unpacked"
@@ -115,14 +115,17 @@ def _pieces(
 
 
 def _first_no_text(batch: Any) -> tuple[int, str] | None:
-    """The first row with a text that is not UTF-8, counted from 0, and its column."""
+    """The first row (from 0) with a text that is not UTF-8, and its column.
+
+    None if there is none.
+    """
     columns = zip(batch.schema.names, batch.columns, strict=True)
     wrong = [(_first_that_fails(column), name) for name, column in columns if not is_valid(column)]
     return min(wrong, default=None)
 
 
 def is_valid(column: Any) -> bool:
-    """True if Arrow finds nothing wrong in a column, as in a text that is not UTF-8."""
+    """Whether Arrow finds a column valid; it is not if, for example, a text is not UTF-8."""
     try:
         column.validate(full=True)
     except ValueError:  # Arrow's error is one
@@ -131,7 +134,7 @@ def is_valid(column: Any) -> bool:
 
 
 def _first_that_fails(column: Any) -> int:
-    """The first row whose text cannot be told; 0 if only a dictionary has such a text."""
+    """The first row whose text cannot be decoded; 0 if such a text is only in a dictionary."""
     first, last = 0, len(column)
     while first < last:
         middle = (first + last) // 2
@@ -144,9 +147,9 @@ def _first_that_fails(column: Any) -> int:
 
 
 def _rows_before(row: int, batch: Any) -> Any:
-    """The rows before one, without what their dictionaries have for others."""
+    """The rows before ``row``, without dictionary entries that only other rows use."""
     columns = [
-        # Codes are those of Parquet, which are Arrow's own.
+        # Encoding anew drops the entries of other rows.
         column.dictionary_decode().dictionary_encode() if hasattr(column, "indices") else column
         for column in batch.slice(0, row).columns
     ]
@@ -190,7 +193,7 @@ def _unreadable(part: str, reason: Exception, file: str) -> RulecError:
 
 
 def check_types(schema: Any, pyarrow: Any, file: str) -> None:
-    """Check (R0509) that columns are of types that values have."""
+    """Check (R0509) that every column has a type that values can have."""
     types = pyarrow.types
     for name, kind in zip(schema.names, schema.types, strict=True):
         value = kind.value_type if types.is_dictionary(kind) else kind
@@ -204,7 +207,7 @@ def check_types(schema: Any, pyarrow: Any, file: str) -> None:
 
 
 def rows_of_columns(path: Path, columns: Sequence[str]) -> Iterator[Mapping[str, Any]]:
-    """The rows of any Parquet file, with those of some columns that it has.
+    """The rows of any Parquet file, with those of ``columns`` that it has.
 
     Raises RulecError R0509 if it cannot be read, R0701, R0706.
     """
@@ -228,7 +231,7 @@ def write_parquet(
     stream: IO[bytes],
     file: str,
 ) -> None:
-    """Write a table; ``types`` has each column's. Raises RulecError R0706."""
+    """Write a table; ``types`` are the columns' names and types. Raises RulecError R0706."""
     pyarrow, parquet = arrow(file)
     texts = pyarrow.list_(pyarrow.string())
     kinds = {bool: "bool", int: "int64", float: "float64", str: "string", list: texts}
@@ -242,7 +245,7 @@ def write_parquet(
 
 
 def arrow(file: str) -> tuple[Any, Any]:
-    """Arrow and its Parquet module, or RulecError R0706."""
+    """The modules ``pyarrow`` and ``pyarrow.parquet``. Raises RulecError R0706 if missing."""
     try:
         import pyarrow  # an extra, and 0.1 s
         from pyarrow import parquet  # an extra, and 0.1 s
@@ -252,6 +255,6 @@ def arrow(file: str) -> tuple[Any, Any]:
 
 
 def without_arrow(task: str, file: str) -> RulecError:
-    """What takes Arrow cannot be read or written here (R0706)."""
+    """Error R0706: ``task`` requires Arrow, which is not installed."""
     place = SourceLocation(file)
     return missing_package(PARQUET_UNAVAILABLE, task, "pyarrow", "parquet", place)

@@ -1,4 +1,4 @@
-"""Columns of a Parquet file of any kind, as arrays."""
+"""Columns of any Parquet file as arrays."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ _MAGIC, _GLANCE = b"PAR1", 64
 def parquet_names(path: Path, refused: Refused) -> tuple[str, ...]:
     """The names of a file's columns.
 
-    Raises RulecError R0706 if pyarrow is missing, R0701 if the file cannot be opened; else what
-    ``refused`` makes of the reason.
+    Raises RulecError R0706 if pyarrow is missing, R0701 if the file cannot be opened, and otherwise
+    the error that ``refused`` makes of the reason.
     """
     with opened(path) as stream:
         start = stream.read(_GLANCE)
@@ -33,14 +33,14 @@ def parquet_names(path: Path, refused: Refused) -> tuple[str, ...]:
         try:
             return tuple(parquet.ParquetFile(stream).schema_arrow.names)
         except (pyarrow.ArrowException, OSError, ValueError) as reason:
-            # Names of columns that are no UTF-8 are a ValueError
+            # Column names that are not UTF-8 raise a ValueError
             raise refused(f"it is no Parquet ({_first(reason)})") from None
 
 
 def parquet_columns(
     path: Path, names: Sequence[str], refused: Refused, most_rows: int
 ) -> dict[str, NDArray[Any]]:
-    """Some columns of a file, as arrays. Raises RulecError like ``parquet_names``."""
+    """The named columns of a file, as arrays. Raises RulecError as ``parquet_names`` does."""
     pyarrow, parquet = arrow(str(path))
     with opened(path) as stream:
         try:

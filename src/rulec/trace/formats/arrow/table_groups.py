@@ -1,4 +1,4 @@
-"""Arrow tables taken apart by keys, and tables of traces read without a file."""
+"""Arrow tables split by keys, and traces read from tables in memory."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from rulec.trace.formats.table_reader import STEP, TRACE, Table, check_columns
 from rulec.trace.trace_model import Trace
 
 Key = tuple[str, ...]
-"""The texts of a row's key columns."""
+"""The texts in a row's key columns."""
 
 
 def groups(table: Any, keys: Sequence[str], order: Sequence[str]) -> Iterator[tuple[Key, Any]]:
     """The rows of each key, without the key columns, sorted by ``order``; keys are sorted.
 
-    Of equal rows the first stays first; a missing text comes before all others.
+    Sorting is stable; a missing text comes before all others.
     """
     table = _readable_by_row(table.combine_chunks())
     plain = {name: _plain(table.column(name)) for name in dict.fromkeys((*keys, *order))}
@@ -56,7 +56,10 @@ def groups(table: Any, keys: Sequence[str], order: Sequence[str]) -> Iterator[tu
 
 
 def _readable_by_row(table: Any) -> Any:
-    """A table in which a text that is not UTF-8 is met in its rows alone, in no dictionary."""
+    """The table with invalid dictionaries decoded.
+
+    So a text that is not UTF-8 affects only the rows that contain it.
+    """
     for place, (name, column) in enumerate(zip(table.column_names, table.columns, strict=True)):
         if types.is_dictionary(column.type) and not is_valid(column):
             table = table.set_column(place, name, _plain(column))
@@ -64,7 +67,7 @@ def _readable_by_row(table: Any) -> Any:
 
 
 def _plain(column: Any) -> Any:
-    """A column without a dictionary, which not every version sorts by."""
+    """A column without dictionary encoding, by which not every version of Arrow can sort."""
     return column.cast(column.type.value_type) if types.is_dictionary(column.type) else column
 
 
@@ -78,7 +81,7 @@ def _without_nulls(column: Any) -> Any:
 
 
 def _starts(columns: Sequence[Any], rows: int) -> list[int]:
-    """The first row of each key of sorted columns."""
+    """The first row of each key, from sorted key columns."""
     changes: NDArray[np.bool_] = np.zeros(rows, dtype=bool)
     changes[0] = True
     for column in columns:
@@ -88,10 +91,10 @@ def _starts(columns: Sequence[Any], rows: int) -> list[int]:
 
 
 def traces_of_table(table: Any, label: str) -> Iterator[Sequence[Trace | RulecError]]:
-    """The traces of a table whose rows stand as in a file, in chunks (docs/traces.md).
+    """The traces of a table with rows as in a file, in chunks (docs/traces.md).
 
-    ``label`` is what the table is called in messages. In place of a bad trace there is the
-    RulecError (R0509) that says why. Raises RulecError R0509 if something is wrong with columns.
+    ``label`` names the table in messages. A bad trace is replaced by the RulecError (R0509) that
+    says why. Raises RulecError R0509 if something is wrong with the columns.
     """
     file = SourceLocation(label)
     check_columns(table.schema.names, file)
@@ -101,9 +104,9 @@ def traces_of_table(table: Any, label: str) -> Iterator[Sequence[Trace | RulecEr
 
 
 class TraceOutline(NamedTuple):
-    """A trace of a sorted table: its name, its rows from the first on, and its states.
+    """A trace of a sorted table: its name, first row, number of rows and number of states.
 
-    ``lacks`` says which step is missing, empty if none is.
+    ``lacks`` says which step is missing; it is empty if none is.
     """
 
     name: str
@@ -114,9 +117,10 @@ class TraceOutline(NamedTuple):
 
 
 def trace_outlines(table: Any) -> list[TraceOutline]:
-    """The traces of a table that is sorted by them and by their steps.
+    """The traces of a table that is sorted by trace and step.
 
-    Where steps are no whole numbers, nothing is known to lack: whoever reads them says so.
+    If steps are not whole numbers, no step is reported missing: reading the rows reports that
+    error.
     """
     names = _without_nulls(_as_text(_plain(table.column(TRACE))))
     starts = _starts([names], len(table)) if len(table) else []
@@ -140,7 +144,7 @@ def trace_outlines(table: Any) -> list[TraceOutline]:
 
 
 def without_rows(table: Any, outlines: Sequence[TraceOutline]) -> Any:
-    """The table without some of its traces."""
+    """The table without the rows of these traces."""
     if not outlines:
         return table
     kept: NDArray[np.bool_] = np.ones(len(table), dtype=bool)
@@ -150,7 +154,7 @@ def without_rows(table: Any, outlines: Sequence[TraceOutline]) -> Any:
 
 
 def extent(table: Any) -> tuple[object, ...]:
-    """The number of rows, and the least and greatest value of each column, in whatever order."""
+    """The number of rows, and each column's least and greatest value; independent of any order."""
     extents: list[object] = [len(table)]
     for name in sorted(table.column_names):
         column = _plain(table.column(name))
@@ -161,7 +165,7 @@ def extent(table: Any) -> tuple[object, ...]:
 
 
 def key_texts(table: Any, keys: Sequence[str], between: str) -> tuple[NDArray[np.int64], list[str]]:
-    """For each row which of some texts its key is, and these texts; without keys the empty one."""
+    """For each row the index of its key's text, and these texts; one empty text without keys."""
     if not keys:
         return np.zeros(len(table), dtype=np.int64), [""]
     columns = [_without_nulls(_as_text(_plain(table.column(name)))) for name in keys]
@@ -177,23 +181,23 @@ def key_texts(table: Any, keys: Sequence[str], between: str) -> tuple[NDArray[np
 
 
 def not_utf8(table: Any, names: Sequence[str]) -> str:
-    """Which of some columns has a text that is not UTF-8, in words; empty if none has."""
+    """A message that names a column with a text that is not UTF-8; empty if there is none."""
     bad = (name for name in names if not is_valid(_plain(table.column(name))))
     return f"the column `{name}` has a text that is not UTF-8" if (name := next(bad, "")) else ""
 
 
 def rows_where(table: Any, codes: NDArray[np.int64], kept: NDArray[np.bool_]) -> Any:
-    """The rows whose codes are those of what is kept."""
+    """The rows whose codes are marked in ``kept``."""
     return table if kept.all() else table.filter(array_of_truths(kept[codes]))
 
 
 def table_of_batch(batch: Any) -> Any:
-    """A record batch as a table, without views."""
+    """A record batch as a table, without string views."""
     return with_plain_texts(pyarrow.Table.from_batches([batch]))
 
 
 def joined(tables: Sequence[Any]) -> Any:
-    """Tables one after the other; a column that one of them does not have is missing there."""
+    """The tables one after another; where one lacks a column, its values are missing."""
     return (
         tables[0]
         if len(tables) == 1
