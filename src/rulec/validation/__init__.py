@@ -1,1 +1,1 @@
-"""Translation validation: each table of a compiled file held against its own formula."""
+"""Translation validation: each table of a compiled file is proved against its own formula."""

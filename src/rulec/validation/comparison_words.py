@@ -1,7 +1,7 @@
-"""The words of a comparison read as numbers: what they say, worked out from them alone.
+"""Checks that a comparison's words say the same as its numbers, by computing from the words alone.
 
-`gap(v) >= 2 s * speed` is a condition on `gap(v)` and `speed` with a factor and a limit, which are
-in the units of their declarations. The tree has these numbers, the words are what people read.
+`gap(v) >= 2 s * speed` is a condition on `gap(v)` and `speed` with a factor and a limit, both in
+the units of the declarations. The tree contains these numbers; the words are what people read.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ _Kind = tuple[tuple[str, int], ...]
 
 
 def check_comparison(comparison: Mapping[str, Any], units: Mapping[str, str]) -> None:
-    """Raise UnprovableError unless the words of a comparison say what its numbers do.
+    """Raise UnprovableError unless a comparison's words say the same as its numbers.
 
-    ``units`` are those of the quantities' declarations.
+    ``units`` are the declared units of the quantities.
     """
     terms, text = comparison["terms"], comparison["text"]
     require(len(terms) > 0, "a comparison compares nothing")
@@ -93,7 +93,7 @@ def _says_some_or_every(comparison: Mapping[str, Any]) -> bool:
 
 
 def _unit(text: str) -> tuple[Fraction, _Kind]:
-    """The size of a unit in base units, and what it measures."""
+    """The size of a unit in base units, and its dimension."""
     size, kind = Fraction(1), Counter[str]()
     for place, part in enumerate(text.split("/")):
         name, _, power = part.partition("^")
@@ -114,7 +114,7 @@ def _normal(kind: Counter[str]) -> _Kind:
 
 @dataclass(frozen=True, slots=True)
 class _Sum:
-    """Factors of terms and a constant in base units; ``kind`` is None for a bare 0."""
+    """Factors of terms, and a constant, in base units; ``kind`` is None for a bare 0."""
 
     factors: Mapping[str, Fraction]
     constant: Fraction
@@ -149,13 +149,13 @@ _TOKEN = re.compile(
 
 
 class _Reader:
-    """Recursive descent through a comparison's words; ``sizes`` are those of its terms' units."""
+    """Recursive descent parser of a comparison; ``sizes`` are the units of its terms."""
 
     def __init__(self, text: str, sizes: Mapping[str, tuple[Fraction, _Kind]]) -> None:
         self._text, self._sizes, self._at = text, sizes, 0
 
     def comparison(self) -> tuple[_Sum, str]:
-        """The left side minus the right one, and how it stands to 0."""
+        """The left side minus the right side, and its relation to 0."""
         left = self._sum()
         relation = self._next()[3]
         right = self._sum()

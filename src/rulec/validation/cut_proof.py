@@ -1,4 +1,4 @@
-"""A table for traces that are cut, held against the formula from every past that there can be."""
+"""Proof of a table for cut traces against the formula, starting from every possible past."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rulec.validation.unprovable import require
 
 _KEPT, _PENDING, _VIOLATED = range(3)
 MOST_ATOMS = 1 << 12
-"""So many sets of letters that everything treats alike are told apart."""
+"""Greatest number of sets of letters that the formula and the table may distinguish."""
 
 
 def prove_cut_table(
@@ -20,10 +20,10 @@ def prove_cut_table(
 ) -> None:
     """Raise UnprovableError unless a table for cut traces gives every word its formula's outcome.
 
-    What was before is unknown: a run begins in all states that some past leads to; of a rule that
-    ``goes_on`` also in those to which it leads that is kept so far. The states of
-    both sides that no word tells apart are found together, by Moore's partition refinement, and the
-    states that runs begin in have to be the same ones.
+    What came before is unknown: a run begins in every state that some past leads to and, for a rule
+    that ``goes_on``, also in every state reachable from there while the rule is not violated.
+    Moore's partition refinement groups the states of both sides that no word distinguishes; the
+    states where runs begin must be in the same groups.
     """
     table = ClaimedTable.read(entry, "outcomes", letters, machine.possible)
     starts = entry["starts"]
@@ -79,7 +79,7 @@ def prove_cut_table(
 
 
 def _pasts(machine: FormulaMachine) -> list[Any]:
-    """All that past parts can remember, whatever was before the first state."""
+    """Everything that past parts can remember, whatever happened before the first state."""
     memories = dict.fromkeys([machine.progression.start.memory])
     for memory in (waiting := list(memories)):
         for following in machine.progression.memories(memory):
@@ -93,14 +93,14 @@ def _pasts(machine: FormulaMachine) -> list[Any]:
 def _atoms(
     machine: FormulaMachine, states: Sequence[DemandState], table: ClaimedTable
 ) -> list[int]:
-    """The coarsest sets of letters that all moves and classes respect."""
+    """The coarsest partition of letters that no move or class cuts."""
     sets = {move.letters for state in states for move in machine.moves(state)}
     reason = "its formula tells too many letters apart"
     return told_apart(machine.possible, sorted(sets | set(table.classes)), MOST_ATOMS, reason)
 
 
 def _blocks(targets: Sequence[Sequence[int]], outcomes: Sequence[Sequence[int]]) -> list[int]:
-    """The blocks of states that no word tells apart."""
+    """For each state the block of states that no word distinguishes from it."""
     blocks = _numbered([tuple(row) for row in outcomes])
     while True:
         finer = _numbered(

@@ -1,8 +1,10 @@
-"""Formulas in negation normal form over letters, each part once, and the past ones numbered.
+"""Formulas in negation normal form over letters.
 
-A part is a number. Conditions on one state are sets of letters, as bits; of the future there are
-bounded ``until`` and its dual ``release``, of the past there is ``since``. All other operators are
-said by these, as docs/language.md and docs/meaning.md define them.
+Each part exists once, and past parts are numbered.
+
+A part is a number. Conditions on one state are sets of letters, as bits; for the future there are
+bounded ``until`` and its dual ``release``, for the past ``since``. All other operators are
+expressed by these, as docs/language.md and docs/meaning.md define them.
 """
 
 from __future__ import annotations
@@ -17,15 +19,15 @@ from rulec.validation.functions import FALSE, MOST_WORK, TRUE, Function, Functio
 from rulec.validation.unprovable import UnprovableError, exact, require
 
 LONGEST_BOUND = 1 << 12
-"""Steps of a bound beyond which tables are not proved."""
+"""Tables of formulas with longer bounds (in steps) are not proved."""
 
 _BESIDE = ("next", "weak next", "previously", "weak previously")
-"""Operators that look at one instant: without a bound, at the one beside this."""
+"""Operators that look at a single instant: without a bound, at the adjacent one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Now:
-    """A condition on one state: its letters, as bits."""
+    """A condition on one state: the letters that satisfy it, as bits."""
 
     letters: int
 
@@ -41,9 +43,9 @@ class Joined:
 
 @dataclass(frozen=True, slots=True)
 class Future:
-    """``left until right``, or (``dual``) ``left release right``, ``low`` to ``high`` steps ahead.
+    """``left until right`` or (``dual``) ``left release right``, ``low`` to ``high`` steps ahead.
 
-    Where no instant is left to look at, ``until`` is false and ``release`` true.
+    If no instant is left, ``until`` is false and ``release`` true.
     """
 
     dual: bool
@@ -65,7 +67,7 @@ class Past:
 
 @dataclass(frozen=True, slots=True)
 class OfPast:
-    """The value of a past part, by its number, or its negation."""
+    """The value of the past part with this number, or its negation."""
 
     number: int
     holds: bool
@@ -75,9 +77,9 @@ Part: TypeAlias = Now | Joined | Future | OfPast
 
 
 class Demands:
-    """Parts of one formula; ``everything`` are all letters that there are, as bits.
+    """The parts of one formula; ``everything`` is the set of all letters, as bits.
 
-    ``most_work`` is what may be combined (``FunctionAlgebra``).
+    ``most_work`` limits the work of combining functions (``FunctionAlgebra``).
     """
 
     def __init__(self, everything: int, most_work: int = MOST_WORK) -> None:
@@ -89,7 +91,7 @@ class Demands:
         self.algebra = FunctionAlgebra(self._implies, most_work)
 
     def number(self, part: Part) -> int:
-        """The number of a part."""
+        """The number of a part, which is added if it is new."""
         known = self._numbers.get(part)
         if known is None:
             known = self._numbers[part] = len(self.parts)
@@ -98,7 +100,7 @@ class Demands:
         return known
 
     def _implies(self, demand: int, other: int) -> bool:
-        """Tell whether a demand implies another, as far as their ranges show."""
+        """Whether a demand implies another, as far as their ranges show it."""
         if demand == other:
             return True
         first, second = self.parts[demand], self.parts[other]
@@ -135,11 +137,11 @@ class Demands:
         return result
 
     def constant(self, value: bool) -> int:
-        """The part that is always true, or never."""
+        """The part that is always true, or always false."""
         return self.number(Now(self.everything if value else 0))
 
     def joined(self, conjoined: bool, left: int, right: int) -> int:
-        """``and`` or ``or`` of two parts; of conditions on one state, one such condition."""
+        """``and`` or ``or`` of two parts; two conditions on one state become one condition."""
         first, second = self.parts[left], self.parts[right]
         if isinstance(first, Now) and isinstance(second, Now):
             both, either = first.letters & second.letters, first.letters | second.letters
@@ -150,14 +152,14 @@ class Demands:
         return left if right == neutral else self.number(Joined(conjoined, left, right))
 
     def future(self, limits: tuple[int, int | None], left: int, right: int, *, dual: bool) -> int:
-        """``until`` or ``release``; of an empty range it is false, or true."""
+        """``until`` or ``release``; over an empty range these are false and true."""
         low, high = limits
         if high is not None and low > high:
             return self.constant(dual)
         return self.number(Future(dual, low, high, left, right))
 
     def since(self, limits: tuple[int, int | None], left: int, right: int) -> int:
-        """``since``, with a number of its own."""
+        """``since``, as a numbered past part; false over an empty range."""
         low, high = limits
         if high is not None and low > high:
             return self.constant(False)
@@ -167,10 +169,10 @@ class Demands:
         return self.number(OfPast(self.past.index(part), True))
 
     def read(self, tree: Any, step: Fraction | None, letters_of: Callable[[Any], int]) -> int:
-        """The part that a formula's tree says.
+        """The part for a formula's tree.
 
-        ``letters_of`` gives the letters of an atom or a comparison, ``step`` the seconds from state
-        to state.
+        ``letters_of`` gives the letters in which an atom or a comparison is true, ``step`` is the
+        time step in seconds.
         """
         if isinstance(tree, bool):
             return self.constant(tree)
@@ -236,7 +238,7 @@ def _at_most(first: int | None, second: int | None) -> bool:
 
 
 def _limits(operator: str, bound: Any, step: Fraction | None) -> tuple[int, int | None]:
-    """The steps between which an operator looks; those of ``then`` begin after one."""
+    """The first and the last step that an operator looks at; those of ``then`` begin at 1."""
     least = int(operator == "then")
     if bound is None:
         return (1, 1) if operator in _BESIDE else (least, None)

@@ -1,9 +1,10 @@
-"""Letters that states can have, by what a vocabulary's facts say of a rule's variables.
+"""The letters that are possible for a rule's variables, given a vocabulary's facts.
 
-Every fact holds for all distinct objects of its types, so for a rule's variables in every way that
-they fit. Facts about common words are taken together, with all words that they speak of, whether
-the table reads them or not: a letter can be if some values of all of them go with it. Digits that
-the formula does not tell apart are one digit here, as they are for whoever compiles it.
+Every fact holds for all distinct objects of its types, and so for every fitting assignment of a
+rule's variables. Facts with words in common are evaluated together over all words that they
+mention, whether the table reads them or not: a letter is possible if some values of all these words
+go with it. Digits that the formula does not distinguish count as one digit here, as in the
+compiler.
 """
 
 from __future__ import annotations
@@ -18,11 +19,14 @@ from rulec.validation.letter_sets import TRUE_FOR, DigitRead, Letters, subject
 from rulec.validation.unprovable import UnprovableError, exact, require
 
 MOST_CASES = 1 << 16
-"""So many cases of facts are gone through for one table."""
+"""The greatest number of cases of facts examined for one table."""
 
 
 def possible_letters(letters: Letters, book: Mapping[str, Any], rule: Mapping[str, Any]) -> int:
-    """The letters of states in which every fact of a book holds, for a rule's variables."""
+    """The letters of states in which every fact of a book holds for a rule's variables.
+
+    Facts that count objects are left out.
+    """
     vocabulary = {item["name"]: item for item in book["vocabulary"]["declarations"]}
     types = book["vocabulary"]["types"]
     instances = [
@@ -77,7 +81,7 @@ def _renamed(tree: Any, names: Mapping[str, str]) -> Any:
         (exact(factor), {**term, "variables": [names[name] for name in term["variables"]]})
         for factor, term in tree["terms"]
     ]
-    # Other names may come in another order, and the first factor is 1.
+    # New names may sort differently, and the first factor has to be 1.
     terms.sort(key=lambda pair: term_words(pair[1]))
     first = terms[0][0]
     relation = tree["relation"]
@@ -102,7 +106,7 @@ def _linked(instances: Sequence[Any]) -> list[list[Any]]:
 def _of_group(
     letters: Letters, group: Sequence[Any], told_atoms: Sequence[Any], vocabulary: Mapping[str, Any]
 ) -> int:
-    """The letters that go with some values of all that a group of facts speaks of."""
+    """The letters that go with some values of all the words that a group of facts mentions."""
     atoms: dict[Any, list[Any]] = {}
     for instance in group:
         for atom in atoms_in(instance):
@@ -138,7 +142,7 @@ def _of_group(
 
 
 def _alike(letters: Letters, read: DigitRead, atoms: Sequence[Any]) -> list[int]:
-    """For each digit of a read the first one that the formula does not tell from it."""
+    """For each digit of a read, the first digit that the formula does not distinguish from it."""
     own = [letters.of(atom) for atom in atoms if subject(atom) == read.about]
     truths = [
         tuple([true >> digit * read.stride & 1 for true in own]) for digit in range(read.size)
@@ -147,7 +151,7 @@ def _alike(letters: Letters, read: DigitRead, atoms: Sequence[Any]) -> list[int]
 
 
 def _values(atoms: Sequence[Any], read: Any, vocabulary: Mapping[str, Any]) -> list[Any]:
-    """Values enough to tell apart all that facts and a table tell apart of one subject."""
+    """Values of one subject that cover everything that facts and a table distinguish."""
     if "terms" not in atoms[0]:
         declared = vocabulary[atoms[0]["name"]]
         return list(declared["values"]) if declared["kind"] == "enumeration" else [False, True]

@@ -1,4 +1,4 @@
-"""A compiled rulebook's file, each rule of it proved or not. Nothing is read but the file."""
+"""The rules of a compiled rulebook's file, each proved or not; nothing but the file is read."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ VERSION = 6
 
 
 class UnreadableError(Exception):
-    """A file that is none of version 6, or not as it was written (``changed``)."""
+    """A file that is not of version 6, or has been changed since it was written (``changed``)."""
 
     def __init__(self, why: Literal["changed", "unreadable"], message: str) -> None:
         super().__init__(message)
@@ -33,11 +33,11 @@ class UnreadableError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class RuleProof:
-    """What has been found of a rule: ``because`` is empty if its tables are proved.
+    """The result for a rule; ``because`` is empty if its tables are proved.
 
-    ``step_s`` is the step that it is for, as the file spells it. ``word`` are the states of a
-    shortest trace that is judged otherwise, if there is one. ``agreed``: its table is the one that
-    two compilers have come to, as the file has it.
+    ``step_s`` is the time step that the rule is compiled for, as the file spells it. ``word`` holds
+    the states of a shortest trace that is judged otherwise, if there is one. ``agreed``: according
+    to the file, two compilers have produced this table.
     """
 
     rule: str
@@ -48,7 +48,7 @@ class RuleProof:
 
 
 def proofs_of(data: bytes) -> list[RuleProof]:
-    """What has been found of each rule of a file. Raises UnreadableError."""
+    """The result for each rule of a file. Raises UnreadableError."""
     book = _read(data)
     try:
         return [proof_of(rule, book) for rule in book["rules"]]
@@ -74,7 +74,10 @@ def _read(data: bytes) -> Any:
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """An object; a name that is there twice would be read otherwise by other readers."""
+    """A JSON object.
+
+    ValueError if a name is repeated, which other readers would read differently.
+    """
     if len(dict(pairs)) < len(pairs):
         raise ValueError("a name is there twice")
     return dict(pairs)
@@ -85,7 +88,7 @@ def _no_number(text: str) -> float:
 
 
 def proof_of(rule: Any, book: Mapping[str, Any]) -> RuleProof:
-    """What has been found of a rule's entry of a book that has been read."""
+    """The result for one rule's entry of a book that has been read."""
     name, step = str(rule["name"]), rule["step_s"]
     try:
         _prove(rule, book)
@@ -127,7 +130,7 @@ def _prove(rule: Mapping[str, Any], book: Mapping[str, Any]) -> None:
 
 
 def _goes_on(rule: Mapping[str, Any]) -> bool:
-    """Whether a rule was kept before a trace that is cut, a sequence perhaps under way."""
+    """Whether a cut trace may begin within a sequence of this rule, which was kept before."""
     tree = rule["tree"]
     is_one = isinstance(tree, list) and tree[0] in ("always", "never") and len(tree) == 2
     return is_one and not rule["variables"] and "then" in _operators(tree)
@@ -141,6 +144,6 @@ def _operators(tree: Any) -> Iterator[str]:
 
 
 def table_digest(letters: Any, following: Any, accepting: Any) -> str:
-    """The SHA-256 of a table, as JSON without spaces: its letters, its states, its verdicts."""
+    """The SHA-256 of a table as JSON without spaces: its letters, its successors, its verdicts."""
     table = json.dumps([letters, following, accepting], separators=(",", ":"))
     return sha256(table.encode()).hexdigest()

@@ -1,11 +1,11 @@
-"""The deterministic machine of a formula, made by progression as it is met.
+"""The deterministic machine of a formula, built by progression as states are reached.
 
-A state has what is still demanded of the rest of the word, a function of parts of the formula
-(Brzozowski's derivatives; Bacchus, Kabanza, "Planning for temporally extended goals", 1998), and of
-each past part what its value will depend on: by age, the values of its right side that still count.
-Of demands that imply each other, and of occasions that outlive each other, only one is kept, so a
-bound of n steps takes some n states, not 2^n. Nothing is shared with the compiler: neither Spot nor
-its tables, nor a line of it.
+A state holds what is still demanded of the rest of the word, as a function of parts of the formula
+(Brzozowski's derivatives; Bacchus, Kabanza, "Planning for temporally extended goals", 1998), and
+for each past part what its value will depend on: the values of its right side that still matter, by
+age. If one demand implies another, or one occasion outlives another, only one is kept, so a bound
+of n steps takes about n states, not 2^n. Nothing is shared with the compiler: neither Spot nor its
+tables nor any of its code.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from rulec.validation.demands import Demands, Future, Joined, Now, OfPast
 from rulec.validation.functions import FALSE, TRUE, Function
 
 Occasions: TypeAlias = tuple[tuple[int, Function], ...]
-"""Values of a past part's right side that still count, by age, the youngest first."""
+"""The values of a past part's right side that still matter, by age, the youngest first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class DemandState:
 
 
 class FormulaProgression:
-    """A formula's machine: ``root`` is the part of ``demands`` that is the formula."""
+    """The machine of a formula; ``root`` is the part of ``demands`` that is the formula."""
 
     def __init__(self, demands: Demands, root: int) -> None:
         self._demands, self._algebra = demands, demands.algebra
@@ -41,7 +41,7 @@ class FormulaProgression:
         self._repetitions: dict[tuple[Occasions, ...], _Repetition] = {}
 
     def moves(self, state: DemandState) -> dict[DemandState, int]:
-        """The states that follow, each with the letters that lead there."""
+        """The successor states, each with the letters that lead there."""
         if state not in self._moves:
             step = self._step(state.memory)
             memories = step.remembered()
@@ -50,7 +50,7 @@ class FormulaProgression:
         return self._moves[state]
 
     def memories(self, memory: tuple[Occasions, ...]) -> dict[tuple[Occasions, ...], int]:
-        """What the past parts remember next, each with its letters."""
+        """What the past parts may remember next, each with its letters."""
         return self._step(memory).remembered()
 
     def _step(self, memory: tuple[Occasions, ...]) -> _Step:
@@ -59,12 +59,12 @@ class FormulaProgression:
         return self._steps[memory]
 
     def holds_at_the_end(self, state: DemandState) -> bool:
-        """The verdict if nothing comes after the letters that led to a state."""
+        """The verdict if the word ends when this state is reached."""
         parts = self._demands.parts
         return any(all(_is_dual(parts[literal]) for literal in term) for term in state.demand)
 
     def kept_for_ever(self, state: DemandState) -> int:
-        """The letters that, repeated for ever from a state on, satisfy its demand."""
+        """The letters that satisfy a state's demand if they are repeated for ever from there on."""
         if state.memory not in self._repetitions:
             self._repetitions[state.memory] = _Repetition(self._demands, state.memory)
         return self._repetitions[state.memory].first(state.demand)
@@ -75,7 +75,7 @@ def _with_occasion(age: int, known: Occasions, value: Function) -> Occasions:
 
 
 def _state(demand: Function, memory: tuple[Occasions, ...]) -> DemandState:
-    # Nothing depends on the past any more.
+    # A decided demand no longer depends on the past.
     return DemandState(demand, () if demand in (TRUE, FALSE) else memory)
 
 
@@ -84,7 +84,7 @@ def _is_dual(part: object) -> bool:
 
 
 class _Step:
-    """The values of parts at one instant: functions of what is demanded after it, by letters."""
+    """The values of parts at one instant, by letters: functions of demands on later instants."""
 
     def __init__(self, demands: Demands, memory: tuple[Occasions, ...]) -> None:
         self._demands, self._algebra = demands, demands.algebra
@@ -95,7 +95,7 @@ class _Step:
         self._occasions: dict[int, dict[Occasions, int]] = {}
 
     def after(self, function: Function) -> dict[Function, int]:
-        """What a function of demands on this instant demands of the next ones."""
+        """What a function of demands on this instant demands of the next one, by letters."""
         algebra = self._algebra
         whole: dict[Function, int] = {FALSE: self._full}
         for term in function:
@@ -133,7 +133,7 @@ class _Step:
                 return values
 
     def _future(self, part: Future) -> dict[Function, int]:
-        """``right``, or ``left`` and the same again of the next instant; or the dual."""
+        """``right``, or ``left`` and the same from the next instant on; or the dual."""
         algebra = self._algebra
         extend, choose = (
             (algebra.either, algebra.both) if part.dual else (algebra.both, algebra.either)
@@ -150,7 +150,7 @@ class _Step:
         return now if rest is None else algebra.combined(now, rest, choose)
 
     def _occasions_of(self, past: int) -> dict[Occasions, int]:
-        """What a past part remembers after this instant."""
+        """What a past part remembers after this instant, by letters."""
         if past not in self._occasions:
             algebra, part = self._algebra, self._demands.past[past]
             left, right = self._value(part.left), self._value(part.right)
@@ -171,17 +171,17 @@ class _Step:
         return self._occasions[past]
 
     def _that_count(self, occasions: Occasions, low: int, high: int | None) -> Occasions:
-        """Occasions without those that others outlive."""
+        """The occasions that no others outlive."""
         by_age: dict[int, Function] = {}
         for age, value in occasions:
             if value != FALSE:
                 by_age[age] = self._algebra.either(by_age.get(age, FALSE), value)
         sure = sorted(age for age, value in by_age.items() if value == TRUE)
         if high is None:
-            # The oldest is in reach first, and stays there.
+            # The oldest comes within reach first, and stays there.
             least, most = (sure[-1] if sure else 0), low
         else:
-            # Of those in reach the youngest stays longest.
+            # Of those within reach, the youngest stays longest.
             least, most = 0, next((age for age in sure if age >= low), high)
         return tuple(sorted((age, by_age[age]) for age in by_age if least <= age <= most))
 
@@ -196,10 +196,10 @@ class _Step:
 
 
 class _Repetition:
-    """Truth of parts while one letter is repeated for ever, at each instant, for all letters.
+    """The truth of parts at each instant while one letter is repeated for ever, for all letters.
 
-    Values are lists of letters as bits, one for each instant from now on; the last stands for all
-    later ones, too.
+    Values are lists of sets of letters (as bits), one for each instant from now on; the last one
+    also stands for all later instants.
     """
 
     def __init__(self, demands: Demands, memory: tuple[Occasions, ...]) -> None:
@@ -243,9 +243,9 @@ class _Repetition:
                 return values if holds else [self._full & ~letters for letters in values]
 
     def _until(self, pairs: list[tuple[int, int]], low: int, high: int | None) -> list[int]:
-        """Where ``right`` comes ``low`` to ``high`` instants from each, and ``left`` up to there.
+        """At each instant, whether ``right`` holds ``low`` to ``high`` instants later.
 
-        All instants after the last are like it.
+        And ``left`` until then. All instants after the last equal it.
         """
         lefts, rights = [left for left, _ in pairs], [right for _, right in pairs]
         nothing = [0] * len(pairs)
@@ -260,7 +260,7 @@ class _Repetition:
     def _instant_before(
         self, value: list[int], lefts: list[int], rights: list[int], times: int
     ) -> list[int]:
-        """``right``, or ``left`` and the value of one instant later; and so on, so many times."""
+        """``right``, or ``left`` and the value one instant later; applied ``times`` times."""
         for _ in range(times):
             self._demands.algebra.count(len(value))
             later = [*value[1:], value[-1]]
@@ -289,7 +289,7 @@ class _Repetition:
             holds_for = 0
             for age, letters in older.items():
                 if age >= part.low:
-                    # Of occasions in reach the youngest stays longest.
+                    # Of occasions within reach, the youngest stays longest.
                     older[age] = letters & ~holds_for
                     holds_for |= letters
             before, occasions = occasions, {age: each for age, each in older.items() if each}
@@ -301,7 +301,7 @@ class _Repetition:
 
 
 def _aligned(first: list[int], second: list[int], longer: int) -> list[tuple[int, int]]:
-    """Two lists of values instant by instant, and so many instants more."""
+    """Pairs of two lists' values, instant by instant, and for ``longer`` more instants."""
     length = max(len(first), len(second)) + longer
     return [
         (first[min(at, len(first) - 1)], second[min(at, len(second) - 1)]) for at in range(length)

@@ -1,4 +1,4 @@
-"""A formula's tree in words, as reports and reviews show a rule."""
+"""A formula's tree in words, as shown in reports and reviews."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ _LOOSEST_FIRST = ("iff", "implies", "then", "xor", "or", "and")
 
 
 def parted(tree: Sequence[Any]) -> tuple[Any, list[Any], Any]:
-    """The operator of a tree that is no atom, its operands, and its bound, None without one."""
+    """The operator of a tree that is not an atom, its operands, and its bound or None."""
     operator, *operands = tree
     is_bounded = operands and isinstance(operands[-1], dict) and "unit" in operands[-1]
     return operator, operands, operands.pop() if is_bounded else None
 
 
 def atoms_in(tree: Any) -> Iterator[dict[str, Any]]:
-    """The atoms and comparisons of a tree, but for those within counts."""
+    """The atoms and comparisons of a tree, except those within counts."""
     if isinstance(tree, dict):
         yield tree
     elif isinstance(tree, list):
@@ -28,7 +28,7 @@ def atoms_in(tree: Any) -> Iterator[dict[str, Any]]:
 
 
 def comparisons_in(tree: Any) -> Iterator[dict[str, Any]]:
-    """The comparisons among them."""
+    """The comparisons of a tree, except those within counts."""
     return (atom for atom in atoms_in(tree) if "terms" in atom)
 
 
@@ -48,7 +48,7 @@ def formula_words(tree: Any) -> str:
 
 
 def _is_binary(tree: Any) -> bool:
-    """Tell whether the outermost operator has two operands."""
+    """Whether the outermost operator has two operands."""
     if not isinstance(tree, list):
         return False
     return len(parted(tree)[1]) == 2
@@ -101,7 +101,7 @@ def _decimal(number: Fraction) -> str:
 
 
 def term_words(term: Mapping[str, Any]) -> str:
-    """The words of a number, by which terms are sorted."""
+    """The words of a quantity or a count, by which terms are sorted."""
     if "count" in term:
         return f"count {term['count']}: {term['type']} ({formula_words(term['body'])})"
     arguments = ", ".join(term["variables"])

@@ -1,8 +1,9 @@
-"""Positive Boolean functions of demands in a normal form, and letters sorted by such values.
+"""Positive Boolean functions of demands in a normal form, and maps from such values to letters.
 
-A function is its set of prime implicants, each a set of demands: the least disjunctive normal form,
-which is unique (Quine, "Two theorems about truth functions", 1954, for monotone functions). Demands
-may imply each other, as `within 2 steps` does `within 3 steps`; then it is unique modulo that.
+A function is its set of prime implicants, each a set of demands: the minimal disjunctive normal
+form, which is unique for monotone functions (Quine, "Two theorems about truth functions", 1954).
+Demands may imply each other, as `within 2 steps` implies `within 3 steps`; the form is then unique
+up to such implications.
 """
 
 from __future__ import annotations
@@ -13,16 +14,16 @@ from typing import TypeAlias, TypeVar
 from rulec.validation.unprovable import UnprovableError
 
 Function: TypeAlias = frozenset[frozenset[int]]
-"""A disjunction of conjunctions of demands, which are numbers."""
+"""A disjunction of conjunctions of demands, given by their numbers."""
 
 TRUE: Function = frozenset({frozenset()})
 FALSE: Function = frozenset()
 
 MOST_TERMS = 1 << 10
-"""A function of more conjunctions is beyond this checker."""
+"""Functions of more conjunctions are beyond this checker."""
 
 MOST_WORK = 1 << 21
-"""So many values may be combined for one table."""
+"""The greatest number of values combined for one table."""
 
 _First = TypeVar("_First", bound=Hashable)
 _Second = TypeVar("_Second", bound=Hashable)
@@ -30,7 +31,10 @@ _Result = TypeVar("_Result", bound=Hashable)
 
 
 class FunctionAlgebra:
-    """Conjunction and disjunction of functions; ``implies`` tells which demand implies which."""
+    """Conjunction and disjunction of functions.
+
+    ``implies`` decides whether one demand implies another.
+    """
 
     def __init__(self, implies: Callable[[int, int], bool], most_work: int = MOST_WORK) -> None:
         self._implies, self._most_work = implies, most_work
@@ -61,7 +65,7 @@ class FunctionAlgebra:
         return self._known[key]
 
     def _reduced(self, term: frozenset[int]) -> frozenset[int]:
-        """A conjunction without what follows from the rest of it."""
+        """A conjunction without the demands that others in it imply."""
         return frozenset([x for x in term if not any(y != x and self._implies(y, x) for y in term)])
 
     def _primes(self, terms: Iterable[frozenset[int]]) -> Function:
@@ -85,7 +89,7 @@ class FunctionAlgebra:
         second: dict[_Second, int],
         operation: Callable[[_First, _Second], _Result],
     ) -> dict[_Result, int]:
-        """The values of an operation, each with its letters, from those of its operands."""
+        """The results of an operation with the letters of each, from those of its operands."""
         self.count(len(first) * len(second))
         result: dict[_Result, int] = {}
         for letter, letters in first.items():
@@ -96,7 +100,7 @@ class FunctionAlgebra:
         return result
 
     def count(self, work: int) -> None:
-        """Count steps of work. Raises UnprovableError once they are too many."""
+        """Count steps of work. Raises UnprovableError when there are too many."""
         self._work += work
         if self._work > self._most_work:
             raise UnprovableError("it takes more steps than this checker makes for one table")

@@ -1,8 +1,8 @@
-"""A rule's HOA text, held against the formula for every trace.
+"""Proof of a rule's HOA text against the formula, for every trace.
 
-The automaton judges infinite words. A trace is one whose last state is repeated for ever or, under
-`finite`, one after which a further proposition is false. For these the two are compared, in all
-pairs of states that a trace leads both to; other infinite words are none of a trace.
+The automaton judges infinite words. The word of a trace repeats its last state for ever or, under
+`finite`, makes an extra proposition false after it. For such words both sides are compared, in all
+pairs of states that a trace leads to; other infinite words do not matter.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rulec.validation.table_proof import FormulaMachine, led_to
 from rulec.validation.unprovable import require
 
 MOST_STEPS = 1 << 20
-"""So many edges of classes of letters are looked at."""
+"""The greatest number of edges examined, over all classes of letters."""
 
 _ALIVE = re.compile(r"alive(?: \([0-9]+\))?")
 
@@ -25,10 +25,10 @@ _ALIVE = re.compile(r"alive(?: \([0-9]+\))?")
 def prove_hoa(
     machine: FormulaMachine, text: str, tree: Any, letters: Letters, *, ends: bool
 ) -> None:
-    """Raise UnprovableError unless an automaton accepts the traces that its formula keeps.
+    """Raise UnprovableError unless an automaton accepts exactly the traces its formula keeps.
 
-    ``ends`` if nothing comes after a word; then letters have one bit more, of those in which the
-    trace goes on.
+    ``ends`` if nothing follows a word; the automaton then has each letter twice, the upper half for
+    states in which the trace goes on.
     """
     size, possible = letters.count, machine.possible
     truth = {formula_words(atom): letters.of(atom) for atom in atoms_in(tree)}
@@ -73,7 +73,7 @@ def prove_hoa(
 
 
 def _repeated(automaton: HoaAutomaton, possible: int) -> list[int]:
-    """For each state the letters that are accepted if they are repeated for ever from there."""
+    """For each state, the letters that are accepted if repeated for ever from there."""
     accepted = [0] * len(automaton.edges)
     steps = 0
     labels = {edge.letters for row in automaton.edges for edge in row}
@@ -101,10 +101,9 @@ def _repeated(automaton: HoaAutomaton, possible: int) -> list[int]:
 
 
 def _over(automaton: HoaAutomaton, possible: int) -> list[int]:
-    """For each state all letters if the trace that ended there is accepted, else none.
+    """For each state, all letters if a trace that ended on entering it is accepted, else none.
 
-    From then on every word has to be judged alike: all lead to where all edges have one set of
-    marks.
+    After the end all words must be judged alike: on all cycles, the edges have the same marks.
     """
     dead = [[edge for edge in row if edge.letters & possible] for row in automaton.edges]
     result: list[int] = []
@@ -116,7 +115,7 @@ def _over(automaton: HoaAutomaton, possible: int) -> list[int]:
                     seen.add(edge.target)
                     waiting.append(edge.target)
         graph = {state: {edge.target for edge in dead[state]} for state in seen}
-        # Of edges on circles; others are passed once.
+        # Only of edges on cycles; others are passed once.
         marks = {
             edge.marks
             for state in seen

@@ -1,7 +1,7 @@
-"""An automaton's text in the Hanoi Omega-Automata format, as far as rulec writes it.
+"""Reader of automata in the Hanoi Omega-Automata format, as far as rulec writes it.
 
-T. Babiak et al., "The Hanoi Omega-Automata format", CAV 2015. Labels stand on the edges, no state
-has a name, and there are no aliases; anything else is refused.
+T. Babiak et al., "The Hanoi Omega-Automata format", CAV 2015. Labels are on edges, states have no
+names, and there are no aliases; anything else is refused.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _NEITHER = "its HOA text is not of the kind that this checker reads"
 
 @dataclass(frozen=True, slots=True)
 class HoaEdge:
-    """An edge: the letters that it is for, as bits, where it leads, and its marks."""
+    """An edge: its letters, as bits, its target state, and its acceptance marks."""
 
     letters: int
     target: int
@@ -33,7 +33,7 @@ class HoaEdge:
 
 @dataclass(frozen=True, slots=True)
 class HoaAutomaton:
-    """The edges of each state, the first state, and which sets of recurring marks accept."""
+    """The edges of each state, the start state, and which sets of recurring marks accept."""
 
     edges: Sequence[Sequence[HoaEdge]]
     start: int
@@ -41,9 +41,9 @@ class HoaAutomaton:
 
 
 def read_hoa(text: str, letters_of: Callable[[str], int], everything: int) -> HoaAutomaton:
-    """The automaton of a text; ``letters_of`` gives the letters in which a proposition is true.
+    """The automaton in a text; ``letters_of`` gives the letters in which a proposition is true.
 
-    ``everything`` are all letters. Raises UnprovableError.
+    ``everything`` is the set of all letters. Raises UnprovableError.
     """
     reader = _Reader(_tokens(text))
     try:
@@ -101,7 +101,7 @@ class _Reader:
         return HoaAutomaton(rows, start, lambda marks: _Reader(condition).holds(marks))
 
     def holds(self, marks: frozenset[int]) -> bool:
-        """Whether an acceptance condition holds if these marks recur."""
+        """Whether the acceptance condition holds if exactly these marks recur."""
         holds = bool(self._or(lambda: self._recurs(marks)))
         require(not self._tokens, _NEITHER)
         return holds

@@ -1,8 +1,8 @@
-"""Letters of a table: what each number says of a state, held against the words that it claims.
+"""The letters of a table: what each says about a state, checked against what it claims to read.
 
-A letter is a number in mixed radix, the first read counting ones (docs/compiled.md). Every atom and
-comparison of a formula must be true in all states of a letter or in none, and every value that a
-state can have must have a digit.
+A letter is a number in mixed radix, with the first read as its lowest digit (docs/compiled.md).
+Every atom and comparison of a formula must be true in all states of a letter or in none, and every
+value that a state can have must have a digit.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any
 from rulec.validation.unprovable import exact, require
 
 MOST_LETTERS = 1 << 16
-"""More letters than rulec compiles."""
+"""The greatest number of letters; rulec compiles no more."""
 
 TRUE_FOR: Mapping[str, Callable[[Fraction, Fraction], bool]] = {
     "<": lambda value, limit: value < limit,
@@ -32,7 +32,7 @@ TRUE_FOR: Mapping[str, Callable[[Fraction, Fraction], bool]] = {
 
 @dataclass(frozen=True, slots=True)
 class DigitRead:
-    """What a letter's digit says: of what, how many digits there are, what each is called."""
+    """A digit of letters: what it is about, its number of values, and the meaning of each."""
 
     about: Any
     size: int
@@ -42,19 +42,19 @@ class DigitRead:
 
 
 class NumberedLetters:
-    """So many letters; a set of them is an integer's bits."""
+    """A number of letters; a set of them is an integer whose bits are the letters."""
 
     def __init__(self, count: int) -> None:
         self.count = count
         self.everything = (1 << count) - 1
 
     def described(self, letter: int) -> dict[str, str]:
-        """What a letter says of a state, in words."""
+        """What a letter says about a state, in words."""
         return {"letter": str(letter)}
 
 
 class Letters(NumberedLetters):
-    """The letters of some reads."""
+    """The letters made up of these reads."""
 
     def __init__(self, reads: Sequence[Any], vocabulary: Mapping[str, Any]) -> None:
         self.reads: list[DigitRead] = []
@@ -68,7 +68,7 @@ class Letters(NumberedLetters):
         super().__init__(stride)
 
     def where(self, read: DigitRead, digits: Iterable[int]) -> int:
-        """The letters in which a read has one of some digits."""
+        """The letters in which a read has one of these digits."""
         zeros = ((1 << read.stride) - 1) * (self.everything // ((1 << read.stride * read.size) - 1))
         return sum(zeros << digit * read.stride for digit in set(digits))
 
@@ -99,7 +99,7 @@ class Letters(NumberedLetters):
         return values.index(value) if value in values else len(values)
 
     def described(self, letter: int) -> dict[str, str]:
-        """What a letter says of a state, in words."""
+        """What a letter says about a state, in words."""
         return {
             _name(read.about): read.digits[letter // read.stride % read.size] for read in self.reads
         }
@@ -111,7 +111,10 @@ def _passes(value: Fraction | str | bool, limit: Fraction, inclusive: bool) -> b
 
 
 def told_apart(letters: int, sets: Iterable[int], most: int, reason: str) -> list[int]:
-    """The coarsest parts of some letters that sets of letters do not cut, ``most`` of them."""
+    """The coarsest partition of ``letters`` that none of the ``sets`` cuts.
+
+    Raises UnprovableError with this ``reason`` if it has more than ``most`` parts.
+    """
     parts = [letters]
     for own in sets:
         parts = [cut for part in parts for cut in (part & own, part & ~own) if cut]
@@ -120,14 +123,14 @@ def told_apart(letters: int, sets: Iterable[int], most: int, reason: str) -> lis
 
 
 def subject(entry: Any) -> Any:
-    """What a read or an atom is about, as something that can be compared."""
+    """What a read or an atom is about, as a value that can be compared."""
     if "terms" in entry:
         return ("terms", json.dumps(_wordless(entry["terms"]), sort_keys=True))
     return ("word", entry["name"], tuple(entry["variables"]))
 
 
 def _wordless(data: Any) -> Any:
-    """Terms without the words of comparisons in counts, which may say one limit in two units."""
+    """Terms without the words of comparisons in counts, which may give one limit in two units."""
     if isinstance(data, dict):
         return {key: _wordless(part) for key, part in data.items() if key != "text"}
     return [_wordless(part) for part in data] if isinstance(data, list) else data
@@ -140,7 +143,7 @@ def _name(about: Any) -> str:
 
 
 def _digits(entry: Any, vocabulary: Mapping[str, Any]) -> tuple[Any, tuple[str, ...]]:
-    """What a read is about, and what each of its digits says."""
+    """What a read is about, and what each of its digits means."""
     if entry["kind"] == "number":
         return subject(entry), _intervals(entry["thresholds"])
     declared = vocabulary.get(entry["name"])
@@ -162,7 +165,7 @@ def _digits(entry: Any, vocabulary: Mapping[str, Any]) -> tuple[Any, tuple[str, 
 
 
 def _intervals(thresholds: Sequence[Any]) -> tuple[str, ...]:
-    """The intervals of a number that its thresholds make, in words."""
+    """The intervals into which its thresholds divide a number, in words."""
     places = [(exact(item["limit"]), item["inclusive"]) for item in thresholds]
     known = all(type(inclusive) is bool for _, inclusive in places)
     order = [(limit, not inclusive) for limit, inclusive in places]
@@ -176,7 +179,7 @@ def _intervals(thresholds: Sequence[Any]) -> tuple[str, ...]:
 
 
 def _digits_where(comparison: Any, thresholds: Sequence[Any]) -> list[int]:
-    """The digits for which a comparison is true; each must decide it."""
+    """The digits for which a comparison is true; every digit must decide it."""
     places = [(exact(item["limit"]), item["inclusive"]) for item in thresholds]
     limit, holds = exact(comparison["limit"]), TRUE_FOR.get(comparison["relation"])
     require(holds is not None, "it compares numbers in an unknown way")
@@ -201,16 +204,16 @@ def _samples(
     *,
     whole: bool,
 ) -> list[Fraction]:
-    """Numbers of an interval: below a limit, at it and above it, where it has such.
+    """Numbers of an interval below a limit, at it and above it, as far as it contains any.
 
-    ``low`` has been passed and ``high`` has not; a threshold that is inclusive is passed by its own
-    number. A ``whole`` number counts objects, 0 or more.
+    The interval lies beyond the threshold ``low`` and before ``high``; an inclusive threshold
+    belongs to the interval above it. A ``whole`` number counts objects: 0 or more.
     """
     near = [limit]
     for place in (low, high):
         near += [] if place is None else [place[0]]
     if whole:
-        # Between whole numbers next to each other no truth changes.
+        # The neighbouring whole numbers suffice: between them no truth value changes.
         near = [
             Fraction(round_(each) + n)
             for each in near

@@ -1,8 +1,9 @@
-"""A rule's parts held against its formula: what it requires, its exceptions, its condition.
+"""Proof of a rule's parts against its formula: what it requires, its exceptions, its condition.
 
-Its trigger is read off the parts, so they have to be those of the formula. They are put together
-here anew, as docs/language.md says, and what comes out has to be the formula, word by word, for
-formulas that mean the same have other triggers: `never (p and not q)` and `never (not q and p)`.
+The rule's trigger is derived from the parts, so they must be those of the formula. They are
+combined again here, as docs/language.md describes, and the result must equal the formula literally,
+since equivalent formulas may have different triggers: `never (p and not q)` and `never (not q and
+p)`.
 """
 
 from __future__ import annotations
@@ -17,11 +18,11 @@ SCOPES = ("initially", "at start", "at end", "throughout", "at some point")
 _GUARDING = ("always", "never")
 _MOST_THROUGHOUT = 4
 _MOST_PHASES = 8
-"""Formulas grow exponentially in exceptions that hold throughout; longer ones are not proved."""
+"""Formulas grow exponentially with exceptions that hold throughout; larger ones are not proved."""
 
 
 def prove_parts(rule: Mapping[str, Any]) -> None:
-    """Raise UnprovableError unless a rule's parts, if it has any, are those of its formula."""
+    """Raise UnprovableError unless a rule's parts, if it has any, make up its formula."""
     parts = rule.get("parts")
     if parts is None:
         return
@@ -32,7 +33,7 @@ def prove_parts(rule: Mapping[str, Any]) -> None:
 
 
 def _put_together(required: Any, exemptions: Iterable[tuple[str, Any]], condition: Any) -> Any:
-    """The formula of a rule: its condition is an exception where it does not hold."""
+    """The formula of a rule; its condition becomes an exception that applies when it is false."""
     named = list(exemptions)
     require(all(scope in SCOPES for scope, _ in named), "it has an exception of no scope")
     initially = [tree for scope, tree in named if scope == "initially"]
@@ -83,7 +84,7 @@ def _any(trees: Iterable[Any]) -> Any:
 
 
 Phase: TypeAlias = tuple[Any, list[Any]]
-"""The tree of a phase, and its bound, if it has one."""
+"""The tree of a phase, and its bound in a list, empty without one."""
 
 
 def _phases(tree: Any) -> list[Phase]:
@@ -98,8 +99,8 @@ def _phases(tree: Any) -> list[Phase]:
 def _counted(phases: Sequence[Phase], exemptions: Sequence[tuple[str, Any]]) -> Any:
     """The sequences that no exception exempts.
 
-    The stretch that is guarded is what is between the first phase and the last; of two phases it
-    is the last instant of the first and the first one of the second.
+    What is guarded is the stretch between the first and the last phase; with two phases, the last
+    instant of the first and the first instant of the second.
     """
     if len(phases) == 1:
         return _all([phases[0][0], *(_not(tree) for _, tree in exemptions)])
@@ -122,7 +123,10 @@ def _counted(phases: Sequence[Phase], exemptions: Sequence[tuple[str, Any]]) -> 
     failing = [part for number, part in enumerate(failing) if part not in failing[:number]]
 
     def entered(number: int, due: Sequence[Any]) -> Any:
-        """From the first instant of a phase on; ``due`` are to fail in what is left."""
+        """The formula from a phase's first instant on.
+
+        Each of ``due`` must still be false at some point.
+        """
         if number == last:
             return phases[number][0]
         here = within(number, due)
@@ -154,7 +158,10 @@ def _choices(trees: Sequence[Any]) -> list[tuple[Any, ...]]:
 
 
 def _remainder(phase: Phase, at_last: Any, behind: Any) -> Any:
-    """The rest of a phase and the instant behind it; ``at_last`` holds in the phase's last one."""
+    """The rest of a phase and the instant after it.
+
+    ``at_last`` holds in the phase's last instant.
+    """
     tree, bound = phase
     if at_last is True:
         return ["then", tree, behind, *bound]

@@ -1,4 +1,4 @@
-"""A table held against its formula: a product of both, gone through to the end."""
+"""Proof of a table against its formula: an exhaustive search of the product of both."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from rulec.validation.letter_sets import NumberedLetters
 from rulec.validation.unprovable import UnprovableError, require
 
 MOST_STATES = 1 << 13
-"""Formulas of more states, as this checker counts them, are not proved."""
+"""Formulas with more states, as this checker counts them, are not proved."""
 
 QUICK_WORK = 1 << 17
-"""What may be combined where a table has to be proved at once, or not at all."""
+"""The limit of work where a table has to be proved at once or not at all."""
 
 MOST_CLASS_BITS = 1 << 28
-"""Letter classes times letters."""
+"""The greatest product of the numbers of letter classes and of letters."""
 
 Rows: TypeAlias = list[list[int]]
 
 
 @dataclass(frozen=True, slots=True)
 class ClaimedTable:
-    """A deterministic table: letters of each class, as bits, and a row for each state."""
+    """A deterministic table: the letters of each class, as bits, and rows by state."""
 
     classes: tuple[int, ...]
     following: Rows
@@ -35,9 +35,9 @@ class ClaimedTable:
     def read(
         cls, entry: Mapping[str, Any], outputs: str, letters: NumberedLetters, possible: int
     ) -> ClaimedTable:
-        """The table of an entry, whose ``outputs`` are called so.
+        """The table of an entry; ``outputs`` is the name of its output rows.
 
-        Raises UnprovableError if it has no digit for a letter that is possible, or one for another.
+        Raises UnprovableError if a possible letter has no class, or an excluded one has.
         """
         following, verdicts, numbers = entry["following"], entry[outputs], entry["letters"]
         width = len(following[0]) if following else 0
@@ -67,7 +67,7 @@ class ClaimedTable:
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """Letters, as bits, that lead to a state; whether a word that ends with such a one is kept."""
+    """The letters (as bits) leading to a state, and whether a word ending with one is kept."""
 
     letters: int
     target: DemandState
@@ -75,7 +75,7 @@ class Move:
 
 
 class FormulaMachine:
-    """A formula's machine with its verdicts; ``ends`` if nothing comes after a word."""
+    """A formula's machine with its verdicts; ``ends`` if nothing follows a word."""
 
     def __init__(self, progression: FormulaProgression, possible: int, *, ends: bool) -> None:
         self.progression, self.possible, self._ends = progression, possible, ends
@@ -102,11 +102,11 @@ class FormulaMachine:
 def prove_words(
     tree: Any, letters_of: Callable[[Any], int], entry: Mapping[str, Any], *, ends: bool
 ) -> None:
-    """Raise UnprovableError unless a table judges every word as a tree does, bounds in steps.
+    """Raise UnprovableError unless a table judges every word as a tree does; bounds are in steps.
 
-    ``letters_of`` gives the letters of an atom or a comparison; possible are those that have a
-    class. Neither what letters mean is looked at, nor which are possible. For whoever has a table
-    of many to check: it takes a bounded part of a second.
+    ``letters_of`` gives the letters of an atom or a comparison; letters with a class count as
+    possible. Neither this nor the meaning of letters is checked. For callers with many tables: each
+    takes at most a fraction of a second.
     """
     letters = NumberedLetters(len(entry["letters"]))
     classes = "".join(["0" if number < 0 else "1" for number in reversed(entry["letters"])])
@@ -123,7 +123,7 @@ def prove_table(
 ) -> None:
     """Raise UnprovableError unless a rule's table judges every word as its formula does.
 
-    All pairs of states that some word leads both to are gone through, the shortest words first.
+    All pairs of states that some word leads to are examined, the shortest words first.
     """
     table = ClaimedTable.read(entry, "accepting", letters, machine.possible)
     by_class: dict[DemandState, list[tuple[int, Move, int]]] = {}
@@ -174,7 +174,7 @@ def _word(
 
 
 def _check_sinks(table: ClaimedTable, entry: Mapping[str, Any], reached: set[int]) -> None:
-    """Its dead state is the one from which nothing is accepted, its safe one that with all."""
+    """Check that from the dead state nothing is accepted, and from the safe state everything."""
     used = [symbol for symbol, members in enumerate(table.classes) if members]
     for name, verdict in (("dead", True), ("safe", False)):
         hopeful = {
@@ -193,7 +193,7 @@ def _check_sinks(table: ClaimedTable, entry: Mapping[str, Any], reached: set[int
 
 
 def led_to(good: set[Any], following: Mapping[Any, set[Any]]) -> set[Any]:
-    """The nodes of a graph from which a good one can be reached, these included."""
+    """The nodes of a graph from which a node in ``good`` can be reached, these included."""
     before: dict[Any, list[Any]] = {}
     for node, targets in following.items():
         for target in targets:

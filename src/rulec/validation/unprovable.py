@@ -1,4 +1,4 @@
-"""Why a table is not proved, and exact numbers as a compiled file spells them."""
+"""Why a table is not proved, and exact numbers as spelled in a compiled file."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from fractions import Fraction
 
 
 class UnprovableError(Exception):
-    """Reason for a table that is not proved.
+    """The reason why a table is not proved.
 
-    ``word`` is a shortest word that shows it, if there is one: for each state what is read of it.
+    ``word`` is a shortest word that shows it, if there is one: for each state, what is read of it.
     """
 
     def __init__(self, reason: str, word: Sequence[Mapping[str, str]] = ()) -> None:
@@ -29,7 +29,10 @@ _FRACTION = re.compile(r"-?[0-9]{1,1000}(?:/[0-9]{1,1000})?")
 
 
 def exact(text: str) -> Fraction:
-    """The fraction that a text spells in lowest terms. Raises UnprovableError if it is none."""
+    """The fraction that a text spells in lowest terms.
+
+    Raises UnprovableError for any other text.
+    """
     require(bool(_FRACTION.fullmatch(text)), f"{text[:40]!a} is no number")
     number = Fraction(text)
     require(str(number) == text, f"{text[:40]!a} is not in lowest terms")
