@@ -48,10 +48,7 @@ class Cells:
 
     @staticmethod
     def of_drives(flags: NDArray[bool_], spans: EndToEnd) -> tuple[Cells, EndToEnd]:
-        """All cells of each row and drive in which the row has a flag, and where those drives lie.
-
-        The drives are laid end to end in the order of the cells.
-        """
+        """All cells of each row and drive in which the row has a flag; those drives end to end."""
         rows, drives = np.logical_or.reduceat(flags, spans.begins, axis=1).nonzero()
         first, lengths = spans.begins[drives], spans.lengths[drives]
         own = EndToEnd((0, *lengths.cumsum().tolist()))

@@ -90,10 +90,7 @@ class EndToEnd:
         return flags
 
     def latest(self, flags: _Flags) -> _Columns:
-        """For each state the column of the last state, up to it, where a flag holds.
-
-        If there is none in its drive, the column before the drive.
-        """
+        """The last column, up to each, with a flag; the one before the drive if there is none."""
         # Repeating a value for each gap between flags is faster than searching state by state
         edges = np.concatenate(((-1,), flags.ravel().nonzero()[0], (flags.size,)))
         lengths = edges[1:] - edges[:-1]

@@ -1,7 +1,4 @@
-"""Replacements for slow NumPy functions, and reuse of freed memory.
-
-Some of NumPy's functions load its masked arrays.
-"""
+"""Replacements for slow NumPy functions, some of which load its masked arrays; memory reuse."""
 
 from __future__ import annotations
 

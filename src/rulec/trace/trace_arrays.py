@@ -90,10 +90,7 @@ class TraceArrays:
         return replace(part, n_states=len(chosen), spans=spans)
 
     def _cut(self, states: Places, cells: Places, there: Flags, names: Set[str]) -> TraceArrays:
-        """The values of ``names``: of the world in ``states``, of objects in ``cells``.
-
-        ``there`` marks the objects to keep.
-        """
+        """Values of ``names`` in ``states`` (world) and ``cells`` (objects marked ``there``)."""
 
         def part(name: str, values: Array) -> Array:
             return values[states if name in self.world else cells]

@@ -66,10 +66,7 @@ def known_types(objects: Mapping[str, Sequence[str]], vocabulary: Vocabulary) ->
 
 
 def told_types(types: Iterable[str], vocabulary: Vocabulary) -> frozenset[str]:
-    """The vocabulary's types that are certain, or ruled out, for objects of ``types``.
-
-    Empty if no type is in doubt.
-    """
+    """The vocabulary's types that are certain for objects of ``types``; empty if all are."""
     doubtful = {
         name
         for name in UNTOLD_TYPES & vocabulary.types.keys()

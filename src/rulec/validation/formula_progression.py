@@ -243,9 +243,9 @@ class _Repetition:
                 return values if holds else [self._full & ~letters for letters in values]
 
     def _until(self, pairs: list[tuple[int, int]], low: int, high: int | None) -> list[int]:
-        """At each instant, whether ``right`` holds ``low`` to ``high`` instants later.
+        """Where ``right`` holds ``low`` to ``high`` instants later, and ``left`` until then.
 
-        And ``left`` until then. All instants after the last equal it.
+        All instants after the last are like it.
         """
         lefts, rights = [left for left, _ in pairs], [right for _, right in pairs]
         nothing = [0] * len(pairs)

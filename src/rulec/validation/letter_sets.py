@@ -111,10 +111,7 @@ def _passes(value: Fraction | str | bool, limit: Fraction, inclusive: bool) -> b
 
 
 def told_apart(letters: int, sets: Iterable[int], most: int, reason: str) -> list[int]:
-    """The coarsest partition of ``letters`` that none of the ``sets`` cuts.
-
-    Raises UnprovableError with this ``reason`` if it has more than ``most`` parts.
-    """
+    """The coarsest partition of ``letters`` cut by none of ``sets``; at most ``most`` parts."""
     parts = [letters]
     for own in sets:
         parts = [cut for part in parts for cut in (part & own, part & ~own) if cut]

@@ -43,10 +43,7 @@ def known_unit_names() -> tuple[str, ...]:
 
 
 _KM_AN_HOUR = re.compile("km/?(t|tim|u|st|std|ч|год)", re.IGNORECASE)
-"""Kilometres per hour in languages where an hour is `time`, `uur` or `Stunde`.
-
-`t` and `u` alone are units of mass.
-"""
+"""km/h where an hour is `time`, `uur` or `Stunde`; `t` and `u` alone are units of mass."""
 
 
 def hour_in_another_language(text: str) -> str:

@@ -12,10 +12,7 @@ from fractions import Fraction
 from typing import Any
 
 _FEW_DIGITS = 15
-"""A decimal of at most this many digits is what Python prints for its float.
-
-Huge and tiny ones excepted.
-"""
+"""A decimal with no more digits is what Python prints for its float, unless huge or tiny."""
 
 _MOST_DIGITS = 1000
 """Largest number of digits, and of decimal places before the first digit, that is read exactly."""

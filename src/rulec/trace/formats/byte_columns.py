@@ -47,10 +47,7 @@ class ReadColumn:
 
 
 def bytes_from(text: Bytes, starts: Places, width: int) -> NDArray[np.bytes_]:
-    """``width`` bytes from each start on; arbitrary where the text ends before.
-
-    ``text`` must not contain null bytes.
-    """
+    """``width`` bytes from each start, arbitrary outside of ``text``, which has no null bytes."""
     windows = np.ndarray((len(text) - width + 1,), f"S{width}", text, strides=(1,))
     # ``take`` would first copy all windows.
     taken: NDArray[np.bytes_] = windows[starts.clip(0, len(windows) - 1)]

@@ -158,10 +158,7 @@ class BlockPresence:
         return tuple(self.objects[self.starts[trace] : self.starts[trace + 1]])
 
     def shape_of(self, trace: int) -> tuple[object, ...]:
-        """A value that is equal for traces with the same step, object types and presence.
-
-        Lengths and objects' names may differ.
-        """
+        """Equal for traces of the same step, types and presence, whatever lengths and names."""
         there = slice(self.starts[trace], self.starts[trace + 1])
         types = tuple(self.types[there])
         return float(self.step_s[trace]), types, self.stretches[there].tobytes()
@@ -367,10 +364,7 @@ def _others(
 
 
 def _step_s(column: Column | None, trace: Rows, starts: NDArray[np.int64]) -> NDArray[np.float64]:
-    """The step of each trace in seconds, given in all rows of the block or in none.
-
-    Raises OddTableError otherwise.
-    """
+    """Each trace's step (s), given in all rows of the block or in none; else OddTableError."""
     n_traces = len(starts) - 1
     if column is None or not column.given.any():
         return np.ones(n_traces)

@@ -22,10 +22,7 @@ _NEAR_BYTES = 1 << 17
 _LONGEST_CELL = 1 << 17
 
 _SMALL_PART = 1 << 4
-"""A last trace with less than this part (1/16) of a block's rows is read with the next block.
-
-That saves copies.
-"""
+"""A trace with less than 1/16 of a block's rows at its end waits for the next: fewer copies."""
 
 _CELLS_TOGETHER = 1 << 6
 _CELLS_LOOKED_AT = 1 << 4

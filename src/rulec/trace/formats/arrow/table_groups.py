@@ -56,10 +56,7 @@ def groups(table: Any, keys: Sequence[str], order: Sequence[str]) -> Iterator[tu
 
 
 def _readable_by_row(table: Any) -> Any:
-    """The table with invalid dictionaries decoded.
-
-    So a text that is not UTF-8 affects only the rows that contain it.
-    """
+    """The table without invalid dictionaries: text that is not UTF-8 then affects only its rows."""
     for place, (name, column) in enumerate(zip(table.column_names, table.columns, strict=True)):
         if types.is_dictionary(column.type) and not is_valid(column):
             table = table.set_column(place, name, _plain(column))
