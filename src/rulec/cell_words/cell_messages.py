@@ -1,13 +1,13 @@
-"""Messages about the words in the cells of recorded scenes."""
+"""Messages about recorded scenes that rules are asked of."""
 
 from __future__ import annotations
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.code import Code
 
-OTHER_SIDE = Code(
+CHANGED_SCENE = Code(
     "R0418",
-    title="maneuvers are judged by a rulebook for the other side of the road",
+    title="a recorded scene that was changed cannot be mirrored",
     why="If a recording's traffic keeps to the other side of the road than the rulebook's, its "
     "mirror image is judged. The mirror image is made from the recording, so it would lack later "
     "changes to the scene, except those of its step and horizon.",
@@ -15,11 +15,12 @@ OTHER_SIDE = Code(
 )
 
 
-def other_side(scene: str, recorded: str, rulebook: str, side: str) -> RulecError:
-    """The error for a rulebook for the other side of the road: it would have no known word."""
-    return OTHER_SIDE.error(
-        SourceLocation(scene),
-        f"traffic keeps to the {recorded} here, and in `{rulebook}` to the {side}",
-        help=f"choose a rulebook for traffic that keeps to the {recorded}; `rulec verify` judges "
-        "recorded drives as their mirror image",
+def changed_scene(file: str, recorded: str, rulebook: str, side: str) -> RulecError:
+    """A changed scene, recorded on one side, for a rulebook of the other one."""
+    return CHANGED_SCENE.error(
+        SourceLocation(file),
+        f"traffic keeps to the {recorded} here, and in `{rulebook}` to the {side}, and the scene "
+        "was changed after it was read from its recording: it cannot be mirrored",
+        help=f"change the recording instead, or use a rulebook of traffic that keeps to the "
+        f"{recorded}",
     )
