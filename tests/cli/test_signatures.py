@@ -77,7 +77,10 @@ def test_nothing_is_required_afterwards(folder, rules, capsys):
         (lambda data: signature_text(data, number=b"anothern"), "not signed by the required key"),
         (lambda data: signature_text(data + b" "), "not signed by the required key"),
         (lambda data: signature_text(data, kind=b"Ed"), "without `-l`"),
-        (lambda data: signature_text(data).replace("today", "to-day"), "not signed by the required key"),
+        (
+            lambda data: signature_text(data).replace("today", "to-day"),
+            "not signed by the required key",
+        ),
         (lambda data: signature_text(data).replace("today", "today\n"), "four lines"),
         (lambda data: signature_text(data)[:-9], "is not a signature"),
         (lambda data: "\n\n\n\n", "four lines"),

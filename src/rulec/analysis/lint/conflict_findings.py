@@ -115,7 +115,7 @@ def _cannot_be_kept(
     return CONFLICTING_RULES.at(
         rules[last].span,
         f"rules {', '.join(f'`{name}`' for name in firsts)} and `{last}` cannot {both} be kept "
-        f"{when}, though each alone could",
+        f"{when}; each alone could",
         help="give one of them an exception for what another one demands, or make it soft",
         labels=tuple(
             Label(place, f"`{name}` is here")
