@@ -1,6 +1,6 @@
-"""Lanelets side by side, as their borders lie, whether or not the file says so.
+"""Finds lanelets side by side by their borders, whether or not the file names them.
 
-And the side on which traffic keeps, which they tell where no country does.
+Also finds the side of traffic, which lanes show if no country is known.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from numpy.typing import NDArray
 from rulec.recordings.recording import Lanelet, Points, Recording, Side, is_lane
 
 BORDER_M = 0.5
-"""Borders that are no farther apart are one."""
+"""Borders no farther apart than this coincide."""
 
 WHOLE = 0.9
-"""Lanelets whose borders are one for so much of either are neighbours."""
+"""Lanelets are neighbours if their borders coincide for this share of either."""
 
 LONG_M = 30.0
-"""Shorter ones side by side, as where turning lanes begin, may lead different ways."""
+"""Shorter lanelets side by side, as where turning lanes begin, may lead different ways."""
 
 _RESERVED = frozenset({"busLane", "bicycleLane", "rail"})
-"""Lanes for others may lead against the road's traffic at its far side."""
+"""Lanes reserved for others may lead against the road's traffic on its far side."""
 
 _LEAST_M = 10.0
-"""Shorter stretches of border are those of ways that meet in a junction."""
+"""Shorter stretches of common border belong to paths that meet in a junction."""
 
 _CLEARLY = 4.0
-"""Where lanes lie so many times as long on one side of those that lead the other way."""
+"""The least ratio of lengths on both sides for the side of traffic to be clear."""
 
 _EVERY_M = 2.0
 _HAIR_M = 1e-6
@@ -44,7 +44,7 @@ _Indices = NDArray[np.intp]
 
 @dataclass(frozen=True, slots=True)
 class Bordering:
-    """A lanelet right of another one; for which part of each their border is one, and how long."""
+    """A lanelet right of another one, with the share and length of their common border."""
 
     right: Lanelet
     left: Lanelet
@@ -53,9 +53,10 @@ class Bordering:
 
 
 def bordering(lanelets: Iterable[Lanelet], *, alone: bool = False) -> Iterator[Bordering]:
-    """The pairs of lanes of like direction with a stretch of border in common.
+    """The pairs of lanes of the same direction with a common stretch of border.
 
-    Without those of which the map says so; ``alone``: without lanes that have another one there.
+    Pairs that the map names are left out; with ``alone``, also lanes that have another neighbour
+    there.
     """
     lanes = [lanelet for lanelet in lanelets if is_lane(lanelet)]
     right = [lane for lane in lanes if not alone or lane.left_of is None]
@@ -78,9 +79,9 @@ def bordering(lanelets: Iterable[Lanelet], *, alone: bool = False) -> Iterator[B
 
 
 def _oncoming_length(borders: Sequence[Points], least_m: float) -> float:
-    """How long (m) borders lie at others that lead the other way, all together.
+    """The total length (m) of borders shared with lanes of the opposite direction.
 
-    Those count that do for at least ``least_m``.
+    Only stretches of at least ``least_m`` count.
     """
     if not borders:
         return 0.0
@@ -97,7 +98,7 @@ def _oncoming_length(borders: Sequence[Points], least_m: float) -> float:
 
 
 class _Borders:
-    """Many lines, with places along them by arc length (m)."""
+    """Many lines, with places along them given by arc length (m)."""
 
     def __init__(self, lines: Sequence[Points]) -> None:
         counts = np.array([len(line) for line in lines])
@@ -124,14 +125,14 @@ class _Borders:
         return points
 
     def may_reach(self, lines: _Indices, places: Points) -> NDArray[np.bool_]:
-        """Flags of places that may be within ``BORDER_M`` of some of the lines, one each."""
+        """Mask of places that may be within ``BORDER_M`` of a line, one line for each place."""
         bounds = shapely.bounds(self.lines)[lines]
         beyond = np.maximum(bounds[:, :2] - places, places - bounds[:, 2:])
         flags: NDArray[np.bool_] = beyond.max(axis=1) <= BORDER_M + _HAIR_M
         return flags
 
     def directions(self, lines: _Indices, at: NDArray[float64]) -> Points:
-        """The directions there, from a metre before to one after."""
+        """The directions there, from a metre before to a metre after."""
         steps = self.points(lines, at + 1) - self.points(lines, at - 1)
         directions: Points = steps / np.maximum(np.hypot(*steps.T), 1e-9)[:, None]
         return directions
@@ -140,9 +141,9 @@ class _Borders:
 def _near(
     lines: _Borders, ones: _Indices, others: _Borders, second: _Indices, *, sense: int = 1
 ) -> NDArray[float64]:
-    """For which part of each line its other one lies at it, and leads the same way there.
+    """The share of each line along which the other line coincides and leads the same way.
 
-    With ``sense`` -1 the other way.
+    With ``sense`` -1, the opposite way.
     """
     lengths = lines.lengths[ones]
     counts = np.maximum(2, np.round(lengths / _EVERY_M)).astype(int) + 1
@@ -164,7 +165,7 @@ def _near(
 
 
 def _crossed(lanelets: Iterable[Lanelet]) -> set[str]:
-    """The lanes whose middles cross another one's."""
+    """The lanes whose centre lines cross another one's."""
     lanes = [lanelet for lanelet in lanelets if is_lane(lanelet)]
     middles = [shapely.LineString(lanelet.centre) for lanelet in lanes]
     if not lanes:
@@ -174,13 +175,13 @@ def _crossed(lanelets: Iterable[Lanelet]) -> set[str]:
 
 
 def with_untold_neighbours(recording: Recording) -> Recording:
-    """The recording, with neighbours if its map, or its form, names none at all."""
+    """The recording, with neighbours added if its map or format names none at all."""
     named = any(lanelet.left_of or lanelet.right_of for lanelet in recording.lanelets.values())
     return recording if named else with_neighbours(recording)
 
 
 def with_neighbours(recording: Recording) -> Recording:
-    """The recording, with neighbours that its map does not name, and a remark that says so.
+    """The recording, with neighbours added that its map does not name, and a remark about it.
 
     Lanes that others cross are left out: side by side in a junction, they lead different ways.
     """
@@ -213,17 +214,17 @@ def with_neighbours(recording: Recording) -> Recording:
 
 
 def with_side(recording: Recording) -> Recording:
-    """The recording, with the side of traffic that its lanes tell if nothing else does."""
+    """The recording, with the side of traffic that its lanes show, if it is not known otherwise."""
     if recording.side is not None:
         return recording
     return replace(recording, side=side_by_lanes(recording.lanelets.values()))
 
 
 def side_by_lanes(lanelets: Iterable[Lanelet]) -> Side | None:
-    """The side that most lanes keep to which border on others that lead the other way.
+    """The side to which most lanes keep that border on lanes of the opposite direction.
 
-    They have their left borders in common where traffic keeps right, their right ones where it
-    keeps left. None without such lanes, or where there are both kinds.
+    Such lanes share their left borders if traffic keeps right, their right borders if it keeps
+    left. None if there are no such lanes, or both kinds.
     """
     lanes = [lanelet for lanelet in lanelets if is_lane(lanelet) and not lanelet.types & _RESERVED]
     keeps_right, keeps_left = (

@@ -1,6 +1,6 @@
-"""Recordings that programs build: lanelets, participants, and whether all of it fits together.
+"""Recordings built by programs: lanelets, participants, and checks that all of it fits together.
 
-What is wrong with one is a RulecError R0617, all of it at once.
+All mistakes are reported together, as one RulecError R0617.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ COMPLETE = frozenset(
     {"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout", "lanes"}
     | {"officer", "arrivals"}
 )
-"""Kinds of things that a recording can be said to have all of."""
+"""The kinds of things of which a recording can be declared complete."""
 
 
 @checked_kinds
@@ -74,9 +74,9 @@ def build_lanelet(
 ) -> Lanelet:
     """A lanelet along the points of its centre line (m), in the direction of travel.
 
-    ``width`` (m) is that of all, or one for each point. ``left_of`` and ``right_of`` are the ids of
-    the lanelets to its left and right that lead the same way; ``stop_line`` has two ends. All else
-    is as in a ``Lanelet``. Raises RulecError R0617, with all that is wrong.
+    ``width`` (m) is one number, or one for each point. ``left_of`` and ``right_of`` are the ids of
+    the lanelets to its left and right that lead the same way; ``stop_line`` has two ends. The other
+    arguments are as in a ``Lanelet``. Raises RulecError R0617 with all mistakes.
     """
     name = str(identifier)
     checks = BuildingChecks(f"lanelet `{name:.40}`")
@@ -155,13 +155,13 @@ def build_participant(
     standing: bool = False,
     lamps: Mapping[Lamp, Sequence[bool]] | None = None,
 ) -> Participant:
-    """A participant from its track: times (s), the places of its middle (m), one step apart.
+    """A participant from its track: times (s) and positions of its centre (m), one step apart.
 
     ``kind`` is CommonRoad's type of obstacles, such as ``car``. Headings are radians,
-    counter-clockwise from the x axis, speeds m/s along them: what is not given is taken from
-    places, sizes (m) are then usual ones. ``standing``: it is there all the time where it is first.
-    ``lamps``: for each that is known of, whether it is lit at each time. Raises RulecError R0617,
-    with all that is wrong.
+    counter-clockwise from the x axis, speeds m/s along them; missing ones are derived from
+    positions, and missing sizes (m) are the usual ones. ``standing``: it is at its first position
+    all the time. ``lamps``: for each known lamp, whether it is lit at each time. Raises RulecError
+    R0617 with all mistakes.
     """
     name = str(identifier)
     checks = BuildingChecks(f"participant `{name:.40}`")
@@ -251,12 +251,12 @@ def build_recording(
     country: str = "",
     complete: Collection[str] = (),
 ) -> Recording:
-    """A recording of lanelets and participants, one time step being ``step_s`` seconds.
+    """A recording of lanelets and participants, with a time step of ``step_s`` seconds.
 
-    Predecessors follow from successors, and the reverse; so do neighbours. ``side`` is the one on
-    which traffic keeps, None if that is not known; ``complete`` names kinds of things that the
-    lanelets have all of, such as ``STOP`` for signs. Raises RulecError R0617, with all that is
-    wrong: shapes of arrays, numbers that are none, ids that are double or lead nowhere.
+    Predecessors are added from successors, and the reverse; likewise neighbours. ``side`` is the
+    side of traffic, None if unknown; ``complete`` names kinds of things of which the lanelets
+    contain all, such as ``STOP`` for signs. Raises RulecError R0617 with all mistakes: wrong shapes
+    of arrays, invalid numbers, and ids that are duplicate or refer to nothing.
     """
     lanes, bodies = tuple(lanelets), tuple(participants)
     for part in (*lanes, *bodies):

@@ -1,4 +1,4 @@
-"""Checks of recordings that programs build, reported all at once."""
+"""Checks of recordings built by programs, with all mistakes reported at once."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ _MOST_SHOWN = 20
 
 
 class BuildingChecks:
-    """What is wrong with a thing that is built, all of which is said together."""
+    """The mistakes in something that is built, which are reported together."""
 
     def __init__(self, about: str) -> None:
         self.about = about
         self.problems: list[Diagnostic] = []
 
     def wrong(self, why: str, expected: str = "", help_text: str = "") -> None:
-        """Note a mistake."""
+        """Record a mistake."""
         message = f"{self.about}: {why}"
         self.problems.append(NOT_BUILT.at(None, message, expected=expected, help=help_text))
 
     def raise_problems(self) -> None:
-        """Raise RulecError R0617 if anything is wrong."""
+        """Raise RulecError R0617 if there is any mistake."""
         if self.problems:
             raise RulecError(self.problems[:_MOST_SHOWN])
 
     def numbers(self, name: str, values: ArrayLike, count: int | None = None) -> NDArray[float64]:
-        """Finite numbers in a row, as many as there have to be; zeros where that is not so."""
+        """A row of finite numbers, as many as required; zeros after a mistake."""
         try:
             numbers = np.array(values, dtype=float)
         except (TypeError, ValueError, OverflowError):
@@ -55,7 +55,7 @@ class BuildingChecks:
         return numbers
 
     def points(self, name: str, values: ArrayLike) -> Points:
-        """Two points or more; a line of two where that is not so."""
+        """Two points or more; a line of two points after a mistake."""
         line = np.array([[0.0, 0.0], [1.0, 0.0]])
         try:
             points = np.array(values, dtype=float)
@@ -87,7 +87,7 @@ class BuildingChecks:
         return not bad.any()
 
     def positive(self, name: str, value: float, unit: str, below: float = LARGEST) -> float:
-        """A number above 0; 1 where it is none."""
+        """A number above 0; 1 after a mistake."""
         if not isinstance(value, int | float | np.number) or not 0 < value < below:
             most = f" and below {below:g}" if below < LARGEST else ""
             expected = f"expected a number above 0{most}, in {unit}"
@@ -96,7 +96,7 @@ class BuildingChecks:
         return float(value)
 
     def one_of(self, name: str, value: str, known: Collection[str]) -> None:
-        """Note a word that is not known."""
+        """Record an unknown word."""
         if not isinstance(value, str) or value not in known:
             shown = value if isinstance(value, str) else brief(value)
             some = named(sorted(known))

@@ -14,7 +14,7 @@ from rulec.recordings.recording import Points
 from rulec.trace.plain_arrays import distinct
 
 _SHARPEST = 0.5
-"""Where the line turns back on itself its border would run away; so far it may, at most."""
+"""The largest factor by which a border is displaced at a sharp turn of the line."""
 
 Angle = TypeVar("Angle", float, NDArray[float64])
 
@@ -35,7 +35,7 @@ def arc_lengths(points: Points) -> NDArray[float64]:
 
 
 def interpolated(at: NDArray[float64], known: NDArray[float64], points: Points) -> Points:
-    """The points at some numbers, on the lines between those that are ``known``."""
+    """The points at some numbers, interpolated between those that are ``known``."""
     return np.stack([np.interp(at, known, column) for column in points.T], axis=1)
 
 
@@ -56,7 +56,7 @@ def densified(points: Points, every_m: float) -> Points:
 
 
 def densified_lines(lines: Sequence[Points], every_m: float) -> tuple[Points, list[int]]:
-    """The same of several, each one's points end to end, and how many each has."""
+    """The same for several lines: their points end to end, and how many each has."""
     points, sizes = np.concatenate(lines), [len(line) for line in lines]
     begins = np.cumsum([0, *sizes])[:-1]
     ways = np.diff(points, axis=0, prepend=points[:1])
@@ -72,9 +72,9 @@ def densified_lines(lines: Sequence[Points], every_m: float) -> tuple[Points, li
 
 
 def parallel_line(points: Points, offset: float | NDArray[float64]) -> Points:
-    """The parallel of a line of two or more different points, at a distance to the left.
+    """The parallel of a line of at least two different points, at a distance to the left.
 
-    ``offset``: that distance, one for the line or one for each point.
+    ``offset`` is that distance: one for the line, or one for each point.
     """
     ahead = np.diff(points, axis=0)
     ahead /= np.hypot(*ahead.T)[:, None]
@@ -88,7 +88,10 @@ def parallel_line(points: Points, offset: float | NDArray[float64]) -> Points:
 
 
 def paired(line: Points, other: Points) -> tuple[Points, Points]:
-    """Two lines side by side with a point for each of both's, at equal parts of their lengths."""
+    """Two lines side by side, each with a point for every point of either.
+
+    The points of both are at equal shares of their lengths.
+    """
     parts = [shares_along(line), shares_along(other)]
     at = distinct(np.concatenate(parts))
     at = at[np.append(True, np.diff(at) > _ONE)]
@@ -100,9 +103,10 @@ def paired(line: Points, other: Points) -> tuple[Points, Points]:
 def leads_the_same_way(
     bounds: Mapping[int, tuple[Points, Points]], own: int, other: object, *, left: bool
 ) -> bool:
-    """Does a lane lead the same way as the one that is told to be on its left or right?
+    """Whether a lane leads the same way as the one named as its left or right neighbour.
 
-    Lanes are their left and right bounds. The border between them runs the same way for both then.
+    Lanes are given by their left and right bounds. If so, their common border runs the same way in
+    both.
     """
     if not isinstance(other, int) or other == own or other not in bounds:
         return False
@@ -112,16 +116,16 @@ def leads_the_same_way(
 
 
 def ends_apart(line: Points, other: Points) -> float:
-    """How far the starts and the ends of two lines are apart, in sum."""
+    """The sum of the distances between the starts and between the ends of two lines."""
     return float(np.hypot(*(line[[0, -1]] - other[[0, -1]]).T).sum())
 
 
 _ONE = 1e-9
-"""Points that lie no farther apart, as a part of the length, are one."""
+"""Points closer than this share of the length coincide."""
 
 
 def shares_along(points: Points) -> NDArray[float64]:
-    """How far along the line through some points each of them is, as a part of its length."""
+    """The distance of each point along the line, as a share of its length."""
     ways = arc_lengths(points)
     parts: NDArray[float64] = ways / ways[-1]
     return parts
@@ -130,7 +134,7 @@ def shares_along(points: Points) -> NDArray[float64]:
 def places_in(
     areas: Sequence[shapely.Geometry], x: NDArray[float64], y: NDArray[float64]
 ) -> tuple[NDArray[intp], NDArray[intp]]:
-    """Which places are in which areas: the numbers of both, a pair each."""
+    """The places within areas, as pairs of the numbers of both."""
     points, own = shapely.points(x, y), np.array(areas, dtype=object)
     places, numbers = shapely.STRtree(own).query(points)
     # A tree prepares what it is asked about, the places; that takes ten times as long.

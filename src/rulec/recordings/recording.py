@@ -1,6 +1,6 @@
 """A recording of traffic as data: lanelets, participants, planning problems.
 
-Places are in the file's own frame, x and y in metres; angles are radians, counter-clockwise.
+Positions are in the file's own frame, x and y in metres; angles are radians, counter-clockwise.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from numpy.typing import NDArray
 from rulec.value_display import short_repr
 
 Points = NDArray[float64]
-"""Places: one row each, x and y."""
+"""Positions: one row each, x and y."""
 
 LONGEST_M = 20_000.0
-"""Lanelets are shorter; a slip of the pen that makes one much longer would take all memory."""
+"""The longest lanelet; a typing error that makes one much longer would exhaust memory."""
 
 MOST_STEPS = 1_000_000
-"""A recording has fewer, which is more than a day of tenths of a second."""
+"""The most time steps of a recording: more than a day at 0.1 s."""
 
 SPARSEST = 1000
-"""One in so many time steps is in the file at least; else one of its times is a slip."""
+"""A file has at least one in so many time steps; otherwise one of its times is wrong."""
 
 Side = Literal["left", "right"]
 LaneMark = Literal["solid", "double_solid", "broken", "none"]
@@ -42,11 +42,11 @@ Lamp = Literal[
     "front_fog_lamp",
     "rear_fog_lamp",
 ]
-"""What a vehicle shows others: its lamps, its horn, and open doors."""
+"""What a vehicle shows to others: its lamps, its horn, and open doors."""
 
 
 def id_order(identifier: str) -> tuple[int, str]:
-    """A sort key for ids that puts numbers in their order."""
+    """A sort key for ids that sorts numbers numerically."""
     return len(identifier), identifier
 
 
@@ -69,13 +69,13 @@ OBSTACLE_TYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         **dict.fromkeys(("pillar", "median_strip", "object"), ("obstacle",)),
     }
 )
-"""Types of participants -> object types of vocabularies, the most specific word first.
+"""Types of participants -> object types of vocabularies, the most specific one first.
 
-They are CommonRoad's obstacle types, a vehicle, a rider and an object of no more specific one.
+They are CommonRoad's obstacle types, and a vehicle, a rider and an object of unknown type.
 
-A rulebook that does not tell cars from other vehicles judges a car as a vehicle. What is not a road
-user is an obstacle at most; a rulebook without that word has no rule about it, but it is in the way
-all the same.
+A rulebook that does not distinguish cars from other vehicles judges a car as a vehicle. What is not
+a road user is at most an obstacle; a rulebook without that type has no rule about it, but it is in
+the way nevertheless.
 """
 
 
@@ -98,9 +98,9 @@ class Light:
 
 @dataclass(frozen=True, slots=True)
 class ObservedLight:
-    """What a traffic light was seen to show, by time step; steps without a colour are missing.
+    """The observed colours of a traffic light by time step; steps without a colour are missing.
 
-    ``seen``: there is one. Else the file does not tell whether there is.
+    ``seen``: it exists. Otherwise the file does not say whether it does.
     """
 
     __repr__ = short_repr
@@ -109,12 +109,12 @@ class ObservedLight:
     seen: bool = True
 
     def colour_at(self, step: int) -> str:
-        """Its colour at a time step, empty where that is not known."""
+        """Its colour at a time step; empty if unknown."""
         return self.colours.get(step, "")
 
 
 def is_there(light: Light | ObservedLight) -> bool:
-    """False if the file does not tell whether there is such a light."""
+    """False if the file does not say whether such a light exists."""
     return isinstance(light, Light) or light.seen
 
 
@@ -123,13 +123,13 @@ class Lanelet:
     """A piece of a lane, with its bounds in the direction of travel.
 
     ``left_of`` and ``right_of`` are the lanelets beside it that lead the same way. ``signs`` are
-    the names of those that hold here, ``untold_signs`` of those of which the file does not tell
-    whether they do; ``lights`` are those that have a programme or were seen,
-    ``lights_to`` that for each lanelet that follows, where it has its own. Marks are those
-    of its bounds, ``stop_line`` (two ends) the one that the map has drawn, None where the file does
-    not say. ``junction`` is the one that it lies in. Of the ways through that, ``foes`` are those
-    whose traffic is in the way of its own, ``first`` those of them that go first; None: not told.
-    ``minimum_mps`` is the least speed that signs ask for.
+    the names of those that apply here, ``untold_signs`` of those that may apply; ``lights`` are
+    those with a programme or an observation, ``lights_to`` the light for each successor that has
+    its own. Marks are those of its bounds; ``stop_line`` (two ends) is the one drawn in the map;
+    None if the file does not say. ``junction`` is the one that it lies in. Of the paths through
+    that junction, ``foes`` are those whose traffic conflicts with its own, and ``first`` those of
+    them that have priority; None if unknown. ``minimum_mps`` is the minimum speed required by
+    signs.
     """
 
     __repr__ = short_repr
@@ -159,34 +159,34 @@ class Lanelet:
 
 CROSSWALK = "crosswalk"
 NO_LANES = frozenset({"sidewalk", CROSSWALK, "border", "parking", "restricted_area"})
-"""Types of lanelets that are no part of the carriageway."""
+"""Types of lanelets that are not part of the carriageway."""
 
 ALL_STOP = "STOP_4_WAY"
 STOP_SIGNS = frozenset({"STOP", ALL_STOP})
 REGULATING = STOP_SIGNS | {"YIELD", "PRIORITY", "RIGHT_OF_WAY"}
-"""Signs that say who goes first."""
+"""Signs that regulate priority."""
 
 CYCLES_TOO = "cyclesAllowed"
-"""The type of a lane that is reserved for others, and cycles may use as well."""
+"""The type of a reserved lane that cycles may use as well."""
 
 TAXIS_TOO = "taxisAllowed"
-"""The type of a lane for buses that taxis may use as well."""
+"""The type of a bus lane that taxis may use as well."""
 
 STRAIGHT_ON = "straightOn"
-"""The type of a way through a junction that the map calls straight on, however it bends."""
+"""The type of a path through a junction that the map calls straight on, even if it bends."""
 
 JOINING = "accessRamp"
-"""The type of a lane that ends beside others, to join them."""
+"""The type of a lane that ends beside others, to merge into them."""
 
 RAMPS = frozenset({JOINING, "exitRamp"})
-"""The types of lanes that join others, or leave them."""
+"""The types of lanes that merge into others, or leave them."""
 
 BROAD_LEFT, BROAD_RIGHT = "broadLineLeft", "broadLineRight"
-"""Types of lanes with a broad broken line on a side, as begins where lanes leave the road."""
+"""Types of lanes with a broad broken line on a side, as where lanes leave the road."""
 
 
 def is_lane(lanelet: Lanelet) -> bool:
-    """True if a lanelet is a part of the carriageway."""
+    """Whether a lanelet is part of the carriageway."""
     return not lanelet.types & NO_LANES
 
 
@@ -205,10 +205,10 @@ class TrackState:
 class Participant:
     """An obstacle of the file, with its outlines (corners of polygons) by time step.
 
-    ``standing``: it is there all the time, in its only state. ``lamps``: by time step those that
-    are lit; steps that the file says nothing about are missing. ``shows`` are those that the file
-    speaks of. ``stated_error`` is how far the file itself says that states may be wrong, or a usual
-    size in place of one that it does not say.
+    ``standing``: it is present all the time, in its only state. ``lamps``: the lit ones by time
+    step; steps without information are missing. ``shows`` are the lamps for which the file has
+    information. ``stated_error`` is the error of states that the file itself states, or that of an
+    assumed size.
     """
 
     __repr__ = short_repr
@@ -240,9 +240,9 @@ class PlanningProblem:
 
 @dataclass(frozen=True, slots=True)
 class Weather:
-    """The weather of a recording, and whether it is night; None where the file does not say.
+    """The weather of a recording, and whether it is night; None if the file does not say.
 
-    ``raining``: something falls, be it snow or hail.
+    ``raining`` includes any precipitation, such as snow or hail.
     """
 
     wet: bool | None = None
@@ -253,21 +253,21 @@ class Weather:
 
 
 HEADINGS = "headings"
-"""What a recording is complete in if ego's headings are known apart from the way that it moves."""
+"""``complete`` contains this if ego's headings are known independently of its motion."""
 
 MENDED = "mended"
-"""And what it is complete in if its tracks have been mended: a plan among them is meant so."""
+"""``complete`` contains this if tracks have been repaired; a plan among them is meant as it is."""
 
 
 class StatedError(NamedTuple):
-    """The radius of the areas (m), and half the intervals of speeds (m/s), that a file says."""
+    """The radius of position areas (m), and half the speed intervals (m/s), stated in a file."""
 
     place_m: float
     speed_mps: float
 
 
 class Rounding(NamedTuple):
-    """The units of the last decimals in which places (m) and speeds (m/s) are written."""
+    """The units of the last decimals in which positions (m) and speeds (m/s) are written."""
 
     place_m: float
     speed_mps: float
@@ -275,12 +275,12 @@ class Rounding(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class WholeRecording:
-    """What is to be known of a recording as a whole where a part of it is looked at.
+    """Facts about a whole recording that are needed when a part of it is evaluated.
 
-    ``first`` and ``last`` are its time steps, ``stated_error`` the median of what it says itself,
-    ``noise_m`` the standard deviation of its places from smooth motion, as they themselves show.
-    ``arrivals``: is some vehicle there from later on than the first step? ``shows`` are the lamps
-    that it speaks of for anybody.
+    ``first`` and ``last`` are its time steps, ``stated_error`` the median of the errors that it
+    states, ``noise_m`` the standard deviation of its positions from smooth motion. ``arrivals``:
+    some vehicle appears after the first step. ``shows`` are the lamps for which it has information
+    about any participant.
     """
 
     first: int
@@ -293,15 +293,14 @@ class WholeRecording:
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """A file: one time step takes ``step_s`` seconds.
+    """A recording: one time step takes ``step_s`` seconds.
 
-    ``form`` is what such a file is called, ``side`` the one on which traffic keeps, None if the
-    file does not say, ``country`` its code (ISO 3166) or empty. ``complete`` names kinds of things,
-    signs for one, that the file would have if they were there, ``lacks`` those that no such file
-    has, crosswalks for one. ``remarks``: what the file leaves open, and is taken to be.
-    ``rounding`` is that of a file that is exact otherwise. ``ego`` is the participant that the file
-    says to be it, empty if it does not say. ``whole`` is what a part of a recording knows of all of
-    it.
+    ``form`` is the name of its format. ``side`` is the side of traffic, None if unknown;
+    ``country`` is its code (ISO 3166) or empty. ``complete`` names kinds of things, such as signs,
+    that the file would contain if they existed; ``lacks`` those that no such file contains, such as
+    crosswalks. ``remarks`` say what the file leaves open and what is assumed instead. ``rounding``
+    is that of an otherwise exact file. ``ego`` is the participant that the file declares as ego, or
+    empty. ``whole`` has the facts about the whole recording, for a part of one.
     """
 
     __repr__ = short_repr

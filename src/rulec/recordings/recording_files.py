@@ -31,11 +31,11 @@ _MOST_NAMED = 5
 
 
 def is_recording(file: str) -> bool:
-    """True if a file's name or first bytes show recorded traffic.
+    """Whether a file's name or first bytes show recorded traffic.
 
-    XML that is of no format is taken for a recording, too: nothing else that is read is XML. So
-    is a map, about which ``read_recordings`` has more to say than a reader of traces, and a file
-    that cannot be looked at, so that whoever reads it says why, and goes on with the others.
+    XML of unknown format counts as a recording, since nothing else that rulec reads is XML. So do a
+    map, for which ``read_recordings`` has a better error than a reader of traces, and a file that
+    cannot be opened, so that the reader reports why and continues with the others.
     """
     glance = Glance(Path(file))
     try:
@@ -46,13 +46,13 @@ def is_recording(file: str) -> bool:
 
 
 _BESIDE_SUMO = ("routes", "additional", "configuration")
-"""What XML that SUMO reads beside a net is of."""
+"""The kinds of XML that SUMO reads beside a net."""
 
 
 def is_beside_recordings(file: str) -> bool:
-    """True for a map, or what is read along with a recording that does not name it.
+    """Whether a file is a map, or is read along with a recording without being named in it.
 
-    False for a file that cannot be looked at.
+    False for a file that cannot be opened.
     """
     glance = Glance(Path(file))
     with suppress(RulecError):
@@ -65,11 +65,11 @@ def is_beside_recordings(file: str) -> bool:
 
 
 def read_recordings(source: RecordingSource) -> Iterator[Recording]:
-    """The recordings in a file, one after the other; most formats have one in each.
+    """The recordings in a file, one after the other; most formats have one per file.
 
-    Raises RulecError R0610 for a file that cannot be read as what it seems to be, R0612 for a
+    Raises RulecError R0610 for a file that is not valid in its apparent format, R0612 for a
     scenario that is not in it, R0613 for a map where none is needed, R0614 and R0615 for a missing
-    or wrong one, R0701 if a file cannot be opened.
+    or wrong map, R0701 if a file cannot be opened.
     """
     # NumPy, only for those who have recordings.
     from rulec.recordings.adjacency import with_side
@@ -157,7 +157,7 @@ def _format_of(source: RecordingSource) -> RecordingFormat:
 
 
 def check_readable(path: Path) -> None:
-    """Refuse a file that is not there, or that is no Parquet though it is called so.
+    """Refuse a missing file, or one that is not Parquet despite its extension.
 
     Raises RulecError R0610, R0701, R0706.
     """

@@ -1,4 +1,4 @@
-"""Format of recordings as data, and the source of a recording."""
+"""Formats of recordings as data, and the source of a recording."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ RECORDING = FileFormat(
 class RecordingSource:
     """A file of recorded traffic, and how to read it.
 
-    ``map_path`` is the map for formats that have no roads of their own, ``form`` the name of the
-    format, None if the file shows it, ``scenario_id`` which of several in the file, None for all.
+    ``map_path`` is the map for formats without roads, ``form`` the name of the format, None to
+    detect it, ``scenario_id`` the one to read of several in the file, None for all.
     """
 
     path: Path
@@ -43,18 +43,18 @@ class RecordingSource:
 
 @dataclass(frozen=True)
 class Glance:
-    """What a file shows at first sight."""
+    """What can be seen of a file at a glance."""
 
     path: Path
 
     @cached_property
     def name(self) -> str:
-        """Its name in small letters, without the ending of packed files."""
+        """Its name in lower case, without the extension of compressed files."""
         return self.path.name.lower().removesuffix(".gz")
 
     @cached_property
     def head(self) -> bytes:
-        """Its first bytes, unpacked if need be; none if it is no file."""
+        """Its first bytes, decompressed if necessary; empty if it is not a file."""
         if not is_ordinary(self.path):
             return b""
         with opened(self.path) as stream:
@@ -64,13 +64,13 @@ class Glance:
     def root(self) -> str:
         """The name of its root element if it is XML, else empty.
 
-        Raises RulecError R0610 for XML that is broken there, R0701.
+        Raises RulecError R0610 for XML that is invalid there, R0701.
         """
         return root_of(self.path, RECORDING) if is_xml(self.path) else ""
 
 
 Roads = Literal["its own", "its own, or --map", "beside it, or --map", "with --map"]
-"""Where a format's roads are: in the file, in another one of their own, or in one that is named."""
+"""Where a format's roads are: in the file, in another file, or in one that is named."""
 
 
 def _reads_alone(_: Glance) -> bool:
@@ -81,10 +81,10 @@ def _reads_alone(_: Glance) -> bool:
 class RecordingFormat:
     """A format of recorded traffic.
 
-    ``name`` is what ``--input-format`` calls it, ``title`` what people do, ``files`` says how its
-    files are called, ``roads`` where these are. ``read`` raises RulecError.
-    ``names`` finds the names of a file's recordings, where that is much faster than reading them.
-    ``is_companion`` is true for a file that it recognises and reads along with another one.
+    ``name`` is what ``--input-format`` calls it, ``title`` its usual name; ``files`` describes the
+    names of its files, and ``roads`` where the roads are. ``read`` raises RulecError. ``names``
+    lists a file's recordings, if that is much faster than reading them. ``is_companion`` is true
+    for a file that it recognises but reads along with another one.
     """
 
     name: str
@@ -98,5 +98,5 @@ class RecordingFormat:
 
     @property
     def takes_map(self) -> bool:
-        """May the roads be those of another file?"""
+        """Whether the roads may come from another file."""
         return self.roads != "its own"

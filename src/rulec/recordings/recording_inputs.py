@@ -1,4 +1,4 @@
-"""The files that are meant by paths, folders and patterns."""
+"""The files denoted by paths, folders and patterns."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STANDARD_INPUT = "-"
 
 @dataclass(frozen=True, slots=True)
 class SearchedFolder:
-    """A folder that was searched: how many recordings it has, and how many other files."""
+    """A searched folder: how many recordings it has, and how many other files."""
 
     path: str
     recordings: int
@@ -37,7 +37,7 @@ class SearchedFolder:
 
 @dataclass(frozen=True, slots=True)
 class InputFiles:
-    """What was meant: ``paths`` in order, each once, and why others cannot be meant."""
+    """The files: ``paths`` in order, each once, and why others cannot be read."""
 
     paths: tuple[str, ...]
     searched: tuple[SearchedFolder, ...] = ()
@@ -45,11 +45,12 @@ class InputFiles:
 
 
 def input_files(arguments: Sequence[str]) -> InputFiles:
-    """The files that are meant by these arguments, of which nothing else is read yet.
+    """The files denoted by these arguments; they are not read yet.
 
-    A folder stands for all recordings in and below it, by name; hidden folders, maps and files that
-    are read along with others are passed over. Where no file is called so, ``*``, ``?`` and ``[…]``
-    are wild, and ``**`` is any number of folders. Everything else is a file, ``-`` standard input.
+    A folder stands for all recordings in it, at any depth, by name; hidden folders, maps and files
+    that are read along with others are skipped. If no file has the given name, ``*``, ``?`` and
+    ``[…]`` are wildcards, and ``**`` is any number of folders. Everything else is a file, ``-``
+    standard input.
     """
     paths: dict[str, None] = {}
     searched: list[SearchedFolder] = []
@@ -70,7 +71,7 @@ def input_files(arguments: Sequence[str]) -> InputFiles:
 
 
 def _as_traces(folder: str) -> str:
-    """How the traces of a folder are given, if it looks as if there are some; else empty."""
+    """How to give the traces of a folder, if it seems to contain some; else empty."""
     for ending in (".jsonl", ".csv", ".parquet"):
         if any(Path(folder).glob(f"*{ending}")):
             pattern = Path(folder) / f"*{ending}"
@@ -81,7 +82,7 @@ def _as_traces(folder: str) -> str:
 
 
 def _matching(argument: str, problems: list[RulecError]) -> Sequence[str]:
-    """The paths that a pattern matches, in order; anything else as it is."""
+    """The paths that match a pattern, in order; anything else unchanged."""
     if not glob.has_magic(argument) or os.path.lexists(argument):
         return [argument]
     # As the shell does it: what begins with a point has to be named so.
@@ -106,7 +107,7 @@ def _matching(argument: str, problems: list[RulecError]) -> Sequence[str]:
 
 
 def _recordings_below(folder: str) -> tuple[list[str], int, list[RulecError]]:
-    """The recordings in and below a folder, by name, the number of other files, and links out."""
+    """The recordings in a folder at any depth, the number of other files, and links out of it."""
     recordings: list[str] = []
     refused: list[RulecError] = []
     others = 0
@@ -125,11 +126,11 @@ def _recordings_below(folder: str) -> tuple[list[str], int, list[RulecError]]:
 
 
 DEEPEST_FOLDER = 200
-"""As deep in one another folders are looked into."""
+"""Deeper folders are not searched."""
 
 
 def _walk(folder: str) -> Iterator[Path]:
-    """Files, and folders that are recordings, in and below a folder; links are not followed."""
+    """Files, and folders that are recordings, at any depth of a folder; links are not followed."""
     top = len(Path(folder).parts)
     for at, folders, names in os.walk(folder):
         kept = sorted(name for name in folders if not name.startswith("."))
@@ -141,9 +142,9 @@ def _walk(folder: str) -> Iterator[Path]:
 
 
 def _is_recording(path: Path) -> bool:
-    """True for what some format recognises, unless it is read along with another file.
+    """Whether some format recognises a path, unless it is read along with another file.
 
-    A file that cannot be looked at is one, so that whoever reads it says why it cannot.
+    A file that cannot be opened counts as one, so that the reader reports why.
     """
     glance = Glance(path)
     try:

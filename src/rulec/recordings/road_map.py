@@ -1,4 +1,4 @@
-"""A map as data: lanelets, and what it says of all of them."""
+"""A map as data: lanelets, and facts about all of them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rulec.value_display import short_repr
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RoadMap:
-    """A map, for recordings that have no roads of their own; fields are those of a ``Recording``.
+    """A map, for recordings without roads; fields are those of a ``Recording``.
 
     Programmes of its lights count in the time steps of that recording, from its step 0 on.
     """

@@ -1,6 +1,6 @@
-"""The names of columns that a file shows at first sight, and whose they are.
+"""The column names at the beginning of a file, and the format that they belong to.
 
-NumPy is not needed for that: traces are CSV, too, and start without it.
+This does not need NumPy, since traces may be CSV, too, and start without it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _LANE = {"lane", "lane_id", "lanelet", "lanelet_id"}
 
 
 def head_of(glance: Glance) -> tuple[str, ...]:
-    """The names of a table's columns in small letters; none if it seems to be no table."""
+    """The column names of a table in lower case; none if it seems not to be a table."""
     if not glance.name.endswith(TABLES):
         return ()
     if not is_parquet(glance.name, glance.head):
@@ -37,9 +37,9 @@ def head_of(glance: Glance) -> tuple[str, ...]:
 
 
 def is_track_head(names: Sequence[str]) -> bool:
-    """True if the names of columns are those of tracks, perhaps with a slip in one of them.
+    """Whether column names are those of tracks, possibly with one misspelt.
 
-    Who writes units behind names, as in ``x [m]``, is told by the reader to leave them out.
+    The reader explains that units after names, as in ``x [m]``, must be left out.
     """
     given = {name.partition("[")[0].partition("(")[0].strip() for name in names}
     if "trace" in given:
@@ -50,19 +50,19 @@ def is_track_head(names: Sequence[str]) -> bool:
 
 
 def is_fcd_head(names: Sequence[str]) -> bool:
-    """True if the names of columns are those of SUMO's floating-car data."""
+    """Whether column names are those of SUMO's floating-car data."""
     return "timestep_time" in names and bool({"vehicle_id", "person_id"} & {*names})
 
 
 def is_lane_head(names: Sequence[str]) -> bool:
-    """True if the names of columns are those of lanes, not of findings that name theirs."""
+    """Whether column names are those of lanes, not of findings that have similar columns."""
     given = {*names}
     x, y = ({name, f"{name}_m"} & given for name in "xy")
     return bool(_LANE & given and x and y) and not (_TIME | {"trace", "rule"}) & given
 
 
 def is_highd_head(names: Sequence[str]) -> bool:
-    """True if the names of columns are those of a file of highD's."""
+    """Whether column names are those of a file of highD's."""
     tracks = {"frame", "id", "x", "y", "xvelocity", "laneid", "precedingid"}
     meta = {"id", "initialframe", "drivingdirection"}
     return any(ours <= {*names} for ours in (tracks, meta, {"upperlanemarkings", "framerate"}))

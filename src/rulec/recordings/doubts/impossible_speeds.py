@@ -1,4 +1,4 @@
-"""Stated speeds that no vehicle has, as a simulator gives to who has just been put on a road."""
+"""Stated speeds that no vehicle can have, such as simulators give to newly inserted vehicles."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from rulec.recordings.recording import Participant, Recording
 from rulec.recordings.track import Track, TrackStates
 
 _MOST_MPS = 150.0
-"""No vehicle on a road is as fast as 540 km/h."""
+"""The highest plausible speed: no vehicle on a road drives 540 km/h."""
 
 _BORNE_OUT = 0.5
-"""Places that make such a part of a stated speed bear it out."""
+"""A stated speed is confirmed if the positions show at least this share of it."""
 
 _MOST_PART = 0.5
-"""Where more of a track's speeds are impossible, not some of them are wrong, but their unit."""
+"""If a larger share of a track's speeds is impossible, their unit is wrong, not single values."""
 
 
 def without_impossible_speeds(recording: Recording) -> Recording:
-    """The recording with the speeds of places where stated ones are impossible, and a remark.
+    """The recording with impossible speeds replaced by those of positions, and a remark.
 
-    Nothing else is known of who is there at one moment: it is left as it is.
+    A participant with a single state is left unchanged, since nothing else is known of it.
     """
     bodies: list[Participant] = []
     mended, fastest = 0, 0.0
@@ -46,7 +46,7 @@ def without_impossible_speeds(recording: Recording) -> Recording:
 
 
 def _impossible(track: Track, step_s: float) -> NDArray[np.intp]:
-    """The rows whose stated speed no vehicle has, and their places do not show."""
+    """The rows whose stated speed is impossible and not confirmed by positions."""
     stated = np.abs(track.rows[:, 3])
     rows = np.flatnonzero(stated > _MOST_MPS)
     # Most often there is none
@@ -57,7 +57,7 @@ def _impossible(track: Track, step_s: float) -> NDArray[np.intp]:
 
 
 def _by_places(track: Track, step_s: float) -> NDArray[float64]:
-    """Speeds along headings (m/s) by the places before and after."""
+    """Speeds along headings (m/s), from the positions before and after."""
     x, y, heading = track.rows[:, :3].T
     times = track.steps * step_s
     speeds: NDArray[float64] = np.gradient(x, times) * np.cos(heading)

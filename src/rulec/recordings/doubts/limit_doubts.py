@@ -1,4 +1,4 @@
-"""Speed limits that nobody has put up, or that no traffic goes by: they may be in a wrong unit."""
+"""Implausible speed limits, which may be in the wrong unit."""
 
 from __future__ import annotations
 
@@ -16,29 +16,35 @@ from rulec.recordings.track import Track
 from rulec.trace.plain_arrays import median, quantile
 
 _HIGHEST_KMH = 162.0
-"""No sign says more: 160 km/h is the highest limit of a country's roads."""
+"""The highest plausible limit: 160 km/h is the highest of any country's roads."""
 
 _FEWEST_FAST, _FEWEST_SLOW = 5, 10
 _TOO_FAST = 1.5
-"""Miles are 1.609 km. Of traffic that has no such doubt the median is 1.35 times the limit."""
+"""The ratio of speed to limit above which limits are doubted.
+
+A mile is 1.609 km. In recordings without doubtful limits, the median ratio is 1.35.
+"""
 
 _TOO_SLOW = 0.55
-"""27 m/s are 60 mph, and 60 m/s are 2.2 times as much. Queues may be as slow, so that limits count
-only if they are multiples of 5 m/s, as those in km/h and mph are if they are taken for m/s."""
+"""The ratio of speed to limit below which limits are doubted.
+
+27 m/s are 60 mph, and 60 m/s are 2.2 times as much. Queues may be as slow, so limits are doubted
+only if they are multiples of 5 m/s, as limits in km/h and mph taken for m/s are.
+"""
 
 _EVERY_S = 1.0
-"""So often a vehicle is looked at."""
+"""The interval at which vehicles are sampled."""
 
 _ROUND_MPS = 5.0
 _ALMOST_MPS = 0.005
 _FAST = 0.9
-"""A vehicle is fast where it drives as fast as in its fastest tenth of places, or faster."""
+"""A vehicle counts as fast from this quantile of its own speeds on."""
 
 _RAILS = frozenset({"rail", "tram"})
 
 
 def limit_doubts(recording: Recording, tracks: Sequence[Track]) -> Iterator[str]:
-    """What is to be said of a recording's limits; ``tracks`` are those of vehicles that move."""
+    """Remarks on a recording's limits; ``tracks`` are those of moving vehicles."""
     lanes = [lanelet for lanelet in recording.lanelets.values() if _has_limit(lanelet)]
     if not lanes:
         return
@@ -73,9 +79,9 @@ def _has_limit(lanelet: Lanelet) -> bool:
 def _shares(
     tracks: Sequence[Track], step_s: float, lanes: Sequence[Lanelet], limits: NDArray[float64]
 ) -> tuple[list[float], list[float]]:
-    """How many times the limit each vehicle drives where it is fast.
+    """The ratio of each vehicle's speed to the limit where it is fast.
 
-    Where lanes lie above each other by the highest of their limits, and by the lowest.
+    Where lanes overlap, once by the highest of their limits and once by the lowest.
     """
     outlines = [
         shapely.Polygon(np.vstack((lanelet.left, lanelet.right[::-1]))) for lanelet in lanes

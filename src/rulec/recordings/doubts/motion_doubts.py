@@ -1,4 +1,4 @@
-"""Plausibility of tracks: units, steps and axes that positions contradict."""
+"""Plausibility of tracks: units, steps and axes that contradict the positions."""
 
 from __future__ import annotations
 
@@ -21,27 +21,27 @@ from rulec.trace.plain_arrays import median
 _MOST_BODIES = 60
 _FEWEST_BODIES = 3
 _LEAST_M = 5.0
-"""Who moves less far says nothing of these."""
+"""Vehicles that move less far are not considered."""
 
 _ALIKE = 1.5
-"""Speeds and places that differ by a smaller factor are measured badly at most."""
+"""Speeds and positions that differ by a smaller factor are merely measured badly."""
 
 _ASKEW_DEG, _ACROSS_DEG = 20.0, 45.0
-"""Cars in bends, and those that are measured badly, move less askew all the time."""
+"""Angles that cars in bends, or badly measured ones, do not exceed on average."""
 
 _FASTEST_MPS = 100.0
-"""No traffic is as fast as 360 km/h in the median."""
+"""The highest plausible median speed (360 km/h)."""
 
 _LONGEST_CAR_M = 8.0
-"""Longer than any car, and shorter than most are in feet."""
+"""Longer than any car, and shorter than most cars measured in feet."""
 
 _SPEEDS = "speeds are"
 
 
 def with_doubts(recording: Recording, refused: Callable[[str], RulecError]) -> Recording:
-    """The recording, with a remark on each thing that is said otherwise than bodies move.
+    """The recording, with a remark on each quantity that contradicts the motion of bodies.
 
-    ``refused`` makes the error for who cannot be read. Raises it (R0610) if most vehicles move
+    ``refused`` makes the error for an unreadable recording. Raises it (R0610) if most vehicles move
     across or against their headings.
     """
     recording = without_impossible_speeds(recording)
@@ -62,7 +62,7 @@ def with_doubts(recording: Recording, refused: Callable[[str], RulecError]) -> R
 
 
 def _tracks(recording: Recording) -> list[Track]:
-    """The first tracks of vehicles that move some way."""
+    """The first tracks of vehicles that move far enough."""
     tracks: list[Track] = []
     for body in recording.participants:
         if "vehicle" in body.object_types and isinstance(body.states, TrackStates):
@@ -100,21 +100,21 @@ def _doubts(tracks: list[Track], recording: Recording, angle: float) -> Iterator
 
 
 def _ways(track: Track) -> NDArray[float64]:
-    """From each place of a track to the next (m)."""
+    """The distances from each position of a track to the next (m)."""
     ways: NDArray[float64] = np.diff(track.rows[:, :2], axis=0)
     return ways
 
 
 def _mean_mps(track: Track, step_s: float) -> float:
-    """How fast somebody moves by its places, in the mean."""
+    """The mean speed of a track by its positions."""
     took = float(track.steps[-1] - track.steps[0]) * step_s
     return float(np.hypot(*_ways(track).T).sum() / took)
 
 
 def _askew_deg(track: Track) -> float:
-    """How far somebody goes away from its headings, in the mean of its way.
+    """The mean angle between a track's motion and its headings, weighted by distance.
 
-    Who backs, by its own speeds, goes the other way.
+    A vehicle that reverses, by its own speeds, moves the opposite way.
     """
     dx, dy = _ways(track).T
     speed = track.rows[:, 3]
@@ -124,7 +124,7 @@ def _askew_deg(track: Track) -> float:
 
 
 def _speed_ratio(track: Track, step_s: float) -> float:
-    """How many times the way between its places its speeds make."""
+    """The ratio of the distance by speeds to the distance between positions."""
     speed = np.abs(track.rows[:, 3])
     by_speed = (speed[1:] + speed[:-1]) / 2 * np.diff(track.steps) * step_s
     return float(by_speed.sum() / np.hypot(*_ways(track).T).sum())

@@ -19,30 +19,32 @@ from rulec.recordings.track import Track, TrackStates
 from rulec.trace.plain_arrays import distinct
 
 NEAR_M = 50.0
-"""Somebody in a recording is no farther from its roads than this."""
+"""The largest plausible distance of participants from the roads."""
 
 _MOST_PLACES = 40
-"""So many of each body's places are looked at; of who moves at even distances."""
+"""The most positions evaluated for each body, at even distances along its track."""
 
 _FEW, _HALF, _MOST = 1 / 3, 0.5, 0.8
-"""On the maps of published recordings at least 0.61 of the places of those who move are on lanes,
-and as many along them; with other axes at most 0.43, on maps of other places a third or fewer."""
+"""Shares of positions that are on lanes, or along them, from which on maps are doubted.
+
+On the maps of published recordings at least 0.61 of the positions of moving bodies are on lanes,
+and as many along them; with other axes at most 0.43, on maps of other places a third or less.
+"""
 
 _ASTRAY = np.pi / 3
-"""Who turns off or changes lanes is turned less far away from its lane."""
+"""The largest angle to its lane of a vehicle that turns off or changes lanes."""
 
 _FEWEST_BODIES = 3
 
 _APART_M = 1.0
-"""On the maps of published recordings no lane begins farther from the end of one that leads to it
-than 0.6 m."""
+"""The largest gap between a lane and its successor.
+
+On the maps of published recordings it is 0.6 m.
+"""
 
 
 def check_near(recording: Recording, path: Path | None) -> None:
-    """Refuse tracks that are all far from the roads of their map.
-
-    Raises RulecError R0615.
-    """
+    """Raise RulecError R0615 if all tracks are far from the roads of their map."""
     where = None if path is None else SourceLocation(str(path))
     if not recording.lanelets:
         raise OTHER_NET.error(where, "the map has no lanes", help="give another map with --map")
@@ -69,7 +71,7 @@ def check_near(recording: Recording, path: Path | None) -> None:
 
 
 def road_doubts(lanelets: Mapping[str, Lanelet], tracks: Sequence[Track]) -> Iterator[str]:
-    """What is to be said of roads; ``tracks`` are those of vehicles that move."""
+    """Remarks on roads; ``tracks`` are those of moving vehicles."""
     lanes = [lanelet for lanelet in lanelets.values() if is_lane(lanelet)]
     if not lanes or not tracks:
         return
@@ -107,7 +109,7 @@ def road_doubts(lanelets: Mapping[str, Lanelet], tracks: Sequence[Track]) -> Ite
 
 
 def _gaps(lanes: Sequence[Lanelet]) -> Iterator[str]:
-    """What is to be said of lanes that end elsewhere than those begin that they lead to."""
+    """Remarks on lanes that end elsewhere than their successors begin."""
     known = {lanelet.id: lanelet for lanelet in lanes}
     pairs = [
         (lanelet, known[name]) for lanelet in lanes for name in lanelet.successors if name in known
@@ -130,7 +132,7 @@ def _gaps(lanes: Sequence[Lanelet]) -> Iterator[str]:
 
 
 Moves = NDArray[float64]
-"""Places, and directions of motion there: x, y, and the way on from there as x, y."""
+"""Positions with the displacement from there: x, y, dx, dy."""
 
 
 def _exchanged(moves: Moves) -> Moves:
@@ -155,7 +157,7 @@ _AXES = {
 
 
 class _Roads:
-    """The lanes of a map, to be asked who is on them."""
+    """The lanes of a map, with queries for who is on them."""
 
     def __init__(self, lanes: Sequence[Lanelet]) -> None:
         outlines = [np.vstack((lanelet.left, lanelet.right[::-1])) for lanelet in lanes]
@@ -163,7 +165,7 @@ class _Roads:
         self._middles = [lanelet.centre for lanelet in lanes]
 
     def shares(self, bodies: Sequence[Moves]) -> tuple[float, float]:
-        """Of the places of each body those on a lane, and on one along it, in the mean."""
+        """The mean shares of each body's positions on a lane, and on a lane along it."""
         moves = np.concatenate(bodies)
         rows, lanes = places_in(self._areas, *moves[:, :2].T)
         on, along = np.zeros((2, len(moves)), dtype=bool)
@@ -181,7 +183,7 @@ class _Roads:
 
 
 def _leads(middle: Points, moves: Moves) -> NDArray[np.bool_]:
-    """Flags of moves that a lane leads along, where it is nearest to each."""
+    """Mask of moves along the direction of a lane where it is nearest."""
     ways = np.diff(middle, axis=0)
     x, y = (middle[:-1] + ways / 2).T
     away = np.hypot(x - moves[:, :1], y - moves[:, 1:2])
@@ -195,7 +197,7 @@ def _leads(middle: Points, moves: Moves) -> NDArray[np.bool_]:
 
 
 def _moves(track: Track) -> Moves:
-    """Some of the places of a track, with the ways on from there."""
+    """Some positions of a track, with the displacements from there."""
     places = track.rows[:, :2]
     driven = arc_lengths(places)
     rows = np.searchsorted(driven, np.linspace(0.0, driven[-1], _MOST_PLACES))
@@ -204,7 +206,7 @@ def _moves(track: Track) -> Moves:
 
 
 def _some_places(body: Participant) -> Points:
-    """Some of the places of a body."""
+    """Some positions of a body."""
     if isinstance(body.states, TrackStates):
         rows = body.states.track.rows
         places: Points = rows[:: max(1, len(rows) // _MOST_PLACES), :2]

@@ -1,4 +1,4 @@
-"""Recordings with all that is mended in tracks, once."""
+"""Recordings with all repairs of tracks, applied once."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ LONGEST_HOLE_S = 1.0
 
 
 def mended(recording: Recording, longest_hole_s: float = LONGEST_HOLE_S) -> Recording:
-    """A recording with steady headings and without holes up to so long.
+    """A recording with steady headings, and without holes up to this length.
 
-    It says of itself that it is ``MENDED``, and is not mended again.
+    It is marked as ``MENDED``, and is not repaired again.
     """
     if MENDED in recording.complete:
         return recording

@@ -1,4 +1,4 @@
-"""States of tracks as rows of numbers, and what turns, moves and mends them."""
+"""States of tracks as rows of numbers, and operations that turn, move and repair them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def rows_of(body: Participant) -> NDArray[float64]:
 
 
 def with_mended(recording: Recording, mend: Callable[[Participant], Participant]) -> Recording:
-    """A recording with each participant mended; the same one if that changes nobody."""
+    """A recording with each participant repaired; the same object if nothing changes."""
     bodies = tuple([mend(body) for body in recording.participants])
     if all(map(is_, bodies, recording.participants)):
         return recording
@@ -38,7 +38,7 @@ def with_mended(recording: Recording, mend: Callable[[Participant], Participant]
 
 
 def moved_outline(outline: Points, before: TrackState, now: TrackState) -> Points:
-    """An outline as it is when its body has moved on."""
+    """An outline moved along with its body."""
     turned = now.heading - before.heading
     cos, sin = np.cos(turned), np.sin(turned)
     x, y = (outline - (before.x, before.y)).T

@@ -1,4 +1,4 @@
-"""Tracks whose short holes are filled: who was not seen for a moment was there all the same."""
+"""Fills short holes of tracks: a participant unseen for a moment was still there."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from rulec.recordings.recording import Lamp, Participant, Recording, TrackState
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
 
 _FASTER, _FASTER_MPS = 1.3, 3.0
-"""Who would have been faster than on both sides of a hole, by a part and so much, has jumped."""
+"""The factor and difference by which a jump in a hole exceeds the speeds on both sides."""
 
 _LARGEST_TURN = np.pi / 4
-"""And so has who would have turned by more."""
+"""A larger turn within a hole counts as a jump."""
 
 
 def without_short_holes(recording: Recording, longest_s: float) -> Recording:
-    """A recording with states where a track has none between two that are so near to each other.
+    """A recording without holes of tracks between two states at most ``longest_s`` apart.
 
-    They are on the cubic through the two states before and the two behind; of who jumps there are
-    none, nor is a lamp lit in them that is not on both sides.
+    The added states are on the cubic through the two states before and the two after. None are
+    added if the participant jumped; lamps are lit in them only if they are lit on both sides.
     """
     most = int(longest_s / recording.step_s + 1e-9)
     return with_mended(recording, lambda body: _filled(body, most, recording.step_s))
@@ -70,7 +70,10 @@ def _filled(body: Participant, most: int, step_s: float) -> Participant:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Known:
-    """The steps of a track and their rows; states up to ``near`` steps away tell of a hole."""
+    """The steps of a track and their rows.
+
+    States up to ``near`` steps away determine a hole's speed.
+    """
 
     steps: NDArray[int64]
     rows: NDArray[float64]
@@ -78,7 +81,7 @@ class _Known:
     step_s: float
 
     def jumps(self, hole: int) -> bool:
-        """Would it have been faster in a hole, or turned by more, than a vehicle that drives on?"""
+        """Whether the speed or turn within a hole exceeds that of a vehicle that drives on."""
         around = self._around(hole)
         moved = np.hypot(*np.diff(self.rows[around, :2], axis=0).T)
         speeds = moved / np.diff(self.steps[around]) / self.step_s
@@ -90,7 +93,7 @@ class _Known:
         return bool(too_fast or turned > _LARGEST_TURN)
 
     def at(self, missing: NDArray[int64]) -> NDArray[float64]:
-        """The rows of steps that are missing, of one hole."""
+        """The rows of the missing steps of one hole."""
         hole = int(self.steps.searchsorted(missing[0])) - 1
         before, behind = self.rows[hole], self.rows[hole + 1]
         share = (missing - self.steps[hole]) / (self.steps[hole + 1] - self.steps[hole])
@@ -110,7 +113,7 @@ class _Known:
 def _cubic(
     steps: NDArray[int64], places: NDArray[float64], wanted: NDArray[int64]
 ) -> NDArray[float64]:
-    """Places on the polynomial through others, of the least degree."""
+    """Places on the polynomial of least degree through given places."""
     interpolated = np.zeros((len(wanted), 2))
     for k, step in enumerate(steps.tolist()):
         others = np.delete(steps, k)
@@ -122,7 +125,7 @@ def _cubic(
 def _lamps(
     body: Participant, steps: NDArray[int64], holes: NDArray[intp]
 ) -> dict[int, frozenset[Lamp]]:
-    """The lamps, with those in holes that are lit on both sides."""
+    """The lamps, extended into holes if they are lit on both sides."""
     lamps = dict(body.lamps)
     for hole in holes.tolist():
         before, behind = int(steps[hole]), int(steps[hole + 1])

@@ -1,8 +1,7 @@
-"""Headings that a detector turned round, or made of the flicker of one that stands, put right.
+"""Corrects headings that a detector reversed, or that flicker while a vehicle stands.
 
-Who steers turns with its way: its middle drives on no circle that is smaller than
-``_LEAST_RADIUS_M``. A heading that turns by more than that between two states is the box's, not the
-vehicle's.
+A steering vehicle turns along its path: its centre drives on no circle smaller than
+``_LEAST_RADIUS_M``. A heading that turns by more between two states is an error of the box.
 """
 
 from __future__ import annotations
@@ -21,17 +20,17 @@ from rulec.recordings.track import TrackOutlines, TrackStates, outlines_on_track
 
 _LEAST_RADIUS_M = 2.0
 _LEAST_TURN = np.radians(30.0)
-"""What is less may be noise of a box that is well seen otherwise."""
+"""Smaller turns may be noise of a box that is otherwise right."""
 
 _ROUND = np.radians(135.0)
 _SOON_S = 0.5
-"""Between states farther apart one may turn unseen."""
+"""Between states farther apart a vehicle may turn unseen."""
 
 _BRIEF_S = 1.0
-"""A box that is turned round for longer may be right, and the others wrong."""
+"""A box that is reversed for longer may be right, and the others wrong."""
 
 _STANDS_M = 0.25
-"""Who is no farther away than that after ``_SOON_S`` stands, or creeps."""
+"""A vehicle that moves less within ``_SOON_S`` stands or creeps."""
 
 _HAIR = 1e-6
 
@@ -43,8 +42,8 @@ Floats = NDArray[float64]
 def with_steady_headings(recording: Recording) -> Recording:
     """A recording whose vehicles and cycles turn no faster than they can.
 
-    A heading that is turned round for less than ``_BRIEF_S`` is turned back. Headings of one that
-    stands, and that spin, are those of before and after.
+    A heading that is reversed for less than ``_BRIEF_S`` is turned back. Spinning headings of a
+    standing vehicle are replaced by those before and after.
     """
     return with_mended(recording, lambda body: _steadied(body, recording.step_s))
 
@@ -75,7 +74,7 @@ def _steadied(body: Participant, step_s: float) -> Participant:
 
 
 def _steady(times: Floats, places: Floats, heading: Floats) -> Floats | None:
-    """The headings that are right; None if all of them are."""
+    """The corrected headings; None if all are right."""
     apart = np.diff(times)
     ways = np.hypot(*np.diff(places, axis=0).T)
     if not _spins(apart, ways, heading).any():
@@ -88,16 +87,17 @@ def _steady(times: Floats, places: Floats, heading: Floats) -> Floats | None:
 
 
 def _spins(apart: Floats, ways: Floats, heading: Floats) -> NDArray[bool_]:
-    """Flags of states, but for the last, up to whose next the heading turns as nobody can."""
+    """Mask of states, except the last, after which the heading turns impossibly fast."""
     turned = np.abs(wrapped(np.diff(heading)))
     spins: NDArray[bool_] = turned > np.maximum(_LEAST_TURN, ways / _LEAST_RADIUS_M)
     return spins & (apart <= _SOON_S)
 
 
 def _turned_back(times: Floats, places: Floats, heading: Floats, apart: Floats) -> Floats:
-    """The headings with those turned back that are turned round for less than ``_BRIEF_S``.
+    """The headings, with those turned back that are reversed for less than ``_BRIEF_S``.
 
-    At a track's ends only those beside others that last longer and lead forwards as much or more.
+    At a track's ends this applies only next to others that last longer and lead forwards at least
+    as far.
     """
     turned: Floats = heading.copy()
     whole = len(heading)
@@ -119,7 +119,7 @@ def _turned_back(times: Floats, places: Floats, heading: Floats, apart: Floats) 
 
 
 def _forwards(places: Floats, heading: Floats, part: tuple[int, int]) -> float:
-    """How far (m) one drives forwards by its headings, less than 0 if backwards."""
+    """How far (m) a vehicle drives forwards by its headings; negative if backwards."""
     begin, end = part
     x, y = np.diff(places[begin:end], axis=0).T
     own = heading[begin : end - 1]
@@ -129,7 +129,7 @@ def _forwards(places: Floats, heading: Floats, part: tuple[int, int]) -> float:
 def _of_before_and_after(
     times: Floats, places: Floats, heading: Floats, spins: NDArray[bool_]
 ) -> Floats:
-    """The headings with those of whom spins while it stands as they are before and after."""
+    """The headings, with spinning ones of a standing vehicle replaced by those before and after."""
     stands = _stand(times, places)
     edges = np.diff(stands.astype(int64), prepend=0, append=0)
     steadied: Floats = heading.copy()
@@ -149,7 +149,7 @@ def _of_before_and_after(
 
 
 def _stand(times: Floats, places: Floats) -> NDArray[bool_]:
-    """Flags of states up to, or from, which one is hardly farther away half a second apart."""
+    """Mask of states before or after which a vehicle hardly moves within half a second."""
     first, last = (times.searchsorted(times + way) for way in (-_SOON_S - _HAIR, _SOON_S - _HAIR))
     stands = np.zeros(len(times), dtype=bool)
     for other, known in (
@@ -162,7 +162,7 @@ def _stand(times: Floats, places: Floats) -> NDArray[bool_]:
 
 
 def _mean(heading: Floats, times: Floats, part: slice, at: float) -> float | None:
-    """The mean heading of the states of a part that are within ``_BRIEF_S`` of a time."""
+    """The mean heading of a part's states within ``_BRIEF_S`` of a time."""
     near: NDArray[intp] = (np.abs(times[part] - at) <= _BRIEF_S + _HAIR).nonzero()[0]
     if not len(near):
         return None

@@ -1,4 +1,4 @@
-"""Times of rows as steps of an even grid, whatever they were rounded to."""
+"""Converts the times of rows to steps of an even grid, tolerating rounding."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rulec.recordings.encodings.table_columns import Columns
 from rulec.recordings.recording import MOST_STEPS, SPARSEST
 
 _UNEVEN = 0.02
-"""So much of a step a time may be off its place, besides its rounding: clocks are no better."""
+"""The share of a step by which a time may be off its grid, besides its rounding."""
 
 _RATES = 1000
 _MOST_DECIMALS = 9
@@ -21,7 +21,7 @@ _HAIR = 1e-3
 
 
 class EvenTimes(NamedTuple):
-    """The time step (s) and the step of each row; when step 0 is, if not at time 0 (s)."""
+    """The time step (s) and the step of each row; and the time of step 0, if not 0 (s)."""
 
     step_s: float
     steps: NDArray[int64]
@@ -29,12 +29,12 @@ class EvenTimes(NamedTuple):
 
 
 def even_times(times: NDArray[float64], columns: Columns) -> EvenTimes:
-    """Times (s) as steps: the shortest time from one moment to the next is one, or a part of it.
+    """Times (s) as steps: the time step is the shortest interval, or a fraction of it.
 
-    Moments may be missing. What the step is close to is taken for it: one of 1 to 1000 a second,
-    or a thousand of those in 1001 s, as video has; else whole milliseconds. Steps count from time
-    0, from the first moment if that is on no step or too far away. Raises RulecError for times on
-    no even grid, or too far apart.
+    Moments may be missing. A usual value close to the step is used instead: one of 1 to 1000 per
+    second, or a thousand of those in 1001 s, as in video; else whole milliseconds. Steps count from
+    time 0, or from the first moment if that is off the grid or too far away. Raises RulecError for
+    times that are not on an even grid, or too far apart.
     """
     start = float(times.min())
     # Floats have sixteen digits: of seconds since 1970 some seven remain for decimals
@@ -58,7 +58,7 @@ def even_times(times: NDArray[float64], columns: Columns) -> EvenTimes:
 
 
 def _uneven(times: NDArray[float64], step: float, unit: float, columns: Columns) -> RulecError:
-    """The error for times that are not so many steps apart; it names the first that is off."""
+    """The error for times off the grid, which names the first one."""
     since = times - times.min()
     off = np.abs(since - np.round(since / step) * step) > _UNEVEN * step + unit
     row = int(np.argmin(np.where(off, times, np.inf)))
@@ -71,7 +71,7 @@ def _uneven(times: NDArray[float64], step: float, unit: float, columns: Columns)
 
 
 def _unit(values: NDArray[float64]) -> float:
-    """The unit of the last decimal that the values have."""
+    """The unit of the values' last decimal."""
     for decimals in range(_MOST_DECIMALS):
         scaled = values * 10.0**decimals
         if np.abs(scaled - np.round(scaled)).max() < _HAIR:
@@ -80,7 +80,7 @@ def _unit(values: NDArray[float64]) -> float:
 
 
 def _fitted(moments: NDArray[float64], unit: float) -> float:
-    """The step that explains moments, the first of which is 0, best; a usual one if it does."""
+    """The step that fits the moments best, starting at 0; a usual value if it fits."""
     step = float(np.median(np.diff(moments)))
     if np.diff(moments).min() < 0.6 * step:
         step = float(np.diff(moments).min())
@@ -104,7 +104,7 @@ def _fitted(moments: NDArray[float64], unit: float) -> float:
 
 
 def framed_times(frames: NDArray[float64], rate: float, columns: Columns) -> EvenTimes:
-    """Numbers of frames, so many a second, as steps. Raises RulecError for those that are none."""
+    """Frame numbers at a rate per second, as steps. Raises RulecError for invalid ones."""
     off = frames != np.round(frames)
     if off.any():
         row = int(np.argmax(off))

@@ -1,7 +1,7 @@
-"""The motorway of a recording of highD's, from where its marks lie.
+"""The motorway of a highD recording, from the positions of its lane marks.
 
-highD's y axis points down, that of a ``Recording`` up: y changes its sign. Traffic on the upper
-carriageway leads to the left, against the x axis.
+highD's y axis points down, that of a ``Recording`` up, so y changes its sign. Traffic on the upper
+carriageway drives to the left, against the x axis.
 """
 
 from __future__ import annotations
@@ -22,10 +22,9 @@ _ROUNDED_KMH = 0.1
 
 
 def highd_roads(about: NamedColumns, reach: tuple[float, float]) -> RoadMap:
-    """The roads that a table about a recording describes, along all x that somebody reaches.
+    """The roads described by a table about a recording, over all x that vehicles reach.
 
-    Lanes are numbered from the right, ``upper_1`` for one. Raises RulecError for marks that are
-    none.
+    Lanes are numbered from the right, as in ``upper_1``. Raises RulecError for invalid marks.
     """
     limit = float(about.numbers["speedLimit"][0])
     kmh = limit * _KMH
@@ -61,7 +60,7 @@ def highd_roads(about: NamedColumns, reach: tuple[float, float]) -> RoadMap:
 
 
 def _marks(about: NamedColumns, name: str) -> list[float]:
-    """The places of a carriageway's marks by ascending y (m), as the file has them."""
+    """The positions of a carriageway's marks by ascending y (m), as in the file."""
     text = about.texts[name].names[int(about.texts[name].codes[0])]
     try:
         marks = sorted(float(part) for part in text.split(";") if part.strip())

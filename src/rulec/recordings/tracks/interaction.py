@@ -79,7 +79,10 @@ def _files(path: Path) -> list[Path]:
 
 
 def _scene(path: Path) -> str:
-    """The name of the place: the folder's for files by number, else the file's without its part."""
+    """The name of the site.
+
+    It is the folder's for numbered files, else the file's without its part number.
+    """
     stem = path.name.partition(".")[0]
     number = stem.rpartition("_")[2]
     if stem.startswith((_VEHICLES, _WALKERS)):
@@ -132,7 +135,7 @@ def _recording(name: str, tables: Sequence[NamedColumns], roads: RoadMap) -> Rec
 
 
 def _told_apart(table: NamedColumns) -> Texts:
-    """Types, with those that may be on foot or on a cycle told apart by how fast they are."""
+    """Types, with ``pedestrian/bicycle`` divided by speed."""
     track, types = table.texts["track_id"], table.texts["agent_type"]
     speeds = np.hypot(table.numbers["vx"], table.numbers["vy"])
     count = np.maximum(np.bincount(track.codes, minlength=len(track.names)), 1)

@@ -39,7 +39,7 @@ _TRACKS = "tracks.csv"
 _META, _ABOUT = "tracksMeta.csv", "recordingMeta.csv"
 _COUNTRY = "DEU"
 _SLOW_MPS = 5.0
-"""Whoever is slower on a motorway is turned along it: boxes there are never turned."""
+"""Slower vehicles on a motorway are turned along it: their boxes have no heading."""
 
 
 def _numbers(names: str, *, required: bool = True) -> tuple[ColumnKind, ...]:

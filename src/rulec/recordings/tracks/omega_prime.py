@@ -84,7 +84,7 @@ def read_omega_prime(source: RecordingSource) -> Iterator[Recording]:
 
 
 def _types(named: NamedColumns) -> Texts:
-    """Our types, by OSI's numbers; of trailers and of others nothing is known."""
+    """Our types, by OSI's numbers; trailers and others are unknown."""
     nothing = np.full(len(named.numbers["type"]), -1.0)
     kind = named.numbers["type"]
     subtype, role = (named.numbers.get(name, nothing) for name in ("subtype", "role"))

@@ -28,7 +28,7 @@ USUAL_SIZES: Mapping[str, tuple[float, float]] = MappingProxyType(
         "unknown": (4.5, 1.8),
     }
 )
-"""Our types -> length and width (m) where a table has none; of all others a metre."""
+"""Our types -> length and width (m) if a table has none; one metre for all others."""
 
 OTHER_SIZE = 1.0, 1.0
 
@@ -50,11 +50,11 @@ TYPES: Mapping[str, str] = MappingProxyType(
     {own.casefold(): own for own in OBSTACLE_TYPES}
     | {word: own for own, words in _ALSO.items() for word in words.split()}
 )
-"""What a table may call types, in small letters -> our types, CommonRoad's."""
+"""Names of types in tables, in lower case -> our types, which are CommonRoad's."""
 
 
 def type_of(word: str) -> str | None:
-    """Our type for a data set's word, None for one that is not known."""
+    """Our type for a data set's word; None if it is unknown."""
     return TYPES.get("_".join(word.casefold().replace("-", " ").split()))
 
 

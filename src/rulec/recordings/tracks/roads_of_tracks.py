@@ -1,4 +1,4 @@
-"""The roads that a table of tracks belongs to, and both together as a recording."""
+"""The roads that belong to a table of tracks, and the recording of both."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ def lanes_beside(path: Path) -> list[Path]:
 
 
 def _usual(beside: Sequence[Path]) -> list[Path]:
-    """The first two names to be told to somebody without a map."""
+    """The first two of these names, to be suggested when there is no map."""
     return [file for file in beside if file.suffix != ".parquet"][:2]
 
 
 def roads_of(path: Path, map_path: Path | None, step_s: float, beside: Sequence[Path]) -> RoadMap:
-    """The map given, or the first of those beside that there is.
+    """The given map, or the first existing one of those beside.
 
     Raises RulecError R0614 if there is none, else as ``read_map``.
     """
@@ -121,7 +121,7 @@ def _box(lanelets: Iterable[Lanelet]) -> tuple[NDArray[float64], NDArray[float64
 
 
 def _reach(rows: TrackRows, lanelets: Iterable[Lanelet]) -> float:
-    """How far the one who is nearest is from the box around the roads (m)."""
+    """The distance of the nearest participant from the bounding box of the roads (m)."""
     low, high = _box(lanelets)
     places = np.column_stack((rows.x, rows.y))
     beyond = np.maximum(np.maximum(low - places, places - high), 0.0)

@@ -1,4 +1,4 @@
-"""Rows of tracks, of whatever table, as participants of a recording."""
+"""Converts the rows of any table of tracks to participants of a recording."""
 
 from __future__ import annotations
 
@@ -36,12 +36,11 @@ _UNITS = ((3.6, "`speed_kmh` if it holds km/h"), (2.237, "`speed_mph` if it hold
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TrackRows:
-    """Who was where when: arrays with one value a row, in the map's frame (m, rad, m/s, m/s²).
+    """Tracks as arrays with one value per row, in the map's frame (m, rad, m/s, m/s²).
 
-    NaN where the table has no value; None if it has no such column. ``columns`` know the rows'
-    places in the table. ``front``: x and y are the middle of the front, not of the body. Speeds
-    without a sign are taken to lead where the track does. ``lamps``: 1 where one is lit, 0 where
-    it is not.
+    NaN means that the table has no value; None that it has no such column. ``columns`` know the
+    rows' places in the table. ``front``: x and y are the middle of the front, not of the body.
+    Unsigned speeds are taken to follow the track. ``lamps``: 1 if lit, 0 if not.
     """
 
     columns: Columns
@@ -64,7 +63,7 @@ class TrackRows:
 
 @dataclass(frozen=True, slots=True)
 class ReadTracks:
-    """The participants of a table, who of them is ego, and what was taken to be so."""
+    """The participants of a table, which of them is ego, and what was assumed."""
 
     participants: tuple[Participant, ...]
     ego: str
@@ -72,17 +71,17 @@ class ReadTracks:
 
 
 def read_tracks(rows: TrackRows, heading_at: HeadingAt) -> ReadTracks:
-    """The participants of rows; who vanishes and comes back is another one then.
+    """The participants of rows; one that vanishes and returns becomes another participant.
 
-    ``heading_at`` says how somebody is turned who does not move. Raises RulecError for a row that
-    makes no sense.
+    ``heading_at`` gives the heading of participants that do not move. Raises RulecError for an
+    invalid row.
     """
     _check(rows)
     return _Reading(rows, heading_at).result()
 
 
 class _Reading:
-    """The reading of one table, with counts of what it has left open."""
+    """Reads one table, counting what it leaves open."""
 
     def __init__(self, rows: TrackRows, heading_at: HeadingAt) -> None:
         self.rows = rows
@@ -105,7 +104,7 @@ class _Reading:
         return ReadTracks(tuple(participants), self.ego, tuple(self._remarks()))
 
     def _type(self, name: str, own: NDArray[np.intp]) -> str:
-        """The type of a track: that of most of its rows which tell one."""
+        """The type of a track: that of most of its rows that have one."""
         if self.rows.type is None:
             return USUAL_TYPE
         words = self.rows.type.names
@@ -131,7 +130,7 @@ class _Reading:
         return rows.columns.wrong(second, why, help_text=way_out)
 
     def _participants(self, name: str, own: NDArray[np.intp]) -> Iterator[Participant]:
-        """Those of a track: one for each part of it without gaps."""
+        """The participants of a track: one for each part without gaps."""
         rows = self.rows
         kind = self._type(name, own)
         length, width = self._size(kind, own)
@@ -167,7 +166,7 @@ class _Reading:
             )
 
     def _size(self, kind: str, own: NDArray[np.intp]) -> tuple[float, float]:
-        """Length and width: those in the middle of what is stated, else the usual ones."""
+        """Length and width: the medians of the stated ones, else the usual ones."""
         size = []
         for dimension, column, usual in zip(
             ("length", "width"), (self.rows.length, self.rows.width), usual_size(kind), strict=True
@@ -207,7 +206,7 @@ class _Reading:
         return wrapped(derived if stated is None else _filled(stated, derived))
 
     def _by_velocity(self, own: NDArray[np.intp]) -> Floats | None:
-        """The direction of velocities, which who is slow keeps; None if nobody is fast enough."""
+        """The direction of velocities, kept while slow; None if the track is never fast enough."""
         if self.rows.velocity is None:
             return None
         vx, vy = (component[own] for component in self.rows.velocity)
@@ -231,7 +230,7 @@ class _Reading:
         return np.where(other_way, -stated, stated)
 
     def _lamps(self, own: NDArray[np.intp]) -> dict[int, frozenset[Lamp]]:
-        """The lamps that are lit, by step; without steps of which nothing is known."""
+        """The lit lamps by step; steps without information are missing."""
         lamps: dict[int, frozenset[Lamp]] = {}
         if not self.rows.lamps:
             return lamps
@@ -260,7 +259,7 @@ class _Reading:
 
 
 def _speeds_that_differ(rows: TrackRows) -> Iterator[str]:
-    """What to say of speeds that are another multiple of what places say: they have no say."""
+    """Remarks on speeds that differ from those of positions by a factor; they are not used."""
     if rows.speed is None or rows.front:
         return
     order, follow, (dx, dy) = _motions(rows)
@@ -281,9 +280,9 @@ def _speeds_that_differ(rows: TrackRows) -> Iterator[str]:
 
 
 def _motions(rows: TrackRows) -> tuple[NDArray[np.intp], NDArray[np.bool_], tuple[Floats, Floats]]:
-    """The rows by track and time, which of them the next one of its track follows, and velocities.
+    """The rows by track and time, whether the next row continues the track, and velocities.
 
-    The latter two are of each but the last.
+    The latter two have a value for each row except the last.
     """
     order = np.lexsort((rows.times.steps, rows.track.codes))
     follow = (np.diff(rows.track.codes[order]) == 0) & (np.diff(rows.times.steps[order]) == 1)
@@ -296,7 +295,7 @@ def _filled(values: Floats, others: Floats) -> Floats:
 
 
 def _types(rows: TrackRows) -> Sequence[str]:
-    """Our type for each of the table's. Raises RulecError for one that is not known."""
+    """Our type for each of the table's types. Raises RulecError for an unknown one."""
     if rows.type is None:
         return []
     ours = []
@@ -341,7 +340,7 @@ def _check(rows: TrackRows) -> None:
 
 
 def _check_headings(rows: TrackRows) -> None:
-    """Refuse headings that are no radians, or that do not fit the motion of most who move."""
+    """Refuse headings that are not in radians, or contradict the motion of most participants."""
     heading = rows.heading
     assert heading is not None
     large = np.abs(heading) > 2 * np.pi + 0.01

@@ -1,4 +1,4 @@
-"""Tracks as a table with columns of everybody's own making."""
+"""Tracks as a table with user-defined columns."""
 
 from __future__ import annotations
 
@@ -96,13 +96,13 @@ def recording_from_columns(
     *,
     name: str = "tracks",
 ) -> Recording:
-    """A recording from columns: a dict of sequences or arrays, a data frame.
+    """A recording from columns: a dict of sequences or arrays, or a data frame.
 
     ``tracks`` has the columns of [tracks as a table](formats.md#tracks-as-a-table), such as
-    ``track``, ``t``, ``x`` and ``y``; ``lanes`` those of lanes as a table, or it is a ``RoadMap``
-    or the path of a map. Raises RulecError R0610 for what makes no sense in them, with its row
-    (counted from 0) and column, R0615 if nobody is near the roads, else as reading that map. What
-    is odd but readable, such as speeds that places contradict, is said in ``remarks``.
+    ``track``, ``t``, ``x`` and ``y``; ``lanes`` has those of lanes as a table, or is a ``RoadMap``
+    or the path of a map. Raises RulecError R0610 for invalid values, with row (counted from 0) and
+    column, R0615 if nobody is near the roads, else as reading that map. Odd but readable values,
+    such as speeds that contradict positions, are reported in ``remarks``.
     """
     rows, remark = track_rows_of(table_of(tracks, "tracks"))
     if isinstance(lanes, RoadMap):
@@ -117,7 +117,7 @@ def recording_from_columns(
 
 
 def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:
-    """The rows of a table of tracks, and a remark about names that are almost known."""
+    """The rows of a table of tracks, and a remark about column names that are almost known."""
     named = named_columns(table, TRACK_COLUMNS)
     numbers = named.numbers
     if ("vx" in numbers) != ("vy" in numbers):
@@ -156,10 +156,10 @@ def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:
 
 
 def _check_seconds(rows: TrackRows, heads: set[str]) -> None:
-    """Refuse times without a unit that cannot be seconds: states far apart, and nobody moves.
+    """Refuse unitless times that cannot be seconds: rows far apart although nobody moves.
 
-    A car that is seen ten times a second would move a metre in 100 s if milliseconds were seconds.
-    Tracks that are seen seldom, by satellite for one, move much farther from one row to the next.
+    If milliseconds were taken for seconds, a car seen ten times a second would move a metre in 100
+    s. Tracks with rare observations, for instance by satellite, move much farther from row to row.
     """
     column = next((name for name in ("t", "time") if name in heads), None)
     step_s = rows.times.step_s
@@ -183,9 +183,9 @@ def _check_seconds(rows: TrackRows, heads: set[str]) -> None:
 
 
 def _check_exchanged(named: NamedColumns) -> None:
-    """Refuse names of tracks that are times, and times that are numbers of tracks.
+    """Refuse tables in which the columns of tracks and times are exchanged.
 
-    Each moment would be a track of its own then, which is everywhere.
+    Otherwise each moment would become a track that is everywhere.
     """
     names, times = named.texts["track"].names, named.numbers["t"]
     if len(names) < _MANY_NAMES or not all(map(is_number, names)):
