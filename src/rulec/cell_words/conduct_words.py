@@ -170,7 +170,7 @@ class ConductWords:
         return away
 
     def _has_room_beyond(self) -> Flags:
-        """Cells where none ahead in ego's lane may leave too little room behind what it enters.
+        """Cells where nobody ahead in ego's lane may leave too little room behind what it enters.
 
         Neither now nor since the layer before, when ego may have entered it.
         """

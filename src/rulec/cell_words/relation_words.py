@@ -172,7 +172,7 @@ class Relations:
         if "precedes" in names:
             found["precedes"] = _truths(~ahead, False)
         if "one_between" in names:
-            # One ahead in ego's lane may be nearer than one in another lane
+            # A participant ahead in ego's lane may be nearer than one in another lane
             nobody = np.broadcast_to(~ahead.any(axis=1, keepdims=True), ahead.shape)
             found["one_between"] = _truths(nobody, False)
         if "parts_soon" in names:

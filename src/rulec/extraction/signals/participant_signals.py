@@ -237,10 +237,10 @@ def _comes_towards(context: DriveContext) -> Flags:
 def _waits_elsewhere(context: DriveContext, cells: Cells) -> Flags:
     """Mask of cells of drivers and riders that face ego on lanes not of its way.
 
-    They stand, in a queue for example. Ego does not overtake them, any more than oncoming ones that
-    move, nor follow one that waits in a junction for its turn. A body that always stands there, the
-    wrong way round, is an obstacle in ego's lanes. One that faces ego and moves away from it
-    reverses, or its box drifts: it counts as standing.
+    They may stand in a queue there. Ego does not overtake them, nor oncoming ones that move, nor
+    follow one that waits in a junction for its turn. A body that always stands there, the wrong way
+    round, is an obstacle in ego's lanes. One that faces ego and moves away from it reverses, or its
+    box drifts: it counts as standing.
     """
     rows = distinct(cells.rows)
     slow = np.abs(context.extents.along[rows]) * KMH < context.thresholds.standing_kmh

@@ -1,4 +1,4 @@
-"""Bodies that another one tows, and that therefore have no driver."""
+"""Bodies that a vehicle tows, and that therefore have no driver."""
 
 from __future__ import annotations
 

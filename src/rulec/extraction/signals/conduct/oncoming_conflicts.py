@@ -1,9 +1,9 @@
 """The signal of oncoming vehicles that have to brake as ego is over the middle of the road.
 
 What decides is the situation when ego begins to be there, or the other vehicle is first seen:
-whether that one, at its speed then, would meet ego in its way, and whether it could avoid that
+whether that vehicle, at its speed then, would meet ego in its way, and whether it could avoid that
 without braking harder than ``disturbing_mps2`` after its reaction time. A vehicle that already
-stands, or is so far away that gentle braking is enough, may let ego go first of its own accord.
+stands, or is so far away that gentle braking is enough, may let ego go first.
 """
 
 from __future__ import annotations

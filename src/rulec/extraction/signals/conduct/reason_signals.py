@@ -167,7 +167,7 @@ def _drives_on(context: DriveContext, stands: Flags) -> Flags:
 
 
 def _beside(context: DriveContext, others: Others) -> Flags:
-    """Mask of the others' states with one beside ego, near its lane."""
+    """Mask of the others' states with a participant beside ego, near its lane."""
     beside = (others.away > IN_WAY_M) & (others.away <= COMES_M)
     beside &= np.abs(others.ahead) <= REACH_M
     found: Flags = np.logical_or.reduce(beside)
@@ -189,7 +189,7 @@ def _called_near(context: DriveContext, others: Others) -> Flags:
 
 
 def _slow_beside(context: DriveContext, others: Others) -> Flags:
-    """Mask of the others' states with one ahead beside ego's lane, less than half as fast."""
+    """Mask of the others' states with one ahead beside ego's lane, under half as fast as ego."""
     near = (others.ahead > 0) & (others.ahead <= _reach(context)[others.states])
     cells = Cells.at(near & (others.away <= COMES_M))
     rows, columns = cells.rows, cells.columns

@@ -1,9 +1,9 @@
 """The signal of participants going straight on beside a turning ego, in conflict with it there.
 
 In the frame of ego's direction before the junction, where it has not begun to turn, ego's body is
-across the other one's line while it drives over it. They are in conflict if ego gets there first
-although the other, at its speed then, would be there less than ``yielding_s`` after ego has left,
-and does come less than ``held_up_s`` after it, as on crossing ways in junctions.
+across the participant's line while it drives over it. They are in conflict if ego gets there first
+although the participant, at its speed then, would be there less than ``yielding_s`` after ego has
+left, and comes less than ``held_up_s`` after it, as on crossing ways in junctions.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ def _clear(
     origin: tuple[float, float],
     heading: float,
 ) -> tuple[float, float]:
-    """How far (m) another is clear to ego's right and left, each at a row and column."""
+    """How far (m) a body is clear of ego to ego's right and left, each at a row and column."""
     tracks, ranges = context.surroundings.passages.tracks, []
     for row, column in (ego, other):
         corners = tracks.participants[row].outlines[column + tracks.first]

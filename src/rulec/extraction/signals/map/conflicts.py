@@ -58,7 +58,7 @@ def first_column(context: DriveContext) -> int:
 
 
 def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int, bool] | None:
-    """The column from which another is in conflict with ego, and whether surely; None if not."""
+    """The column from which another vehicle conflicts with ego, and whether surely; or None."""
     own, other = ego[0], foe[0]
     (enters, leaves), (comes, passed) = (tuple(map(_column, when[1:])) for when in (ego, foe))
     if enters is None or (passed is not None and passed <= enters):
@@ -66,7 +66,7 @@ def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int,
     if comes is not None and comes < enters:
         return _runs_into(context, (own, enters), (other, passed))
     if _is_there_at_first(context, own, ego[1]) and _is_there_at_first(context, other, foe[1]):
-        # It was not recorded which of them got there first
+        # It was not recorded which of the two got there first
         return enters, False
     speed = context.surroundings.passages.tracks.speed[own.row, enters:passed]
     waits = speed.min(initial=np.inf) < SLOWEST_MPS
@@ -84,7 +84,7 @@ def _let_pass(
     *,
     waits: bool,
 ) -> tuple[int, bool] | None:
-    """``in_conflict`` for another that passed where ways meet while ego was there.
+    """``in_conflict`` for a vehicle that passed where ways meet while ego was there.
 
     Ego lets others pass even if it waits a little too far ahead, so that they drive round it, or
     creeps on behind them. It is not sure if they brake, as that may be because of ego.
@@ -125,11 +125,11 @@ def _collide(
 def _runs_into(
     context: DriveContext, ego: tuple[Passage, int], foe: tuple[Passage, int | None]
 ) -> tuple[int, bool] | None:
-    """``in_conflict`` for another that got there first: ego drives into its side as it drives on.
+    """``in_conflict`` for a vehicle that got there first, into whose side ego drives.
 
-    If they join, ego drives in behind it. If ego brakes meanwhile, it may see the other and stop
-    short of it, on lanes that are narrower than on the map; if it creeps on behind, it does not
-    touch it. A slow one may wait there, unless ego runs into it.
+    If the ways join, ego drives in behind it. If ego brakes meanwhile, it may see the vehicle and
+    stop short of it, on lanes that are narrower than on the map; if it creeps on behind, it does
+    not touch it. A slow vehicle may wait there, unless ego runs into it.
     """
     passages = context.surroundings.passages
     (own, enters), (other, passed) = ego, foe
@@ -160,7 +160,7 @@ def _column(when: float | None) -> int | None:
 def _held_up(
     context: DriveContext, ego: tuple[Passage, int, float | None], other: Passage, at: float | None
 ) -> tuple[int, bool] | None:
-    """``in_conflict`` for another that gets there later than ego, in column ``at``, or never."""
+    """``in_conflict`` for a vehicle that gets there later than ego, in column ``at``, or never."""
     limits, step_s = context.thresholds, context.recording.step_s
     passages = context.surroundings.passages
     own, enters, leaves = ego
@@ -208,7 +208,7 @@ def _is_train(context: DriveContext, own: Passage, other: Passage) -> bool:
 def _brakes_for(
     context: DriveContext, other: Passage, columns: tuple[int, int], comes: int
 ) -> bool:
-    """Whether another that goes straight on brakes harder than ``disturbing_mps2`` then."""
+    """Whether a vehicle that goes straight on brakes harder than ``disturbing_mps2`` then."""
     tracks = context.surroundings.passages.tracks
     begin, end = columns
     heading = tracks.heading[other.row, [begin, comes]]
@@ -225,7 +225,7 @@ def _stood(context: DriveContext, own: Passage, first: int, last: float) -> bool
 
 
 def _stands(context: DriveContext, other: Passage, column: int) -> bool:
-    """Whether another stands before the junction as ego drives in, maybe because of others."""
+    """Whether a vehicle stands before the junction as ego drives in, maybe because of others."""
     speed = context.surroundings.passages.tracks.speed[other.row, column]
     return bool(speed < SLOWEST_MPS) and column < other.first
 
@@ -258,7 +258,7 @@ def _decides(context: DriveContext, own: Passage, enters: int) -> int:
 
 
 def _drives_on(context: DriveContext, own: Passage, comes: int) -> bool:
-    """Whether ego, whose track ends there, drove on when the other had come, and did not wait."""
+    """Whether ego, whose track ends there, drove on when the other came, and did not wait."""
     tracks = context.surroundings.passages.tracks
     there = tracks.present[own.row, comes:].nonzero()[0] + comes
     longer = len(there) * context.recording.step_s > _BEHIND_S

@@ -113,7 +113,7 @@ def _nearest_to_crossing(context: DriveContext) -> SignalColumns:
 def _crosses_side_road(context: DriveContext) -> SignalColumns:
     """Pedestrians that use the road into which ego turns without being let across by ego.
 
-    An ego that waits in the junction until somebody is across has entered it lawfully.
+    An ego that waits in the junction until they are across has entered it lawfully.
     """
     rows, (crosses, unsure) = _pedestrians(context), np.zeros((2, *context.relevant.shape), bool)
     start, end = _side_road(context)

@@ -266,7 +266,7 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
 
 
 def _turned_in_later(context: DriveContext, own: Passage, other: Passage) -> bool:
-    """Whether another turned into the road to the junction after ego had driven in already.
+    """Whether a vehicle turned into the road to the junction after ego had driven in already.
 
     Where links are short, it is unknown whether one still before the junction at their other end
     will come. An ego that waits within the junction drives in where it moves off.

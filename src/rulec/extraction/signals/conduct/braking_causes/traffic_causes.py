@@ -36,7 +36,7 @@ _HOLDS_UP_M, _BRAKES_MPS2, _LEAST_MPS2, _NEAR_S, _REACTS_S = 10.0, 1.0, 0.5, 1.0
 do so, or is this near by time, makes it brake, up to ``_REACTS_S`` before or after."""
 
 _WAITS_S, _THINKS_OF_S = 5.0, 8.0
-"""How long before another reaches where ways meet ego may wait for it, and consider it."""
+"""How long before a participant reaches where ways meet ego may wait for it, and consider it."""
 
 
 def led(context: DriveContext, brakes: Flags, reach: Floats) -> Flags:
@@ -66,7 +66,7 @@ def led(context: DriveContext, brakes: Flags, reach: Floats) -> Flags:
 
 
 def may_be_others(context: DriveContext, others: Others, reach: Floats) -> tuple[Flags, Flags]:
-    """Mask of the others' states with one ahead in ego's way, coming into it, or across it.
+    """Mask of the others' states with a participant ahead in ego's way, coming into it, or across.
 
     And of those with one on the far side that ego may not pass, and would pass without braking.
     """
@@ -125,7 +125,7 @@ def may_come(context: DriveContext, others: Others, reach: Floats) -> Flags:
 
 
 def crossed(context: DriveContext, others: Others, reach: Floats) -> Flags:
-    """Mask of states in which somebody walks or drives across ego's way, or is about to."""
+    """Mask of states in which a participant moves across ego's way, or is about to."""
     states = others.states
     near = (others.ahead > 0) & (others.ahead <= reach[states])
     cells = Cells.at(near & (others.away <= IN_WAY_M))
@@ -137,7 +137,7 @@ def crossed(context: DriveContext, others: Others, reach: Floats) -> Flags:
 
 
 def met(context: DriveContext, asked: Flags, reach: Floats) -> tuple[Flags, Flags]:
-    """Masks of states in which another makes ego wait where ways meet in a junction, or may."""
+    """Masks of states in which a vehicle makes ego wait where ways meet in a junction, or may."""
     waits, thinks = np.zeros((2, context.states), dtype=bool)
     for number, columns in context.spans.those(context.spans.any(asked)):
         if passages_of(context, number):
