@@ -96,7 +96,7 @@ class ConductWords:
         return _nobody(follows) | self._has_a_reason()
 
     def _has_a_reason(self) -> Flags:
-        """Cells with another surely ahead in ego's lane, or a junction, near enough to slow ego."""
+        """Cells with a vehicle surely ahead in ego's lane or a junction near enough to slow it."""
         others, frame = self._others, self._frame
         reach = reach_at(np.maximum(self._boxes.mean_speed[0], 0.0))
         (front, far_front), (_, far_rear) = self._relations.front, self._relations.rear
