@@ -135,15 +135,15 @@ def built(lane=None, body=None):
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"objects": None}, "`objects` is a dict by names of objects, not NoneType"),
-        ({"objects": [1]}, "`objects` is a dict by names of objects, not list"),
+        ({"objects": None}, "`objects` is a dict keyed by names of objects, not NoneType"),
+        ({"objects": [1]}, "`objects` is a dict keyed by names of objects, not list"),
         ({"objects": {"v": [1]}}, "object `v` is of type `\\[1\\]`"),
         ({"states": None}, "`states` is a tuple of states, not NoneType"),
         ({"states": "ab"}, "`states` is a tuple of states, not str"),
         ({"states": ({1: 2},)}, "state 0"),
         ({"step_s": "1"}, "`step_s` is a number of seconds, not str"),
         ({"step_s": NAN}, "`step_s` is nan"),
-        ({"present": 3}, "`present` is a dict by names of objects, not int"),
+        ({"present": 3}, "`present` is a dict keyed by names of objects, not int"),
         ({"objects": {"v": "vehicle"}, "present": {"v": 3}}, "two states for `v`.* not 3"),
         ({"step_s": 10**400}, "`step_s` is 1000.*; it has to be a number of seconds"),
         ({"id": 3}, "`id` is a str, not int"),

@@ -67,7 +67,7 @@ def test_a_certificate_of_another_table_is_found(soon, tmp_path):
     first["certificate"], second["certificate"] = second["certificate"], first["certificate"]
     path.write_bytes(sealed(book))
     found = [proof.because for proof in rulec.verify_compiled(path)]
-    assert found == ["its certificate is of another table"] * 2 + [""]
+    assert found == ["its certificate belongs to another table"] * 2 + [""]
 
 
 def test_two_compilers_that_disagree_write_nothing(soon, tmp_path, monkeypatch):

@@ -225,11 +225,11 @@ def test_a_list_longer_than_any(option):
 @pytest.mark.parametrize(
     ("command", "words"),
     [
-        ("printf 'trace,step\\nt,0\\n' | gzip", "no CSV, but data compressed with gzip"),
-        ("printf '{\"states\": [{}]}'", "no CSV, but JSON"),
+        ("printf 'trace,step\\nt,0\\n' | gzip", "not CSV but data compressed with gzip"),
+        ("printf '{\"states\": [{}]}'", "not CSV but JSON"),
         # A pipe cannot be read again to find the byte's line.
         ("printf 'trace,step\\nt\\337,0\\n'", "here or further on the byte 0xdf is not UTF-8"),
-        ("printf 'trace,'; sleep 0.1; printf 'step\\nt,1\\n'", "the step is `1`; here it is 0"),
+        ("printf 'trace,'; sleep 0.1; printf 'step\\nt,1\\n'", "the step is `1`; it must be 0 here"),
     ],
 )
 def test_csv_in_a_pipe_that_cannot_be_read(command, words):

@@ -93,7 +93,7 @@ def test_the_first_row_is_the_one_that_is_explained(tmp_path, capsys):
 
 @pytest.mark.parametrize(
     ("name", "text", "said"),
-    [("nothere.csv", None, "no such file"), ("cars.parquet", "track,t,x,y\n", "no Parquet")],
+    [("nothere.csv", None, "no such file"), ("cars.parquet", "track,t,x,y\n", "not Parquet")],
 )
 def test_a_file_that_is_missing_or_misnamed_is_named(tmp_path, capsys, name, text, said):
     if text is not None:

@@ -288,7 +288,7 @@ def test_a_file_of_another_kind(tmp_path, monkeypatch, capsys):
     (tmp_path / "law.json.gz").rename("law.json")
     assert said(capsys, "show", "law.json")[0] == 0
     status, text = said(capsys, "verify", "README.md", "-r", "esterle2019")
-    assert (status, text.count("error["), "these are no traces, but text" in text) == (2, 1, True)
+    assert (status, text.count("error["), "these are not traces but text" in text) == (2, 1, True)
     status, text = said(capsys, "maneuvers", "states.jsonl", "-r", "esterle2019")
     assert (status, "this is no scenario: it looks like traces" in text) == (2, True)
 

@@ -27,7 +27,7 @@ SHAPES, EACH = (4, 60) if CASES > 300 else (2, 5)
 A_FEW = 20
 """Cases of a rulebook that one of the engines is asked which take a file or a process for them."""
 
-UNREAD = ("its words compare what cannot be compared", "this checker cannot read")
+UNREAD = ("its words compare numbers of different dimensions", "this checker cannot read")
 """Why some of these rules are not proved: their words are made up, and have no units."""
 
 

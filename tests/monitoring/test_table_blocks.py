@@ -275,7 +275,7 @@ def test_what_is_wrong_with_a_row_is_said_of_its_trace(form, first):
     assert found[61:] == [verify_or_reason(trace, traffic()) for trace in drives()[61:100]]
     trace, (problem,) = found[60]
     assert trace is None
-    assert problem.message == "the step is `7`; here it is 0 or 1"
+    assert problem.message == "the step is `7`; it must be 0 or 1 here"
     assert problem.place.line == place + first
 
 

@@ -61,17 +61,17 @@ def test_blank_lines_a_bom_and_a_missing_last_line_end():
     [
         (b'{"step": 1, "states": [{}]}', "did you mean `step_s`?"),
         (b'{"state": [{}]}', "did you mean `states`?"),
-        (b'{"states": [{"v": NaN}]}', "JSON has no `NaN` and no infinity: of what is not"),
-        (b'{"states": [{"v": -Infinity}]}', "JSON has no `NaN` and no infinity"),
-        (b"{'states': [{}]}", "in JSON texts stand in double quotes"),
-        (b'{"states": [{"p": True}]}', "in JSON texts stand in double quotes"),
+        (b'{"states": [{"v": NaN}]}', "JSON has neither `NaN` nor infinity: write `null`"),
+        (b'{"states": [{"v": -Infinity}]}', "JSON has neither `NaN` nor infinity"),
+        (b"{'states': [{}]}", "JSON has texts in double quotes"),
+        (b'{"states": [{"p": True}]}', "JSON has texts in double quotes"),
         (b'{"states": [{}], "ends": "never"}', '`"ends": "complete"` or `"ends": "cut"`'),
         (b'{"version": 1, "rule": "r", "outcome": "open"}', "it is a finding of `rulec verify`"),
         (b'{"version": 1, "trace": "t", "satisfied": true}', "it is a verdict of `rulec verify`"),
-        (b'{"version": 1, "states": [{}]}', "there are `states`, `id`"),
-        (b'{"zebra": 1, "states": [{}]}', "there are `states`, `id`, `step_s`, `objects`"),
+        (b'{"version": 1, "states": [{}]}', "the fields are `states`, `id`"),
+        (b'{"zebra": 1, "states": [{}]}', "the fields are `states`, `id`, `step_s`, `objects`"),
         (b'{"states": [{}]} {"states": [{}]}', "write each trace on a line of its own"),
-        (b'{"step_s": "0.5", "states": [{}]}', "numbers stand without quotes"),
+        (b'{"step_s": "0.5", "states": [{}]}', "numbers are written without quotes"),
         (b"{", "write or copy the file again"),
         (b"[1]", "a trace is a line such as"),
     ],
@@ -119,20 +119,20 @@ def test_what_is_refused(data, code, words):
         (b"PAR1" + line(), "Parquet"),
         (b"BZh91AY&SY" + line(), "data compressed with bzip2"),
         (b"\xfd7zXZ\0" + line(), "data compressed with xz"),
-        (b"version https://git-lfs.github.com/spec/v1\noid sha256:1\n", "a pointer of Git LFS"),
+        (b"version https://git-lfs.github.com/spec/v1\noid sha256:1\n", "a Git LFS pointer"),
         (b"ARROW1" + line(), "Arrow (Feather)"),
-        (b"\xd0\xcf\x11\xe0" + line(), "a file of Excel's or Word's"),
+        (b"\xd0\xcf\x11\xe0" + line(), "an Excel or Word file"),
         (line().decode().encode("utf-16"), "text in UTF-16"),
         (line().decode().encode("utf-16-le"), "text in UTF-16"),
         (line().decode().encode("utf-16-be"), "text in UTF-16"),
-        (b"\0\0\0\0" + line(), "something that is no text"),
-        (b"\x00", "something that is no text"),
-        (b"\x7fELF\x02\x01\n", "something that is no text"),
+        (b"\0\0\0\0" + line(), "binary data"),
+        (b"\x00", "binary data"),
+        (b"\x7fELF\x02\x01\n", "binary data"),
     ],
 )
 def test_a_file_that_is_something_else_is_one_mistake(data, noun):
     found = problem(data + b"\n" + data)
-    assert found.message == f"these are no traces, but {noun}"
+    assert found.message == f"these are not traces but {noun}"
     assert found.help
     assert found.place.line is None
 
@@ -142,7 +142,7 @@ def test_csv_and_a_list_are_one_mistake():
     pretty = json.dumps([GOOD, GOOD], indent=1).encode()
     in_lines = b"[\n" + line().rstrip() + b",\n" + line() + b"]\n"
     for data in (pretty, in_lines):
-        assert problem(data).message == "these are no traces, a line each, but a list in JSON"
+        assert problem(data).message == "this is a list in JSON, not one trace per line"
 
 
 @pytest.mark.parametrize(("separator", "way_out"), [("\n", ", lines=True"), (",", "")])
@@ -150,7 +150,7 @@ def test_rows_of_tracks_are_one_mistake(separator, way_out):
     row = '{"track": 1, "t": 0, "x": 1, "y": 0}'
     rows = separator.join([row, row])
     found = problem((rows if way_out else f"[{rows}]").encode())
-    assert "rows of where somebody was" in found.message
+    assert "rows of tracks" in found.message
     assert f"{way_out}).to_csv('tracks.csv', index=False)" in found.help
 
 
@@ -366,7 +366,7 @@ def test_objects_called_from_and_to():
 @pytest.mark.parametrize(
     ("text", "way_out"),
     [
-        (line(dt=0.1), "there are `states`, `id`, `step_s`, `objects`"),
+        (line(dt=0.1), "the fields are `states`, `id`, `step_s`, `objects`"),
         (line(objects=["v1"]), 'objects have types: write "objects": {"v1": "car"}'),
         (line(objects={"v1": 3}), 'objects have types: write "objects": {"v1": "car"}'),
     ],

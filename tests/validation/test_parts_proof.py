@@ -24,7 +24,7 @@ hard rule single { require never (p and q) unless r when s }
 hard rule remembered { require always (p implies q) unless once[<= 3 steps] s }
 hard rule off { require always (p implies q) unless p or true unless s initially }
 """
-NOT_ITS_PARTS = "its formula is not what its parts come to"
+NOT_ITS_PARTS = "its parts do not make up its formula"
 
 
 @pytest.fixture(scope="module")
@@ -115,4 +115,4 @@ def test_a_reason_is_given(compiled):
     data["rules"][0]["parts"]["exemptions"] = []
     assert reasons(data) == {"plain": NOT_ITS_PARTS}
     data["rules"][0]["parts"] = {"exemptions": 5}
-    assert "not as the format has it" in reasons(data)["plain"]
+    assert "does not follow the format" in reasons(data)["plain"]

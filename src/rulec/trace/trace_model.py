@@ -131,7 +131,9 @@ def check_trace(trace: Trace) -> None:
     for number, state in enumerate(trace.states):
         # A test for Mapping takes far longer than one for dict.
         if type(state) is not dict and not isinstance(state, Mapping):
-            raise NOT_A_TRACE.error(trace.place, f"state {number} is no object of names and values")
+            raise NOT_A_TRACE.error(
+                trace.place, f"state {number} is not an object of names and values"
+            )
     check_presence(trace)
 
 
@@ -177,7 +179,7 @@ def _check_kinds(trace: Trace) -> None:
         wrong = f"`told` is a frozenset of names, not {type(told).__name__}"
     for attribute, given in pairs:
         if type(given) is not dict and not isinstance(given, Mapping):
-            wrong = f"`{attribute}` is a dict by names of objects, not {type(given).__name__}"
+            wrong = f"`{attribute}` is a dict keyed by names of objects, not {type(given).__name__}"
     if wrong:
         raise NOT_A_TRACE.error(trace.place, wrong)
 
@@ -204,7 +206,7 @@ def check_presence(trace: Trace) -> None:
             raise NOT_A_TRACE.error(trace.place, message)
         first, last = span
         if name not in trace.objects:
-            message = f"`present` speaks of `{name}`, which is not among the trace's objects"
+            message = f"`present` names `{name}`, which is not among the trace's objects"
             raise UNKNOWN_OBJECT.error(trace.place, message)
         if not 0 <= first <= last < len(trace.states):
             message = (

@@ -49,13 +49,13 @@ def check_comparison(comparison: Mapping[str, Any], units: Mapping[str, str]) ->
     ``units`` are the declared units of the quantities.
     """
     terms, text = comparison["terms"], comparison["text"]
-    require(len(terms) > 0, "a comparison compares nothing")
+    require(len(terms) > 0, "a comparison has no terms")
     for _, term in terms:
         if "count" in term:
             for inner in comparisons_in(term["body"]):
                 check_comparison(inner, units)
     if len(terms) == 1 and "count" in terms[0][1] and text.startswith(("some ", "every ")):
-        require(_says_some_or_every(comparison), f"`{text}` is not what is compared")
+        require(_says_some_or_every(comparison), f"`{text}` does not say what is compared")
         return
     names = {term_words(term): f"term_{place}" for place, (_, term) in enumerate(terms)}
     for words in sorted(names, key=len, reverse=True):
@@ -73,7 +73,7 @@ def check_comparison(comparison: Mapping[str, Any], units: Mapping[str, str]) ->
         and [each / first for each in factors] == [exact(factor) for factor, _ in terms]
         and -difference.constant / first == exact(comparison["limit"])
     )
-    require(same, f"`{comparison['text']}` is not what is compared")
+    require(same, f"`{comparison['text']}` does not say what is compared")
 
 
 def _says_some_or_every(comparison: Mapping[str, Any]) -> bool:
@@ -122,7 +122,7 @@ class _Sum:
 
     def plus(self, other: _Sum, sign: int) -> _Sum:
         kinds = {self.kind, other.kind} - {None}
-        require(len(kinds) < 2, "its words compare what cannot be compared")
+        require(len(kinds) < 2, "its words compare numbers of different dimensions")
         factors = dict(self.factors)
         for name, factor in other.factors.items():
             factors[name] = factors.get(name, Fraction(0)) + sign * factor
@@ -131,14 +131,14 @@ class _Sum:
 
     def times(self, other: _Sum, power: int) -> _Sum:
         if power < 0 or not other.factors:
-            require(not other.factors, "its words divide by what varies")
+            require(not other.factors, "its words divide by a term that varies")
             factor = other.constant**power
             kinds = Counter(dict(self.kind or ()))
             for base, times in other.kind or ():
                 kinds[base] += power * times
             factors = {name: each * factor for name, each in self.factors.items()}
             return _Sum(factors, self.constant * factor, _normal(kinds))
-        require(not self.factors, "its words multiply what varies")
+        require(not self.factors, "its words multiply terms that vary")
         return other.times(self, 1)
 
 

@@ -30,7 +30,7 @@ def prove_cut_table(
     known = len(starts) > 0 and all(
         type(s) is int and 0 <= s < len(table.following) for s in starts
     )
-    require(known, "its table for cut traces begins nowhere")
+    require(known, "its table for cut traces has no valid start states")
     own_starts = [DemandState(machine.progression.start.demand, past) for past in _pasts(machine)]
     states = list(dict.fromkeys(own_starts))
     seen = set(states)
@@ -95,7 +95,7 @@ def _atoms(
 ) -> list[int]:
     """The coarsest partition of letters that no move or class cuts."""
     sets = {move.letters for state in states for move in machine.moves(state)}
-    reason = "its formula tells too many letters apart"
+    reason = "its formula distinguishes too many letters"
     return told_apart(machine.possible, sorted(sets | set(table.classes)), MOST_ATOMS, reason)
 
 

@@ -178,13 +178,13 @@ class Demands:
             return self.constant(tree)
         if isinstance(tree, dict):
             return self.number(Now(letters_of(tree)))
-        require(isinstance(tree, list) and 2 <= len(tree) <= 4, "its tree is no formula")
+        require(isinstance(tree, list) and 2 <= len(tree) <= 4, "its tree is not a formula")
         operator, rest, bound = parted(tree)
         limits = _limits(operator, bound, step)
         operands = [self.read(operand, step, letters_of) for operand in rest]
         if len(operands) == 1:
             return self._unary(operator, limits, operands[0])
-        require(len(operands) == 2, "its tree is no formula")
+        require(len(operands) == 2, "its tree is not a formula")
         return self._binary(operator, limits, *operands)
 
     def _unary(self, operator: str, limits: tuple[int, int | None], operand: int) -> int:
@@ -202,7 +202,7 @@ class Demands:
                 return self.since(limits, true, operand)
             case "weak previously" | "historically":
                 return self.negated(self.since(limits, true, self.negated(operand)))
-        raise UnprovableError(f"its tree has an operator that is none: {operator!a}")
+        raise UnprovableError(f"its tree has an unknown operator: {operator!a}")
 
     def _binary(self, operator: str, limits: tuple[int, int | None], left: int, right: int) -> int:
         true, false = self.constant(True), self.constant(False)
@@ -230,7 +230,7 @@ class Demands:
                 return self.joined(True, release, sometime)
             case "since":
                 return self.since(limits, left, right)
-        raise UnprovableError(f"its tree has an operator that is none: {operator!a}")
+        raise UnprovableError(f"its tree has an unknown operator: {operator!a}")
 
 
 def _at_most(first: int | None, second: int | None) -> bool:
@@ -250,8 +250,8 @@ def _limits(operator: str, bound: Any, step: Fraction | None) -> tuple[int, int 
 def _steps(text: str, unit: Literal["s", "steps"], step: Fraction | None) -> int:
     amount = exact(text)
     if unit == "s":
-        require(step is not None and step > 0, "it has a bound in seconds and is for no step")
+        require(step is not None and step > 0, "it has a bound in seconds but no time step")
         amount /= step or 1
-    require(amount.denominator == 1 and amount >= 0, "a bound is no multiple of its step")
+    require(amount.denominator == 1 and amount >= 0, "a bound is not a multiple of its time step")
     require(amount <= LONGEST_BOUND, f"a bound has more than {LONGEST_BOUND} steps")
     return amount.numerator

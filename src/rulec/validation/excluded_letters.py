@@ -120,7 +120,7 @@ def _of_group(
     ]
     require(
         prod(map(len, domains)) <= MOST_CASES,
-        "its facts have more cases than this checker goes through",
+        "its facts have more cases than this checker examines",
     )
     alike = {read.about: _alike(letters, read, told_atoms) for read in reads.values()}
     possible_sides: set[tuple[int, ...]] = set()
@@ -185,4 +185,4 @@ def _holds(tree: Any, values: Mapping[Any, Any]) -> bool:
             return left == right
         case "xor", [left, right]:
             return left != right
-    raise UnprovableError("a fact speaks of more than one state")
+    raise UnprovableError("a fact is about more than one state")

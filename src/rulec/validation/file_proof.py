@@ -63,13 +63,13 @@ def _read(data: bytes) -> Any:
     try:
         book = json.loads(data, object_pairs_hook=_object, parse_constant=_no_number)
     except (ValueError, RecursionError):
-        raise UnreadableError("unreadable", "it is no JSON of a compiled rulebook") from None
+        raise UnreadableError("unreadable", "it is not the JSON of a compiled rulebook") from None
     if not isinstance(book, dict) or book.get("format") != "rulec compiled rulebook":
-        raise UnreadableError("unreadable", "it is no compiled rulebook")
+        raise UnreadableError("unreadable", "it is not a compiled rulebook")
     if book.get("version") != VERSION:
         raise UnreadableError("unreadable", f"it is not of version {VERSION}")
     if (head, second) != (b"{", digest):
-        raise UnreadableError("changed", "its digest is not that of its content")
+        raise UnreadableError("changed", "its digest does not match its content")
     return book
 
 
@@ -98,7 +98,7 @@ def proof_of(rule: Any, book: Mapping[str, Any]) -> RuleProof:
         return RuleProof(name, step, "its formula is nested too deep for this checker")
     except (KeyError, TypeError, ValueError, AttributeError, IndexError) as problem:
         kind = type(problem).__name__.removesuffix("Error").lower()
-        return RuleProof(name, step, f"its entry is not as the format has it ({kind} {problem})")
+        return RuleProof(name, step, f"its entry does not follow the format ({kind} {problem})")
     return RuleProof(name, step, "", agreed=bool(rule.get("certificate")))
 
 
@@ -106,23 +106,23 @@ def _prove(rule: Mapping[str, Any], book: Mapping[str, Any]) -> None:
     """Raise UnprovableError unless all of a rule's tables do what its formula says."""
     declarations = book["vocabulary"]["declarations"]
     tree, machine = rule["tree"], rule["machine"]
-    require(formula_words(tree) == rule["formula"], "its formula in words is not its tree")
+    require(formula_words(tree) == rule["formula"], "its formula in words differs from its tree")
     units = {item["name"]: item["unit"] for item in declarations if item["kind"] == "quantity"}
     for comparison in comparisons_in(tree):
         check_comparison(comparison, units)
     letters = Letters(machine["reads"], {item["name"]: item for item in declarations})
     possible = possible_letters(letters, book, rule)
-    require(possible != 0, "its facts leave no letter")
+    require(possible != 0, "its facts exclude every letter")
     demands = Demands(possible)
     step = None if rule["step_s"] is None else exact(rule["step_s"])
     root = demands.read(tree, step, lambda atom: letters.of(atom) & possible)
-    require(book["semantics"] in ("stutter", "finite"), "its words have no known end")
+    require(book["semantics"] in ("stutter", "finite"), "its semantics is not a known one")
     progression = FormulaProgression(demands, root)
     formula = FormulaMachine(progression, possible, ends=book["semantics"] == "finite")
     prove_table(formula, machine, letters)
     table = machine["letters"], machine["following"], machine["accepting"]
     same = rule.get("certificate", "") in ("", table_digest(*table))
-    require(same, "its certificate is of another table")
+    require(same, "its certificate belongs to another table")
     if rule.get("cut") is not None:
         prove_cut_table(formula, rule["cut"], letters, goes_on=_goes_on(rule))
     prove_parts(rule)

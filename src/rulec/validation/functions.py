@@ -103,4 +103,4 @@ class FunctionAlgebra:
         """Count steps of work. Raises UnprovableError when there are too many."""
         self._work += work
         if self._work > self._most_work:
-            raise UnprovableError("it takes more steps than this checker makes for one table")
+            raise UnprovableError("it takes more steps than this checker allows for one table")

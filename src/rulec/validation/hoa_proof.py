@@ -44,13 +44,13 @@ def prove_hoa(
     every = possible << size | possible if ends else possible
     automaton = read_hoa(text, letters_of, (1 << (size << ends)) - 1)
     fits = len(unknown) <= ends and all(map(_ALIVE.fullmatch, unknown))
-    require(fits, "its HOA text speaks of other propositions than its formula")
+    require(fits, "its HOA text has other propositions than its formula")
     for row in automaton.edges:
         met = 0
         for edge in row:
             require(not met & edge.letters & every, "its HOA text is not deterministic")
             met |= edge.letters
-        require(not every & ~met, "its HOA text leaves out what can be")
+        require(not every & ~met, "its HOA text has no edge for a possible letter")
     accepted = _over(automaton, possible) if ends else _repeated(automaton, possible)
     shift = size if ends else 0
     first = machine.progression.start, automaton.start
@@ -64,7 +64,7 @@ def prove_hoa(
                 right = accepted[edge.target] if ends else accepted[place]
                 judged = possible if move.kept else 0
                 same = not common & (right ^ judged)
-                require(same, "its HOA text judges some trace otherwise than its tree")
+                require(same, "its HOA text judges some trace differently from its tree")
                 target = move.target, edge.target
                 if target not in seen:
                     require(len(seen) < MOST_STEPS, "its HOA text is too large for this checker")
@@ -123,6 +123,6 @@ def _over(automaton: HoaAutomaton, possible: int) -> list[int]:
             if edge.target in led_to({state}, graph)
         }
         verdicts = {automaton.accepts(own) for own in marks}
-        require(len(marks) == 1, "its HOA text goes on judging when a trace is over")
+        require(len(marks) == 1, "its HOA text distinguishes words after the end of a trace")
         result.append(possible if verdicts == {True} else 0)
     return result

@@ -64,7 +64,7 @@ class Letters(NumberedLetters):
             require(about not in [read.about for read in self.reads], "it reads a word twice")
             self.reads.append(DigitRead(about, len(digits), digits, stride, entry))
             stride *= len(digits)
-            require(stride <= MOST_LETTERS, f"it tells more than {MOST_LETTERS} letters apart")
+            require(stride <= MOST_LETTERS, f"it distinguishes more than {MOST_LETTERS} letters")
         super().__init__(stride)
 
     def where(self, read: DigitRead, digits: Iterable[int]) -> int:
@@ -76,14 +76,14 @@ class Letters(NumberedLetters):
         """The letters in which an atom or a comparison of a formula is true."""
         about = subject(atom)
         read = next((read for read in self.reads if read.about == about), None)
-        require(read is not None, "its table does not read all that its formula speaks of")
+        require(read is not None, "its table does not read everything that its formula mentions")
         assert read is not None
         if "terms" in atom:
             return self.where(read, _digits_where(atom, read.entry["thresholds"]))
         if atom["value"] is None:
-            require(not read.entry["values"], "it takes an enumeration for a signal")
+            require(not read.entry["values"], "it treats an enumeration as a signal")
             return self.where(read, [1])
-        require(atom["value"] in read.entry["values"], "its table does not tell a value apart")
+        require(atom["value"] in read.entry["values"], "its table does not distinguish a value")
         return self.where(read, [read.entry["values"].index(atom["value"])])
 
     def digit(self, read: DigitRead, value: Fraction | str | bool) -> int:
@@ -150,12 +150,14 @@ def _digits(entry: Any, vocabulary: Mapping[str, Any]) -> tuple[Any, tuple[str, 
     )
     assert declared is not None
     if declared["kind"] == "signal":
-        require(not entry["values"] and entry["others"] is False, "it takes a signal for another")
+        require(
+            not entry["values"] and entry["others"] is False, "it treats a signal as something else"
+        )
         return subject(entry), ("false", "true")
-    require(declared["kind"] == "enumeration", "it reads a number as if it were none")
+    require(declared["kind"] == "enumeration", "it reads a number as something else")
     values, known = entry["values"], declared["values"]
     distinct = len(set(values)) == len(values) > 0 and set(values) <= set(known)
-    require(distinct, "it reads values that an enumeration has not")
+    require(distinct, "it reads values that an enumeration does not have")
     others = set(values) != set(known)
     require(entry["others"] is others, "its letters leave out values of an enumeration")
     return subject(entry), (*values, *(["another value"] if others else []))

@@ -29,13 +29,13 @@ def prove_parts(rule: Mapping[str, Any]) -> None:
     built = _put_together(
         parts["required"], parts.get("exemptions", []), parts.get("condition", True)
     )
-    require(rule["tree"] == built, "its formula is not what its parts come to")
+    require(rule["tree"] == built, "its parts do not make up its formula")
 
 
 def _put_together(required: Any, exemptions: Iterable[tuple[str, Any]], condition: Any) -> Any:
     """The formula of a rule; its condition becomes an exception that applies when it is false."""
     named = list(exemptions)
-    require(all(scope in SCOPES for scope, _ in named), "it has an exception of no scope")
+    require(all(scope in SCOPES for scope, _ in named), "it has an exception with an unknown scope")
     initially = [tree for scope, tree in named if scope == "initially"]
     inside = [(scope, tree) for scope, tree in named if scope != "initially"]
     formula = required
@@ -45,7 +45,7 @@ def _put_together(required: Any, exemptions: Iterable[tuple[str, Any]], conditio
         else:
             formula = ["implies", condition, required]
     if inside:
-        require(_operator(formula) in _GUARDING, "it has exceptions and guards nothing")
+        require(_operator(formula) in _GUARDING, "it has exceptions but guards nothing")
         operator, operand, *bound = formula
         if operator == "always":
             operand = _any([_any(tree for _, tree in inside), operand])

@@ -41,7 +41,7 @@ class ClaimedTable:
         """
         following, verdicts, numbers = entry["following"], entry[outputs], entry["letters"]
         width = len(following[0]) if following else 0
-        require(len(numbers) == letters.count, "its table is not for the letters of its reads")
+        require(len(numbers) == letters.count, "its table does not fit the letters of its reads")
         require(width * letters.count <= MOST_CLASS_BITS, "it has too many classes of letters")
         bits = [bytearray(letters.count // 8 + 1) for _ in range(width)]
         excluded = bytearray(letters.count // 8 + 1)
@@ -58,7 +58,10 @@ class ClaimedTable:
             for row in rows
         )
         require(fits, "its table has a row that does not fit")
-        require(all(each in states for row in following for each in row), "it leads nowhere")
+        require(
+            all(each in states for row in following for each in row),
+            "its table leads to a state that it does not have",
+        )
         same = int.from_bytes(excluded, "little") == letters.everything & ~possible
         require(same, "the letters that it leaves out are not those that the facts exclude")
         classes = tuple([int.from_bytes(each, "little") for each in bits])
@@ -189,7 +192,7 @@ def _check_sinks(table: ClaimedTable, entry: Mapping[str, Any], reached: set[int
         lost = set(range(len(table.following))) - hopeful
         claimed = set() if entry[name] is None else {entry[name]}
         right = claimed <= lost and lost & reached <= claimed
-        require(right, f"the state that it calls {name} is not the one that is")
+        require(right, f"the state that it calls {name} is not the right one")
 
 
 def led_to(good: set[Any], following: Mapping[Any, set[Any]]) -> set[Any]:

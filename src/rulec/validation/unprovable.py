@@ -33,7 +33,7 @@ def exact(text: str) -> Fraction:
 
     Raises UnprovableError for any other text.
     """
-    require(bool(_FRACTION.fullmatch(text)), f"{text[:40]!a} is no number")
+    require(bool(_FRACTION.fullmatch(text)), f"{text[:40]!a} is not a number")
     number = Fraction(text)
     require(str(number) == text, f"{text[:40]!a} is not in lowest terms")
     return number

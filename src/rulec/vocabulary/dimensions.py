@@ -169,7 +169,7 @@ COMPOSITE = ("km/h", "m/s", "m/s^2", "ft/s")
 """Composed units, suggested when an unknown unit looks like a typing error."""
 
 _TON = (
-    "a ton is 1000 kg, 2000 lb or 2240 lb, according to the country",
+    "a ton is 1000 kg, 2000 lb or 2240 lb, depending on the country",
     "write `t` (1000 kg), `short_ton` (2000 lb) or `long_ton` (2240 lb)",
 )
 

@@ -28,7 +28,7 @@ _BASES = {
     "pixel": "pixels",
 }
 _INEXACT = (
-    "its size is no fraction of metres, seconds, kilograms and so on, so it cannot be exact",
+    "its size is not a fraction of base units such as metres and seconds, so it cannot be exact",
     "write the number in another unit",
 )
 _PLAIN_NUMBERS = ("count", "refractive_index_unit", "absorbance_unit")
@@ -82,8 +82,8 @@ def _registry() -> UnitRegistry[Any] | None:
 
 
 def _no_multiple(name: str) -> Refusal:
-    why = "its scale has a zero of its own or is logarithmic, so it is no multiple of other units"
-    return Refusal(name, why, "use a unit that starts from nothing, such as `K` for temperatures")
+    why = "its scale is logarithmic or has its own zero point, so it is no multiple of another unit"
+    return Refusal(name, why, "use a unit on an absolute scale, such as `K` for temperatures")
 
 
 def _exact(name: str, factor: Fraction, roots: dict[str, Any]) -> Unit | Refusal:

@@ -168,7 +168,7 @@ def test_degrees_of_longitude_and_latitude(tmp_path):
         (b"<fcd-export>\xff</fcd-export>", "not well-formed XML"),
         (b"<kml/>", "it is XML of `kml`"),
         (b"PK\x03\x04\x14\0", "it is a ZIP archive"),
-        (b"version https://git-lfs.github.com/spec/v1\noid sha256:1\n", "a pointer of Git LFS"),
+        (b"version https://git-lfs.github.com/spec/v1\noid sha256:1\n", "a Git LFS pointer"),
         (b"<net/>", "it is a map (nets of SUMO's), with nobody on its roads"),
         (gzip.compress(b"", mtime=0), "it is empty"),
     ],

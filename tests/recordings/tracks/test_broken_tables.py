@@ -29,7 +29,7 @@ def test_parquet_that_is_none(tmp_path):
     (tmp_path / "lanes.csv").write_text(LANES)
     file = tmp_path / "cars.parquet"
     file.write_bytes(b"PAR1" + b"x" * 90)
-    with pytest.raises(RulecError, match="it is no Parquet"):
+    with pytest.raises(RulecError, match="it is not Parquet"):
         read_recording(file, form="tracks")
 
 
@@ -38,5 +38,5 @@ def test_parquet_whose_names_are_no_text(tmp_path):
     rows = [{"track": "a", "t": k / 10, "x": float(k), "y": 0.0} for k in range(9)]
     file = tmp_path / "cars.parquet"
     file.write_bytes(parquet_bytes(rows).replace(b"track", b"tr\xffck"))
-    with pytest.raises(RulecError, match="it is no Parquet"):
+    with pytest.raises(RulecError, match="it is not Parquet"):
         read_recording(file, form="tracks")

@@ -317,7 +317,7 @@ def test_a_file_that_is_not_what_it_is_called(tmp_path):
     (tmp_path / "lanes.csv").write_text(LANES)
     file = tmp_path / "cars.parquet"
     file.write_text(table(HEAD, *driving()))
-    with pytest.raises(RulecError, match="it is no Parquet, but text") as refused:
+    with pytest.raises(RulecError, match="it is not Parquet but text") as refused:
         read_recording(file)
     assert refused.value.diagnostics[0].help == "if it is CSV, call it `.csv`"
     with pytest.raises(RulecError, match="no such file") as refused:

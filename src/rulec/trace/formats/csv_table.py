@@ -56,11 +56,11 @@ def _no_table(stream: IO[bytes], file: str) -> RulecError | None:
     result = foreign(beginning)
     if result is not None:
         return tables.problem(
-            f"this is no CSV, but {result.noun}", SourceLocation(file), result.help
+            f"this is not CSV but {result.noun}", SourceLocation(file), result.help
         )
     if beginning.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"["):
         return tables.problem(
-            "this is no CSV, but JSON", SourceLocation(file), "add `--input-format jsonl`"
+            "this is not CSV but JSON", SourceLocation(file), "add `--input-format jsonl`"
         )
     return None
 
@@ -135,13 +135,15 @@ def _rows(stream: IO[bytes], number: int, file: str) -> Iterator[tables.Row]:
 
 
 _WORDS = {
-    "unexpected end of data": "it ends within quotes, which have begun here",
+    "unexpected end of data": "it ends within quotes that begin here",
     "field larger than field limit": f"a cell has more than {csv.field_size_limit():,} characters",
-    "expected after": "behind closing quotes there is neither a comma nor the line's end",
+    "expected after": "closing quotes are followed by neither a comma nor the line's end",
     "NUL": "it holds a null character",
     "row": f"a row has more than {tables.LONGEST_ROW:,} characters",
 }
-_QUOTES = "what stands in quotes ends with quotes; is one missing, or has the file been cut short?"
+_QUOTES = (
+    "a cell that begins with quotes ends with quotes; are some missing, or is the file cut short?"
+)
 
 
 @dataclass(slots=True)

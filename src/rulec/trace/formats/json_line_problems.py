@@ -43,7 +43,7 @@ class Kind(Generic[Record]):
     @property
     def no_list(self) -> str:
         """Help for a file that is one JSON list."""
-        return f"{self.example}; `jq -c '.[]' FILE` takes a list apart"
+        return f"{self.example}; `jq -c '.[]' FILE` splits a list into lines"
 
     @cached_property
     def _decoder(self) -> msgspec.json.Decoder[Record]:
@@ -84,7 +84,7 @@ class Kind(Generic[Record]):
         unknown = _UNKNOWN_FIELD.search(str(problem))
         if unknown is not None:
             fields = self.structure.__struct_fields__
-            help_text = did_you_mean(unknown[1], fields) or f"there are {named(fields)}"
+            help_text = did_you_mean(unknown[1], fields) or f"the fields are {named(fields)}"
             if unknown[1] == "version":
                 help_text = _answer_of_rulec(line) or help_text
         if "at `$.objects" in str(problem):
@@ -92,7 +92,7 @@ class Kind(Generic[Record]):
         if "trailing characters" in words:
             help_text = f"write each {self.name} on a line of its own"
         if "expected a number, got a string" in words:
-            help_text = "numbers stand without quotes"
+            help_text = "numbers are written without quotes"
         choice = _UNKNOWN_CHOICE.search(str(problem))
         if choice is not None:
             choices = get_args(get_type_hints(self.structure)[choice[1]])
@@ -115,7 +115,7 @@ def rows_of_tracks(line: bytes, place: SourceLocation) -> RulecError | None:
     reads = f"read_json('{place.file}'{'' if is_list else ', lines=True'})"
     return NOT_A_TRACE.error(
         SourceLocation(place.file, place.line),
-        "these are no traces, but rows of where somebody was, which are read as CSV and Parquet",
+        "these are not traces but rows of tracks, which are read as CSV or Parquet",
         help=f"`pandas.{reads}.to_csv('tracks.csv', index=False)` writes them so",
     )
 
@@ -128,15 +128,15 @@ def _answer_of_rulec(line: bytes) -> str:
     if b'"outcome":' in line:
         return "it is a finding of `rulec verify`, which `rulec rates` counts"
     if b'"satisfied":' in line:
-        return "it is a verdict of `rulec verify`: give what was judged"
+        return "it is a verdict of `rulec verify`: give the traces that were judged"
     return ""
 
 
 def _spelling(text: bytes) -> str:
     if text.lstrip(b"-+").startswith((b"NaN", b"nan", b"Infinity", b"inf")):
-        return "JSON has no `NaN` and no infinity: of what is not known write `null`"
+        return "JSON has neither `NaN` nor infinity: write `null` for an unknown value"
     if text.startswith((b"'", b"True", b"False", b"None")):
-        return "in JSON texts stand in double quotes, and it is `true`, `false`, `null`"
+        return "JSON has texts in double quotes, and `true`, `false`, `null` in lower case"
     return ""
 
 

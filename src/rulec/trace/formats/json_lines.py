@@ -194,21 +194,23 @@ def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:
     result = foreign(first)
     if result is not None:
         return _TRACE.bad(
-            f"these are no traces, but {result.noun}", SourceLocation(place.file), result.help
+            f"these are not traces but {result.noun}", SourceLocation(place.file), result.help
         )
     if {b"trace", b"step"} <= set(first[:_LONGEST_HEAD_BYTES].strip().split(b",")):
-        return _TRACE.bad("these are no traces in JSON, but CSV", place, "add `--input-format csv`")
+        return _TRACE.bad("these are not traces in JSON but CSV", place, "add `--input-format csv`")
     if PurePath(place.file).suffix == ".rules":
-        way_out = f"give traces, and the rulebook by `-r {place.file}`"
-        return _TRACE.bad("this is a rulebook, and no traces", SourceLocation(place.file), way_out)
+        way_out = f"give traces, and the rulebook with `-r {place.file}`"
+        return _TRACE.bad(
+            "this is a rulebook, not a file of traces", SourceLocation(place.file), way_out
+        )
     if PurePath(place.file).suffix.lower() in _OF_TEXTS and not first.lstrip().startswith(
         (b"{", b"[")
     ):
         return _TRACE.bad(
-            "these are no traces, but text", SourceLocation(place.file), _TRACE.example
+            "these are not traces but text", SourceLocation(place.file), _TRACE.example
         )
     if first.startswith(b"[") and json_line_problems.is_beginning(first):
-        message = "these are no traces, a line each, but a list in JSON"
+        message = "this is a list in JSON, not one trace per line"
         return _TRACE.bad(message, place, _TRACE.no_list)
     return json_line_problems.rows_of_tracks(first, place)
 
@@ -316,7 +318,7 @@ def write_traces(traces: Iterable[Trace], stream: IO[bytes]) -> int:
         try:
             stream.write(encoder.encode(fields))
         except UnicodeEncodeError:
-            why = f"trace `{trace.id}` has half a character (a surrogate), which no file holds"
+            why = f"trace `{trace.id}` has half a character (a surrogate), which no file can hold"
             raise NOT_A_TRACE.error(trace.place, why) from None
         stream.write(b"\n")
     return count
@@ -353,7 +355,7 @@ def read_live(stream: IO[bytes], file: str) -> Iterator[LiveState | RulecError]:
             line = line.removeprefix(b"\xef\xbb\xbf")
             result = foreign(line)
             if result is not None:
-                message = f"these are no states, but {result.noun}"
+                message = f"these are not states but {result.noun}"
                 yield _STATE.bad(message, SourceLocation(file), result.help)
                 return
         if line.strip():

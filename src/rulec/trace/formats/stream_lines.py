@@ -87,12 +87,12 @@ _BEGINNINGS = {
     b"BZh": Foreign("data compressed with bzip2", "unpack it with `bunzip2`"),
     b"\xfd7zXZ": Foreign("data compressed with xz", "unpack it with `unxz`"),
     b"version https://git-lfs": Foreign(
-        "a pointer of Git LFS", "fetch the file that it stands for with `git lfs pull`"
+        "a Git LFS pointer", "fetch the file that it stands for with `git lfs pull`"
     ),
     b"PK\x03\x04": Foreign(
-        "a ZIP archive", "unpack it with `unzip`; or, if it is Excel's, save its sheet as CSV"
+        "a ZIP archive", "unpack it with `unzip`; or, if it is an Excel file, save its sheet as CSV"
     ),
-    b"\xd0\xcf\x11\xe0": Foreign("a file of Excel's or Word's", "save its sheet as CSV"),
+    b"\xd0\xcf\x11\xe0": Foreign("an Excel or Word file", "save its sheet as CSV"),
     b"ARROW1": Foreign("Arrow (Feather)", "write it as Parquet, as `to_parquet` of pandas does"),
     b"PAR1": Foreign("Parquet", "add `--input-format parquet`"),
     b"\xff\xfe": _UTF16,
@@ -114,7 +114,7 @@ def foreign(beginning: bytes) -> Foreign | None:
     if kind is None and _is_utf16(some):
         return _UTF16
     if kind is None and any(byte < 32 and byte not in _TEXT for byte in some):
-        return Foreign("something that is no text", "give traces as JSON Lines, CSV or Parquet")
+        return Foreign("binary data", "give traces as JSON Lines, CSV or Parquet")
     return kind
 
 

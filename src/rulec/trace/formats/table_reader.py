@@ -106,7 +106,7 @@ def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
     for name in (TRACE, STEP):
         if name not in times:
             near = nearest_name(name, columns)
-            way_out = _FORM if near is None else f"if `{near}` is that, call it `{name}`"
+            way_out = _FORM if near is None else f"if `{near}` is meant, call it `{name}`"
             if {column.casefold() for column in columns} & _DEGREES:
                 way_out = _IN_METRES
             if name == TRACE:
@@ -114,13 +114,15 @@ def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
             raise problem(f"there is no column `{name}`", place, way_out)
 
 
-_INDEX = "a cell of the first line is empty; pandas writes one, unless it is told `index=False`"
+_INDEX = "a cell of the first line is empty; pandas writes such a cell without `index=False`"
 
-_BOUNDS = "a number known to lie between two others has both: such as 1 and 2.5"
+_BOUNDS = "an interval needs both bounds, such as 1 and 2.5"
 
 _TRACKS = "tables of recorded traffic have `track`, `t`, `x`, `y` (`--input-format tracks`)"
 
-_FORM = "the first columns are `trace`, `step`, `object`, `type`; further ones are named for values"
+_FORM = (
+    "the first columns are `trace`, `step`, `object`, `type`; further ones are named after values"
+)
 
 
 def problem(message: str, place: SourceLocation, help_text: str = "") -> RulecError:
@@ -194,15 +196,15 @@ class _Building:
     def _add(self, number: int, cells: Sequence[Any]) -> None:
         table = self.table
         if len(cells) != len(table.columns):
-            few = "there is a cell for every column; has the file been cut short?"
-            many = "a text with a comma in it stands in quotes"
+            few = "a row needs a cell for every column; has the file been cut short?"
+            many = "put a text that contains a comma in quotes"
             raise self._problem(
                 f"this row has {len(cells)} cells; there are {len(table.columns)} columns",
                 number,
                 few if len(cells) < len(table.columns) else many,
             )
         if is_empty(self.name):
-            raise self._problem("this row does not say of which trace it is", number)
+            raise self._problem("this row does not name its trace", number)
         self._go_to(cells[table.at[STEP]], number)
         if STEP_S in table.at:
             self._last(cells[table.at[STEP_S]], number)
@@ -219,11 +221,11 @@ class _Building:
         if step_number is None or step_number not in (current, current + 1):
             expected = "0" if current < 0 else f"{current} or {current + 1}"
             raise self._problem(
-                f"the step is {_shown(step)}; here it is {expected}",
+                f"the step is {_shown(step)}; it must be {expected} here",
                 number,
                 "a step is a whole number, written without a point: 0, 1, 2"
                 if step_number is None and not is_empty(step)
-                else "the rows of a trace stand together, in the order of its steps, from 0 on",
+                else "the rows of a trace are consecutive, in the order of its steps, from 0 on",
             )
         if self.now and step_number > current:
             self._end_state()
@@ -234,7 +236,9 @@ class _Building:
         value = self._value(step_s, number)
         # NaN is not equal to itself.
         if type(value) not in _NUMBERS or value != value:
-            raise self._problem(f"`step_s` is {_shown(step_s)}; it is a number of seconds", number)
+            raise self._problem(
+                f"`step_s` is {_shown(step_s)}; it must be a number of seconds", number
+            )
         if self.step_s is not None and self.step_s != value:
             message = f"`step_s` is {_shown(step_s)}; in the rows before it is {self.step_s:g}"
             raise self._problem(message, number)
@@ -244,7 +248,7 @@ class _Building:
         if is_empty(ends):
             return
         if ends not in get_args(Ending):
-            message = f"`ends` is {_shown(ends)}; it is `complete` or `cut`"
+            message = f"`ends` is {_shown(ends)}; it must be `complete` or `cut`"
             raise self._problem(message, number)
         if self.ends not in (None, ends):
             raise self._problem(f"`ends` is `{ends}`; before it is `{self.ends}`", number)
@@ -255,14 +259,14 @@ class _Building:
             return
         names = frozenset(self._names(TOLD, told, number))
         if self.told not in (None, names):
-            raise self._problem("`told` has other names than in the rows before", number)
+            raise self._problem("`told` has other names in the rows before", number)
         self.told = names
 
     def _names(self, column: str, cell: Any, number: int) -> list[str]:
         """Names in a cell: a list, or a text with blanks between them."""
         names = cell.split() if isinstance(cell, str) else cell
         if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-            raise self._problem(f"`{column}` is {_shown(cell)}; it is a list of names", number)
+            raise self._problem(f"`{column}` is {_shown(cell)}; it must be a list of names", number)
         return names
 
     def _appear(self, cells: Sequence[Any], number: int) -> None:
@@ -276,7 +280,7 @@ class _Building:
         name, step = str(item), len(self.states)
         if name not in self.objects:
             if is_empty(kind):
-                message = f"the first row of object `{name}` does not say its `type`"
+                message = f"the first row of object `{name}` does not give its `type`"
                 raise self._problem(message, number)
             self.objects[name] = str(kind)
         elif not is_empty(kind) and str(kind) != self.objects[name]:
@@ -343,7 +347,7 @@ class _Building:
         for end, cell in ((FROM, low), (TO, high)):
             value = None if is_empty(cell) else self._value(cell, number)
             if type(value) not in _NUMBERS:
-                message = f"`{name}{end}` is {_shown(cell)}; it is a number"
+                message = f"`{name}{end}` is {_shown(cell)}; it must be a number"
                 raise self._problem(message, number, _BOUNDS)
             bounds.append(value)
         try:
@@ -360,7 +364,7 @@ class _Building:
     def _repeated_column(self, name: str, path: Sequence[str], number: int) -> RulecError:
         about = f" for `{', '.join(path)}`" if path else ""
         near = nearest_name(name, (column for column in OWN if column not in self.table.at))
-        way_out = "" if near is None else f"if `{name}` is `{near}`, call it so"
+        way_out = "" if near is None else f"if `{name}` means `{near}`, rename it"
         return self._problem(
             f"step {len(self.states)} gives `{name}` twice{about}", number, way_out
         )

@@ -93,7 +93,7 @@ def write_traces(
         else:
             write_parquet(rows, types, stream, file)
     except UnicodeEncodeError:
-        why = "a trace has half a character (a surrogate), which no file holds"
+        why = "a trace has half a character (a surrogate), which no file can hold"
         raise NOT_A_TRACE.error(SourceLocation(file), why) from None
 
 
@@ -111,7 +111,9 @@ def check_writable(trace: Trace) -> None:
             odd = [leave for leave in _leaves(value) if not isinstance(leave, _WRITABLE)]
             if odd or not isinstance(name, str):
                 subject = (
-                    f"`{name}` is {brief(odd[0])}" if odd else f"the name {brief(name)} is no str"
+                    f"`{name}` is {brief(odd[0])}"
+                    if odd
+                    else f"the name {brief(name)} is not a str"
                 )
                 message = f"state {number}: {subject}, which no file can hold"
                 raise NOT_A_TRACE.error(trace.place, message)
@@ -165,7 +167,7 @@ def columns_for(kinds: Kinds) -> list[str]:
     """The columns of a table for these names; ValueError if one is a reserved column."""
     taken = [name for name in kinds if name in OWN]
     if taken:
-        raise ValueError(f"`{taken[0]}` is a column of its own and cannot be a name")
+        raise ValueError(f"`{taken[0]}` is a reserved column and cannot be a name")
     return [*OWN, *kinds]
 
 

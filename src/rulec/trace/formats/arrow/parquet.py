@@ -65,7 +65,7 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
         yield [error]
         return
     except UnicodeDecodeError:
-        yield [_no_utf8("there is a column with a name", SourceLocation(file))]
+        yield [_no_utf8("a column has a name", SourceLocation(file))]
         return
     except (pyarrow.ArrowException, OSError, ValueError) as reason:
         yield [_unreadable("the file", reason, file)]
@@ -84,7 +84,7 @@ def _check_sizes(metadata: Any, file: str) -> None:
         size = abs(group.total_byte_size)
         if size > LARGEST_GROUP + _LARGE_CELL * group.num_rows * group.num_columns:
             message = f"{group.num_rows:,} rows in one group have {size:,} bytes unpacked"
-            way_out = f"for {group.num_columns} columns that is too much: no cell is as long"
+            way_out = f"for {group.num_columns} columns that is too much: no cell is that long"
             raise problem(message, SourceLocation(file), way_out)
 
 
@@ -175,7 +175,7 @@ def _no_parquet(stream: IO[bytes], file: str) -> RulecError | None:
         result = packed(head)
         if result is not None:
             return problem(
-                f"this is no Parquet, but {result.noun}", SourceLocation(file), result.help
+                f"this is not Parquet but {result.noun}", SourceLocation(file), result.help
             )
         way_out = "if it is CSV, call it `.csv`; else name its format with `--input-format`"
         return problem(f"{refusal}: it does not begin with `PAR1`", SourceLocation(file), way_out)
@@ -202,7 +202,7 @@ def check_types(schema: Any, pyarrow: Any, file: str) -> None:
             value = kind.value_type
         if not any(getattr(types, f"is_{type_name}")(value) for type_name in known):
             message = f"the column `{name}` is of type {kind}"
-            help_text = "types are bool, integers, double (float64), and string"
+            help_text = "columns can be bool, integer, double (float64) or string"
             raise problem(message, SourceLocation(file), help_text)
 
 

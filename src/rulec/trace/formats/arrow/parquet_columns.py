@@ -27,14 +27,14 @@ def parquet_names(path: Path, refused: Refused) -> tuple[str, ...]:
         start = stream.read(_GLANCE)
         if start and not start.startswith(_MAGIC) and start.isascii() and b"\0" not in start:
             way_out = "if it is CSV, call it `.csv`"
-            raise refused("it is no Parquet, but text", help_text=way_out)
+            raise refused("it is not Parquet but text", help_text=way_out)
     pyarrow, parquet = arrow(str(path))
     with opened(path) as stream:
         try:
             return tuple(parquet.ParquetFile(stream).schema_arrow.names)
         except (pyarrow.ArrowException, OSError, ValueError) as reason:
             # Column names that are not UTF-8 raise a ValueError
-            raise refused(f"it is no Parquet ({_first(reason)})") from None
+            raise refused(f"it is not Parquet ({_first(reason)})") from None
 
 
 def parquet_columns(
