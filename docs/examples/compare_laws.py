@@ -1,4 +1,4 @@
-"""Which rules of two laws differ, and a trace that one forbids and the other allows."""
+"""List the rules in which two laws differ, and traces that one forbids and the other allows."""
 
 import rulec
 

@@ -1,4 +1,4 @@
-"""A planner that neither learns nor weighs: of a few primitives it drives the first by rank."""
+"""A planner without learning or weights: it drives the best-ranked of a few motion primitives."""
 
 import numpy as np
 

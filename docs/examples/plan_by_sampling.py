@@ -1,4 +1,4 @@
-"""A planner that samples: accelerations and lanes, of which the least violating is driven."""
+"""A planner that samples accelerations and lanes, and drives the sample that violates least."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""A planner that searches: the smoothest way through the envelope of the cheapest maneuver."""
+"""A planner that searches the smoothest way through the envelope of the cheapest maneuver."""
 
 from itertools import pairwise
 
@@ -9,7 +9,7 @@ STEP_S, START_M, MPS, GAINS = 0.5, 0.0, 10.0, (-4, -2, -1, 0, 1, 2)
 maneuvers = rulec.find_maneuvers("s2", "esterle2019", step_s=STEP_S)
 (envelopes,) = rulec.envelopes(maneuvers)
 
-# (place, speed) -> the least sum of squared accelerations, and the places on the way
+# (position, speed) -> the least sum of squared accelerations, and the positions on the way
 reached = {(START_M, MPS): (0.0, [START_M])}
 for envelope in envelopes[1:]:
     further = {}

@@ -1,4 +1,4 @@
-"""Watch a drive over UDP: each datagram is a state in JSON, and is answered by its verdict."""
+"""Watch a drive over UDP: each datagram is a state in JSON; the answer is the verdict after it."""
 
 import json
 import socket
@@ -12,7 +12,7 @@ PASSING_ON_THE_RIGHT = [
 
 
 def serve(server: socket.socket, rules: rulec.CompiledRulebook, n_states: int) -> None:
-    """Answer so many states; what cannot be judged is answered by its error, and has not been."""
+    """Answer ``n_states`` datagrams; an invalid one is answered by its error and then ignored."""
     monitor = rulec.Monitor(rules)
     for _ in range(n_states):
         data, sender = server.recvfrom(65_507)
@@ -26,7 +26,7 @@ def serve(server: socket.socket, rules: rulec.CompiledRulebook, n_states: int) -
 
 
 def main() -> None:
-    """Send three states to the server, and print what it says of each."""
+    """Send three states and an invalid datagram to the server, and print its answers."""
     rules = rulec.compile_rulebook("esterle2019")
     with (
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as server,

@@ -1,6 +1,6 @@
 """Watch a drive over zenoh: states in JSON under one key, their verdicts under another.
 
-It takes `pip install eclipse-zenoh`, and no router: what it publishes comes back to it.
+It needs `pip install eclipse-zenoh` but no router: it receives its own publications.
 """
 
 import json
@@ -20,11 +20,11 @@ PASSING_ON_THE_RIGHT = [
 
 
 def main() -> None:
-    """Publish three states, and print the verdicts that are published of them."""
+    """Publish three states, and print the verdicts published for them."""
     rules = rulec.compile_rulebook("esterle2019")
     monitor = rulec.Monitor(rules)
     said = queue.Queue()
-    # Nobody else is looked for: no router, no multicast.
+    # Do not look for other peers: no router, no multicast.
     settings = zenoh.Config.from_json5(
         '{mode: "peer", scouting: {multicast: {enabled: false}}, listen: {endpoints: []}}'
     )
@@ -52,6 +52,6 @@ def main() -> None:
 
 if __name__ == "__main__":
     if zenoh is None:
-        print("it takes eclipse-zenoh: pip install eclipse-zenoh")
+        print("eclipse-zenoh is missing: pip install eclipse-zenoh")
     else:
         main()
