@@ -17,7 +17,7 @@ def package_manifest() -> str:
         {
             "name": "rulec",
             "displayName": "rulec",
-            "description": "Traffic law as formulas: rulebooks, checked as one types",
+            "description": "Traffic law as formulas: rulebooks, checked as you type",
             "version": __version__,
             "publisher": "rulec",
             "license": "GPL-3.0-or-later",
@@ -54,7 +54,7 @@ def package_manifest() -> str:
                             "minItems": 1,
                             "default": ["rulec"],
                             "scope": "machine-overridable",
-                            "description": "The program and what comes before its verb `lsp`.",
+                            "description": "The command that starts rulec, without its verb `lsp`.",
                         }
                     },
                 },

@@ -85,7 +85,9 @@ def test_fail_on(folder, arguments, expected, capsys):
 
 def test_an_example_that_fails(folder, capsys):
     out = run(capsys, "island.rules", "--examples")[1]
-    assert "that it states\n  changed  example 1\n" in out
+    assert (
+        "failing: an example does not have the result that it states\n  changed  example 1\n" in out
+    )
 
 
 def test_a_law_s_text_that_has_changed_since(folder, capsys):

@@ -66,7 +66,7 @@ ament_package()
 """
 
 _LAUNCH = '''\
-"""Starts the monitor: it takes `state` and says `verdict`."""
+"""Starts the monitor: it subscribes to `state` and publishes `verdict`."""
 
 from launch import LaunchDescription
 from launch_ros.actions import Node
