@@ -142,7 +142,7 @@ def build_all(
             if isinstance(answer, Failed) and answer.why == "time":
                 break  # no time is left for later rules either
     if problems:
-        # Contradictory facts are reported for every rule.
+        # Every rule reports contradictory facts; each report is kept once.
         raise RulecError(dict.fromkeys(problems))
     return CompiledRulebook(
         **alike(Rulebook, rulebook),
