@@ -34,7 +34,7 @@ def test_a_conflict(capsys):
     assert (
         capsys.readouterr().out
         == """\
-error[R0804]: rules `caution` and `flow` cannot both be kept in all cases, though each alone could
+error[R0804]: rules `caution` and `flow` cannot both be kept after some trace; each alone could
  --> two.rules:4:1
   |
 3 | hard rule caution { require always (wet implies next slow) }

@@ -19,42 +19,40 @@ from rulec.rulebook.rules.axiom_messages import contradictory_facts
 FAILED_CHECK = Code(
     "R0402",
     title="the compiled automaton failed its check against the formula",
-    why="After every compilation the automaton is compared with the formula that it came from. If "
-    "they differ, there is a bug in Spot or in rulec, not in the rulebook. Please report the "
-    "rule.",
+    why="After every compilation the automaton is compared with its formula. If they differ, the "
+    "mistake is in Spot or in rulec, not in the rulebook. Please report the rule.",
     kind="circumstance",
 )
 
 COMPILERS_DISAGREE = Code(
     "R0417",
-    title="two compilers make different tables for a rule",
-    why="Where Spot is installed, `rulec compile` translates each rule twice: with Spot, and with "
-    "rulec's own compiler, which shares nothing with Spot between formula and automaton. The "
-    "smallest table is unique, so both must produce the same one. If they do not, one of them has "
-    "a bug; the rulebook has none, and nothing is written. Please report the rule.",
+    title="two compilers produce different tables for a rule",
+    why="If Spot is installed, `rulec compile` translates each rule twice: by Spot, and by "
+    "rulec's own compiler, which shares no code with it from formula to automaton. The minimal "
+    "table is unique, so both must produce the same one. If they differ, one of them has a bug; "
+    "the rulebook is not at fault, and nothing is written. Please report the rule.",
     kind="circumstance",
 )
 
 SPOT_MISSING = Code(
     "R0403",
-    title="Spot is needed but not installed",
-    why="Where Spot is not installed, rulec translates formulas itself: those that a prefix of a "
-    "trace decides, conditions that recur for ever, and combinations of these by `and`, `or` and "
-    "`not`. Two kinds of formulas need Spot: unbounded obligations inside one another, unless "
-    "traces end, and past operators whose operand depends on the future, such as `once always p`. "
-    "With `RULEC_COMPILER=spot` every formula does. There is a package for Linux on x86-64 (`pip "
-    "install spottl`), and one for other systems (`conda install -c conda-forge spot`). A "
-    "rulebook that was compiled elsewhere runs without Spot.",
+    title="Spot is required but not installed",
+    why="Without Spot, rulec translates most formulas itself: those decided by a beginning of a "
+    "trace, those about what recurs for ever, and combinations of these by `and`, `or` and `not`. "
+    "Only nested obligations without end (if traces do not end), and a past that depends on the "
+    "future, such as `once always p`, need Spot. With `RULEC_COMPILER=spot` everything does. Spot "
+    "is available as a package for Linux on x86-64 (`pip install spottl`) and for other systems "
+    "(`conda install -c conda-forge spot`). A rulebook compiled elsewhere runs without Spot.",
     kind="circumstance",
 )
 
 SPOT_NOT_CONFINED = Code(
     "R0415",
-    title="the compiler's process cannot be confined",
-    why="Spot runs in a process that can write no file, open no connection and start no program: "
-    "Linux enforces this by Landlock (from 5.13 on) and by seccomp. On other systems and older "
-    "kernels Spot runs without this protection; if the environment variable "
-    "`RULEC_REQUIRE_CONFINED` is set, that is an error.",
+    title="the compiling process cannot be confined",
+    why="Spot runs in a process that cannot write files, open connections or start programs: "
+    "Linux prevents this by Landlock (from 5.13 on) and by seccomp. On other systems and older "
+    "kernels it runs without this confinement, unless the environment variable "
+    "`RULEC_REQUIRE_CONFINED` demands it.",
     kind="circumstance",
 )
 

@@ -109,7 +109,7 @@ def _cannot_be_kept(
 ) -> Diagnostic:
     *firsts, last = names
     whole = [sides[name] for name in names]
-    when = "at all" if clash.trace is None else "in all cases"
+    when = "at all" if clash.trace is None else "after some trace"
     notes = () if clash.trace is None else trace_note("after the trace", clash.trace, whole)
     both = "both" if len(names) == 2 else "all"
     return CONFLICTING_RULES.at(
