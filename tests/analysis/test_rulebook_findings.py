@@ -147,7 +147,7 @@ quantity speed in km/h
                 "hard rule r { require always (wet implies next slow) } "
                 "hard rule s { require always (wet implies next not slow) }"
             ),
-            ["R0804 cannot both be kept in all cases, after the trace: { wet }"],
+            ["R0804 cannot both be kept after some trace; after the trace: { wet }"],
         ),
         (
             "hard rule r { require eventually wet } hard rule s { require never wet }",
@@ -159,7 +159,7 @@ quantity speed in km/h
                 "hard rule s { require never (wet and next slow) } "
                 "hard rule t { require never (wet and next fog) }"
             ),
-            ["R0804 `r`, `s` and `t` cannot all be kept in all cases, after the trace: { wet"],
+            ["R0804 `r`, `s` and `t` cannot all be kept after some trace; after the trace: { wet"],
         ),
         (
             "hard rule r { require eventually wet } soft rule s { require never wet }",
