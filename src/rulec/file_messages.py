@@ -210,7 +210,7 @@ def not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
     if document:
         place = SourceLocation(name, 1, 1, 1, 1)
         return NOT_UTF8.at(
-            place, f"the file is {document}, no plain text", help="save it as plain text, in UTF-8"
+            place, f"the file is {document}, not plain text", help="save it as plain text, in UTF-8"
         )
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         place = SourceLocation(name, 1, 1, 1, 1)
@@ -238,7 +238,7 @@ def reason_in_words(problem: OSError | ValueError) -> str:
     if isinstance(problem, FileExistsError):
         return "a file of this name is there, where a folder is wanted"
     if isinstance(problem, NotADirectoryError):
-        return "what stands before a `/` in its name is a file, and no folder"
+        return "a part of its path before a `/` is a file, not a folder"
     known = problem.strerror if isinstance(problem, OSError) else None
     return (known or str(problem)).lower()
 
@@ -267,7 +267,7 @@ def no_input(problem: OSError) -> RulecError:
     return NO_INPUT.error(
         SourceLocation("standard input"),
         f"standard input cannot be read: {reason_in_words(problem)}",
-        help="give a file, or what a program writes",
+        help="give a file, or the output of a program",
     )
 
 
@@ -281,15 +281,15 @@ def refused(problem: OSError, *, is_gone: bool) -> Diagnostic:
     why = reason_in_words(problem)
     if problem.filename is not None:
         name = os.fsdecode(problem.filename) if not isinstance(problem.filename, int) else "a file"
-        help_text = "free what is lacking, and try again"
+        help_text = "free the missing resource, and try again"
         return REFUSED_BY_SYSTEM.at(
             SourceLocation(name), f"it cannot be opened or started: {why}", help=help_text
         )
     if is_gone:
         return NO_WORKING_FOLDER.at(
             SourceLocation("."),
-            "the working folder is not there any more",
-            help="change to one that there is",
+            "the working folder no longer exists",
+            help="change to a folder that exists",
         )
     return NO_OUTPUT.at(
         SourceLocation("standard output"),

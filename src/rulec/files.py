@@ -119,7 +119,7 @@ def written_whole(path: Path, *, in_place: bool = False) -> Iterator[IO[bytes]]:
             return
         real = Path(os.path.realpath(path))  # replaces the file behind a link, not the link
         if in_place and real.stat().st_nlink > 1:
-            raise not_the_same(path, "it has several names, which would not be one file any more")
+            raise not_the_same(path, "it has several names, which would no longer be the same file")
         # Only the beginning of a long name: file names have at most 255 bytes.
         beginning = os.fsencode(real.name)[:200].decode("utf-8", "ignore")
         name = real.with_name(f".{beginning}.{os.urandom(8).hex()}.part")

@@ -77,15 +77,15 @@ STEPS: Final = ResourceLimit(
     "steps",
     50,
     "steps of traces that its rules would be compiled for, beside the first",
-    "bring the traces to one step, take those of a jittering clock for one with `rulec verify "
-    "--step`, or compile the rulebook for the steps that count, with `rulec compile --step`",
+    "bring the traces to one step, with `rulec verify --step` if their clock jitters, or "
+    "compile the rulebook for the steps that count, with `rulec compile --step`",
 )
 
 OBJECTS: Final = ResourceLimit(
     "objects",
     20_000,
     "objects in one trace",
-    "cut the drive into several traces, each with those that are there",
+    "cut the drive into several traces, each with only the objects present in it",
 )
 
 PLACES: Final = ResourceLimit(
@@ -99,14 +99,14 @@ COMPILING: Final = ResourceLimit(
     "compiling",
     30,
     "seconds of processor time for the automata of a rulebook",
-    "say large rules in several, or give bounds and steps of which one is fewer of the other",
+    "split large rules into several, or use shorter bounds or a longer step",
 )
 
 CUBES: Final = ResourceLimit(
     "cubes",
     500,
     "alternatives of one condition in its automaton's picture",
-    "`rulec compile` writes it to a file all the same; or say its demands in rules of their own",
+    "`rulec compile` writes it to a file all the same; or split its demands into several rules",
 )
 
 PAIRS: Final = ResourceLimit(
@@ -126,29 +126,29 @@ COMPARISONS: Final = ResourceLimit(
 TYPE_DEPTH: Final = ResourceLimit(
     "type_depth",
     100,
-    "types, each of the next one",
-    "leave out types that no rule tells apart",
+    "types, each a subtype of the next one",
+    "leave out types that no rule distinguishes",
 )
 
 SEARCH: Final = ResourceLimit(
     "search",
     2_000_000,
     "steps of search for states of the world, in one question about rules",
-    "say less in one rule",
+    "split the rule into several",
 )
 
 STATES: Final = ResourceLimit(
     "states",
     3_000_000,
-    "rows or JSON objects that tell the states of one trace",
-    "cut the drive into several traces, or tell it with a longer step",
+    "rows or JSON objects for the states of one trace",
+    "cut the drive into several traces, or use a longer step",
 )
 
 REFUSED: Final = ResourceLimit(
     "refused",
     20_000,
     "traces one after the other that cannot be judged",
-    "mend what is wrong with them, which is often the same for all",
+    "correct the mistake, which is often the same in all of them",
 )
 
 CITES: Final = ResourceLimit(

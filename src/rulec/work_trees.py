@@ -79,7 +79,7 @@ def refuse_no_file(path: Path, labels: tuple[Label, ...] = ()) -> None:
     if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
         raise NO_ORDINARY_FILE.error(
             SourceLocation(str(path)),
-            "it is no ordinary file, but a pipe, a socket or a device",
-            help="remove it, or give `-` to have standard input read",
+            "it is a pipe, a socket or a device, not a regular file",
+            help="remove it, or give `-` to read standard input",
             labels=labels,
         )

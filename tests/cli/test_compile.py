@@ -115,7 +115,7 @@ def test_a_folder_is_not_named_as_one_of_its_files(tmp_path, monkeypatch, capsys
     ("folder", "why", "way_out"),
     [
         ("notes", "a file of this name is there, where a folder is wanted", "name another folder"),
-        ("notes/law", "what stands before a `/` in its name is a file", "name another folder"),
+        ("notes/law", "a part of its path before a `/` is a file", "name another folder"),
         ("shut/law", "permission denied", "change its permissions"),
     ],
 )

@@ -227,7 +227,7 @@ def test_a_pipe_is_no_file_to_rewrite(folder, capsys):
     status, out, err = fmt(capsys, f"/dev/fd/{reading}")
     os.close(reading)
     assert (status, out) == (2, "")
-    assert "it is no ordinary file" in err
+    assert "not a regular file" in err
 
 
 @pytest.mark.parametrize(

@@ -197,7 +197,7 @@ def test_what_a_scenario_says_wrongly_is_shown_where_it_says_it(tmp_path, capsys
         'signals = { stopped = "yes" }': "R0503",
         'type = "lorry"': "R0505",
     }
-    assert "help: write it of an obstacle: `signals = { gap = … }`" in err
+    assert "help: give it for an obstacle: `signals = { gap = … }`" in err
 
 
 def test_relations_of_two_partitions(tmp_path, capsys):

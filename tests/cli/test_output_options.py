@@ -321,7 +321,7 @@ def test_an_answer_replaces_an_older_one(name, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("file", "why"),
-    [("gone/found.csv", "no such file or directory"), ("notes/found.csv", "and no folder")],
+    [("gone/found.csv", "no such file or directory"), ("notes/found.csv", "not a folder")],
 )
 def test_a_file_that_cannot_be_written_is_refused_before_anything_is_read(
     file, why, tmp_path, monkeypatch, capsys

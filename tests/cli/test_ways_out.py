@@ -277,7 +277,7 @@ def test_a_file_of_another_kind(tmp_path, monkeypatch, capsys):
     status, text = said(capsys, "check", "law.docx")
     assert (status, "save it as plain text, in UTF-8, with a name" in text) == (2, True)
     status, text = said(capsys, "check", "law.rules")
-    assert (status, "the file is a PDF, no plain text" in text) == (1, True)
+    assert (status, "the file is a PDF, not plain text" in text) == (1, True)
     said(capsys, "compile", "esterle2019", "-o", "out")
     compiled = (tmp_path / "out" / "esterle2019.json").read_bytes()
     (tmp_path / "law.json.gz").write_bytes(gzip.compress(compiled))
@@ -290,7 +290,7 @@ def test_a_file_of_another_kind(tmp_path, monkeypatch, capsys):
     status, text = said(capsys, "verify", "README.md", "-r", "esterle2019")
     assert (status, text.count("error["), "these are not traces but text" in text) == (2, 1, True)
     status, text = said(capsys, "maneuvers", "states.jsonl", "-r", "esterle2019")
-    assert (status, "this is no scenario: it looks like traces" in text) == (2, True)
+    assert (status, "this is not a scenario: it looks like traces" in text) == (2, True)
 
 
 def test_a_new_rulebook_of_a_name_that_ships(tmp_path, monkeypatch, capsys):

@@ -86,7 +86,7 @@ FIELDS = [
     ("speed = 5.0", "sped = 5.0", "R0603", "a field sped that does not exist", "speed?"),
     ("length = 4.0", "lenght = 4.0", "R0603", "a field lenght that does not", "length?"),
     ("speed = 5.0", "colour = 5", "R0603", "colour that does not exist", "leave it out"),
-    ("speed = 5.0", "until_d = 4.5", "R0605", "never comes to until_d = 4.5", "sign"),
+    ("speed = 5.0", "until_d = 4.5", "R0605", "never reaches until_d = 4.5", "sign"),
     ("speed = 5.0", "trajectory = [[0, 1, 2]]", "R0605", "and also s, d", "leave out one"),
     ("speed = 5.0", "walking_direction = 400", "R0604", "walking_direction is 400", "degrees"),
     ("s = 30.0\n", "", "R0603", "obstacle 1 (o1) has no s", "trajectory instead"),

@@ -123,7 +123,7 @@ def test_weights_that_are_rounded_become_probabilities(tmp_path):
         (
             [prediction(1, "until_d = 4.5")],
             "until_d = 4.5",
-            "obstacle 2 (`o1`), prediction 1 never comes to `until_d = 4.5`",
+            "obstacle 2 (`o1`), prediction 1 never reaches `until_d = 4.5`",
             "change the sign of `lateral_speed`, or leave `until_d` out",
         ),
         (

@@ -133,7 +133,7 @@ def test_arrays_that_make_no_sense(candidates):
         ([[0, 0, 0, 1]], "put a single candidate into a list: `[candidate]`"),
         (np.zeros((2, 3, 5)), "give x, y, heading, speed of each state, and at least one state"),
         ([[[0, 0, 0, np.nan]]], "leave out candidates that have no place in some state"),
-        ("none", "give lists of numbers, or `numpy.array("),
+        ("none", "give lists of numbers of equal length, or `numpy.array("),
     ],
 )
 def test_the_way_out_of_arrays_that_make_no_sense(candidates, way_out):

@@ -125,7 +125,7 @@ def test_counts_of_own_objects(body):
 def test_a_count_inside_another_one_is_left_undecided():
     inner = Count("i", "thing", Atom("q", ("i",)))
     outer = Count("o", "thing", Comparison(((Fraction(1), inner),), ">=", Fraction(1)))
-    with pytest.raises(UndecidedError, match="a count stands inside another one"):
+    with pytest.raises(UndecidedError, match="a count contains another one"):
         count_function(outer, ObjectUniverse(TWO, VOCABULARY))
 
 

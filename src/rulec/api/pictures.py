@@ -73,7 +73,7 @@ def drive_drawing(
     scene = drive_scene(drive, verdict, verdicts, kept)
     first_s, last_s = scene.time_s(0), scene.time_s(scene.states - 1)
     if at_s is not None and not first_s - scene.step_s < at_s < last_s + scene.step_s:
-        message = f"`{drive.arrays.id}` is not there at {at_s:g} s"
+        message = f"`{drive.arrays.id}` has no state at {at_s:g} s"
         way_out = f"choose a time from {first_s:g} s to {last_s:g} s"
         raise NOT_IN_RECORDING.error(SourceLocation(verdicts.recording.name), message, help=way_out)
     state, violation = chosen_moment(scene, at_s)

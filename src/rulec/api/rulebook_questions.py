@@ -71,7 +71,7 @@ class RulebookQuestions(RulebookVerbs):
         from rulec.trace.trace_model import check_trace
 
         if trace is None or rules is None:
-            raise TypeError("explaining a violation takes the trace and the rules")
+            raise TypeError("explaining a violation needs the trace and the rules")
         if isinstance(trace, Trace):
             check_trace(trace)
             rounded, *_ = self._compiled(rules).rounded_to(trace.step_s)

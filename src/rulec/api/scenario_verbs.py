@@ -157,7 +157,7 @@ class ScenarioVerbs(SessionSettings):
         if isinstance(subject, Trace):
             check_trace(subject)
             if rules is None:
-                raise TypeError("a trace is drawn as rules read it: give them")
+                raise TypeError("drawing a trace needs the rules that judge it")
             used = self._compiled(rules).fitted_to(subject.step_s)
             return as_bytes(pictures.trace_drawing(subject, used), form, subject.id)
         draw = pictures.graph_drawing if as_graph else pictures.scene_drawing

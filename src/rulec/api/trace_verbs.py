@@ -278,7 +278,7 @@ class TraceVerbs(SessionSettings):
         by = (by,) if isinstance(by, str) else by
         known = get_args(Known)
         if unknown := [name for name in by if name not in known]:
-            raise ValueError(f"drives are told apart by {', '.join(known)}, not by {unknown[0]!r}")
+            raise ValueError(f"drives are grouped by {', '.join(known)}, not by {unknown[0]!r}")
         if not 0 < confidence < 1:
             raise ValueError(f"`confidence` is between 0 and 1, such as 0.95, not {confidence}")
         paths = [findings] if isinstance(findings, str | Path) else findings

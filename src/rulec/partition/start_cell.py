@@ -48,7 +48,7 @@ def start_cell(
         raise _no_start(
             f"ego is {scenario.ego.width:g} m wide, and the road is no wider",
             "a road with room for ego, as its extent is `body`",
-            "correct ego's `width`, or take the extent `lane`, which leaves it out",
+            "correct ego's `width`, or use the extent `lane`, which ignores it",
         )
     if not in_the_way:
         message = f"ego starts off the road, at s = {s:g}, d = {d:g}"

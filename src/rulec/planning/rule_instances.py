@@ -61,8 +61,7 @@ def partition_for(
             _place_of(RELATIONS_OF["paper"], rules),
             f"rulebook `{rules.name}` reads {needed['paper']} and {needed['fine']}, "
             "which no one partition supplies",
-            help="say it with `station` and `lateral` alone: they tell apart all that `position` "
-            "does",
+            help="use `station` and `lateral` only: they distinguish all that `position` does",
         )
     for name, relations in needed.items():
         if partition not in (None, name):
@@ -231,6 +230,6 @@ def _wrong_in(
         names = [name for name in state if name in vocabulary.declarations]
         if objects or not any(vocabulary.declarations[name].parameters for name in names):
             return error.diagnostics
-        way_out = f"write it of an obstacle: `signals = {{ {names[0]} = … }}`"
+        way_out = f"give it for an obstacle: `signals = {{ {names[0]} = … }}`"
         return [replace(diagnostic, help=way_out) for diagnostic in error.diagnostics]
     return ()

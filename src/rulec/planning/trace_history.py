@@ -61,8 +61,8 @@ def past_of(
     try:
         past = monitor.past(there)
     except ValueError:
-        message = "what was before the first state of the past is unknown"
-        way_out = "give a past that is complete: one before which there was nothing"
+        message = "it is unknown what happened before the first state of the past"
+        way_out = "give a complete past: one without states before its first one"
         raise UNFITTING_PAST.error(place, message, help=way_out) from None
     violations = [own for own in past.violations if own.strength in strengths]
     past = replace(past, violations=tuple(violations))
@@ -119,7 +119,7 @@ def only_trace(items: Iterable[Trace | RulecError], place: SourceLocation) -> Tr
     if len(traces) > 1:
         raise UNFITTING_PAST.error(
             place,
-            "there are several traces in this file; there is but one past",
+            "there are several traces in this file, but a past is one trace",
             help="give a file with one trace",
         )
     return traces[0]

@@ -82,7 +82,7 @@ def read_bounds(text: str, own: MotionBounds | None) -> MotionBounds | None:
         if number is None:
             raise UNFITTING_BOUNDS.error(
                 None,
-                f"`{part.strip()}` says nothing about ego's motion",
+                f"`{part.strip()}` is not a bound of ego's motion",
                 expected=f"expected {any_of([f'`{word}`' for word in (NO_BOUNDS, *BOUNDS_OF)])}; "
                 f"or a number above 0, up to {FARTHEST:g}, for "
                 f"{any_of([f'`{name}`' for name in names])}",

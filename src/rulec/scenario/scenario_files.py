@@ -31,7 +31,7 @@ def read_scene(path: Path, choice: Choice) -> Scenario:
     try:
         return seen_from_ego(recording, choice, str(path))
     except ValueError as reason:
-        raise RECORDING.refused(path, f"its road makes no sense, {reason}") from None
+        raise RECORDING.refused(path, f"its road is invalid: {reason}") from None
 
 
 LARGEST_BYTES = 4_000_000
@@ -77,17 +77,16 @@ def read_scenario(path: Path, choice: Choice | None = None) -> Scenario:
     if choice not in (None, Choice()):
         raise OTHER_CHOICE.error(
             SourceLocation(str(path)),
-            f"`{path.stem}` says itself where ego and the road are; nothing about that can be "
-            "chosen",
-            help="leave the options for recorded scenes out, or edit the scenario's file",
+            f"`{path.stem}` itself defines ego and the road, so they cannot be chosen",
+            help="leave out the options for recorded scenes, or edit the scenario's file",
         )
     source = _text(path)
     if path.suffix in _OF_TRACES or source.text.startswith("{"):
         raise NOT_A_SCENARIO.error(
             SourceLocation(str(path)),
-            "this is no scenario: it looks like traces",
-            help="`rulec verify` judges traces; maneuvers are those of a scenario, such as `s2`, "
-            "or of recorded traffic",
+            "this is not a scenario: it looks like traces",
+            help="`rulec verify` judges traces; maneuvers need a scenario, such as `s2`, "
+            "or recorded traffic",
         )
     return to_scenario(parsed_toml(source, NOT_A_SCENARIO, _HOW), path.stem, TomlFile(source))
 

@@ -71,7 +71,7 @@ class TrafficWorld:
                 SourceLocation(self.recording.name),
                 f"there is no vehicle `{name}` that drives"
                 if name
-                else "it does not say who is ego",
+                else "the recording does not say which vehicle is ego",
                 help=did_you_mean(name, drivers) or "name a vehicle of the recording",
             )
         object.__setattr__(self, "ego", name)
@@ -116,7 +116,7 @@ class TrafficWorld:
 
     def past_of(self, after: ArrayLike | None) -> NDArray[float64]:
         """The past as an array, with no rows for None. Raises RulecError R0780."""
-        return _numbers("what was before", [] if after is None else after, 2, or_none=True)
+        return _numbers("the past", [] if after is None else after, 2, or_none=True)
 
     def candidates_of(self, candidates: ArrayLike) -> NDArray[float64]:
         """Candidates as an array. Raises RulecError R0780."""
@@ -269,10 +269,8 @@ def _numbers(
     except (TypeError, ValueError, OverflowError):
         is_odd = True
     if is_odd:
-        way_out = (
-            "give lists of numbers, or `numpy.array(…, dtype=float)`, in which all are alike long"
-        )
-        raise BAD_CANDIDATES.error(None, f"{what}: that is no array of numbers", help=way_out)
+        way_out = "give lists of numbers of equal length, or `numpy.array(…, dtype=float)`"
+        raise BAD_CANDIDATES.error(None, f"{what}: this is not an array of numbers", help=way_out)
     # An empty past is allowed, also as a list
     if or_none and found.shape in {(0,), _NO_STATES}:
         return np.empty(_NO_STATES)

@@ -85,7 +85,7 @@ def fewest_counted_objects(
                 seen.add(after)
                 waiting.append((after, (*further, kind)))
         if len(seen) > MOST_TRIED:
-            raise UndecidedError("too many ways to count objects have to be told apart")
+            raise UndecidedError("too many ways to count objects have to be distinguished")
     return None
 
 

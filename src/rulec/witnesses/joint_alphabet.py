@@ -146,7 +146,9 @@ class JointAlphabet:
                 heappush(ways_to.setdefault(letter, []), way)
             self._take(len(ways))
             if len(ways_to) > MOST_LETTERS:
-                raise UndecidedError("too many different states of the world have to be told apart")
+                raise UndecidedError(
+                    "too many different states of the world have to be distinguished"
+                )
         self.candidates: Sequence[JointLetter] = tuple(ways_to)
 
     def read_of(self, name: str) -> Read | None:

@@ -134,7 +134,7 @@ class CountFunction:
 def count_function(count: ltl.Count, universe: ObjectUniverse) -> CountFunction:
     """A count as a function of its universe. Raises UndecidedError if it contains other counts."""
     if any(True for _ in counts_in(count.body)):
-        raise UndecidedError("a count stands inside another one")
+        raise UndecidedError("a count contains another one")
     vocabulary = universe.vocabulary
     bodies = [
         plain_body_of(count, name, Itself(vocabulary))

@@ -156,7 +156,7 @@ class LetterWitnesses:
         counts, joint = self._joint_counts
         choices = [self._allowed(level, digits) for level in range(len(joint.reads))]
         if prod(map(len, choices)) > MOST_CHOICES:
-            raise UndecidedError("too many states of the counted objects have to be told apart")
+            raise UndecidedError("too many states of the counted objects have to be distinguished")
         for joint_digits in product(*choices):
             counted = tuple(
                 (count.count, count.counted_in(joint.own_digits(index, joint_digits)))

@@ -45,7 +45,7 @@ def place_objects(
     for state in states:
         further = counted_objects_of_types(state, kinds, types)
         if further is None:
-            raise UndecidedError("objects to be counted in one state are in the way in another")
+            raise UndecidedError("objects needed for counts in one state contradict another state")
         values = dict(state.values)
         for name, companion in zip(names, further, strict=True):
             for (declaration, items), value in companion.values.items():
@@ -85,7 +85,7 @@ def synthesize_trace(
     if changing:
         raise ChangingConstantsError(tuple(sorted({name for name, _ in changing})))
     if types:
-        raise UndecidedError("further objects, there to be counted, are subject to the rule, too")
+        raise UndecidedError("further objects, needed for counts, are subject to the rule, too")
     raise AssertionError(f"a trace does not do what it is to show: {trace.states}")
 
 

@@ -49,7 +49,7 @@ def test_the_first_planning_problem_is_the_usual_ego():
     found = start()
     assert (found.participant, found.step, found.state.x) == (None, 0, 9)
     assert start(ego=99).state == found.state
-    assert "planning problem 99 says where ego is at 0 s" in refusal(ego=99, at_s=1.0)
+    assert "planning problem 99 defines ego at 0 s" in refusal(ego=99, at_s=1.0)
 
 
 def test_a_problem_takes_the_part_of_a_participant_in_its_place():
@@ -63,7 +63,7 @@ def test_what_is_not_there_cannot_be_chosen():
     assert "no moving obstacle 8; choose one of `99`, `7`" in refusal(ego=8)
     nobody = replace(FOUND, problems=())
     assert "choose one of its vehicles with `ego`: `7`" in refusal(nobody)
-    assert "nobody moves in the file" in refusal(replace(nobody, participants=()))
+    assert "the file has no moving participant" in refusal(replace(nobody, participants=()))
 
 
 def test_the_size_is_the_participants_unless_it_is_chosen():
@@ -94,6 +94,6 @@ def test_who_goes_back_along_its_lanelet_starts_nowhere():
     assert ego_motion(FOUND, moving(1.5, pi), 0.0, "1", "file")["speed"] == 0
     assert ego_motion(FOUND, moving(9.0, pi / 2), 0.0, "1", "file")["speed"] == pytest.approx(0)
     for speed, heading in [(9.0, pi), (-9.0, 0.0)]:
-        with pytest.raises(RulecError, match=r"back along lanelet 1, at 9\.0 m/s") as caught:
+        with pytest.raises(RulecError, match=r"backwards along lanelet 1, at 9\.0 m/s") as caught:
             ego_motion(FOUND, moving(speed, heading), 0.0, "1", "file")
         assert caught.value.diagnostics[0].code == "R0612"

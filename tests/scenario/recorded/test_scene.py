@@ -210,7 +210,7 @@ def test_another_reference_line():
         (Choice(ego=5), "no planning problem and no moving obstacle 5"),
         (Choice(ego=7, at_s=9.0), "obstacle 7 has no state at 9 s"),
         (Choice(ego=7, at_s=0.3), "no states at 0.3 s"),
-        (Choice(at_s=1.0), "planning problem 99 says where ego is at 0 s"),
+        (Choice(at_s=1.0), "planning problem 99 defines ego at 0 s"),
         (Choice(reference=5), "there is no lanelet 5"),
     ],
 )

@@ -194,8 +194,8 @@ def largest_product(graph: TraceGraph) -> int:
 def too_large(graph: TraceGraph) -> RulecError:
     """The error R0616: the product, which can be as large as that of all automata, is too large."""
     message = (
-        f"these rules keep more than {largest_product(graph):,} kinds of partial maneuvers "
-        "apart, by where they are, what the automata remember, and what is violated"
+        f"these rules distinguish more than {largest_product(graph):,} kinds of partial "
+        "maneuvers, by their place, the states of the automata, and the violations"
     )
     help_text = "take fewer rules at a time, a larger step, or the same weight for several rules"
     return TOO_MANY_MANEUVERS.error(None, message, help=help_text)

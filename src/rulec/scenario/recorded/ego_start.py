@@ -50,10 +50,10 @@ def ego_start(recording: recorded.Recording, choice: Choice, file: str) -> EgoSt
         if participant.states and not participant.standing
     }
     if not problems and not moving:
-        message = "nobody moves in the file, and it has no planning problem"
-        raise choice_error(message, "take a recording that has a vehicle", file)
+        message = "the file has no moving participant and no planning problem"
+        raise choice_error(message, "use a recording with a moving vehicle", file)
     if choice.ego is None and not problems and recording.ego not in moving:
-        message = "the file has no planning problem, which would say where ego is"
+        message = "the file has no planning problem that defines ego"
         raise choice_error(
             message, f"choose one of its vehicles with --ego: {named_ids(moving)}", file
         )
@@ -83,7 +83,7 @@ def _of_problem(
 ) -> EgoStart:
     if choice.at_s is not None and _step(recording, choice.at_s, file) != problem.step:
         raise choice_error(
-            f"planning problem {problem.id} says where ego is at "
+            f"planning problem {problem.id} defines ego at "
             f"{problem.step * recording.step_s:g} s, and at no other time",
             "leave out --at-time"
             + (f", or choose a vehicle with --ego: {others}" if others else ""),
@@ -141,10 +141,10 @@ def ego_motion(
     ahead, sideways = speed * cos(turned), speed * sin(turned)
     if ahead < -_AGAINST_MPS:
         raise choice_error(
-            f"ego goes back along lanelet {reference}, at {-ahead:.1f} m/s",
-            "choose with --at-time a moment at which it goes the way of its lane, with --reference "
-            "a lanelet that leads its way, or another ego with --ego; if the lanelet is drawn "
-            "backwards, turn its points round, and exchange its borders",
+            f"ego moves backwards along lanelet {reference}, at {-ahead:.1f} m/s",
+            "choose a time at which it moves in its lane's direction with --at-time, a lanelet in "
+            "its direction with --reference, or another ego with --ego; if the lanelet is drawn "
+            "backwards, reverse its points, and exchange its borders",
             file,
         )
     return {"speed": max(ahead, 0.0), "lateral_speed": sideways, "bounds": bounds}

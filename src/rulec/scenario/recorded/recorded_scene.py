@@ -89,7 +89,7 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
     lanes = lanes_along(recording, way, line, ego_s)
     ((d,),) = lanes.straightened(np.array([[ego_s, ego_d]])).tolist()
     if not lanes.straight[0] <= d <= lanes.straight[-1]:
-        message = f"ego is beside the road of lanelet {own}, {abs(ego_d):.1f} m from its middle"
+        message = f"ego is off the road of lanelet {own}, {abs(ego_d):.1f} m from its middle"
         raise choice_error(
             message, "choose another ego with --ego, or lanelet with --reference", file
         )
@@ -128,7 +128,10 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
         step_s = next((step for step in _STEPS_S if step <= ends_s), _STEPS_S[-1])
         horizon_s = whole_steps(ends_s, step_s)
         away = f"{road.outline.s_max:.1f} m ahead of ego, which gets there in {ends_s:.1f} s"
-        remarks = (*remarks, f"the map ends {away}: so far is looked ahead, or as --horizon says")
+        remarks = (
+            *remarks,
+            f"the map ends {away}: the horizon ends there, unless --horizon is given",
+        )
     others = sum(participant.id != start.participant for participant in recording.participants)
     return Scenario(
         recording.name,

@@ -194,7 +194,7 @@ def reference_line(corners: Points) -> ReferenceLine:
     """
     kept = without_repeats(corners, _CLOSEST_M)
     if len(kept) == 1:
-        raise ValueError("the middle of its lane is in one place")
+        raise ValueError("all points of its lane's centre line are in one place")
     points = densified(kept, _PIECE_M)
     start, end = points[1] - points[0], points[-1] - points[-2]
     extended = np.concatenate(

@@ -108,7 +108,7 @@ def read_signals(raw: Mapping[str, object], table: TomlTable) -> dict[str, model
                 f"{table.words}: {quoted(name)} is {shown(value)}",
                 name,
                 expected="true, false, a finite number, a value's name in quotes, "
-                '`"?"` for what is not known, or `{ from = 30, to = 50 }` for a number in between',
+                '`"?"` for an unknown value, or `{ from = 30, to = 50 }` for a number in between',
                 code=UNFITTING_FIELD,
             )
     return signals
@@ -198,7 +198,7 @@ def _motion(
     sideways, until = values.lateral_speed, values.until_d
     if until is not None and (until - values.d) * sideways <= 0:
         table.add(
-            f"{table.words} never comes to `until_d = {until:g}`",
+            f"{table.words} never reaches `until_d = {until:g}`",
             "until_d",
             expected=f"an offset to which `lateral_speed = {sideways:g}` leads from {values.d:g}",
             way_out="change the sign of `lateral_speed`, or leave `until_d` out",

@@ -164,7 +164,7 @@ class WaySearch:
             return known
         self._n_nodes += 1
         if self._n_nodes > MOST_NODES:
-            raise UndecidedError("too many different states of the world have to be told apart")
+            raise UndecidedError("too many different states of the world have to be distinguished")
         level = int(diagrams.level(nodes))
         default = choices.defaults[level]
         ways: dict[tuple[int, ...], tuple[int, int]] = {}
