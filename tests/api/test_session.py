@@ -125,5 +125,5 @@ def test_pictures():
     ]
     assert all(picture.startswith(b"<svg") for picture in pictures)
     assert rulec.draw(maneuvers, form="html").lower().startswith(b"<!doctype html>")
-    with pytest.raises(TypeError, match="give them"):
+    with pytest.raises(TypeError, match="needs the rules"):
         rulec.draw(trace)

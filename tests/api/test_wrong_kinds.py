@@ -61,7 +61,7 @@ SLIPPED = rulec.RequestedDrives(assumed={"CONG": True})
             rulec.RulecError,
             "`CONG`",
         ),
-        (lambda: rulec.draw_drive(FOLLOWING, "de", at_s=6), rulec.RulecError, "not there at 6 s"),
+        (lambda: rulec.draw_drive(FOLLOWING, "de", at_s=6), rulec.RulecError, "no state at 6 s"),
         (lambda: rulec.Assumptions(ends="maybe"), ValueError, "not 'maybe'"),
         (lambda: rulec.Assumptions(values="built_up"), TypeError, "`values` is a dict, not str"),
         (lambda: rulec.Thresholds(near_m=-1), ValueError, "`near_m` is a number from 0 .*not -1"),
