@@ -14,7 +14,7 @@ from rulec.scenario.motion import swept
 from rulec.scenario.time_grid import MAX_LAYERS
 
 MOST_TIMES_FINER = 4
-"""The step is halved at most down to this fraction to find one that opens a way."""
+"""The step is divided by this at most, by halving, to find one that opens a way."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -151,7 +151,7 @@ def _wider(body: Box, half: float) -> Box:
 
 
 def _narrower(outline: Box, half: float, start: float) -> Box:
-    """The road for ego's centre; its edges are no closer than ego is to them at the start."""
+    """The road for ego's centre: half its width from the edges, or less if it starts closer."""
     return Box(
         outline.s_min,
         outline.s_max,

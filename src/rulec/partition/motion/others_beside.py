@@ -84,7 +84,10 @@ class OthersBeside:
 
     @cached_property
     def body(self) -> tuple[float, float]:
-        """Half of ego's length and width; 0 where such a body would start inside an obstacle."""
+        """Half of ego's length and width; unknown ones are those of its bounds.
+
+        They are 0 instead if a body of that size would start inside an obstacle.
+        """
         ego, bounds = self._graph.scenario.ego, self._motion.bounds
         length, width = ego.length or bounds.length, ego.width or bounds.width
         body = centred(ego.s, ego.d, length, width)
