@@ -28,10 +28,10 @@ Piece = TypeVar("Piece")
 
 @dataclass(frozen=True)
 class WrittenDrives:
-    """What is to be written: which drives of a recording, in which words and in which format.
+    """What to write: which drives of a recording, with which vocabulary and in which format.
 
-    The recording is read once by each process that asks for it. Whatever is asked of this raises
-    RulecError if it cannot be read, or has nobody who drives.
+    Each process reads the recording once, when it needs it. All members but the fields raise
+    RulecError if the recording cannot be read or contains no drive.
     """
 
     source: RecordingSource
@@ -41,20 +41,20 @@ class WrittenDrives:
     form: Format
 
     def __getstate__(self) -> dict[str, Any]:
-        """All but what was read, which another process reads in less time than it is sent."""
+        """The fields without what was read, which another process reads faster than it is sent."""
         read = ("selected", "kinds", "head")
         return {name: value for name, value in self.__dict__.items() if name not in read}
 
     @cached_property
     def selected(self) -> SelectedDrives:
-        """The drives."""
+        """The drives to write."""
         file = str(self.source.path)
         recording = read_recording(self.source)
         return selected_drives(recording, self.request, file, self.traffic, self.vocabulary)
 
     @cached_property
     def kinds(self) -> dict[str, type]:
-        """The kinds of all names that the drives speak of."""
+        """The type of each name that occurs in the drives."""
         kinds = with_bounds(self.selected.kinds(), MEASURED)
         if not kinds:
             message = "nobody in this recording drives on a lane"
@@ -68,13 +68,13 @@ class WrittenDrives:
                 yield drive.trace
 
     def written(self, ego: str) -> Iterator[bytes]:
-        """The drives of one vehicle, each as it is written into a file behind the head."""
+        """The drives of one vehicle, each as the bytes that follow the head in a file."""
         for trace in self.traces(ego):
             yield self._bytes(trace)[len(self.head) :]
 
     @cached_property
     def head(self) -> bytes:
-        """What a file begins with."""
+        """The bytes that a file begins with."""
         return self._bytes()
 
     def _bytes(self, *traces: Trace) -> bytes:
@@ -90,11 +90,11 @@ def in_vehicle_order(
     tell: Callable[[int], object],
     lost: Callable[[str, int | None], object],
 ) -> Generator[Piece, None, None]:
-    """What ``drives.traces`` or ``drives.written`` have of each vehicle, in their order.
+    """What ``drives.traces`` or ``drives.written`` gives for each vehicle, in the vehicles' order.
 
-    Bytes are not for Parquet, whose rows have to be together. ``tell`` is told how many vehicles
-    are done, ``lost`` whose process was killed, and by which signal, so that another one does it
-    again. Raises RulecError R0708 if that was killed, too.
+    Do not write bytes for Parquet, whose rows have to be together. ``tell`` is called with the
+    number of finished vehicles; ``lost`` with a vehicle whose process was killed, and the signal,
+    before the vehicle is repeated. Raises RulecError R0708 if the process is killed again.
     """
     for _, piece in in_order(work, drives.selected.egos, jobs, tell, lost):
         if isinstance(piece, LostTask):

@@ -18,9 +18,9 @@ from rulec.rulebook.loader import read_rulebook
 
 @dataclass(frozen=True, slots=True)
 class ExampleRequest:
-    """Where rulebooks are looked for, on which day, and which examples are wanted.
+    """Where to look for rulebooks, on which day they apply, and which examples to run.
 
-    ``measured``: what they cover, too.
+    ``measured``: also compute the coverage.
     """
 
     folders: Sequence[str | Path] = ()
@@ -45,11 +45,12 @@ def measured_runs(
     jobs: Jobs,
     lost: Callable[[str, int | None], object],
 ) -> Iterator[MeasuredRun | RulecError]:
-    """The run of each rulebook with what it covers, or why there is none, in their order.
+    """The run of each rulebook with its coverage, or why there is none, in the rulebooks' order.
 
-    ``lost`` is told whose process was killed, and by which signal, so that it is run again.
+    ``lost`` is called with a rulebook whose process was killed, and the signal, before it is run
+    again.
     """
-    # A browser's Python has no processes: only where several may be asked for.
+    # A browser's Python has no processes: imported only if several may be requested.
     from rulec.batch.worker_pool import LostTask, in_order
 
     for rulebook, answer in in_order(partial(_measured, request), rulebooks, jobs, lost=lost):

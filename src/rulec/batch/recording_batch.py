@@ -1,4 +1,4 @@
-"""Many files of recorded traffic, judged in one process or in several, in their order."""
+"""Many files of recorded traffic, judged in one process or in several, in the files' order."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rulec.batch.recording_judge import JudgeSettings, Piece, judge
 from rulec.batch.worker_pool import LostTask, in_order
 
 LARGE_BYTES = 1_000_000
-"""Files that are that large together take more than a moment."""
+"""Judging files of this total size (bytes) takes long enough to start processes at once."""
 
 
 def judged_files(
@@ -23,10 +23,10 @@ def judged_files(
     tell: Callable[[int], object],
     lost: Callable[[str, int | None], object],
 ) -> Iterator[tuple[str, Piece]]:
-    """Each file with each piece of its answer.
+    """Each file with each piece of its result.
 
-    ``tell`` is told how many files are done, ``lost`` which one's process was killed, by which
-    signal, so that it is judged again.
+    ``tell`` is called with the number of finished files; ``lost`` with a file whose process was
+    killed, and the signal, before the file is judged again.
     """
     if _size(files) >= LARGE_BYTES:
         jobs = replace(jobs, alone_s=0.0)
@@ -38,5 +38,5 @@ def judged_files(
 
 
 def _size(files: Sequence[str]) -> int:
-    """Bytes of these files; those of the first thousand tell enough."""
+    """The total size of the first thousand files in bytes, which is enough for an estimate."""
     return sum(path.stat().st_size for path in map(Path, files[:1000]) if path.is_file())

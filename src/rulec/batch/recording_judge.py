@@ -1,4 +1,4 @@
-"""A file of recorded traffic, judged: what there is to be shown of it, piece by piece."""
+"""Judge a file of recorded traffic and give the results piece by piece."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ RowMaker: TypeAlias = Callable[
     [DriveVerdict | NoDrive, RecordingVerdicts, str, "Sequence[VerdictFinding] | None"],
     Iterator[Mapping[str, object]],
 ]
-"""What makes rows of a drive of a file, and of what was found of it; it is sent to processes."""
+"""Makes the table rows of a drive and its findings; it is sent to other processes."""
 
 
 @dataclass(frozen=True, slots=True)
 class JudgeSettings:
-    """How files are judged, and what is wanted of the answer.
+    """How files are judged, and which results are wanted.
 
-    ``source`` says how to read each of them; its path is another one. The first ``to_explain``
-    violations of each file are explained, by ``every_part`` if wanted, in ``width`` columns. Wanted
-    may be ``text``, ``lines`` (of JSON, one for each drive) and ``findings``. ``labels`` are what
-    files are called whose paths would say nothing to anybody. ``to_rows`` makes of each drive the
-    rows that tables of findings have, if they are to have those of drives and rules, too.
+    ``source`` says how to read each file; its path is replaced. The first ``to_explain`` violations
+    of each file are explained in ``width`` columns, part by part if ``every_part``. The results may
+    be ``text``, ``lines`` (of JSON, one per drive) and ``findings``. ``labels`` are names for files
+    whose paths mean nothing to a reader. ``to_rows``, if given, makes the rows of drives and rules
+    for tables of findings.
     """
 
     rules: CompiledRulebook
@@ -62,7 +62,7 @@ class JudgeSettings:
 
 @dataclass(frozen=True, slots=True)
 class JudgedRecording:
-    """A recording that has been judged: its numbers, as text, and its findings, if wanted.
+    """A judged recording: its counts, its table as text, and its findings, if wanted.
 
     ``explained`` are the blocks of text that explain its first violations.
     """
@@ -77,24 +77,24 @@ class JudgedRecording:
 
 @dataclass(frozen=True, slots=True)
 class DriveProblem:
-    """Why a drive could not be judged; the others of its recording could."""
+    """Why one drive could not be judged, while the rest of its recording could."""
 
     error: RulecError
 
 
 Piece = str | RulecError | DriveProblem | JudgedRecording
-"""A line of JSON, what is wrong with a file or with a drive, or a whole recording."""
+"""A line of JSON, the error of a file or of a drive, or the result of a whole recording."""
 
 
 _ALONE = Jobs(1)
 
 
 def _nobody(*_: object) -> None:
-    """Tell nobody."""
+    """Do nothing."""
 
 
 def judge(settings: JudgeSettings, path: str) -> Iterator[Piece]:
-    """The pieces of a file, in its order; one that cannot be read is an error."""
+    """The results of a file in order; if the file cannot be read, the error."""
     return judge_with_progress(settings, path, _nobody)
 
 
@@ -105,10 +105,10 @@ def judge_with_progress(
     jobs: Jobs = _ALONE,
     lost: Callable[[int | None], object] = _nobody,
 ) -> Iterator[Piece]:
-    """As ``judge``; ``tell`` is told how many vehicles, or parts, are done, and of how many.
+    """Like ``judge``; ``tell`` gets the numbers of finished and of all vehicles (or parts).
 
-    Parts of a long recording are judged in several processes; ``lost`` is told by which signal one
-    of them was killed, whose part is judged again.
+    The parts of a long recording are judged in several processes; ``lost`` is called with the
+    signal that killed one of them, before its part is judged again.
     """
     left = settings.to_explain
     label = settings.labels.get(path, path)
@@ -125,7 +125,7 @@ def judge_with_progress(
 
 
 def _relabelled(error: RulecError, path: str, label: str) -> RulecError:
-    """An error whose place is called otherwise."""
+    """An error with the file's path in its places replaced by a label."""
     return RulecError(
         [
             replace(diagnostic, place=replace(diagnostic.place, file=label))
@@ -138,9 +138,9 @@ def _relabelled(error: RulecError, path: str, label: str) -> RulecError:
 
 @dataclass(slots=True)
 class _JudgedDrives:
-    """What there is to be said of some drives, one after the other, and of all of them together.
+    """The results of some drives, each by itself and all together.
 
-    ``pieces`` are those that say something of one of them.
+    ``pieces`` are the results of single drives.
     """
 
     tally: ViolationTally = field(default_factory=ViolationTally)
@@ -152,7 +152,7 @@ class _JudgedDrives:
 
 
 class _RecordingJudge:
-    """The judge of one recording, which explains as many violations as are ``left``."""
+    """Judges one recording and explains up to ``left`` violations."""
 
     def __init__(self, settings: JudgeSettings, recording: Recording, file: str, left: int) -> None:
         self._settings = settings
@@ -164,12 +164,13 @@ class _RecordingJudge:
 
     @property
     def parts(self) -> Sequence[RecordingPart]:
-        """The parts that the recording is looked at in."""
+        """The parts into which the recording is divided."""
         return self._verdicts.drives.parts
 
     def pieces(self, tell: Callable[[int, int], object]) -> Iterator[Piece]:
-        """A piece for each drive that has something to say, and the recording."""
-        # No name for a verdict here: it would keep the arrays of its drives until the next one.
+        """A piece for each drive that has something to report, then the recording."""
+        # No name for a verdict here: it would keep the arrays of its drive alive until the next
+        # one.
         for number, pieces in enumerate(map(self._of_drive, self._verdicts.answers()), 1):
             tell(number, len(self._verdicts.egos))
             yield from pieces
@@ -181,11 +182,11 @@ class _RecordingJudge:
         jobs: Jobs,
         lost: Callable[[int | None], object],
     ) -> Iterator[Piece]:
-        """The same, the recording's parts being judged in several processes.
+        """Like ``pieces``, with the parts of the recording judged in several processes.
 
-        Raises RulecError R0708 if one of them is killed twice.
+        Raises RulecError R0708 if the process of a part is killed twice.
         """
-        # Processes, 15 ms: not for what one judges.
+        # Processes, 15 ms: not if one process judges all.
         from rulec.batch.worker_pool import LostTask, in_order
 
         parts, settings, file = self.parts, self._settings, self._file
@@ -195,7 +196,7 @@ class _RecordingJudge:
         for task, judged in in_order(
             work,
             tasks,
-            # Parts take more than a moment, and this process has all of them to keep
+            # Parts take more than a moment, and this process would have to keep all of them
             replace(jobs, alone_s=0.0),
             lambda done: tell(done, len(tasks)),
             lambda _, signal_number: lost(signal_number),
@@ -203,7 +204,7 @@ class _RecordingJudge:
             if isinstance(judged, LostTask):
                 raise process_lost(file, judged.signal_number)
             if self.left and judged.tally.first_s:
-                # Which violations are the first ones is known here alone
+                # Only this process knows which violations are the first ones
                 (judged,) = _judged_part(settings, shared, file, self.left, task)
                 self.left -= judged.n_explained
             yield from judged.pieces
@@ -211,7 +212,7 @@ class _RecordingJudge:
         yield self._whole()
 
     def judged_drives(self) -> _JudgedDrives:
-        """What there is to be said of all drives."""
+        """The results of all drives."""
         judged = self._judged
         for answer in self._verdicts.answers():
             judged.pieces += self._of_drive(answer)
@@ -261,7 +262,7 @@ class _RecordingJudge:
         )
 
     def _explained(self, result: DriveVerdict) -> list[Explanation]:
-        """The first violations of a drive explained; they are shown with the recording."""
+        """Explanations of a drive's first violations; their text is shown with the recording."""
         verdict, drive, rules = result.answer, result.drive, self._verdicts.rules
         assert not isinstance(verdict, NotJudged), "it has been judged"
         chosen = verdict.violations[: self.left]
@@ -299,7 +300,7 @@ def _judged_part(
     left: int,
     part: tuple[tuple[str, ...], tuple[Participant, ...]],
 ) -> Iterator[_JudgedDrives]:
-    """A part of a recording, judged: its egos, and all who are there; the rest is ``shared``."""
+    """Judge one part of a recording: its egos and participants; all else comes from ``shared``."""
     egos, participants = part
     settings = replace(settings, request=replace(settings.request, egos=egos))
     recording = replace(shared, participants=participants)
@@ -314,7 +315,7 @@ def _findings(verdicts: RecordingVerdicts, file: str) -> DriveFindings:
 
 
 def in_a_line(judged: JudgedRecording) -> str:
-    """A recording of many: how its drives came out, and what was violated how often."""
+    """One of many recordings in a line: drives by outcome, and per violated rule."""
     where = f"{judged.file}: {judged.name}" if judged.name not in judged.file else judged.file
     counts = recording_table.summary(judged.tally)
     violated = ", ".join(f"{rule} {len(drives)}" for rule, drives in judged.tally.first_s.items())

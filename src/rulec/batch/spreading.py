@@ -12,10 +12,10 @@ from rulec.batch.worker_pool import LostTask, in_order
 
 
 def spreading(jobs: Jobs, rulebook: str, lost: Callable[[int | None], object]) -> Spread | None:
-    """Has questions about a rulebook answered by so many processes; None if that is one.
+    """Answers questions about a rulebook in several processes; None if one process is enough.
 
-    ``lost`` is told by which signal a process was killed. What it yields raises RulecError R0708 if
-    another one was killed by the same question.
+    ``lost`` is called with the signal that killed a process. The iterator raises RulecError R0708
+    if the same question kills a second process.
     """
     if jobs.processes <= 1:
         return None

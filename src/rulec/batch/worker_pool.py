@@ -21,34 +21,34 @@ Task = TypeVar("Task")
 Result = TypeVar("Result")
 
 TASKS_AHEAD = 4
-"""So many tasks for each process may be done before an earlier one is."""
+"""The number of tasks per process that may be finished ahead of an earlier one."""
 
 MOST_WAITING = 256
-"""A task whose results are not wanted yet pauses once so many of them wait."""
+"""A task pauses when this many of its results wait for earlier tasks."""
 
 _STOP_S = 5.0
 
 
 @dataclass(frozen=True, slots=True)
 class LostTask:
-    """A task whose process was killed, by a signal for one, before it was done, twice."""
+    """A task whose process was killed twice before it was done; the signal, if known."""
 
     signal_number: int | None
 
 
 @dataclass(frozen=True, slots=True)
 class _Raised:
-    """What a task raised, which is a mistake of the program's."""
+    """The exception raised by a task, which is a bug."""
 
     error: Exception
 
 
 class _Done:
-    """The end of a task's results."""
+    """Marks the end of a task's results."""
 
 
 def ignore(*_: object) -> None:
-    """Tell nobody."""
+    """Do nothing."""
 
 
 def in_order(
@@ -58,12 +58,13 @@ def in_order(
     tell: Callable[[int], object] = ignore,
     lost: Callable[[Task, int | None], object] = ignore,
 ) -> Iterator[tuple[Task, Result | LostTask]]:
-    """Every task with each of its results, in the order of the tasks.
+    """Each task with each of its results, in the order of the tasks.
 
-    ``work`` goes to other processes, so it has to be a function of a module, or a partial one, with
-    the same results whenever it is called. Where one process has to do, or a single task is left,
-    it is called here. ``tell`` is told how many tasks are done. A task whose process is killed is
-    done again by a new one, once; ``lost`` is told of it, with the signal.
+    ``work`` is sent to other processes, so it has to be a module's function or a partial of one,
+    and give the same results on each call. If one process is enough or a single task is left, it is
+    called in this process. ``tell`` is called with the number of finished tasks. If a task's
+    process is killed, ``lost`` is called with the task and the signal, and a new process repeats
+    the task once.
     """
     begin = monotonic()
     here = 0
@@ -92,9 +93,9 @@ def in_order(
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """A block that Ctrl-C waits for, and whose processes never hear of it.
+    """A block that delays Ctrl-C, and whose child processes never receive it.
 
-    It goes to all processes of a terminal, and is for the first one to end the others.
+    A terminal sends it to all of its processes; this one is to receive it and end the others.
     """
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
@@ -104,10 +105,10 @@ def _without_interrupts() -> Iterator[None]:
 
 
 class _Worker(Generic[Task, Result]):
-    """A process, and the number of the task that it works on."""
+    """A process, and the number of the task it works on."""
 
     def __init__(self, work: Callable[[Task], Iterator[Result]]) -> None:
-        # A forked process would have locks of threads that are not in it.
+        # A forked process would inherit locks held by threads that it does not have.
         context = multiprocessing.get_context("spawn")
         self.connection, theirs = context.Pipe()
         given = work, theirs, recalled()
@@ -118,7 +119,7 @@ class _Worker(Generic[Task, Result]):
 
 
 class _Pool(Generic[Task, Result]):
-    """Processes, and the results that are not yet wanted, by the number of their task."""
+    """Processes, and the results that wait for earlier tasks, by the number of their task."""
 
     def __init__(
         self,
@@ -137,12 +138,12 @@ class _Pool(Generic[Task, Result]):
         self._waiting: dict[int, deque[object]] = {}
         self._received: dict[int, int] = {}
         self._known: dict[int, int] = {}
-        """Of tasks that are done again, how many of their results have come before."""
-        # To start it lets interrupts through (Python 3.11): before they are kept from workers.
+        """Number of a repeated task -> how many results its first process sent."""
+        # Starting it unblocks interrupts (Python 3.11): done before they are blocked for workers.
         resource_tracker.ensure_running()
 
     def results(self, number: int) -> Iterator[Result | LostTask | _Raised]:
-        """The results of a task; those of later ones are kept meanwhile."""
+        """The results of a task; meanwhile those of later tasks are stored."""
         while True:
             self._hand_out(number)
             waiting = self._waiting[number]
@@ -167,7 +168,7 @@ class _Pool(Generic[Task, Result]):
                     worker.process.join()
 
     def _hand_out(self, wanted: int) -> None:
-        """Give tasks to processes that have none, first those that are done again."""
+        """Give tasks to idle processes, repeated tasks first."""
         last = min(len(self._tasks), wanted + self._jobs * TASKS_AHEAD)
         while self._again or self._next < last:
             worker = next((each for each in self._workers if each.number is None), None)
@@ -191,7 +192,7 @@ class _Pool(Generic[Task, Result]):
                 self._lose(worker)
 
     def _receive(self, wanted: int) -> None:
-        """Wait for results of some process, and take one from each that has some."""
+        """Wait for results of any process, and take one from each process that has some."""
         busy = {
             worker.connection: worker
             for worker in self._workers
@@ -213,7 +214,7 @@ class _Pool(Generic[Task, Result]):
                 worker.number = None
 
     def _lose(self, worker: _Worker[Task, Result]) -> None:
-        """Note that a process is gone; another one takes its place where there is work."""
+        """Record that a process is gone; its task is repeated once, then reported as lost."""
         number = worker.number
         assert number is not None, "it was busy"
         worker.process.join(_STOP_S)
@@ -234,8 +235,8 @@ def _serve(
     connection: Connection,
     cached: Recalled,
 ) -> None:
-    """Do tasks until none is given any more, with what the parent process has ``cached``."""
-    # What a task has begun, such as processes of its own, is ended with it.
+    """Run tasks until the connection closes; ``cached`` is the parent process's cache."""
+    # Ending by an exception also cleans up what a task has started, such as its own processes.
     signal.signal(signal.SIGTERM, _leave)
     with suppress(EOFError, OSError), recalling(cached):
         while True:

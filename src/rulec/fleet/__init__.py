@@ -1,4 +1,4 @@
-"""Drives judged on engines that exist: a table of tracks or traces in, one of findings out."""
+"""Drives judged on existing engines: from a table of tracks or traces to a table of findings."""
 
 from rulec.fleet.finding_columns import arrow_schema as arrow_schema
 from rulec.fleet.fleet_judge import FleetJudge as FleetJudge

@@ -1,4 +1,4 @@
-"""Compiled rulebooks as they go to workers: bytes of a file, read once in each process."""
+"""Compiled rulebooks as sent to workers: the bytes of a file, read once in each process."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.fleet.fleet_messages import not_compiled
 
 CompiledRules: TypeAlias = str | Path | bytes | CompiledRulebook
-"""The path of a compiled file, its content, or what has been compiled or read."""
+"""The path of a compiled file, its content, or a rulebook already compiled or read."""
 
 _MOST_KEPT = 4
 
 
 @dataclass(frozen=True, slots=True)
 class CarriedRulebook:
-    """A rulebook for other processes; ``name`` is what its file is called in messages."""
+    """A rulebook to send to other processes; ``name`` is its file's name in messages."""
 
     content: bytes | CompiledRulebook
     name: str
 
     def read(self) -> CompiledRulebook:
-        """The rulebook; of one file always the same one in a process. Raises RulecError R0404."""
+        """The rulebook; a file is parsed once per process. Raises RulecError R0404."""
         if isinstance(self.content, CompiledRulebook):
             return self.content
         return _read(self.content, self.name)
@@ -37,7 +37,7 @@ def _read(content: bytes, name: str) -> CompiledRulebook:
 
 
 def carried(rules: CompiledRules) -> CarriedRulebook:
-    """A rulebook for other processes. Raises RulecError R0404, R0701, R0711 for a source."""
+    """A rulebook to send to other processes. Raises RulecError R0404, R0701, R0711 for a source."""
     if isinstance(rules, CompiledRulebook):
         return CarriedRulebook(rules, rules.name)
     if isinstance(rules, bytes):

@@ -1,4 +1,4 @@
-"""The rows of a drive: itself, each rule, and each finding."""
+"""The rows of a drive: one for the drive, one per rule and one per finding."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from rulec.report.verdict_findings.verdict_finding import COLUMNS as OF_FINDINGS
 from rulec.report.verdict_findings.verdict_finding import VerdictFinding, named_rule
 
 MOVED_M = 0.5
-"""Places of recordings waver by less, also of who stands."""
+"""Recorded positions fluctuate by less than this (m), even of standing vehicles."""
 
 OUTCOMES: Mapping[bool | None, OutcomeName] = {True: "kept", False: "violated", None: "open"}
-"""What a drive's verdict on its hard rules is called."""
+"""Verdict on a drive's hard rules -> its name in the table."""
 
 
 @dataclass(frozen=True, slots=True)
 class DriveRows:
-    """Makes rows of verdicts by ``rules``, which say what they were judged ``by``."""
+    """Makes rows from verdicts by ``rules``; the rows state what the drives were judged ``by``."""
 
     rules: CompiledRulebook
     by: JudgedBy
@@ -52,9 +52,9 @@ class DriveRows:
         file: str,
         findings: Sequence[VerdictFinding] | None = None,
     ) -> Iterator[Row]:
-        """The rows of a drive of a recording, or of a vehicle that has none.
+        """The rows of a drive of a recording, or of a vehicle that has no drive.
 
-        Its ``findings`` are made here if they are not given.
+        If ``findings`` is None, the drive's findings are computed here.
         """
         recording = verdicts.recording
         own = {
@@ -78,14 +78,14 @@ class DriveRows:
         own: Row,
         findings: Sequence[VerdictFinding],
     ) -> Iterator[Row]:
-        """The rows of a trace, and of its ``findings``; ``own`` are columns that name it."""
+        """The rows of a trace and its ``findings``; ``own`` are the columns that identify it."""
         times = (0.0, round((facts.n_states - 1) * facts.step_s, 9))
         yield self._judged(own, verdict, facts, times)
         yield from self._rules(own, verdict, facts)
         yield from self._findings(own, verdict, findings)
 
     def of_nothing(self, own: Row, why: str) -> Row:
-        """The row of what could not be judged: a file, a recording, a vehicle or a trace."""
+        """The row for something not judged: a file, a recording, a vehicle or a trace."""
         return {**self.shared, **own, "kind": "drive", "outcome": "not_judged", "because": why}
 
     def _of_drive(
@@ -114,12 +114,12 @@ class DriveRows:
             "to_s": times[1],
             "road": facts.road,
             "states": facts.n_states,
-            # Each state stands for the time up to the next one, the last for a step, too.
+            # Each state stands for the time until the next one, the last state for one step.
             "duration_s": round(facts.n_states * facts.step_s, 9),
         }
 
     def _rules(self, own: Row, verdict: Verdict, facts: DriveFacts) -> Iterator[Row]:
-        """A row for each rule: the worst of its outcomes, and how often it was put to the test."""
+        """A row for each rule: its worst outcome, and how often the rule was put to the test."""
         outcomes: dict[str, str] = dict.fromkeys(self._of_rules, "kept")
         outcomes |= {result.rule: "open" for result in verdict.open}
         outcomes |= {violation.rule: "violated" for violation in verdict.violations}
@@ -139,7 +139,7 @@ class DriveRows:
     def _findings(
         self, own: Row, verdict: Verdict, findings: Sequence[VerdictFinding]
     ) -> Iterator[Row]:
-        """A row for each violation, with when it was lost, and for each that is open."""
+        """A row for each violation, with the state that decided it, and for each open rule."""
         violations = iter(verdict.violations)
         for finding in findings:
             if finding.outcome == "not_judged":
@@ -152,9 +152,10 @@ class DriveRows:
 
 
 def driven_m(drive: Drive) -> float | None:
-    """How far ego drove (m), along its places; None if these are not known.
+    """The distance that ego drove (m) along its positions; None if these are unknown.
 
-    Recorded places waver: only who is ``MOVED_M`` from where it was counted last has moved.
+    Recorded positions fluctuate: a position counts only if it is at least ``MOVED_M`` away from the
+    last one counted.
     """
     places = drive.places
     if not places:

@@ -1,4 +1,4 @@
-"""The columns of a fleet's table of findings: one row a drive, one a rule of it, one a finding."""
+"""The columns of a fleet's table of findings: one row per drive, per rule of it and per finding."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ COLUMNS: Mapping[str, type] = {
     **dict.fromkeys(("violated", "perhaps_violated"), int),
     **dict.fromkeys(("rulebook_hash", "rulec", "thresholds", "assumptions"), str),
 }
-"""Name -> the type of its values: those of findings, and what rates need beside them.
+"""Name -> the type of its values: the columns of findings, and those needed for rates.
 
-docs/fleet.md says column by column what they mean. A text that does not apply is empty, a list
-has no items, a number is None.
+docs/fleet.md explains each column. Where a column does not apply, a text is empty, a list has no
+items and a number is None.
 """
 
 _IN_JSON: Mapping[type, Any] = {str: str, list: list[str]}
@@ -59,7 +59,7 @@ EMPTY: Mapping[str, Cell] = {
 _ROWS_AT_ONCE = 1 << 11
 
 Row: TypeAlias = Mapping[str, Cell]
-"""The columns of a row that apply."""
+"""A row's columns that apply."""
 
 
 def arrow_schema() -> Any:
@@ -76,7 +76,7 @@ def arrow_table(rows: Iterable[Row]) -> Any:
     pyarrow, _ = arrow("the table of findings")
     parts = []
     waiting = iter(rows)
-    # A row as columns takes a tenth of what it takes as it is.
+    # Rows converted to columns take a tenth of the memory.
     while listed := list(islice(waiting, _ROWS_AT_ONCE)):
         arrays = [
             _array([row.get(name, EMPTY[name]) for row in listed], kind)

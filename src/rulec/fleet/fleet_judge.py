@@ -1,4 +1,4 @@
-"""A callable that judges tables of drives, made to be sent to workers of any engine."""
+"""A callable that judges tables of drives, and can be sent to the workers of any engine."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from rulec.trace.trace_model import Ending
 
 
 class FleetJudge:
-    """Judges all drives of an Arrow table, and gives the table of what was found.
+    """Judges all drives of an Arrow table and returns the table of findings.
 
     ``rules`` is a compiled rulebook: the path of its file, its content, or what
-    ``rulec.compile_rulebook`` returns. ``road_map`` is the map of tracks, ``request`` says by which
-    thresholds and on which assumptions drives are judged, ``ends`` how traces end. A drive that
-    lacks rows is refused (R0709); where tables are ``grouped`` by drives, it is reported instead.
+    ``rulec.compile_rulebook`` returns. ``road_map`` is the map for tracks, ``request`` sets the
+    thresholds and assumptions for drives, ``ends`` says how traces end. A drive that lacks rows is
+    refused (R0709), or reported in the table if tables are ``grouped`` by drive.
     """
 
     __name__ = "FleetJudge"
-    """Ray calls what it maps by the name that functions have."""
+    """Ray needs it: it names what it maps by a function's name."""
 
     def __init__(
         self,
@@ -42,7 +42,7 @@ class FleetJudge:
         ends: Ending | None = None,
         grouped: bool = False,
     ) -> None:
-        # What goes to workers is the file's content: they need not have the file.
+        # Workers get the content of the file, because they may not have the file.
         self._rules = carried(rules)
         self._roads = str(road_map) if isinstance(road_map, Path) else road_map
         self._request = request or RequestedDrives()
@@ -51,11 +51,11 @@ class FleetJudge:
         self._seen = SeenKeys()
 
     def __call__(self, table: Any) -> Any:
-        """The findings (``rulec.fleet.arrow_schema``) of a table of tracks or traces.
+        """The findings (``rulec.fleet.arrow_schema``) in a table of tracks or traces.
 
-        Nothing else comes of it: the same table gives the same findings, wherever and however often
-        it is judged. Raises RulecError R0706 without pyarrow, R0709 for a drive that is cut, R0710
-        for a table of something else, or one whose drives have names that are not UTF-8.
+        There are no side effects: the same table gives the same findings, wherever and however
+        often it is judged. Raises RulecError R0706 without pyarrow, R0709 for a drive that is cut,
+        R0710 for a table of something else, or one whose drives have names that are not UTF-8.
         """
         table = _as_table(table)
         if not table.num_rows:
@@ -76,7 +76,7 @@ class FleetJudge:
 
 
 def _check_names(table: Any, keys: Sequence[str]) -> None:
-    # As there is a table, Arrow is loaded.
+    # There is a table, so Arrow is already loaded.
     from rulec.trace.formats.arrow.table_groups import not_utf8
 
     if why := not_utf8(table, keys):
@@ -84,7 +84,7 @@ def _check_names(table: Any, keys: Sequence[str]) -> None:
 
 
 def _as_table(table: Any) -> Any:
-    """A record batch, too, as a table without views. Raises TypeError."""
+    """A table or record batch as a table without view types. Raises TypeError."""
     pyarrow, _ = arrow("the table of drives")
     if isinstance(table, pyarrow.RecordBatch):
         table = pyarrow.Table.from_batches([table])
@@ -93,7 +93,7 @@ def _as_table(table: Any) -> Any:
             f"a pyarrow.Table is judged, not a {type(table).__name__}; with Ray's map_batches and "
             "map_groups give batch_format='pyarrow'"
         )
-    # As it is there is one: it is loaded
+    # There is a table, so Arrow is already loaded
     from rulec.trace.formats.arrow.arrow_arrays import with_plain_texts
 
     return with_plain_texts(table)

@@ -1,6 +1,6 @@
 """Identity of a judgement: rulebook, version, thresholds and assumptions, as texts.
 
-Findings of one fleet may be added up only if all of these are the same.
+Findings of a fleet may be added up only if all of these are the same.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from rulec.version import __version__
 
 @dataclass(frozen=True, slots=True)
 class JudgedBy:
-    """The rulebook's name and hash, the version of rulec, and what was chosen.
+    """The rulebook's name and hash, the version of rulec, and the options chosen.
 
-    ``thresholds`` are those that are not the usual ones of this version, such as ``near_m=200``;
-    ``assumptions`` values, and ``defaults``, ``as recorded``, ``ends=cut``: sorted, with ``; ``
-    between them, as options are written.
+    ``thresholds`` are those that differ from this version's defaults, such as ``near_m=200``;
+    ``assumptions`` are values, ``defaults``, ``as recorded`` and ``ends=cut``: both sorted,
+    separated by ``; `` and written as options are.
     """
 
     __repr__ = short_repr
@@ -41,12 +41,12 @@ class JudgedBy:
     assumptions: str = ""
 
     def columns(self) -> dict[str, str]:
-        """Its fields, as columns of a table of findings."""
+        """The fields as columns of a table of findings."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
 def judged_by(rules: CompiledRulebook, request: RequestedDrives, ends: str = "") -> JudgedBy:
-    """What drives are judged by; ``ends`` is how traces are taken to end, if that is chosen."""
+    """What drives are judged by; ``ends`` is how traces are assumed to end, if that is chosen."""
     given = request.thresholds
     chosen = {
         field.name: getattr(given, field.name)
@@ -74,10 +74,10 @@ def _written(value: Value) -> str:
 
 
 def rulebook_hash(rules: CompiledRulebook) -> str:
-    """SHA-256 (hexadecimal) of all that decides verdicts and opportunities.
+    """SHA-256 (hexadecimal) of everything that decides verdicts and opportunities.
 
-    These are rules, facts and vocabulary. It is that of the rulebook, whether it comes from its
-    source or from a compiled file, for whatever step: neither words for people nor machines count.
+    That is the rules, facts and vocabulary. The hash is the same for a rulebook's source and its
+    compiled file, at any step: texts for people and automata do not count.
     """
     vocabulary = rules.vocabulary
     content = [

@@ -1,4 +1,4 @@
-"""Kind of a table, tracks or traces; whether its drives are complete."""
+"""The kind of a table (tracks or traces), and whether its drives are complete."""
 
 from __future__ import annotations
 
@@ -13,16 +13,17 @@ from rulec.trace.formats.table_reader import STEP, TRACE
 TableKind = Literal["tracks", "traces"]
 
 FILE, RECORDING, MAP, ROWS = "file", "recording", "map", "rows"
-"""Columns that both kinds of tables may have beside their own.
+"""Columns that both kinds of tables may have in addition.
 
-Where a row is from, the map of its recording, and how many rows its recording or trace has.
+They contain a row's file, its recording, the recording's map, and the row count of its recording or
+trace.
 """
 
 MOST_SEEN = 1 << 12
 
 
 def kind_of(columns: Sequence[str]) -> TableKind:
-    """What a table with these columns holds. Raises RulecError R0710."""
+    """The kind of a table with these columns. Raises RulecError R0710."""
     names = [name.casefold() for name in columns]
     if TRACE in names and STEP in names:
         return "traces"
@@ -32,13 +33,13 @@ def kind_of(columns: Sequence[str]) -> TableKind:
 
 
 def keys_of(columns: Sequence[str], kind: TableKind) -> list[str]:
-    """The columns that say which recording, or trace, a row is of."""
+    """The columns that identify the recording or trace of a row."""
     keys = [name for name in (FILE, RECORDING) if name in columns]
     return [*keys, TRACE] if kind == "traces" else keys
 
 
 def lacking(rows: Any, count: int) -> str:
-    """How many rows are missing, in words, if the table says how many there are in all."""
+    """How many rows are missing, as a text; empty if none is or the table has no row count."""
     if ROWS not in rows.column_names:
         return ""
     stated = [value for value in rows.column(ROWS).unique().to_pylist() if value is not None]
@@ -48,17 +49,17 @@ def lacking(rows: Any, count: int) -> str:
 
 
 class SeenKeys:
-    """The drives that a judge has seen last, and what they were like.
+    """The drives that a judge saw last, with a summary of their rows.
 
-    A drive that comes again as it was is judged anew: its worker failed and started again. One that
-    comes again with other rows has been cut. Copies for other processes have seen nothing.
+    A drive that returns unchanged is judged again: its worker failed and was restarted. One that
+    returns with other rows has been cut. Copies sent to other processes start empty.
     """
 
     def __init__(self) -> None:
         self._seen: OrderedDict[Hashable, Hashable] = OrderedDict()
 
     def is_other(self, key: Hashable, content: Hashable) -> bool:
-        """True if a drive with this key was there before, with other content."""
+        """Whether a drive with this key was seen before with other content."""
         before = self._seen.setdefault(key, content)
         if len(self._seen) > MOST_SEEN:
             self._seen.popitem(last=False)

@@ -1,4 +1,4 @@
-"""Recordings in tables of tracks, judged, as rows."""
+"""Judge recordings in tables of tracks, as rows."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ from rulec.recordings.tracks.roads_of_tracks import track_recording
 from rulec.recordings.tracks.track_table import track_rows_of
 
 Roads = RoadMap | str | None
-"""A map that has been read, or the path of one."""
+"""A map already read, or the path of one."""
 
 _MOST_MAPS = 8
 
 
 @dataclass(frozen=True, slots=True)
 class TrackTableJudge:
-    """Judges recordings in tables of tracks on ``roads``, or on the map that a table names.
+    """Judges recordings in tables of tracks on ``roads``, or on the map named by the table.
 
-    ``seen`` are those that have been; None if tables are grouped by recordings.
+    ``seen`` are recordings seen before; None if tables are grouped by recording.
     """
 
     to_rows: DriveRows
@@ -46,9 +46,9 @@ class TrackTableJudge:
     def rows(self, table: Any) -> Iterator[Row]:
         """The rows of all drives, recording by recording.
 
-        Raises RulecError R0709 for one that is cut, if tables are not grouped by them.
+        Raises RulecError R0709 for a recording that is cut, if tables are not grouped by recording.
         """
-        # Arrow, 0.1 s: where there is a table of it, it is loaded.
+        # Arrow, 0.1 s: where there is an Arrow table, it is already loaded.
         from rulec.trace.formats.arrow.table_groups import extent, groups, not_utf8
 
         keys = keys_of(table.column_names, "tracks")
@@ -80,12 +80,12 @@ class TrackTableJudge:
 def recording_of(table: Any, name: str, roads: Roads) -> Recording:
     """The recording of the tracks in an Arrow table.
 
-    Raises RulecError R0610, R0614 without a map, else as ``read_map``.
+    Raises RulecError R0610, R0614 without a map, otherwise as ``read_map``.
     """
     maps = table.column(MAP).unique().to_pylist() if MAP in table.column_names else []
     if len(maps) > 1:
         raise no_map(name, f"its rows name {len(maps)} maps")
-    # Arrow, 0.1 s: where there is a table of it, it is loaded.
+    # Arrow, 0.1 s: where there is an Arrow table, it is already loaded.
     from rulec.trace.formats.arrow.arrow_arrays import cells_in
 
     known = [column for column in table.column_names if column not in (MAP, ROWS)]
@@ -103,5 +103,5 @@ def recording_of(table: Any, name: str, roads: Roads) -> Recording:
 
 @lru_cache(maxsize=_MOST_MAPS)
 def _map(path: str, step_s: float, _: FileState | None) -> RoadMap:
-    """A map as it is now, read once in a process; its lights count in steps."""
+    """A map in its current state, read once per process; the times of its lights count steps."""
     return read_map(Path(path), step_s)

@@ -1,4 +1,4 @@
-"""Traces in tables, judged, as rows."""
+"""Judge traces in tables, as rows."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ from rulec.trace.trace_model import Trace
 
 @dataclass(frozen=True, slots=True)
 class TraceTableJudge:
-    """Judges traces in tables; ``seen`` as for recordings."""
+    """Judges traces in tables; ``seen`` as in ``TrackTableJudge``."""
 
     to_rows: DriveRows
     assumed: Assumptions
     seen: SeenKeys | None
 
     def rows(self, table: Any) -> Iterator[Row]:
-        """The rows of all traces, by their names.
+        """The rows of all traces, ordered by name.
 
-        Raises RulecError R0709 for one that is cut, if tables are not grouped by them.
+        Raises RulecError R0709 for a trace that is cut, if tables are not grouped by trace.
         """
-        # Arrow, 0.1 s: where there is a table of it, it is loaded.
+        # Arrow, 0.1 s: where there is an Arrow table, it is already loaded.
         from rulec.trace.formats.arrow.table_groups import groups
 
         own = [name for name in keys_of(table.column_names, "traces") if name != TRACE]
@@ -43,7 +43,7 @@ class TraceTableJudge:
             yield from self._of_source(rows, dict(zip(own, key, strict=True)))
 
     def _of_source(self, rows: Any, own: Mapping[str, str]) -> Iterator[Row]:
-        """The rows of traces that are from one file and recording."""
+        """The rows of the traces from one file and recording."""
         # As above.
         from rulec.trace.formats.arrow.table_groups import not_utf8, trace_outlines, without_rows
 
@@ -95,8 +95,8 @@ class TraceTableJudge:
     def _with_facts(
         self, traces: Items, answers: Iterable[Answer]
     ) -> list[tuple[Verdict, DriveFacts] | str]:
-        """For each trace its verdict and what rates need, or why it has none."""
-        # The reason, and not all that is said with it: a table may have as many as rows.
+        """For each trace its verdict and the facts needed for rates, or why it has none."""
+        # Only the reason, not the whole message: a table may contain as many reasons as rows.
         short = [
             _why(answer.error) if isinstance(answer, NotJudged) else answer for answer in answers
         ]
@@ -107,7 +107,7 @@ class TraceTableJudge:
     def _findings(
         self, traces: Items, place: int, verdict: Verdict, own: Mapping[str, str]
     ) -> list[VerdictFinding]:
-        """What was found of a trace, which is made only if something was."""
+        """The findings of a trace; the trace is built only if there are any."""
         if not verdict.violations and not verdict.open:
             return []
         trace = traces[place]

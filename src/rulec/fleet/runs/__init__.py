@@ -1,1 +1,1 @@
-"""Runs over all drives of a fleet, unit of work by unit of work, into a folder of findings."""
+"""Runs over all drives of a fleet, one unit of work at a time, into a folder of findings."""

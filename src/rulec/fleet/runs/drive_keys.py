@@ -1,4 +1,4 @@
-"""Tables of drives in Parquet, read a few rows at a time, and which drive each row is of."""
+"""Read Parquet tables of drives a few rows at a time, with the drive of each row."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from rulec.fleet.table_kind import TableKind, keys_of, kind_of
 from rulec.trace.formats.arrow.parquet import arrow
 
 ROWS_AT_ONCE = 1 << 14
-"""Rows of a file that are in memory, however many its row groups have."""
+"""Number of rows kept in memory, however large a file's row groups are."""
 
 _BYTES_AT_ONCE = 1 << 16
 
 _BETWEEN_KEYS = "\x1f"
 
 KeyHashes = NDArray[uint64]
-"""Keys of drives as numbers: eight bytes each, however many drives there are."""
+"""Keys of drives as numbers of eight bytes each, whatever the length of the texts."""
 
 
 class KeyedRows(NamedTuple):
-    """Rows of a file; the key of each is the one of ``texts`` that ``codes`` says."""
+    """Rows of a file; ``codes`` gives for each row the index of its key in ``texts``."""
 
     rows: Any
     codes: NDArray[np.int64]
@@ -40,15 +40,15 @@ class KeyedRows(NamedTuple):
         return np.fromiter(hashes, uint64, len(self.texts))
 
     def local_hashes(self) -> NDArray[np.int64]:
-        """The keys as numbers of this process, in a tenth of the time."""
+        """The keys as numbers valid in this process only, computed in a tenth of the time."""
         return np.fromiter(map(hash, self.texts), np.int64, len(self.texts)) ^ hash(self.kind)
 
 
 @contextmanager
 def memory_given_back() -> Iterator[None]:
-    """A block in which Arrow takes memory from the system and gives it back.
+    """A block in which Arrow takes memory from the system and returns it there.
 
-    What Arrow keeps of its own for later would grow for millions of rows.
+    The memory that Arrow's own pool keeps for reuse would grow over millions of rows.
     """
     pyarrow, _ = arrow("tables of drives")
     before = pyarrow.default_memory_pool()
@@ -61,7 +61,7 @@ def memory_given_back() -> Iterator[None]:
 
 @contextmanager
 def opened_table(path: str) -> Iterator[Any]:
-    """A Parquet file; what Arrow says of it becomes a RulecError R0710."""
+    """A Parquet file; errors from Arrow become a RulecError R0710."""
     pyarrow, parquet = arrow(path)
     try:
         with parquet.ParquetFile(path, buffer_size=_BYTES_AT_ONCE) as source:
@@ -73,11 +73,11 @@ def opened_table(path: str) -> Iterator[Any]:
 def keyed_rows(
     source: Any, row_groups: Sequence[int], path: str, *, whole: bool
 ) -> Iterator[KeyedRows]:
-    """The rows of some row groups in order: ``whole``, or only their columns of keys.
+    """The rows of some row groups in order: ``whole``, or only the key columns.
 
     Raises RulecError R0710 for a table of something else, or keys that are not UTF-8.
     """
-    # Arrow, 0.1 s: where there is a table of it, it is loaded.
+    # Arrow, 0.1 s: where there is an Arrow table, it is already loaded.
     from rulec.trace.formats.arrow.table_groups import key_texts, not_utf8, table_of_batch
 
     names = source.schema_arrow.names

@@ -11,4 +11,4 @@ from rulec.fleet.runs.unit_work import UnitWorker
 from rulec.fleet.runs.work_units import WorkUnit
 
 Engine: TypeAlias = Callable[[UnitWorker, Sequence[WorkUnit], Jobs], Iterator[FleetTally]]
-"""What each unit comes to, in any order; one whose worker fails is judged again."""
+"""Gives the tally of each unit, in any order; a unit whose worker fails is judged again."""

@@ -1,4 +1,4 @@
-"""Folder of a fleet's findings: contents, origin, units that are done."""
+"""The folder of a fleet's findings: its content, its origin and the units that are done."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from rulec.recordings.recording_format import RecordingSource
 from rulec.trace.formats.arrow.parquet import arrow
 
 MANIFEST = "_manifest.json"
-"""Engines that read the folder as a table pass over what begins so."""
+"""Engines that read the folder as a table skip files whose names begin with ``_``."""
 VERSION = 1
 
 STATE = b"rulec.unit"
-"""The key of a file's metadata whose value says what its unit read."""
+"""The metadata key for the state of what the file's unit read."""
 
 READ = b"rulec.read"
-"""The key of a file's metadata with what else was read for it, such as maps, and its state then."""
+"""The metadata key for other files read, such as maps, each with its state at the time."""
 
 _SHORT = 12
 
@@ -42,7 +42,7 @@ class FleetFolder:
 
     @property
     def findings(self) -> Path:
-        """The folder of the files, named as engines name parts of tables."""
+        """The folder of the part files, named as engines name partitions of tables."""
         return self.path / f"book={self.by.rulebook_hash[:_SHORT]}"
 
     def part(self, unit: WorkUnit) -> Path:
@@ -50,7 +50,7 @@ class FleetFolder:
         return self.findings / f"part-{unit.digest}.parquet"
 
     def is_done(self, unit: WorkUnit) -> bool:
-        """True if a unit's file is there, whole, and made of what is there now."""
+        """Whether a unit's file exists, is complete and was made from the inputs' current state."""
         path = self.part(unit)
         if not path.is_file():
             return False
@@ -66,9 +66,9 @@ class FleetFolder:
 
     @contextmanager
     def alone(self) -> Iterator[None]:
-        """Make the folder, and keep other runs out of it.
+        """Create the folder, and keep other runs out of it.
 
-        Raises RulecError R0702, R0712 if there is one.
+        Raises RulecError R0702, R0712 if another run uses it.
         """
         make_folder(self.path)
         with refusals(self.path):
@@ -79,7 +79,7 @@ class FleetFolder:
             except BlockingIOError:
                 raise folder_in_use(self.path) from None
             except OSError:
-                # Some file systems have no locks
+                # Some file systems do not support locks
                 pass
             yield
         finally:
@@ -88,9 +88,9 @@ class FleetFolder:
     def open(
         self, inputs: Sequence[str], source: RecordingSource, egos: Sequence[str] = ()
     ) -> None:
-        """Begin in the folder, or go on with the same settings and at least the same inputs.
+        """Start in the folder, or continue with the same settings and at least the same inputs.
 
-        Raises RulecError R0702, R0712 if it is another fleet's, R0701 for a map that is not there.
+        Raises RulecError R0702, R0712 if it belongs to another fleet, R0701 for a missing map.
         """
         settings = {
             **self.by.columns(),
@@ -106,13 +106,13 @@ class FleetFolder:
             raise other_fleet(self.path, "it has no _manifest.json, but other files")
         make_folder(self.findings)
         for left in (*self.findings.glob(".*.part"), *self.path.glob(".*.part")):
-            # Of a process that was killed: nobody else writes here.
+            # Left by a killed process: no other process writes here.
             with suppress(OSError):
                 left.unlink()
         content = {"version": VERSION, "settings": settings, "inputs": list(inputs)}
         with written_whole(manifest) as stream:
             text = json.dumps(content, indent=1, ensure_ascii=False)
-            # Names of files may be no text.
+            # Names of files may not be valid text.
             stream.write(f"{text}\n".encode(errors="backslashreplace"))
 
     def _check(
@@ -136,7 +136,7 @@ class FleetFolder:
             )
 
     def leftovers(self, units: Sequence[WorkUnit]) -> Iterator[Path]:
-        """Files of findings that no unit of work has."""
+        """Files of findings that belong to no unit of work."""
         own = {self.part(unit) for unit in units}
         yield from (path for path in sorted(self.findings.glob("*.parquet")) if path not in own)
 

@@ -1,4 +1,4 @@
-"""The files of a fleet: tables of many drives, and recordings, each a file."""
+"""The files of a fleet: tables of many drives, and recordings of one file each."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from rulec.work_trees import leads_out, refuse_no_file, tree_of
 
 @dataclass(frozen=True, slots=True)
 class FleetInputs:
-    """Tables and recordings, each in order and once, and why others cannot be meant."""
+    """Tables and recordings, each once and in order, and why other arguments are neither."""
 
     tables: tuple[str, ...]
     recordings: tuple[str, ...]
@@ -35,9 +35,9 @@ class FleetInputs:
 
 
 def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
-    """The files that are meant by paths, patterns and folders.
+    """The files given by paths, patterns and folders.
 
-    Of folders they are the recordings and the tables of drives in and below them.
+    A folder stands for the recordings and the tables of drives in and below it.
     """
     tables: dict[str, None] = {}
     recordings: dict[str, None] = {}
@@ -46,11 +46,11 @@ def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
         below = list(_tables_below(argument))
         tables |= dict.fromkeys(below)
         files = input_files([argument])
-        # A folder of tables alone has no recordings, and need not.
+        # A folder that contains only tables need not contain recordings.
         problems += (problem for problem in files.problems if not below or _is_link_out(problem))
         for path in files.paths:
             try:
-                # Each file is read by whichever process is free, perhaps on another machine.
+                # Each file is read by any free process, perhaps on another machine.
                 refuse_no_file(Path(path))
             except RulecError as error:
                 problems.append(error)
@@ -65,7 +65,7 @@ def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
 
 
 def _distinct_files(paths: Iterable[str]) -> tuple[str, ...]:
-    """Each file once, however often it is meant, by the first of its paths."""
+    """Each file once, however often it is given, by the first of its paths."""
     first: dict[str, str] = {}
     for path in paths:
         first.setdefault(os.path.realpath(path), path)
@@ -96,7 +96,7 @@ def _why_not(path: str) -> RulecError:
 
 
 def _is_table(path: str) -> bool:
-    """True for a table of traces, or of tracks that says which recording each row is of."""
+    """Whether a file is a table of traces, or of tracks with a column for their recording."""
     try:
         names = {*parquet_names(Path(path), lambda why, **_: no_fleet_input(path, why))}
     except RulecError:

@@ -1,4 +1,4 @@
-"""All drives of a fleet, judged into a folder, or what is left of them."""
+"""Judge all drives of a fleet, or those still missing, into a folder."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ _ENGINES: Mapping[EngineName, Callable[[], Engine]] = {
 
 @dataclass(frozen=True, slots=True)
 class FleetSettings:
-    """How drives are judged: ``source`` says how recordings are read, its path being another one.
+    """How drives are judged: ``source`` says how to read recordings; its path is replaced.
 
-    ``ends`` is how traces end, if not as they say. ``jobs`` says how many processes there are.
+    ``ends`` is how traces end, if it overrides the traces. ``jobs`` sets the number of processes.
     """
 
     __repr__ = short_repr
@@ -55,10 +55,10 @@ class FleetSettings:
 
 @dataclass(frozen=True, slots=True)
 class FleetRun:
-    """What a run has done: how many ``units`` there are, and how many of them were there before.
+    """The result of a run: the number of ``units``, and how many were done ``before``.
 
-    ``by`` is what they were judged by, ``findings`` the folder of their files, ``tally`` what they
-    come to; ``problems`` say what could not be read, ``leftovers`` are files of no unit.
+    ``by`` is what drives were judged by, ``findings`` the folder of the part files, ``tally`` their
+    sums; ``problems`` are inputs that could not be read, ``leftovers`` files of no unit.
     """
 
     __repr__ = short_repr
@@ -73,7 +73,7 @@ class FleetRun:
 
     @property
     def is_complete(self) -> bool:
-        """True if a drive was judged, and everything that was given."""
+        """Whether all inputs were judged, and at least one drive."""
         unread = self.tally.unread or self.tally.lost or self.problems
         return bool(self.tally.judged) and not unread
 
@@ -87,12 +87,12 @@ def run_fleet(
 ) -> FleetRun:
     """Judge all drives of some files, and write findings and a manifest to a folder.
 
-    A unit whose file is there is not judged again. ``tell`` is told how many units of how many are
-    done. Raises RulecError R0702, R0706 without pyarrow, R0712 for a folder of another fleet or one
-    that another run writes into, R0713 without the engine, and why there is nothing to judge if no
-    input is a recording or a table.
+    A unit whose file exists is not judged again. ``tell`` is called with the numbers of finished
+    and of all units. Raises RulecError R0702, R0706 without pyarrow, R0712 for a folder of another
+    fleet or one that another run writes to, R0713 without the engine, and the inputs' problems if
+    none of them is a recording or a table.
     """
-    # Whatever is missing is said before anything is written.
+    # Report what is missing before anything is written.
     arrow("the table of findings")
     engine = _ENGINES[settings.engine]()
     inputs = fleet_inputs(arguments)

@@ -15,7 +15,7 @@ _MOST_REASONS = 5
 
 
 def as_text(run: FleetRun) -> str:
-    """Drives, hours and kilometres; each rule that is not simply kept; where the findings are."""
+    """Drives, hours, kilometres; each rule with outcomes other than kept; the findings' folder."""
     return visible_lines([*_drives(run), *_rules(run), *_files(run)])
 
 
@@ -25,7 +25,7 @@ def compared(runs: Sequence[tuple[CompiledRulebook, FleetRun]]) -> str:
 
 
 def _verdicts(tally: FleetTally) -> BatchTally:
-    """The tally as one of verdicts, without recordings."""
+    """The tally as a tally of verdicts, without recordings."""
     verdicts = BatchTally(
         satisfied=tally.drives["kept"],
         violated=tally.drives["violated"],
@@ -43,7 +43,7 @@ def _verdicts(tally: FleetTally) -> BatchTally:
 
 
 def visible_lines(lines: list[str]) -> str:
-    """Lines as one text, in which nothing drives a terminal."""
+    """Lines as one text, without characters that control a terminal."""
     return "\n".join(visible(line) for line in lines)
 
 

@@ -19,10 +19,10 @@ class FleetTally:
     """Sums over drives.
 
     ``drives``: outcome -> number. ``rules``: rule and outcome -> number of drives. ``reasons``: why
-    drives were not judged -> number. ``examples``: such a reason -> the first file by its name that
-    has such a drive, in a table that names none the recording or the trace. ``unread`` are files,
-    recordings and traces, not vehicles, that could not be judged. ``lost`` are units whose process
-    was killed twice.
+    drives were not judged -> number. ``examples``: such a reason -> the alphabetically first file
+    with such a drive; in a table without file names, its recording or trace. ``unread``: number of
+    files, recordings and traces (not vehicles) that could not be judged. ``lost``: units whose
+    process was killed twice.
     """
 
     drives: Counter[str] = field(default_factory=Counter)

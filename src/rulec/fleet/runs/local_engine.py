@@ -1,4 +1,4 @@
-"""Units of work judged in this process, or in several of this machine."""
+"""Units of work judged in this process, or in several on this machine."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from rulec.fleet.runs.work_units import WorkUnit
 
 
 def local_engine() -> Engine:
-    """The engine that there always is."""
+    """The engine that needs no further package."""
     return judged_locally
 
 
 def judged_locally(
     worker: UnitWorker, units: Sequence[WorkUnit], jobs: Jobs
 ) -> Iterator[FleetTally]:
-    """What each unit comes to; one whose process is killed twice is only named."""
+    """The tally of each unit; a unit whose process is killed twice is only listed as lost."""
     for unit, result in in_order(_Work(worker), units, jobs):
         yield FleetTally(lost=[unit.path]) if isinstance(result, LostTask) else result
 
 
 class _Work:
-    """What a process does with a unit."""
+    """The work of a process on one unit."""
 
     def __init__(self, worker: UnitWorker) -> None:
         self._worker = worker

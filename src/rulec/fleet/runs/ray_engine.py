@@ -1,4 +1,4 @@
-"""Units of work judged by Ray Data, on the cluster that there is or on this machine."""
+"""Judge units of work with Ray Data, on the current cluster or on this machine."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rulec.fleet.runs.unit_work import UnitWorker
 from rulec.fleet.runs.work_units import WorkUnit
 
 _BLOCKS = 16
-"""So many tasks there are for each process: fewer leave some idle, more take time themselves."""
+"""Number of tasks per process: fewer leave some processes idle, more add overhead."""
 
 
 def ray_engine() -> Engine:
@@ -33,10 +33,10 @@ def ray_engine() -> Engine:
 def _judged_by(
     ray: Any, worker: UnitWorker, units: Sequence[WorkUnit], jobs: Jobs
 ) -> Iterator[FleetTally]:
-    """What each unit comes to, in the order in which they are done."""
+    """The tally of each unit, in the order in which they finish."""
     own = not ray.is_initialized()
     for name in ("ray", "ray.data"):
-        # What it does step by step is no business of who asked for findings.
+        # Ray's progress messages are of no interest to a user who wants findings.
         logging.getLogger(name).setLevel(logging.ERROR)
     if own:
         here = {} if os.environ.get("RAY_ADDRESS") else {"num_cpus": jobs.processes}
@@ -60,7 +60,7 @@ def _judged_by(
 
 
 def _judged(sent: bytes, units: Any) -> dict[str, list[bytes]]:
-    """What each unit of a table comes to; the rulebook is read once in each process."""
+    """The tally of each unit in a table; the rulebook is read once in each process."""
     worker: UnitWorker = pickle.loads(sent)
     work_units = (pickle.loads(unit) for unit in units.column("unit").to_pylist())
     return {"tally": [pickle.dumps(worker.judged(unit)) for unit in work_units]}

@@ -1,4 +1,4 @@
-"""Units of work judged by Spark, on the session that there is or on this machine."""
+"""Judge units of work with Spark, on the current session or on this machine."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ def spark_engine() -> Engine:
 def _judged_by(
     sessions: Any, running: Any, worker: UnitWorker, units: Sequence[WorkUnit], jobs: Jobs
 ) -> Iterator[FleetTally]:
-    """What each unit comes to, in whatever order."""
+    """The tally of each unit, in any order."""
     pyarrow, _ = arrow("the table of units")
-    # Workers run the Python that runs here, not the first one on the path.
+    # Workers run the same Python as this process, not the first one on the path.
     os.environ.setdefault("PYSPARK_PYTHON", sys.executable)
     builder = sessions.builder.appName("rulec fleet").master(f"local[{jobs.processes}]")
     spark = running or builder.config("spark.ui.enabled", "false").getOrCreate()

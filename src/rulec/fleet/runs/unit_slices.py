@@ -1,4 +1,4 @@
-"""The rows of a unit's drives, some whole drives after the others, so that few are in memory."""
+"""The rows of a unit in tables of a few whole drives each, so that few rows are in memory."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from rulec.fleet.runs.work_units import TablePiece, WorkUnit
 from rulec.trace.formats.arrow.parquet import arrow
 
 MOST_TOGETHER = 1 << 15
-"""Rows that are judged together; of a longer drive all."""
+"""Number of rows judged together at most; a longer drive is judged whole."""
 
 _FEWEST_MERGED = 1 << 16
 
 
 class _Drives(NamedTuple):
-    """The drives of a unit: their hashes, how many rows each has, and its first one in the unit."""
+    """The drives of a unit: their hashes, row counts, and the index of each one's first row."""
 
     hashes: NDArray[np.int64]
     rows: NDArray[np.int64]
@@ -29,7 +29,7 @@ class _Drives(NamedTuple):
 
 
 class _Group(NamedTuple):
-    """A row group: its file, its number there, and its rows as the unit counts them."""
+    """A row group: its file, its index in the file, and its range of rows in the unit."""
 
     path: str
     number: int
@@ -38,7 +38,7 @@ class _Group(NamedTuple):
 
 
 class _Place(NamedTuple):
-    """Rows that have been read: their group's place in the unit, and the first one's number."""
+    """A batch of rows: the index of its row group in the unit, and of its first row."""
 
     group: int
     start: int
@@ -46,23 +46,23 @@ class _Place(NamedTuple):
 
 
 def slices_of_unit(unit: WorkUnit) -> Iterator[Any]:
-    """The rows of a unit's drives as Arrow tables, each of whole drives.
+    """The rows of a unit's drives as Arrow tables of whole drives.
 
-    Drives are in the order of their first rows. A table has ``MOST_TOGETHER`` rows at most, or one
-    drive. Wherever a drive's rows are, they are found; where drives stand together, each row is
-    read once. Raises RulecError R0710.
+    Drives are ordered by their first rows. A table has at most ``MOST_TOGETHER`` rows, or one
+    drive. The rows of a drive are found wherever they are; if each drive's rows are contiguous,
+    each row is read once. Raises RulecError R0710.
     """
     assert unit.piece is not None, "it is of a table"
     reader = _Reader(_groups(unit.piece, *unit.further))
     drives = _drives_of(unit)
     for own in _together(drives.rows):
         first, wanted = int(drives.first[own.start]), int(drives.rows[own].sum())
-        # Under no name: it is gone before the next one is read.
+        # Not bound to a name, so that it is freed before the next one is read.
         yield _one_table(list(reader.rows_of(drives.hashes[own], first, wanted)), unit.path)
 
 
 def _one_table(parts: Sequence[Any], path: str) -> Any:
-    # Arrow, 0.1 s: where there is a table of it, it is loaded.
+    # Arrow, 0.1 s: where there is an Arrow table, it is already loaded.
     from rulec.trace.formats.arrow.table_groups import joined
 
     pyarrow, _ = arrow(path)
@@ -88,7 +88,7 @@ def _groups(*pieces: TablePiece) -> list[_Group]:
 
 
 def _drives_of(unit: WorkUnit) -> _Drives:
-    """The drives of a unit by their first rows."""
+    """The drives of a unit, ordered by their first rows."""
     assert unit.piece is not None, "it is of a table"
     others, spread = (
         np.fromiter(keys, np.uint64, len(keys)) for keys in (unit.others, unit.spread)
@@ -99,13 +99,14 @@ def _drives_of(unit: WorkUnit) -> _Drives:
         with opened_table(piece.path) as source:
             for batch in keyed_rows(source, piece.row_groups, piece.path, whole=False):
                 which = spread if number else others
-                # Of the first piece all but the others, of further ones what is spread alone.
+                # From the first piece all drives except the others, from further pieces only the
+                # spread ones.
                 own = np.full(len(batch.texts), not number)
                 if len(which):
                     own ^= np.isin(batch.key_hashes(), which)
                 rows = np.bincount(batch.codes, minlength=len(own))
                 first = np.zeros(len(own), dtype=np.int64)
-                # What is written last stays.
+                # For repeated indices the last assignment wins.
                 first[batch.codes[::-1]] = np.arange(start, start + len(batch.codes))[::-1]
                 parts.append(_Drives(batch.local_hashes()[own], rows[own], first[own]))
                 start += len(batch.codes)
@@ -118,7 +119,7 @@ def _drives_of(unit: WorkUnit) -> _Drives:
 
 
 def _merged(parts: Sequence[_Drives]) -> _Drives:
-    """Each drive once."""
+    """The parts as one, with each drive once."""
     hashes, rows, first = (np.concatenate(columns) for columns in zip(*parts, strict=True))
     order = np.argsort(hashes, kind="stable")
     different, starts = np.unique(hashes[order], return_index=True)
@@ -128,7 +129,7 @@ def _merged(parts: Sequence[_Drives]) -> _Drives:
 
 
 def _together(rows: NDArray[np.int64]) -> Iterator[slice]:
-    """Which drives are judged together, by how many rows each has."""
+    """Ranges of drives to judge together, given the number of rows of each drive."""
     start = total = 0
     for place, count in enumerate(rows.tolist()):
         if total and total + count > MOST_TOGETHER:
@@ -140,7 +141,7 @@ def _together(rows: NDArray[np.int64]) -> Iterator[slice]:
 
 
 class _Reader:
-    """Reads rows of a unit onward, and from further ahead again where drives are mixed."""
+    """Reads a unit's rows in order, and jumps to a row group where drives are interleaved."""
 
     def __init__(self, groups: Sequence[_Group]) -> None:
         self._groups = groups
@@ -148,7 +149,7 @@ class _Reader:
         self._now: _Place | None = None
 
     def rows_of(self, hashes: NDArray[np.int64], first: int, wanted: int) -> Iterator[Any]:
-        """The rows of some drives: so many are ``wanted``, the first one of which is ``first``."""
+        """The ``wanted`` number of rows of some drives; ``first`` is the index of the first row."""
         # As above.
         from rulec.trace.formats.arrow.table_groups import rows_where
 
@@ -169,13 +170,13 @@ class _Reader:
         raise no_fleet_input(self._groups[0].path, "it has changed while it was read")
 
     def _start(self, row: int) -> None:
-        """Go to the row group that has a row."""
+        """Go to the row group that contains a row."""
         group = next(place for place, rows in enumerate(self._groups) if row < rows.stop)
         self._rest = _read_from(self._groups, group)
 
 
 def _read_from(groups: Sequence[_Group], first: int) -> Iterator[_Place]:
-    """The rows of groups from the first one on."""
+    """The rows of all groups from the index ``first`` on."""
     for path, own in groupby(range(first, len(groups)), lambda place: groups[place].path):
         with opened_table(path) as source:
             for place in own:

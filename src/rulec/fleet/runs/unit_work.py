@@ -1,4 +1,4 @@
-"""A unit of work: its drives judged, and their findings written as one file."""
+"""Judge the drives of a unit of work, and write their findings to one file."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _ROWS_AT_ONCE = 1 << 14
 class UnitWorker:
     """Judges units and writes their findings; it is sent to the workers of an engine.
 
-    ``source`` says how to read recordings; its path is another one.
+    ``source`` says how to read recordings; its path is replaced.
     """
 
     rules: CarriedRulebook
@@ -46,9 +46,9 @@ class UnitWorker:
     folder: FleetFolder
 
     def judged(self, unit: WorkUnit) -> FleetTally:
-        """Write a unit's file, unless it is there; what is in it.
+        """Write a unit's file unless it exists; return the sums over its content.
 
-        The file appears whole, and is the same however often it is written.
+        The file appears whole, and has the same content however often it is written.
         """
         path = self.folder.part(unit)
         with memory_given_back():
@@ -70,7 +70,7 @@ class UnitWorker:
             writer.add_key_value_metadata({STATE: state, READ: json.dumps(beside)})
 
     def rows(self, unit: WorkUnit) -> Iterator[Row]:
-        """The rows of a unit; what cannot be read is one."""
+        """The rows of a unit; for what cannot be read, a row with the reason."""
         rules = self.rules.read()
         to_rows = DriveRows(rules, self.folder.by)
         try:
@@ -99,6 +99,6 @@ class UnitWorker:
         slices = slices_of_unit(unit)
         while (table := next(slices, None)) is not None:
             rows = judges[kind_of(table.column_names)].rows(table)
-            # Nothing else holds it: it is gone before the next one is read.
+            # This is the only reference: the table is freed before the next one is read.
             del table
             yield from rows

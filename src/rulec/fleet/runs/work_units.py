@@ -1,4 +1,4 @@
-"""A fleet's work in units: a recording each, or a piece of a table with whole drives."""
+"""A fleet's work in units: each a recording, or a piece of a table with whole drives."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from rulec.files import file_state
 from rulec.fleet.runs.drive_keys import KeyHashes, keyed_rows, opened_table
 
 MOST_ROWS = 1 << 19
-"""Of a larger table several units are made, so that there is work for several processes."""
+"""A table with more rows is divided into several units, so that several processes have work."""
 
 
 class TablePiece(NamedTuple):
-    """Some row groups of a Parquet file, one after the other."""
+    """Some consecutive row groups of a Parquet file."""
 
     path: str
     row_groups: tuple[int, ...]
@@ -27,10 +27,11 @@ class TablePiece(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class WorkUnit:
-    """What is judged in one go, and whose findings are one file: a ``recording``, or a piece.
+    """What is judged in one go into one file of findings: a recording, or a ``piece`` of a table.
 
-    The drives of a piece are all that begin in it and no earlier one: those with keys in ``others``
-    do, and rows of those in ``spread`` are also in the ``further`` pieces.
+    The drives of a piece are those whose first row is in it. Keys in ``others`` belong to drives
+    that begin in an earlier piece; drives with keys in ``spread`` also have rows in the ``further``
+    pieces.
     """
 
     path: str
@@ -41,17 +42,17 @@ class WorkUnit:
 
     @property
     def digest(self) -> str:
-        """What its file of findings is called by: that of its path and of where it begins."""
+        """The name of its file of findings: a hash of its path and of its first row group."""
         start = "" if self.piece is None else f"#{self.piece.row_groups[0]}"
         return sha256(os.fsencode(f"{self.path}{start}")).hexdigest()[:20]
 
     @property
     def paths(self) -> Sequence[str]:
-        """The files of its rows, or the one of its recording."""
+        """The files of its rows, or the file of its recording."""
         return list(dict.fromkeys([self.path, *(piece.path for piece in self.further)]))
 
     def state(self) -> str:
-        """What it reads, as far as names, sizes, times and places of rows tell."""
+        """A hash of what it reads: the files' names, sizes and times, and which row groups."""
         about = [(path, *file_state(path)) for path in self.paths]
         content = (about, self.piece, self.further, sorted(self.spread), sorted(self.others))
         return sha256(repr(content).encode()).hexdigest()
@@ -73,14 +74,14 @@ def work_units(tables: Sequence[str], recordings: Sequence[str]) -> Iterator[Wor
 
 
 def _units_of(pieces: Sequence[TablePiece], hashes: Sequence[KeyHashes]) -> Iterator[WorkUnit]:
-    """A unit for each piece: its drives, and their rows wherever they are."""
+    """A unit for each piece: the drives that begin in it, with their rows from all pieces."""
     if not pieces:
         return
     every = np.concatenate(hashes)
     owners = np.repeat(np.arange(len(hashes)), [len(own) for own in hashes])
     order = np.lexsort((owners, every))
     every, owners = every[order], owners[order]
-    # Only those that are in several pieces are looked at one by one.
+    # Only keys that occur in several pieces are looked at one by one.
     again = np.flatnonzero(every[1:] == every[:-1]) + 1
     first: dict[int, int] = {}
     further: dict[int, set[int]] = {}
@@ -110,7 +111,7 @@ def _pieces_or_reason(path: str) -> list[tuple[TablePiece, KeyHashes]] | RulecEr
 
 
 def _pieces(path: str) -> Iterator[tuple[TablePiece, KeyHashes]]:
-    """The pieces of a file with the keys in them. Raises RulecError R0710."""
+    """The pieces of a file, each with its keys. Raises RulecError R0710."""
     with opened_table(path) as source:
         groups: list[int] = []
         hashes: list[KeyHashes] = []
@@ -118,7 +119,7 @@ def _pieces(path: str) -> Iterator[tuple[TablePiece, KeyHashes]]:
         for number in range(source.num_row_groups):
             groups.append(number)
             rows += source.metadata.row_group(number).num_rows
-            # Nothing but keys is read here
+            # Only the key columns are read here
             hashes += (
                 batch.key_hashes() for batch in keyed_rows(source, [number], path, whole=False)
             )
