@@ -1,4 +1,4 @@
-"""The folder of everything that is kept from one call to the next, and who may write to it."""
+"""The folder of everything cached between calls, and who may write to it."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def cache_folder() -> Path | None:
 
 
 def usable_folder() -> Path | None:
-    """The cache's folder, which may not be there yet; None if others can write to it, too.
+    """The cache's folder, which may not exist yet; None if others can write to it.
 
-    Who writes there decides what is found. The default folder is closed to others.
+    Whoever can write there decides what is read from it. The default folder is closed to others.
     """
     folder = cache_folder()
     if folder is None:
@@ -46,9 +46,9 @@ def usable_folder() -> Path | None:
 
 
 def write_own(path: Path, data: bytes) -> None:
-    """Put a file of the cache there whole, for its owner alone. Raises OSError.
+    """Write a file of the cache, whole and accessible to its owner only. Raises OSError.
 
-    Nothing waits for the disk: whoever reads knows a file that was cut when the machine stopped.
+    It is not flushed to the disk: readers detect a file that was cut when the machine stopped.
     """
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     part = path.with_name(f".{path.name}.{os.urandom(8).hex()}.part")
@@ -63,7 +63,7 @@ def write_own(path: Path, data: bytes) -> None:
 
 @cache
 def program_digest() -> str:
-    """A digest of rulec's own files, by their times and sizes as they were when first asked for."""
+    """A digest of the times and sizes of rulec's own files, as they were at the first call."""
     seen = sha256()
     for path, status in package_files():
         seen.update(f"{path}\0{status.st_mtime_ns}\0{status.st_size}\n".encode())
@@ -71,9 +71,9 @@ def program_digest() -> str:
 
 
 def tidy(folder: Path, ending: str, most: int) -> None:
-    """Remove the half of the files with an ending that was unused longest, if there are too many.
+    """Remove the least recently used half of the files with an ending, if they exceed ``most``.
 
-    It is called whenever one is written, so nothing but names is looked at before.
+    It is called after each write, so at first it looks only at file names.
     """
     kept = [name for name in os.listdir(folder) if name.endswith(ending)]  # noqa: PTH208
     if len(kept) > most:

@@ -1,6 +1,6 @@
-"""Whether trees and machines are cached: only by the command line.
+"""Whether trees and machines are cached, which only the command line does.
 
-What ships with rulec is read by both: nothing is written for that.
+Entries that ship with rulec are read in any case; for them nothing is written.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ _recalled: ContextVar[Recalled] = ContextVar("_recalled", default="shipped")
 
 
 def recalled() -> Recalled:
-    """What is recalled here: what was kept and what ships, the latter alone, or nothing."""
+    """What may be recalled here: cached and shipped entries, only shipped ones, or nothing."""
     return _recalled.get()
 
 
 def is_keeping() -> bool:
-    """Tell whether trees and machines come from the cache, and go there."""
+    """Whether trees and machines are read from the cache and written to it."""
     return recalled() == "all"
 
 
 def knows_shipped() -> bool:
-    """Tell whether trees and machines may be those that ship."""
+    """Whether trees and machines may be read from what ships with rulec."""
     return recalled() != "none"
 
 
 @contextmanager
 def recalling(cached: Recalled) -> Iterator[None]:
-    """Let trees and machines in the block come from these."""
+    """Set what trees and machines may be recalled from in the block."""
     token = _recalled.set(cached)
     try:
         yield
@@ -42,6 +42,6 @@ def recalling(cached: Recalled) -> Iterator[None]:
 
 @contextmanager
 def keeping(*, on: bool = True) -> Iterator[None]:
-    """Let trees and machines come from the cache in the block, and go there; or from nowhere."""
+    """Let trees and machines be cached in the block, or, if not ``on``, recalled from nowhere."""
     with recalling("all" if on else "none"):
         yield

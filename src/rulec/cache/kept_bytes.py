@@ -1,7 +1,7 @@
-"""Files of the cache whose names say what they come from: a digest of all of it, and of rulec.
+"""Files of the cache, named by a digest of all their sources and of rulec.
 
-Such a file is never out of date. What cannot be kept, or is not as it was written, or may have been
-written by somebody else, is not there.
+So a file is never out of date. If an entry cannot be cached, was damaged, or may have been written
+by someone else, it counts as missing.
 """
 
 from __future__ import annotations
@@ -20,23 +20,23 @@ from rulec.files import is_own
 from rulec.version import __version__
 
 _QUICKLY = 1
-"""How hard it is tried to write little."""
+"""The compression level of zlib: fast rather than small."""
 
 
 @dataclass(frozen=True, slots=True)
 class KeptBytes:
-    """Files of one ``kind``, their ending: at most ``most``, the ones longest unused go first."""
+    """Up to ``most`` files with the ending ``kind``; the least recently used are removed first."""
 
     kind: str
     most: int
 
     @property
     def can_be(self) -> bool:
-        """Tell whether any may be kept, and there is a folder for them."""
+        """Whether entries may be cached, and there is a folder for them."""
         return is_keeping() and usable_folder() is not None
 
     def key(self, *parts: str) -> str:
-        """The name for what comes from these texts, and from this version of rulec."""
+        """The name of the entry made from these texts by this version of rulec."""
         seen = sha256(f"{__version__}\0{program_digest()}\0{self.kind}".encode())
         for part in parts:
             data = part.encode("utf-8", "surrogatepass")
@@ -45,7 +45,7 @@ class KeptBytes:
         return seen.hexdigest()
 
     def recall(self, key: str) -> bytes | None:
-        """What was kept under a key; None if that is not known."""
+        """The data cached under a key; None if there is none."""
         folder = usable_folder() if is_keeping() else None
         if folder is None:
             return None
@@ -61,7 +61,7 @@ class KeptBytes:
         return None
 
     def keep(self, contents: Mapping[str, bytes]) -> None:
-        """Keep something under each key, if that is possible."""
+        """Cache data under each key, if possible."""
         folder = usable_folder() if is_keeping() else None
         if folder is None or not contents:
             return
@@ -76,5 +76,5 @@ class KeptBytes:
 
 
 def _digest(key: str, packed: bytes) -> bytes:
-    """What tells whether a file is as it was written, and under its own name."""
+    """A digest that shows whether a file is unchanged and has its own name."""
     return sha256(key.encode() + packed).digest()

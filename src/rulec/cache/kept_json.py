@@ -1,6 +1,6 @@
-"""Files of the cache with a value in JSON, behind a digest of it.
+"""Files of the cache with a JSON value behind its digest.
 
-What is not as it was written, or may have been written by somebody else, is not there.
+If a file was damaged, or may have been written by someone else, it counts as missing.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rulec.files import is_own
 
 
 def recall_json(path: Path) -> Any:
-    """The value in a file, which counts as used now; None if there is none."""
+    """The value in a file, which is marked as used now; None if there is none."""
     with suppress(OSError, ValueError):
         with path.open("rb") as stream:
             if not is_own(os.fstat(stream.fileno())):
@@ -30,7 +30,7 @@ def recall_json(path: Path) -> Any:
 
 
 def keep_json(path: Path, value: Any, most: int = 0) -> None:
-    """Write a value, if that is possible, and keep at ``most`` so many files with that ending."""
+    """Write a value if possible; keep at most ``most`` files with its ending (0: any number)."""
     with suppress(OSError, ValueError):
         text = json.dumps(value).encode()
         write_own(path, _digest(text) + b"\n" + text)

@@ -1,8 +1,8 @@
-"""Caches that ship with rulec: bytes by keys of their sources.
+"""Caches that ship with rulec: bytes by keys made from their sources.
 
-A file of a kind begins with a digest of the code that made it. Where that code is another one now,
-as it may be in a checkout, nothing of the file is used; nor is what is not as it was written.
-Behind it are what entries have in common (zlib's dictionary), the keys, and the entries.
+A kind's file begins with a digest of the code that made it. If that code has changed, as it may in
+a checkout, or the file is damaged, nothing of it is used. Then come a dictionary for zlib with what
+entries have in common, the keys, and the entries.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from rulec.resources import code_digest, rulebooks_folder
 _BEGINNING = b"rulec shipped 1\n"
 _DIGEST = sha256().digest_size
 _KEY, _NUMBER = 16, 4
-"""How many bytes a key has, and a number: of bytes or entries, or where an entry ends."""
+"""Bytes of a key, and of a number (a count of bytes or entries, or the end of an entry)."""
 _COMMON = 1 << 15
-"""So much zlib looks back, and no dictionary needs to be longer."""
+"""The window of zlib in bytes; a longer dictionary would be of no use."""
 
 
 class ShippedBytes:
-    """The entries of a file: key -> bytes, unpacked when they are asked for."""
+    """The entries of a file: key -> bytes, unpacked on request."""
 
     def __init__(self, entries: Mapping[bytes, bytes], common: bytes = b"") -> None:
         self._entries = entries
@@ -33,11 +33,11 @@ class ShippedBytes:
 
     @property
     def keys(self) -> set[bytes]:
-        """All keys that there are."""
+        """The keys of all entries."""
         return {*self._entries}
 
     def recall(self, key: bytes) -> bytes | None:
-        """What is there under a key; None if nothing is, or it is not as it was written."""
+        """The entry under a key; None if there is none or it is damaged."""
         packed = self._entries.get(key)
         if packed is None:
             return None
@@ -53,12 +53,12 @@ _NOTHING = ShippedBytes({})
 
 
 def shipped_file(kind: str) -> Path:
-    """Where the entries of a kind are."""
+    """The path of the entries of a kind."""
     return rulebooks_folder() / f"shipped.{kind}"
 
 
 def shipped_key(*parts: str) -> bytes:
-    """The key for what comes from these texts."""
+    """The key of the entry made from these texts."""
     seen = sha256()
     for part in parts:
         data = part.encode("utf-8", "surrogatepass")
@@ -69,7 +69,7 @@ def shipped_key(*parts: str) -> bytes:
 
 @cache
 def shipped(kind: str, makers: tuple[str, ...]) -> ShippedBytes:
-    """The entries of a kind that these files and folders of rulec's code have made."""
+    """The entries of a kind; none if ``makers`` (files and folders of code) have changed."""
     try:
         data = shipped_file(kind).read_bytes()
     except OSError:
@@ -90,7 +90,7 @@ def shipped(kind: str, makers: tuple[str, ...]) -> ShippedBytes:
 
 
 def shipped_text(entries: Mapping[bytes, bytes], makers: Sequence[str]) -> bytes:
-    """The file of these entries, as ``shipped`` reads it."""
+    """The content of a file with these entries, in the format that ``shipped`` reads."""
     keys = sorted(entries)
     common = _in_common([entries[key] for key in keys])
     packed = []
@@ -104,7 +104,7 @@ def shipped_text(entries: Mapping[bytes, bytes], makers: Sequence[str]) -> bytes
 
 
 def _in_common(entries: Sequence[bytes]) -> bytes:
-    """Some of all entries, as far as they are not much longer than what zlib looks back."""
+    """A sample of the shorter entries, not longer than the window of zlib."""
     short = [data for data in entries if len(data) < _COMMON // 8]
     every = max(1, sum(map(len, short)) // _COMMON)
     return b"".join(short[::every])[-_COMMON:]

@@ -1,6 +1,6 @@
 """Mistakes as data: places in a text, codes, messages.
 
-Nothing here prints. ``rulec.report`` turns diagnostics into text.
+Nothing here prints; ``rulec.report`` turns diagnostics into text.
 """
 
 from rulec.diagnostics.diagnostic import Diagnostic, Fix, Label, RulecError, placed_at

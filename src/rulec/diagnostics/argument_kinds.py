@@ -35,7 +35,7 @@ WAYS_OUT = {
     "TrafficWorld": "rulec.TrafficWorld(recording, ego)",
     "Violation": "rulec.verify(trace, rules).violations has them",
 }
-"""Kind of argument -> what gives one."""
+"""Type of an argument -> how to get a value of that type."""
 
 _ALIASES = {
     "AdjacencyName": "str",
@@ -55,16 +55,16 @@ _ALIASES = {
     "Theme": "str",
 }
 _UNSAID = {"None", "SavedPast"}
-"""Kinds that errors do not name: no argument at all, and what only commands give."""
+"""Types that errors do not name: None, and a type passed only by commands."""
 
 _ANYTHING = {"Any", "ArrayLike", "Points", "object"}
 
 
 def checked_kinds(function: AnyFunction) -> AnyFunction:
-    """Make a function raise TypeError for arguments of other kinds than its annotations say.
+    """Make a function raise TypeError for arguments whose types differ from its annotations.
 
-    The error says which argument it is, what it should be, and what gives that. Items of lists are
-    looked at, too, and those of iterators when they come.
+    The error names the argument, the expected type and how to get a value of it. Items of lists are
+    checked as well, and items of iterators when they are consumed.
     """
     parameters = signature(function).parameters.values()
     annotated = [_annotation(parameter) for parameter in parameters]
@@ -87,12 +87,11 @@ def checked_kinds(function: AnyFunction) -> AnyFunction:
 
 
 def expected(name: str, annotation: str, value: Any) -> Any:
-    """A value that is of one of the kinds of an annotation, else TypeError with the way out.
+    """The value if its type fits the annotation; otherwise raises TypeError with a way out.
 
-    Of a text that is none of those that there are it is ValueError.
-
-    What has to be a sequence and is an iterator, an array or a column comes as a tuple, what stands
-    for a path as one.
+    Raises ValueError for a str that is not one of the literals listed. Where a sequence is
+    expected, an iterator, an array or a column is returned as a tuple; where a path is expected, a
+    path-like object as a Path.
     """
     if not annotation or not _kinds(annotation):
         return value
@@ -104,7 +103,7 @@ def expected(name: str, annotation: str, value: Any) -> Any:
     if kind.name == "Path" and not isinstance(value, Path):
         try:
             return Path(value)
-        except TypeError:  # one of bytes
+        except TypeError:  # a path of bytes
             raise _unexpected(name, annotation, value) from None
     if not kind.items:
         return value
@@ -121,26 +120,26 @@ def expected(name: str, annotation: str, value: Any) -> Any:
     if not isinstance(value, Sequence | Set):
         is_array = hasattr(type(value), "ndim")
         return items if kind.name == "Iterable" and not is_array else tuple(items)
-    # All items of a range are of one kind, and there may be more than anybody can look at.
+    # All items of a range have the same type, and there may be too many to check.
     for _ in islice(items, 1) if isinstance(value, range) else items:
         pass
     return value
 
 
 def expected_fields(record: Any) -> None:
-    """Raise TypeError for a dataclass's field of another kind than is declared."""
+    """Raise TypeError if a dataclass's field has another type than declared."""
     for field in fields(record):
         expected(field.name, str(field.type), getattr(record, field.name))
 
 
 def finite(name: str, value: Fraction | float | None) -> None:
-    """Raise TypeError for what is no number, ValueError for one that is infinite or NaN."""
+    """Raise TypeError for a value that is no number, ValueError for an infinite one or NaN."""
     if expected(name, "float | None", value) is not None and not is_finite(value or 0):
         raise ValueError(f"`{name}` is a finite number, not {_short_number(value or 0)}")
 
 
 def is_finite(value: Fraction | float) -> bool:
-    """Tell whether a number is one that a float comes near to."""
+    """Whether a number is finite and within the range of floats."""
     try:
         return isfinite(value)
     except (OverflowError, ValueError):
@@ -169,9 +168,9 @@ def _unexpected(name: str, annotation: str, value: object) -> TypeError:
 
 @dataclass(frozen=True, slots=True)
 class _Kind:
-    """One of an annotation's alternatives: which types are of it, and what its items are.
+    """One alternative of an annotation: which types fit, and the annotations of its items.
 
-    ``items`` has one annotation, of a mapping those of its keys and its values.
+    ``items`` has one annotation, for a mapping one for its keys and one for its values.
     """
 
     name: str
@@ -182,7 +181,7 @@ class _Kind:
 
 @lru_cache(maxsize=1 << 12)
 def _fitting(annotation: str, given: Hashable) -> _Kind | None:
-    """The alternative that a type is of, the one that asks least of items; None if of none."""
+    """The alternative that fits a type and demands least of items; None if none fits."""
     fitting = [kind for kind in _kinds(annotation) if kind.holds(cast("type", given))]
     return min(fitting, key=lambda kind: kind.items, default=None)
 
@@ -195,7 +194,7 @@ def _annotation(parameter: Parameter) -> tuple[str, str]:
 
 @lru_cache(maxsize=1 << 10)
 def _kinds(annotation: str) -> tuple[_Kind, ...]:
-    """The alternatives of an annotation; none if anything goes."""
+    """The alternatives of an annotation; empty if any value is allowed."""
     if not annotation:
         return ()
     kinds = list(_alternatives(ast.parse(annotation, mode="eval").body))
@@ -214,7 +213,7 @@ def _alternatives(node: ast.expr) -> Iterator[_Kind]:
     elif name in _PLAIN:
         yield _Kind(name, *_PLAIN[name])
     else:
-        # Its name stands for a class: to import what all annotations name takes 300 ms.
+        # The name stands for a class: importing the classes of all annotations would take 300 ms.
         yield _Kind(
             name,
             _with_article(name),
@@ -244,7 +243,7 @@ def _is_listed(given: type) -> bool:
 
 
 def _is_whole(given: type) -> bool:
-    # Arrays of one number are, too, and others are not
+    # Arrays of one number have `__index__`, others do not
     return hasattr(given, "__index__") and "ndarray" not in [
         parent.__name__ for parent in given.__mro__
     ]

@@ -1,6 +1,6 @@
-"""What an option of the commands is called where Python asks.
+"""Names of command options as arguments of Python functions.
 
-Messages name options as the commands have them. Whoever calls a function has arguments instead.
+Messages name options as the commands do, but callers of a function pass arguments instead.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _FORMAT_OF_TRACES = re.compile(r"add `--input-format (\w+)`")
 
 @contextmanager
 def naming_options() -> Iterator[None]:
-    """Leave options as they are, here and in processes started meanwhile, in a block."""
+    """Keep option names in messages in a block, and in processes started in it."""
     before = os.environ.get(_VARIABLE)
     os.environ[_VARIABLE] = "1"
     try:
@@ -53,12 +53,12 @@ def naming_options() -> Iterator[None]:
 
 
 def for_caller(text: str) -> str:
-    """A message, or a part of it, for whoever is told: with options, or with arguments."""
+    """A message, or part of one, for its reader: options for commands, arguments for Python."""
     if "--" not in text or _VARIABLE in os.environ:
         return text
     text = _FORMAT_OF_TRACES.sub(r"let its name end in `.\1`", text)
     parts = text.split("`")
-    # Every second one stood in backquotes, such as a whole command, which stays one.
+    # Every second part was in backquotes; if it is e.g. a whole command, it stays unchanged.
     parts[::2] = [_PLAIN.sub(lambda found: f"`{_argument(found)}`", part) for part in parts[::2]]
     parts[1::2] = [
         _argument(found) if (found := _QUOTED.fullmatch(part)) else part for part in parts[1::2]

@@ -26,16 +26,16 @@ ExampleKind: TypeAlias = Literal[
 ]
 """Kinds of examples, by how they are run.
 
-``rules``: a rulebook or a vocabulary, to check. ``compiled``: a rulebook, to compile.
-``analyzed``: a rulebook, to analyze. ``examples``: a rulebook, to run the examples of.
-``maneuvers``: a rulebook, to judge the maneuvers of scenario s1 by. ``trace``: a line, to judge by
-``esterle2019``. ``scenario``: a file, to build the graph of. ``command``: lines for a POSIX shell
-in an empty folder. ``python``: a program. ``circumstance``: no input makes it; there is no example.
+``rules``: a rulebook or a vocabulary to check. ``compiled``: a rulebook to compile. ``analyzed``: a
+rulebook to analyze. ``examples``: a rulebook whose examples are run. ``maneuvers``: a rulebook by
+which the maneuvers of scenario s1 are judged. ``trace``: a line to judge by ``esterle2019``.
+``scenario``: a file to build the graph of. ``command``: lines for a POSIX shell in an empty folder.
+``python``: a program. ``circumstance``: no input causes it, so there is no example.
 """
 
 
 class Details(TypedDict, total=False):
-    """What a diagnostic may say besides its message and its place."""
+    """What a diagnostic may contain besides its message and place."""
 
     expected: str
     help: str
@@ -47,12 +47,12 @@ class Details(TypedDict, total=False):
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """A kind of mistake, and what ``rulec explain`` says of it.
+    """A kind of mistake, with its explanation for ``rulec explain``.
 
-    ``title``: in one line. ``why``: what it means and what to do, in a paragraph. ``bad``: a small
-    example that gets this code and no other. ``good``: the same, mended. The hundreds of ``code``
-    are the stage: 1 syntax, 2 names, 3 types and meaning, 4 compiling, 5 traces, 6 scenarios and
-    graphs, 7 files, 8 analysis.
+    ``title``: one line. ``why``: its meaning and what to do, in a paragraph. ``bad``: a small
+    example that causes this code and no other. ``good``: the same example, corrected. The hundreds
+    digit of ``code`` is the stage: 1 syntax, 2 names, 3 types and meaning, 4 compiling, 5 traces, 6
+    scenarios and graphs, 7 files, 8 analysis.
     """
 
     __repr__ = short_repr

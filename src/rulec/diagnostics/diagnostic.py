@@ -1,4 +1,4 @@
-"""Diagnostics: values of a code, a place and words."""
+"""Diagnostics as data: a code, a place and texts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Severity: TypeAlias = Literal["error", "warning"]
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """A second place worth showing, with a few words on it."""
+    """A further place worth showing, with a short text about it."""
 
     place: SourceLocation
     message: str
@@ -24,7 +24,7 @@ class Label:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """An edit that mends something: what stands at ``place`` becomes ``text``."""
+    """An edit that corrects a mistake: the text at ``place`` is replaced by ``text``."""
 
     place: SourceLocation
     text: str
@@ -34,9 +34,9 @@ class Fix:
 class Diagnostic:
     """One mistake (or remark).
 
-    ``message`` says what is wrong in one clause; ``expected`` stands beside the underlined place
-    (``expected a name``); ``help`` is the way out, ``fix`` the same as an edit, where there is one.
-    It is made by the ``Code`` whose text ``code`` is.
+    ``message`` says what is wrong in one clause; ``expected`` is shown beside the underlined place
+    (``expected a name``); ``help`` is the way out, ``fix`` the same as an edit, if there is one.
+    Diagnostics are made by the ``Code`` with the text ``code``.
     """
 
     __repr__ = short_repr
@@ -53,12 +53,12 @@ class Diagnostic:
 
 
 def at(span: Span | None) -> SourceLocation | None:
-    """The place of a span that may be missing."""
+    """The place of a span; None for None."""
     return None if span is None else span.place
 
 
 def unquoted(diagnostic: Diagnostic) -> Diagnostic:
-    """A diagnostic about the same place, without its line."""
+    """A diagnostic without the quoted source line."""
     if diagnostic.place is None:
         return diagnostic
     return replace(diagnostic, place=replace(diagnostic.place, excerpt=""))
@@ -87,10 +87,10 @@ class RulecError(Rows, Exception):
         if isinstance(diagnostics, Diagnostic):
             diagnostics = (diagnostics,)
         self._given = tuple(diagnostics)
-        # Whoever prints it has no trouble with what is no character, as in a file's name
+        # Text that is not valid Unicode, as in a file's name, must not fail when printed
         text = "; ".join(_one_line(d) for d in self.diagnostics)
         super().__init__(text.encode(errors="backslashreplace").decode())
-        # Tracebacks show it below the error, from Python 3.11 on
+        # Tracebacks show the notes below the error, from Python 3.11 on
         ways_out = dict.fromkeys(
             diagnostic.help for diagnostic in self.diagnostics[:20] if diagnostic.help
         )
@@ -100,14 +100,14 @@ class RulecError(Rows, Exception):
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What is wrong, in the words of whoever asks."""
+        """The diagnostics, with options or arguments named as their reader knows them."""
         return tuple(map(_for_caller, self._given))
 
     def __repr__(self) -> str:
         return f"RulecError({'; '.join(d.code for d in self.diagnostics[:20])}: {self.args[0]:.80})"
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row a diagnostic."""
+        """One row per diagnostic."""
         return diagnostic_rows(self.diagnostics)
 
     def __reduce__(self) -> tuple[type[RulecError], tuple[Any, ...]]:
@@ -115,9 +115,9 @@ class RulecError(Rows, Exception):
 
 
 def as_answer(error: RulecError) -> RulecError:
-    """The error without the frames that it came through, which hold all that they had at hand.
+    """The error without traceback and causes, whose frames keep their local variables alive.
 
-    For errors of which there may be one for each row of a file.
+    For errors that may occur once per row of a file.
     """
     error.__traceback__ = error.__cause__ = error.__context__ = None
     return error
@@ -125,7 +125,7 @@ def as_answer(error: RulecError) -> RulecError:
 
 @contextmanager
 def placed_at(place: SourceLocation) -> Iterator[None]:
-    """Run a block; what it says without a place is about this one."""
+    """Run a block; diagnostics raised in it without a place get this one."""
     try:
         yield
     except RulecError as error:
@@ -133,7 +133,7 @@ def placed_at(place: SourceLocation) -> Iterator[None]:
 
 
 def with_place(error: RulecError, place: SourceLocation | None) -> RulecError:
-    """An error of which all that says no place is about this one."""
+    """An error in which diagnostics without a place get this one."""
     if place is None or all(diagnostic.place for diagnostic in error.diagnostics):
         return error
     return RulecError(

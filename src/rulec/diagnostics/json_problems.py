@@ -1,14 +1,14 @@
-"""Mistakes in JSON documents, in a reader's words."""
+"""Mistakes in JSON documents, in the reader's terms."""
 
 from __future__ import annotations
 
 
 def json_words(problem: Exception) -> str:
-    """Msgspec's message, its path ``$.states[3]`` turned into a reader's ``states[3]``."""
+    """Msgspec's message in the reader's terms; its path ``$.states[3]`` becomes ``states[3]``."""
     text, _, path = str(problem).partition(" - at `$")
     path = path.rstrip("`").lstrip(".")
     text = text[:1].lower() + text[1:]
-    if "field `" not in text:  # whose name may be that of a type
+    if "field `" not in text:  # a field's name may be the same as a type's
         for theirs, ours in _JSON_WORDS.items():
             text = text.replace(theirs, ours)
     return f"{text} (in `{path}`)" if path else text

@@ -1,4 +1,4 @@
-"""The message that a package is not there which is installed on request."""
+"""The message that an optional package is not installed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def missing_package(
     *,
     otherwise: str = "",
 ) -> RulecError:
-    """Say that a ``task`` takes a package, which of rulec's extras has it, and what else to do."""
+    """Say that a ``task`` needs a package, which extra installs it, and the alternative."""
     return code.error(
         place,
         f"{task} takes the package `{package}`, which is not installed",

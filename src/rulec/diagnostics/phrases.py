@@ -8,13 +8,13 @@ from functools import lru_cache
 _MOST_NAMED = 8
 _SHORT_WORD = 3
 _MOST_SEARCHED = 500
-"""Among more names the search takes too long; only those with the same letters are found then."""
+"""With more names the search takes too long; then only a name that differs in case is found."""
 
 
 def nearest_name(name: str, known: Iterable[str], alike: float = 0.6) -> str | None:
     """The known name closest to ``name``, ignoring case, or None.
 
-    ``alike`` is the least share of letters that they have in common, in the same order.
+    ``alike`` is the minimum similarity: the share of letters in common, in the same order.
     """
     by_folded: dict[str, str] = {}
     for candidate in known:
@@ -27,13 +27,13 @@ def nearest_name(name: str, known: Iterable[str], alike: float = 0.6) -> str | N
 
 
 def _longer_name(name: str, by_folded: Mapping[str, str]) -> str | None:
-    """The only known name that has all words of this one, and more: `boarding_passengers`."""
+    """The only known name that contains all words of this one and more: `boarding_passengers`."""
     words = {*name.casefold().split("_")}
     longer = [folded for folded in by_folded if words < {*folded.split("_")}]
     return by_folded[longer[0]] if len(name) > _SHORT_WORD and len(longer) == 1 else None
 
 
-@lru_cache(maxsize=64)  # one mistake in each row of a file is one search
+@lru_cache(maxsize=64)  # the same mistake in each row of a file is searched for once
 def _closest(name: str, known: tuple[str, ...], alike: float) -> list[str]:
     # 1 ms: only where a name is not known.
     from difflib import get_close_matches
@@ -42,13 +42,13 @@ def _closest(name: str, known: tuple[str, ...], alike: float) -> list[str]:
 
 
 def did_you_mean(name: str, known: Iterable[str], alike: float = 0.6) -> str:
-    """Question that names the nearest known name; empty if none is close."""
+    """A question with the nearest known name; empty if none is close."""
     near = nearest_name(name, known, alike)
     return "" if near is None else f"did you mean `{near}`?"
 
 
 def named(names: Sequence[str]) -> str:
-    """Names in backquotes, in a row; of many only the first ones."""
+    """Names in backquotes, separated by commas; only the first of many."""
     shown = [f"`{name}`" for name in names[:_MOST_NAMED]]
     return ", ".join([*shown, "…"] if len(names) > len(shown) else shown)
 

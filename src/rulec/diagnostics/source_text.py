@@ -62,7 +62,7 @@ class Source:
 
     def line(self, number: int) -> str:
         """The text of a line, counted from 1, without its line end."""
-        # However many mistakes are in a long line, there is one copy of it.
+        # However many mistakes a long line has, its text is copied once.
         if number not in self._known:
             starts = self._lines()
             end = starts[number] if number < len(starts) else len(self.text)

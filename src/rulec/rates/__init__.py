@@ -1,1 +1,1 @@
-"""Rates of violations with intervals, from the rows of findings."""
+"""Rates of violations with intervals, computed from the rows of findings."""

@@ -1,6 +1,6 @@
-"""A bootstrap over drives: sums over drives that are drawn again and again.
+"""A bootstrap over drives: sums over drives resampled with replacement.
 
-What one driver does in one drive hangs together, so drives are drawn and not violations: the
+Violations within a drive depend on each other, so drives are resampled and not violations: the
 cluster bootstrap (Davison and Hinkley, "Bootstrap methods and their application", 1997, § 3.8).
 """
 
@@ -15,7 +15,7 @@ from rulec.rates.exact_intervals import Interval
 
 REPLICATES = 2_000
 DRIVES_TOGETHER = 1 << 11
-"""Drives whose numbers are added up at a time, so that any number of them takes little memory."""
+"""Number of drives summed at a time, so that any number of drives takes little memory."""
 
 Sums = NDArray[np.float64]
 
@@ -23,10 +23,10 @@ Sums = NDArray[np.float64]
 def bootstrapped(
     n_drives: int, n_columns: int, blocks: Iterable[Sums], seed: int, replicates: int = REPLICATES
 ) -> Sums:
-    """Sums (replicates x columns) over as many drives as there are, drawn with replacement.
+    """Sums (replicates x columns) over ``n_drives`` drives, drawn with replacement.
 
-    ``blocks`` (drives x columns) are the numbers of ``DRIVES_TOGETHER`` drives each, the last ones
-    of fewer. A seed draws the same drives every time.
+    ``blocks`` (drives x columns) are the values of ``DRIVES_TOGETHER`` drives each, the last block
+    of fewer. The same seed always draws the same drives.
     """
     chance = np.random.default_rng(seed)
     totals = np.zeros((replicates, n_columns))
@@ -34,7 +34,7 @@ def bootstrapped(
     rest = n_drives
     for block in blocks:
         size = len(block)
-        # So many of the draws that are left fall into this block, and there on any of its drives.
+        # This many of the remaining draws fall into this block, each on any of its drives alike.
         drawn = chance.binomial(left, size / rest) if size < rest else left
         times = chance.multinomial(drawn, np.full(size, 1 / size))
         totals += times @ block
@@ -46,7 +46,10 @@ def bootstrapped(
 def percentile_interval(
     least: tuple[Sums, Sums], most: tuple[Sums, Sums], confidence: float
 ) -> Interval | None:
-    """The percentiles of quotients of sums, one for each replicate; None where there are none."""
+    """The percentile interval of the ratios of sums over all replicates; None if none is finite.
+
+    ``least`` and ``most`` are pairs of numerator and denominator for the lower and the upper end.
+    """
     tail = 100 * (1 - confidence) / 2
     with np.errstate(all="ignore"):
         lows, highs = least[0] / least[1], most[0] / most[1]

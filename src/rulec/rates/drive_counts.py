@@ -10,7 +10,7 @@ from rulec.rates.finding_rows import FindingRow
 from rulec.rates.rates_messages import judged_otherwise, no_findings, twice
 
 GroupKey = Literal["rulebook", "country", "road", "source", "file", "recording"]
-"""What rates can be told apart by."""
+"""The properties by which rates can be grouped."""
 
 DriveKey = tuple[str, str, str, str]
 """A rulebook's hash, and a drive's file, recording and name."""
@@ -25,9 +25,9 @@ _ALIKE = {
 
 @dataclass(frozen=True, slots=True)
 class RuleCounts:
-    """What a rule came to in a drive: opportunities, how long, and how many were taken.
+    """A rule's counts in a drive: opportunities, their duration, and how many were violated.
 
-    Each at least and at most; lengths in s.
+    Each as a pair of least and most; durations in s.
     """
 
     opportunities: tuple[int, int]
@@ -37,10 +37,10 @@ class RuleCounts:
 
 @dataclass(slots=True)
 class DriveCounts:
-    """A drive: how long it is and how far, and what each rule came to that was put to the test.
+    """A drive: its duration (s), its distance (m), and the counts of each rule put to the test.
 
-    Those in ``not_judged`` could not be judged in it. ``group`` are the values of what rates are
-    told apart by.
+    ``not_judged`` are the rules that could not be judged in it. ``group`` has a value for each
+    property that rates are grouped by.
     """
 
     group: tuple[str, ...]
@@ -60,10 +60,11 @@ class RuleTitle:
 
 @dataclass(slots=True)
 class Counted:
-    """The drives of files of findings; ``not_judged`` is the number of those without a verdict.
+    """The drives in files of findings; ``not_judged`` is the number of drives without a verdict.
 
-    ``judged_by`` are the rulebooks, versions, thresholds and assumptions, in the order in which
-    they came. ``rules`` have for each group those that its drives were judged by.
+    ``judged_by`` maps a rulebook's hash to the first of its rows, which names version, thresholds
+    and assumptions, in the order of the files. ``rules`` maps a hash to the rules that drives were
+    judged by.
     """
 
     by: tuple[GroupKey, ...]
@@ -76,10 +77,10 @@ class Counted:
     _waiting: list[tuple[str, DriveKey, FindingRow]] = field(default_factory=list)
 
     def add(self, file: str, rows: Iterable[FindingRow]) -> None:
-        """Take the rows of a file.
+        """Add the rows of a file.
 
-        Raises RulecError R0715 if they were judged otherwise than those before, R0716 for a drive
-        that was there already.
+        Raises RulecError R0715 if they were judged differently from those before, R0716 for a drive
+        that was added already.
         """
         for row in rows:
             self._check(file, row)
@@ -97,7 +98,7 @@ class Counted:
         self._waiting = still_waiting
 
     def close(self, files: Sequence[str]) -> None:
-        """Check that all is there in these files. Raises RulecError R0716."""
+        """Check that nothing is missing in these files. Raises RulecError R0716."""
         for file, (_, _, _, drive), row in self._waiting:
             raise no_findings(file, f"rule `{row.rule}` is of drive `{drive}`, which has no row")
         if not self.drives and not self.not_judged:

@@ -1,10 +1,10 @@
 """Intervals of counts: of independent events, and of events that come in clusters.
 
-Poisson's and the binomial one hold at least their confidence if events are independent. Sources:
-Garwood, "Fiducial limits for the Poisson distribution" (1936); Clopper and Pearson, "The use of
-confidence or fiducial limits illustrated in the case of the binomial" (1934). That of clusters is
-due to Fay and Feuer, "Confidence intervals for directly standardized rates: a method based on the
-gamma distribution" (1997).
+The Poisson and binomial intervals have at least their nominal confidence if events are independent.
+Sources: Garwood, "Fiducial limits for the Poisson distribution" (1936); Clopper and Pearson, "The
+use of confidence or fiducial limits illustrated in the case of the binomial" (1934). The interval
+for clusters follows Fay and Feuer, "Confidence intervals for directly standardized rates: a method
+based on the gamma distribution" (1997).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Interval = tuple[float, float]
 
 
 def poisson_interval(least: int, most: int, confidence: float) -> Interval:
-    """The expected number of events of which between ``least`` and ``most`` were counted.
+    """Interval of the expected number of events when ``least`` to ``most`` events were counted.
 
     Raises RulecError R0717 without scipy.
     """
@@ -29,9 +29,9 @@ def poisson_interval(least: int, most: int, confidence: float) -> Interval:
 
 
 def binomial_interval(least: tuple[int, int], most: tuple[int, int], confidence: float) -> Interval:
-    """The probability of what happened at least and at most so often, each in so many trials.
+    """Interval of a probability, from pairs (successes, trials) for its lower and its upper end.
 
-    Without trials it may be anything. Raises RulecError R0717 without scipy.
+    Without trials it is 0 to 1. Raises RulecError R0717 without scipy.
     """
     special = _special()
     tail = (1 - confidence) / 2
@@ -47,7 +47,7 @@ def binomial_interval(least: tuple[int, int], most: tuple[int, int], confidence:
 
 @dataclass(frozen=True, slots=True)
 class ClusterSizes:
-    """How many events all clusters have, and the sum of the squares of how many each has."""
+    """The total number of events in all clusters, and the sum of the squared cluster sizes."""
 
     total: float
     squares: float
@@ -56,12 +56,11 @@ class ClusterSizes:
 def clustered_interval(
     least: ClusterSizes, most: ClusterSizes, largest: float, confidence: float
 ) -> Interval:
-    """The expected number of events that come in independent clusters of at most ``largest``.
+    """Interval of the expected number of events in independent clusters of at most ``largest``.
 
-    A sum of Poisson counts, each with its cluster's size as weight; the upper end supposes that one
-    more of the largest was missed. Where each cluster has one event it is Poisson's interval.
-
-    Raises RulecError R0717 without scipy.
+    A sum of Poisson counts, each weighted by its cluster's size; the upper end assumes that one
+    more cluster of the largest size was missed. If each cluster has one event, it is the Poisson
+    interval. Raises RulecError R0717 without scipy.
     """
     special = _special()
     tail = (1 - confidence) / 2

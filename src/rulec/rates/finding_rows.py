@@ -17,7 +17,7 @@ from rulec.value_display import short_repr
 from rulec.work_trees import refuse_link_out, tree_of
 
 LARGEST = 1e12
-"""No fleet drives so many metres or seconds in one drive; sums of larger numbers overflow."""
+"""No drive has this many metres or seconds; sums of larger numbers would overflow."""
 
 _JSON_LINES = (".jsonl", ".ndjson")
 _PARQUET = (".parquet", ".pq")
@@ -25,10 +25,10 @@ _PARQUET = (".parquet", ".pq")
 
 @dataclass(frozen=True, slots=True)
 class FindingRow:
-    """A row of a table of findings, as far as rates need it; see docs/fleet.md.
+    """The columns of a row of findings that rates need; see docs/fleet.md.
 
-    A row of kind ``drive`` says how long and how far somebody drove, one of kind ``rule`` what a
-    rule came to in it. Texts that do not apply are empty, numbers None.
+    A row of kind ``drive`` has a drive's duration and distance, a row of kind ``rule`` a rule's
+    counts in it. Where a column does not apply, a text is empty and a number None.
     """
 
     __repr__ = short_repr
@@ -64,9 +64,9 @@ COLUMNS = tuple(_FIELDS)
 
 
 def finding_files(paths: Sequence[str]) -> Iterator[Path]:
-    """The files of findings: those that are named, and the Parquet files in and below folders.
+    """The files of findings: those named, and the Parquet files in and below folders.
 
-    Raises RulecError R0716 for a folder without any, R0730 for a link out of it.
+    Raises RulecError R0716 for a folder without any, R0730 for a link that leads out of it.
     """
     for name in paths:
         path = Path(name)
@@ -82,14 +82,15 @@ def finding_files(paths: Sequence[str]) -> Iterator[Path]:
 
 
 def _counts(file: Path, folder: Path) -> bool:
-    """Whether no name on the way begins as those do that engines leave out."""
+    """Whether no part of the path begins with a sign that engines skip (``.`` or ``_``)."""
     return not any(part.startswith((".", "_")) for part in file.relative_to(folder).parts)
 
 
 def finding_rows(path: Path) -> Iterator[FindingRow]:
-    """The rows of drives and of rules of a file.
+    """The rows of drives and of rules in a file.
 
-    Raises RulecError R0701 if it cannot be read, R0706 without pyarrow, R0716 if it is none.
+    Raises RulecError R0701 if it cannot be read, R0706 without pyarrow, R0716 if it has no
+    findings.
     """
     name = path.name.lower().removesuffix(".gz")
     if name.endswith(_PARQUET):
@@ -99,7 +100,7 @@ def finding_rows(path: Path) -> Iterator[FindingRow]:
     elif name.endswith(".csv"):
         rows = _csv_rows(path)
     else:
-        with opened(path):  # What is not there is said to be so, whatever it is called.
+        with opened(path):  # A missing file is reported as missing, whatever its name.
             raise no_findings(str(path), "it ends in none of .jsonl, .csv and .parquet")
     for number, row in enumerate(rows, 1):
         if row.get("kind") in ("drive", "rule"):
@@ -120,7 +121,7 @@ def _row(row: Mapping[str, Any], path: Path, number: int) -> FindingRow:
 
 
 def _is_text(value: object) -> bool:
-    # JSON may spell halves of characters, which no output can have.
+    # JSON may contain lone surrogates, which cannot be written as output.
     return isinstance(value, str) and not any("\ud800" <= sign <= "\udfff" for sign in value)
 
 
@@ -157,7 +158,7 @@ def _csv_rows(path: Path) -> Iterator[Mapping[str, Any]]:
 
 def _value(name: str, cell: str, path: Path, number: int) -> str | float | None:
     if _FIELDS[name] == "str":
-        # An apostrophe keeps spreadsheets from computing what begins like a formula.
+        # An apostrophe keeps spreadsheets from evaluating text that begins like a formula.
         return cell[1:] if cell.startswith("'") else cell
     if not cell:
         return None

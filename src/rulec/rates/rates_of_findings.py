@@ -15,7 +15,7 @@ def rates_of_findings(
     """The rates of all drives in some files, and in the Parquet files of folders.
 
     Raises RulecError R0701 for a file that cannot be read, R0715 if drives were judged differently,
-    R0716 for what has no drives, R0706 without pyarrow, R0717 without scipy.
+    R0716 for files without drives, R0706 without pyarrow, R0717 without scipy.
     """
     counted = Counted(tuple(dict.fromkeys(by)))
     for file in finding_files(paths):

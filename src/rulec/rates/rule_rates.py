@@ -31,11 +31,12 @@ S_PER_HOUR = 3600.0
 
 @dataclass(frozen=True, slots=True)
 class Rate:
-    """A rate between ``least`` and ``most``, which are apart where something is open.
+    """A rate from ``least`` to ``most``, which differ if some verdict is open.
 
-    ``exact`` is its interval if events are independent, ``bootstrap`` that over drives, None where
-    that knows nothing: of no violation, and of fewer than two drives. ``clustered`` is the interval
-    if drives alone are independent, and any of them may violate as often as it had opportunities.
+    ``exact`` is its interval if events are independent. ``bootstrap`` is the interval over drives,
+    None where it says nothing: without violations, or with fewer than two drives. ``clustered`` is
+    the interval if only drives are independent, and a drive may violate at each of its
+    opportunities.
     """
 
     least: float
@@ -47,12 +48,12 @@ class Rate:
 
 @dataclass(frozen=True, slots=True)
 class RuleRates:
-    """How often a rule was put to the test in a group of drives, and violated.
+    """How often a rule was put to the test in a group of drives, and how often violated.
 
-    ``drives`` are those in which it was judged, ``hours`` and ``km`` what they came to, ``km`` None
-    if nobody's distance is known. Opportunities and violated ones are those for sure and those at
-    most, ``exposed_h`` are the hours with an opportunity. A rate is None where there was nothing
-    that it could be a rate of.
+    ``drives`` are those in which it was judged, ``hours`` and ``km`` their total duration and
+    distance; ``km`` is None if no distance is known. Opportunities and violations are the certain
+    ones, and with ``perhaps_`` the most possible; ``exposed_h`` are the hours with an opportunity.
+    A rate is None if there was nothing to divide by.
     """
 
     __repr__ = short_repr
@@ -78,10 +79,10 @@ class RuleRates:
 
 @dataclass(frozen=True)
 class ViolationRates(Rows):
-    """Rates of all rules by what they are told apart ``by``.
+    """Rates of all rules, grouped ``by`` some properties.
 
-    ``drives`` and ``not_judged`` are how many drives have a verdict and have none, ``judged_by``
-    what they were judged by, ``confidence`` that of the intervals.
+    ``drives`` and ``not_judged`` are the numbers of drives with and without a verdict,
+    ``judged_by`` says what they were judged by, ``confidence`` is that of the intervals.
     """
 
     __repr__ = short_repr
@@ -96,14 +97,14 @@ class ViolationRates(Rows):
     rules: tuple[RuleRates, ...]
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row a rule and group."""
+        """One row per rule and group."""
         return [_as_row(rule, self.by) for rule in self.rules]
 
 
 def violation_rates(
     counted: Counted, *, confidence: float = 0.95, seed: int = 0, replicates: int = REPLICATES
 ) -> ViolationRates:
-    """The rates of what was counted. Raises RulecError R0717 without scipy."""
+    """The rates from counted findings. Raises RulecError R0717 without scipy."""
     groups: dict[tuple[str, tuple[str, ...]], list[DriveCounts]] = {}
     for (rulebook, *_), drive in sorted(counted.drives.items()):
         groups.setdefault((rulebook, drive.group), []).append(drive)
@@ -143,16 +144,16 @@ _COLUMNS = (
     "perhaps_violated_far",
     "most_opportunities",
 )
-"""What is added up of a drive for a rule; ``far`` counts drives whose distance is known.
+"""The columns summed over drives for each rule; ``far`` counts drives whose distance is known.
 
-``most_opportunities`` are those for sure, or as many as may have been violated if these are more.
+``most_opportunities`` is the number of certain opportunities, or of possible violations if larger.
 """
 
 _AT = {name: place for place, name in enumerate(_COLUMNS)}
 
 
 class _Sums:
-    """The numbers of some drives, a row of ``_COLUMNS`` for each rule."""
+    """Sums over drives, with ``_COLUMNS`` for each rule."""
 
     def __init__(self, drives: Sequence[DriveCounts], rules: Sequence[str]) -> None:
         self._drives = drives
@@ -167,14 +168,14 @@ class _Sums:
             self.largest = np.maximum(self.largest, block.max(axis=0, initial=0.0))
 
     def blocks(self) -> Iterator[Sums]:
-        """The numbers (drives x columns) of some drives at a time."""
+        """The values (drives x columns) of the drives, block by block."""
         for begin in range(0, len(self._drives), DRIVES_TOGETHER):
             part = self._drives[begin : begin + DRIVES_TOGETHER]
             block = np.array([_numbers(drive, self._rules) for drive in part], dtype=np.float64)
             yield block.reshape(len(part), self.n_columns)
 
     def drawn(self, seed: int, replicates: int) -> Sums | None:
-        """The sums of drives that are drawn again; None if there is nothing to draw."""
+        """The sums over resampled drives; None for fewer than two drives."""
         if len(self._drives) < 2:
             return None
         return bootstrapped(len(self._drives), self.n_columns, self.blocks(), seed, replicates)
@@ -208,7 +209,7 @@ def _numbers(drive: DriveCounts, rules: Sequence[str]) -> list[float]:
 
 
 class _RuleSums:
-    """The sums of one rule, and those of drives that are drawn again."""
+    """The sums of one rule, and its sums over resampled drives."""
 
     def __init__(self, sums: _Sums, drawn: Sums | None, number: int, confidence: float) -> None:
         self._begin = number * len(_COLUMNS)
@@ -220,11 +221,11 @@ class _RuleSums:
         return float(self._sums.total[self._begin + _AT[name]])
 
     def count(self, name: str) -> int:
-        """A sum of whole numbers."""
+        """A sum of whole numbers, as an int."""
         return round(self[name])
 
     def per_length(self, violated: tuple[str, str], length: str, scale: float) -> Rate | None:
-        """The rate per ``scale`` of a length."""
+        """The rate per ``scale`` units of a duration or distance; None if that is 0."""
         if not self[length]:
             return None
         least, most = (self.count(name) for name in violated)
@@ -243,7 +244,7 @@ class _RuleSums:
         )
 
     def per_opportunity(self) -> Rate | None:
-        """The part of opportunities that are taken."""
+        """The share of opportunities that were violated; None without opportunities."""
         if not self["most_opportunities"] and not self["perhaps_opportunities"]:
             return None
         violated, of = _VIOLATED, ("perhaps_opportunities", "most_opportunities")
@@ -261,7 +262,7 @@ class _RuleSums:
         )
 
     def _clustered(self, violated: tuple[str, str]) -> Interval:
-        """The interval of the violations that are expected of drives such as these."""
+        """The interval of the expected number of violations, with drives as clusters."""
         at = [self._begin + _AT[name] for name in violated]
         sizes = [ClusterSizes(float(self._sums.total[n]), float(self._sums.squares[n])) for n in at]
         most_of_a_drive = ("perhaps_opportunities", "most_opportunities")
