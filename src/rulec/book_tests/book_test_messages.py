@@ -70,7 +70,7 @@ def unexercised(rule: Rule, missing: set[bool], *, any_examples: bool) -> Diagno
 
 
 def nothing_to_run(patterns: Sequence[str], rules: Sequence[str]) -> Diagnostic:
-    """R0460: patterns that match none of these rules, nor an example of theirs."""
+    """R0460: the patterns match none of these rules and none of their examples."""
     name = patterns[0].partition("/")[0]
     known = f"rules are {named(rules)}" if rules else "there is no rule"
     return NOTHING_TO_RUN.at(

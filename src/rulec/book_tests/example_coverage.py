@@ -36,14 +36,14 @@ from rulec.witnesses.coverage_witness import (
 from rulec.witnesses.letter_functions import Digits, constant_reads, digits_of
 
 _MOST_TRIED = 16
-"""Letters that are tried for a state close to a limit."""
+"""Number of letters tried to find a state close to a limit."""
 
 
 @dataclass(frozen=True, slots=True)
 class UncoveredEdge:
-    """Monitor edge that no example takes, with a shortest example for it.
+    """A monitor edge that no example takes, with a shortest example for it.
 
-    The edge leads from state ``source`` to ``target``; ``accepted`` is what the rule does with the
+    The edge leads from state ``source`` to ``target``; ``accepted`` is the rule's verdict on the
     example.
     """
 
@@ -55,9 +55,9 @@ class UncoveredEdge:
 
 @dataclass(frozen=True, slots=True)
 class UntouchedLimit:
-    """A limit that no example comes close to where its comparison has this value.
+    """A limit that no example comes close to while its comparison has this value.
 
-    ``example`` would.
+    ``example`` is one that would.
     """
 
     comparison: Comparison
@@ -69,11 +69,11 @@ class UntouchedLimit:
 class RuleCoverage:
     """Edges, truth values and limits of a rule that its examples cover.
 
-    An edge is a state of its machine and a class of letters; the edges of the two states in which
-    the verdict is settled for good do not count, nor does what no state of the world can be. The
-    values of an atom or a comparison are true and false, as far as it can have them, and those of
-    a limit that examples are close to it on both sides, where that makes a difference. A rule is
-    ``inherited`` if the rulebook that was run has it as another one wrote it.
+    An edge is a state of the rule's machine with a class of letters; edges from the two states in
+    which the verdict is final do not count, nor do letters that no state of the world can have. The
+    values of an atom or a comparison are true and false, as far as they are possible. A limit
+    counts once per side: an example should be close to it on each side where that makes a
+    difference. A rule is ``inherited`` if the rulebook took it unchanged from another one.
     """
 
     __repr__ = short_repr
@@ -89,12 +89,12 @@ class RuleCoverage:
 
     @property
     def total(self) -> int:
-        """Edges, values of atoms, and sides of limits, together."""
+        """The number of edges, values of atoms, and sides of limits."""
         return self.n_edges + self.n_values + self.n_limits
 
     @property
     def covered(self) -> int:
-        """Those of them that are taken or seen."""
+        """The number of those that examples take or have."""
         missing = (self.missing_edges, self.missing_values, self.missing_limits)
         return self.total - sum(map(len, missing))
 
@@ -107,9 +107,9 @@ def percent(rules: Iterable[RuleCoverage]) -> float:
 
 
 def asked_of(rules: Iterable[RuleCoverage], patterns: Sequence[str]) -> list[RuleCoverage]:
-    """The rules that a rulebook has to cover: its own, or all that patterns have chosen.
+    """The rules that a rulebook has to cover: its own, or all those chosen by patterns.
 
-    What it inherits is for the examples of who wrote it.
+    Inherited rules are to be covered by the examples of the rulebook that wrote them.
     """
     return [rule for rule in rules if patterns or not rule.inherited]
 
@@ -117,8 +117,8 @@ def asked_of(rules: Iterable[RuleCoverage], patterns: Sequence[str]) -> list[Rul
 def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
     """The coverage of every rule by the examples that were run.
 
-    Where patterns chose, rules are left out that none matches, nor any of their examples. One
-    that one matches and that has no example is there: nothing of it is covered.
+    If patterns were given, rules are left out if neither they nor their examples match. A rule that
+    matches but has no example is included, with nothing covered.
     """
     covered = []
     for rule, compiled, outcomes in _by_rule(run):
@@ -140,9 +140,9 @@ def _by_rule(run: ExampleRun) -> Iterator[tuple[Rule, CompiledRule, list[Example
 
 @dataclass(frozen=True, slots=True)
 class _Ways:
-    """What a trace can do whose states agree on what cannot change.
+    """What traces can do whose constants (values that cannot change) are the same.
 
-    The first letter of each class, and a shortest word of classes to each state that is reached.
+    The first letter of each class, and a shortest word of classes to each reachable state.
     """
 
     letters: Mapping[int, int]
@@ -150,7 +150,7 @@ class _Ways:
 
 
 def _ways(machine: MealyMonitor, vocabulary: Vocabulary) -> Mapping[Digits, _Ways]:
-    """What traces can do, by what cannot change in them; defaults first."""
+    """What traces can do, per values of the constants; defaults first."""
     return {
         constants: _Ways(letters, _shortest_paths(machine, letters))
         for constants, letters in possible_letters(machine, vocabulary).items()
@@ -158,7 +158,7 @@ def _ways(machine: MealyMonitor, vocabulary: Vocabulary) -> Mapping[Digits, _Way
 
 
 class _RuleExamples:
-    """A rule's monitor, what traces can do, and a witness of each letter that is asked about."""
+    """A rule's monitor, what traces can do, and a witness for each letter requested."""
 
     def __init__(
         self,
@@ -173,7 +173,7 @@ class _RuleExamples:
         self._constant = constant_reads(machine.reads, vocabulary)
         self._witnesses: dict[int, CoverageWitness] = {}
         sinks = (machine.rejecting_sink, machine.accepting_sink)
-        # The states in which the verdict is not settled for good.
+        # The states in which the verdict is not final yet.
         self._unsettled = {
             constants: tuple(state for state in sorted(ways.paths) if state not in sinks)
             for constants, ways in self._ways.items()
@@ -181,7 +181,7 @@ class _RuleExamples:
 
     @cached_property
     def edges(self) -> Mapping[tuple[int, int], Digits]:
-        """What is the same in all states of a shortest trace that ends with each edge."""
+        """Edge -> the values of the constants in a shortest trace that ends with the edge."""
         shortest: dict[tuple[int, int], Digits] = {}
         for constants, ways in self._ways.items():
             for edge in itertools.product(self._unsettled[constants], ways.letters):
@@ -192,13 +192,13 @@ class _RuleExamples:
         return dict(sorted(shortest.items()))
 
     def uncovered(self, source: int, symbol: int) -> UncoveredEdge:
-        """The edge with its shortest example."""
+        """The edge with a shortest example."""
         constants = self.edges[source, symbol]
         last = self._witness(self._ways[constants].letters[symbol])
         return self._edge(constants, source, symbol, last)
 
     def untouched(self, side: LimitSide) -> UntouchedLimit | None:
-        """The limit with an example that is close to it on a side, if that makes a difference."""
+        """The limit with an example close to it on one side; None if that makes no difference."""
         machine = self._machine
         edges = deciding_edges(side, machine, lambda letter: self._unsettled[self._fixed(letter)])
         for source, letter in itertools.islice(edges, _MOST_TRIED):
@@ -215,7 +215,7 @@ class _RuleExamples:
     ) -> UncoveredEdge:
         ways = self._ways[constants]
         path = [self._witness(ways.letters[letter_class]) for letter_class in ways.paths[source]]
-        # A number that cannot change may have been moved to a limit: the same on the way there.
+        # A constant may have been moved to a limit: it has to be the same in the states before.
         names = self._vocabulary.constants
         same = {subject: value for subject, value in last.says.items() if subject[0] in names}
         before = tuple(replace(state, says={**state.says, **same}) for state in path)
@@ -287,7 +287,7 @@ def _edges_taken(machine: MealyMonitor, word: Sequence[int]) -> Iterator[tuple[i
 
 
 def _shortest_paths(machine: MealyMonitor, symbols: Iterable[int]) -> Mapping[int, tuple[int, ...]]:
-    """Shortest word of letter classes to each reachable state."""
+    """A shortest word of letter classes to each reachable state."""
     paths: dict[int, tuple[int, ...]] = {0: ()}
     waiting = [0]
     for state in waiting:
@@ -300,10 +300,10 @@ def _shortest_paths(machine: MealyMonitor, symbols: Iterable[int]) -> Mapping[in
 
 
 def uncovered_verdicts(run: ExampleRun) -> Iterator[Diagnostic]:
-    """Warnings (R0408) about rules whose examples show one of two verdicts.
+    """Warnings (R0408) about rules whose examples show only one of the two verdicts.
 
-    Rules with an example that fails are left out, for that has to be mended first. Where patterns
-    chose among the examples, it is only said of the rules that they name that they have none.
+    Rules with a failing example are left out, because that has to be corrected first. If patterns
+    were given, the only warning is that a rule named by them has no example.
     """
     for rule, compiled, outcomes in _by_rule(run):
         if run.patterns and (outcomes or not run.names(rule)):
@@ -316,7 +316,7 @@ def uncovered_verdicts(run: ExampleRun) -> Iterator[Diagnostic]:
 
 
 def verdicts(machine: MealyMonitor, vocabulary: Vocabulary) -> set[bool]:
-    """Verdicts that a rule can have: accepted (True), rejected (False), or both."""
+    """The verdicts that a rule can have: accepted (True), rejected (False), or both."""
     return {
         machine.outputs[state][symbol]
         for ways in _ways(machine, vocabulary).values()

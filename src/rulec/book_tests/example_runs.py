@@ -24,10 +24,10 @@ from rulec.value_display import Rows, short_repr
 class ExampleOutcome:
     """The result of running one example.
 
-    ``number`` counts the examples of its rule from 1. ``word`` are its states as letter classes of
-    the rule's machine. ``lost_after`` is the first state, from 0, after which no continuation could
-    save the rule; None if there is none. ``ends``: nothing comes after an example's last state,
-    rather than that state again and again.
+    ``number`` counts the examples of its rule from 1. ``word`` has its states as letter classes of
+    the rule's machine. ``lost_after`` is the first state, counted from 0, after which every
+    continuation violates the rule; None if there is none. ``ends``: the trace ends with the last
+    state; otherwise that state is repeated for ever.
     """
 
     __repr__ = short_repr
@@ -42,7 +42,7 @@ class ExampleOutcome:
 
     @property
     def passed(self) -> bool:
-        """Tell whether the rule's verdict is the one that the example claims."""
+        """Whether the rule's verdict is the one that the example states."""
         return self.accepted == self.example.accepts
 
     @property
@@ -53,9 +53,9 @@ class ExampleOutcome:
 
 @dataclass(frozen=True, slots=True)
 class ExampleRun(Rows):
-    """Compiled rulebook with its warnings and the outcomes of its examples.
+    """A compiled rulebook with its warnings and the outcomes of its examples.
 
-    ``patterns`` are what chose among them; none if all were run.
+    ``patterns`` are those that chose the examples; empty if all were run.
     """
 
     __repr__ = short_repr
@@ -67,11 +67,11 @@ class ExampleRun(Rows):
     patterns: Sequence[str] = ()
 
     def names(self, rule: Rule) -> bool:
-        """Tell whether the rule itself was asked for, rather than some examples of it."""
+        """Whether the rule itself was requested, rather than some of its examples."""
         return _is_wanted([rule.name], self.patterns)
 
     def turned_round(self) -> frozenset[str]:
-        """The rules that reject what their examples accept, and accept what these reject."""
+        """The rules that reject all they should accept and accept all they should reject."""
         own: dict[str, list[ExampleOutcome]] = {}
         for outcome in self.outcomes:
             own.setdefault(outcome.rule.name, []).append(outcome)
@@ -83,7 +83,7 @@ class ExampleRun(Rows):
         )
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row an example."""
+        """One row per example."""
         return [
             {
                 "rule": outcome.rule.name,
@@ -102,12 +102,12 @@ def run_rulebook_examples(
     warnings: tuple[Diagnostic, ...] = (),
     patterns: Sequence[str] = (),
 ) -> ExampleRun:
-    """Run examples, all or those whose ``RULE`` or ``RULE/LABEL`` a pattern matches.
+    """Run all examples, or those whose ``RULE`` or ``RULE/LABEL`` matches a pattern.
 
-    An example without a label goes by its number. ``compiled`` is the rulebook compiled, the
-    warnings are passed on.
+    An example without a label is named by its number. ``compiled`` is the compiled rulebook;
+    ``warnings`` are passed on.
 
-    Raises RulecError: R0306 if a state of an example cannot be, because of facts.
+    Raises RulecError: R0306 if facts rule out a state of an example.
     """
     outcomes = tuple(
         _outcome(rule, machine, compiled, example, number)
@@ -119,7 +119,7 @@ def run_rulebook_examples(
 
 
 def _is_wanted(names: Sequence[str], patterns: Sequence[str]) -> bool:
-    """Tell whether a pattern matches one of the names of a thing, or there is no pattern."""
+    """Whether a pattern matches one of the names, or there is no pattern."""
     return not patterns or any(fnmatchcase(name, pattern) for pattern in patterns for name in names)
 
 
@@ -156,7 +156,7 @@ def _no_state(rule: Rule, example: Example, error: ImpossibleStateError) -> Rule
 
 
 def example_trace(rule: Rule, example: Example) -> Trace:
-    """Trace of an example, with the rule's variables and further objects."""
+    """The trace of an example, with the rule's variables and further objects."""
     states = []
     for mentioned in example.states:
         state: dict[str, Any] = {}
@@ -173,32 +173,35 @@ def example_trace(rule: Rule, example: Example) -> Trace:
 
 
 def own_names(rule: Rule) -> dict[str, str]:
-    """Binding of examples: every variable to the object of its name."""
+    """The binding of examples: every variable to the object with its name."""
     return {variable.name: variable.name for variable in rule.variables}
 
 
 def example_warnings(
     rulebook: Rulebook, compiled: Callable[[Sequence[Rule]], CompiledRulebook]
 ) -> list[Diagnostic]:
-    """Warnings about failing examples; ``compiled`` compiles rules for their steps.
+    """Warnings about failing examples; ``compiled`` compiles rules for their own steps.
 
     Raises RulecError.
     """
-    # A rule with bounds in seconds but no examples need not fit the step that those would have.
+    # A rule with bounds in seconds but no examples need not fit the step of examples.
     rules = tuple(rule for rule in rulebook.rules if rule.examples or not has_seconds(rule.formula))
     outcomes = run_rulebook_examples(replace(rulebook, rules=rules), compiled(rules)).outcomes
     return [example_warning(outcome, rulebook.name) for outcome in outcomes if not outcome.passed]
 
 
 def is_inherited(outcome: ExampleOutcome, book: str) -> bool:
-    """Tell whether it is for a rulebook to undo what it made of a rule, and not to mend that."""
+    """Whether the rule or the example comes from another rulebook than ``book``.
+
+    Then ``book`` has to undo its own change, rather than correct the rule or the example.
+    """
     own, example = outcome.rule.span, outcome.example.span
     apart = own is not None and example is not None and own.source != example.source
     return outcome.rule.book != book or apart
 
 
 def example_warning(outcome: ExampleOutcome, book: str) -> Diagnostic:
-    """Warning (R0406) about an example that fails in a book."""
+    """The warning (R0406) about an example that fails in a book."""
     rule, example = outcome.rule, outcome.example
     name = f"`{example.label}`" if example.label else f"number {outcome.number}"
     claim, truth = ("accept", "rejects") if example.accepts else ("reject", "accepts")

@@ -1,4 +1,4 @@
-"""Limits of comparisons: whether examples stand close to them, on both sides."""
+"""Limits of comparisons: whether examples come close to them on both sides."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from rulec.vocabulary import Vocabulary
 from rulec.witnesses.coverage_witness import can_be
 
 _MOST_PLACES = 2
-"""Limits with more decimals come from a change of units; what is near them is so by one unit."""
+"""Limits with more decimals result from converting units; close to them means within 1."""
 
 
 @dataclass(frozen=True, slots=True)
 class LimitSide:
-    """One side of a limit: of the states in which a comparison ``holds``, those close to it."""
+    """One side of a limit: the states close to it in which a comparison has the value ``holds``."""
 
     comparison: Comparison
     holds: bool
 
 
 def sides_of(formula: Formula) -> tuple[LimitSide, ...]:
-    """Both sides of every limit of a formula; what is counted has no limit that is close."""
+    """Both sides of every limit in a formula; counts of objects have none."""
     return tuple(
         LimitSide(atom, holds)
         for atom in dict.fromkeys(atoms_of(formula))
@@ -43,7 +43,7 @@ def sides_of(formula: Formula) -> tuple[LimitSide, ...]:
 
 
 def grain(limit: Fraction) -> Fraction:
-    """How close is close: one of the last digit that a limit is written with, 0.1 for 1.5."""
+    """The distance that is close: one in the last digit of a limit, such as 0.1 for 1.5."""
     for places in range(_MOST_PLACES + 1):
         unit = Fraction(1, 10**places)
         if (limit / unit).denominator == 1:
@@ -54,7 +54,7 @@ def grain(limit: Fraction) -> Fraction:
 def touched(
     sides: Iterable[LimitSide], binding: ObjectBinding, state: PartialState
 ) -> Iterator[LimitSide]:
-    """The sides on which a state of an example stands."""
+    """The sides of limits that a state of an example is close to."""
     for side in sides:
         number = weighted_sum(side.comparison.terms, binding, state)
         if not isinstance(number, Unknown) and _stands_at(number, side):
@@ -70,7 +70,7 @@ def _stands_at(number: Fraction, side: LimitSide) -> bool:
 def close_state(
     says: ExampleState, side: LimitSide, machine: MealyMonitor, vocabulary: Vocabulary
 ) -> ExampleState | None:
-    """What a state says with a number on a side of a limit moved close to it, if that can be."""
+    """The state with its number moved close to a limit on one side; None if impossible."""
     limit, terms = side.comparison.limit, side.comparison.terms
     numbers = dict(says)
     if len(terms) == 1:
@@ -109,9 +109,9 @@ def _reads(read: Read | NumberRead, side: LimitSide) -> TypeGuard[NumberRead]:
 def deciding_edges(
     side: LimitSide, machine: MealyMonitor, sources: Callable[[int], tuple[int, ...]]
 ) -> Iterator[tuple[int, int]]:
-    """States of a machine, and letters on a side of a limit whose other side leads elsewhere.
+    """States of a machine with letters on one side of a limit whose other side leads elsewhere.
 
-    ``sources`` are the states in which a letter can be read and nothing is settled.
+    ``sources`` gives the states in which a letter can be read and the verdict is not final.
     """
     (true,) = letters_with(machine.reads, [side.comparison]).values()
     reads = machine.reads

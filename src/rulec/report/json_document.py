@@ -32,9 +32,9 @@ class JsonDocument(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def filled(kind: type[Filled], source: object, **own: Any) -> Filled:
-    """Make a part of its ``own`` fields and the source's attributes.
+    """Make a part from its ``own`` fields and attributes of the source.
 
-    These are read for every field that is required and not given.
+    The source is read for every required field that is not given.
     """
     names = [name for name in _required(kind) if name not in own]
     return kind(**{name: getattr(source, name) for name in names}, **own)
@@ -58,7 +58,8 @@ def as_indented(document: Any) -> str:
 def as_builtins(document: Any) -> Any:
     """Turn a document into dicts, lists, texts and numbers.
 
-    ``json`` writes them: it spells numbers as Python does, and takes integers of any size.
+    They are written by ``json``, which spells numbers as Python does and allows integers of any
+    size.
     """
     return msgspec.to_builtins(document, enc_hook=_plain)
 
@@ -67,7 +68,7 @@ _ENCODER = json.JSONEncoder(ensure_ascii=False)
 
 
 def _plain(value: object) -> object:
-    """Views of dicts, fractions, and numbers that a library has made."""
+    """Convert views of dicts, fractions and a library's number types to plain values."""
     if isinstance(value, Fraction) and value.denominator == 1:
         return int(value)
     if isinstance(value, float | Fraction):

@@ -21,7 +21,7 @@ STAGES = (
     "Files",
     "Analysis",
 )
-"""The stages that speak, by the hundreds of their codes, from 1 on."""
+"""The stages that report codes, by the hundreds digit of the codes, from 1 on."""
 
 _PACKAGE = Path(__file__).parents[2]
 
@@ -34,7 +34,7 @@ def all_codes() -> dict[str, Code]:
 
 
 def code_named(text: str) -> Code | None:
-    """The code with a text such as ``R0104``, or None."""
+    """The code with a text such as ``R0104``; None if there is none."""
     for path in message_files():
         if f'"{text}"' in path.read_text(encoding="utf-8"):
             return next((code for code in _defined_in(path) if code.code == text), None)
@@ -48,7 +48,7 @@ def codes_of_stage(stage: str) -> list[Code]:
 
 
 def message_files() -> Iterator[Path]:
-    """The modules that define codes: ``..._messages.py``, and those in a folder ``messages``."""
+    """The modules that define codes: ``..._messages.py``, and those in folders ``messages``."""
     for folder, folders, files in os.walk(_PACKAGE):
         folders.sort()
         ending = ".py" if folder.endswith(f"{os.sep}messages") else "_messages.py"
@@ -56,9 +56,9 @@ def message_files() -> Iterator[Path]:
 
 
 def _defined_in(path: Path) -> list[Code]:
-    """The codes of a module, without importing it.
+    """The codes defined in a module, without importing it.
 
-    They stand before all that speaks of them, and are made of texts alone. Importing the modules
+    Codes are defined before anything that uses them, and only from texts. Importing the modules
     would load parser, compiler and scenarios: `rulec explain --all` took three times as long.
     """
     text = path.read_text(encoding="utf-8")
@@ -83,7 +83,7 @@ _KINDS: dict[ExampleKind, tuple[str, str]] = {
     "command": ("in a shell", "sh"),
     "python": ("from Python", "python"),
 }
-"""What an example is for, and its language."""
+"""What is done with an example, and its language."""
 
 _HEAD = """\
 # Codes
@@ -111,7 +111,8 @@ def as_markdown(code: Code) -> str:
     """The explanation without its title, in Markdown."""
     parts = [fill(code.why, 100, break_on_hyphens=False)]
     for head, example in _examples(code):
-        # What follows the language's name keeps the samples of mistakes from being taken for good.
+        # The word after the language marks samples of mistakes, so that they are not read as
+        # correct ones.
         parts.append(
             f"{head}:\n\n```{_KINDS[code.kind][1]} {head.split()[0].lower()}\n{example}\n```"
         )

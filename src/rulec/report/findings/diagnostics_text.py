@@ -19,10 +19,10 @@ from rulec.report.text.terminal_text import cell_width, styled, visible, wants_c
 from rulec.work_trees import leads_out
 
 MAX_WIDTH = 100
-"""Columns of a shown line that goes to no terminal; a longer one is cut around the place."""
+"""Width of a shown source line outside a terminal; a longer line is cut around the place."""
 
 _FRAME_COLUMNS = 9
-"""What stands around a shown line: its number, the frame, and marks of what was cut."""
+"""Columns around a shown line: its number, the frame, and the marks of cut ends."""
 
 TAB = 4
 _LEAD = 30
@@ -30,7 +30,7 @@ _LEAD = 30
 
 @dataclass(frozen=True, slots=True)
 class Underline:
-    """A place to underline with ``sign``, and what to write beside it."""
+    """A place to underline with ``sign``, and the words beside it."""
 
     place: SourceLocation
     words: str
@@ -38,12 +38,12 @@ class Underline:
 
 
 def excerpt_width(stream: TextIO) -> int:
-    """Columns for a shown line on a stream: as many as the terminal leaves, if it is one."""
+    """Columns for a shown source line on a stream; on a terminal, what the frame leaves."""
     return page_width(stream) - _FRAME_COLUMNS if stream.isatty() else MAX_WIDTH
 
 
 def excerpt_lines(marks: Sequence[Underline], columns: int) -> Iterator[tuple[str, str]]:
-    """The line shared by all marks, then each mark's underline and sign."""
+    """The source line of all marks, then the underline of each mark with its sign."""
     excerpt = marks[0].place.excerpt
     primary = next((mark for mark in marks if mark.sign == "^"), marks[0])
     cells, first, cut_before, cut_after = _window(excerpt, primary.place, columns)
@@ -66,10 +66,10 @@ def _end_column(place: SourceLocation, length: int) -> int:
 
 
 def _window(excerpt: str, place: SourceLocation, columns: int) -> tuple[list[str], int, bool, bool]:
-    """The characters shown, the first one's index, and marks for cut ends."""
-    # An excerpt may be cut before its line's end.
+    """The characters shown, the index of the first one, and whether each end is cut."""
+    # An excerpt may have been cut before its line's end.
     column = min((place.column or 1) - 1, len(excerpt))
-    # A hostile line may have millions of characters: look only at what can be shown.
+    # A hostile line may have millions of characters: look only at those that can be shown.
     start = max(0, column - columns)
     shown = excerpt[start : column + columns]
     cells = [" " * TAB if character == "\t" else visible(character) for character in shown]
@@ -101,7 +101,7 @@ _Paint = Callable[[str, str], str]
 
 
 def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True) -> None:
-    """Print errors and warnings on standard error, with their number."""
+    """Print errors and warnings on standard error, with their numbers."""
     if diagnostics:
         columns = excerpt_width(sys.stderr)
         text = render_diagnostics(diagnostics, wants_color(sys.stderr), summary, columns)
@@ -109,9 +109,10 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True
 
 
 class Complaints:
-    """Errors about many inputs: the first of each kind shown, others counted.
+    """Errors about many inputs: the first of each kind are shown, others counted.
 
-    So are those that are word for word the same, as of each drive of a recording.
+    Repetitions of the same text are only counted, too, as with an error in each drive of a
+    recording.
     """
 
     def __init__(self, most: int = 10) -> None:
@@ -120,7 +121,7 @@ class Complaints:
         self._shown: dict[str, list[Diagnostic]] = {}
 
     def add(self, error: RulecError) -> None:
-        """Show an error, or count it after many of its kind."""
+        """Show an error, or only count it if many of its kind were shown."""
         for diagnostic in error.diagnostics:
             self._seen[diagnostic.code] += 1
             shown = self._shown.setdefault(diagnostic.code, [])
@@ -129,7 +130,7 @@ class Complaints:
                 print_diagnostics([diagnostic], summary=False)
 
     def close(self) -> None:
-        """Say how many have not been shown."""
+        """Print how many errors were not shown."""
         for code, count in self._seen.items():
             if hidden := count - len(self._shown[code]):
                 print_aside(f"… and {hidden:,} more of this kind [{code}]")
@@ -141,11 +142,10 @@ def render_diagnostics(
     summary: bool = True,
     columns: int = MAX_WIDTH,
 ) -> str:
-    """All diagnostics and a line that counts them; empty text for none.
+    """All diagnostics and a line with their numbers; an empty text if there are none.
 
     Control characters in messages and in the shown lines are escaped, so that a hostile file cannot
-    drive the terminal. ``color`` adds escape sequences of its own; lines of sources have so many
-    ``columns``.
+    control the terminal. ``color`` adds escape sequences; ``columns`` is the width of source lines.
     """
     every = list(diagnostics)
     if not every:
@@ -165,14 +165,14 @@ def _summary(every: Sequence[Diagnostic]) -> str:
 
 
 def _without_others_lines(diagnostic: Diagnostic) -> Diagnostic:
-    """A diagnostic that quotes no file behind a link out of its tree.
+    """A diagnostic without quotes from files behind links that leave their tree.
 
-    Whoever made the tree may not read that file; who does may print it where they can.
+    The author of the tree may not be allowed to read such a file, but may see what is printed.
     """
     places = [label.place for label in diagnostic.labels]
     if diagnostic.place is not None:
         places.append(diagnostic.place)
-    # One look at each file; a message may have a label for each line of it.
+    # Look at each file once; a message may have a label for each of its lines.
     if not any(map(_is_behind_link, {place.file for place in places if place.excerpt})):
         return diagnostic
     labels = tuple([replace(label, place=_unquoted(label.place)) for label in diagnostic.labels])
@@ -187,7 +187,7 @@ def _unquoted(place: SourceLocation) -> SourceLocation:
 
 
 def _is_behind_link(file: str) -> bool:
-    with suppress(OSError, ValueError):  # a name that nothing can have
+    with suppress(OSError, ValueError):  # a name that no file can have
         return leads_out(Path(file))
     return True
 
@@ -213,7 +213,7 @@ def _block(diagnostic: Diagnostic, paint: _Paint, columns: int) -> Iterator[str]
         yield paint(f"{gutter} |", _FRAME)
         for left, text, style in _lines(shown, severity, columns):
             yield f"{paint(f'{left:>{width}} |', _FRAME)} {paint(text, style)}".rstrip()
-    # Without a line there is no underlined place for it to stand beside.
+    # Without a shown line there is no underlined place beside which it could be.
     unplaced = "" if _is_shown(diagnostic.place) else diagnostic.expected
     notes = (("note", note) for note in diagnostic.notes)
     for word, text in (("note", unplaced), ("help", diagnostic.help), *notes):
@@ -232,7 +232,7 @@ def _by_file(diagnostic: Diagnostic) -> list[list[Underline]]:
 
 
 def _is_shown(place: SourceLocation | None) -> bool:
-    """True for a place in a line; of a row of a table the line alone is known, not its text."""
+    """Whether the place has a line to show; of a row of a table only the number is known."""
     return (
         place is not None
         and place.line is not None
@@ -243,7 +243,7 @@ def _is_shown(place: SourceLocation | None) -> bool:
 def _lines(
     marks: Sequence[Underline], severity: str, columns: int
 ) -> Iterator[tuple[str, str, str]]:
-    """Line number left of the frame, text right of it, and style."""
+    """The number left of the frame, the text right of it, and the style of each line."""
     before: int | None = None
     in_order = sorted(marks, key=lambda mark: mark.place.start)
     for number, group in groupby(in_order, key=lambda mark: mark.place.line):

@@ -1,4 +1,4 @@
-"""Findings about rulebooks in each output format; those with a line each are here."""
+"""Findings about rulebooks in each output format; formats with one line per finding are here."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ def render(
 ) -> str:
     """Render diagnostics in one of FORMATS.
 
-    ``complete`` if all was read that had to be; ``columns`` for lines of sources, 0 for as many as
-    where there is no terminal.
+    ``complete``: all inputs could be read; ``columns`` is the width of source lines, 0 for the
+    width used outside a terminal.
     """
     match output_format:
         case "concise":
@@ -41,7 +41,7 @@ def render(
 
             return as_sarif(diagnostics, complete=complete)
         case _:
-            # Every verb imports this file for FORMATS, and few write findings.
+            # Every verb imports this file for FORMATS, but few verbs write findings.
             from rulec.report.findings.diagnostics_text import MAX_WIDTH, render_diagnostics
 
             shown = render_diagnostics(diagnostics, color, columns=columns or MAX_WIDTH)
@@ -49,7 +49,7 @@ def render(
 
 
 def as_lines(diagnostics: Iterable[Diagnostic]) -> str:
-    """``file:line:column: code message``; what has no place has no prefix either."""
+    """``file:line:column: code message``; no prefix if there is no place."""
     return "\n".join(
         visible(
             f"{'' if diagnostic.place is None else f'{address(diagnostic.place)}: '}"
@@ -60,7 +60,7 @@ def as_lines(diagnostics: Iterable[Diagnostic]) -> str:
 
 
 def as_annotations(diagnostics: Iterable[Diagnostic]) -> str:
-    """A workflow command of GitHub's for each, shown beside the lines of a change.
+    """A GitHub workflow command per finding, shown beside the lines of a change.
 
     https://docs.github.com/en/actions/reference/workflows-and-actions/workflow-commands
     """
@@ -72,7 +72,7 @@ def _command(diagnostic: Diagnostic) -> str:
     if diagnostic.place is not None:
         place = diagnostic.place
         properties = {"file": from_here(place.file), "line": place.line, "endLine": place.end_line}
-        # Of a place over several lines GitHub takes no columns.
+        # GitHub accepts no columns for a place over several lines.
         if place.end_line in (None, place.line):
             properties |= {"col": place.column, "endColumn": place.end_column}
     properties["title"] = f"{diagnostic.code}: {diagnostic.message}"

@@ -22,7 +22,7 @@ SCHEMA = (
 
 
 def as_sarif(diagnostics: Sequence[Diagnostic], *, complete: bool = True) -> str:
-    """One run of rulec; ``complete`` if all was read that had to be."""
+    """One run of rulec; ``complete``: all inputs could be read."""
     codes = sorted({diagnostic.code for diagnostic in diagnostics})
     run = {
         "tool": {

@@ -1,4 +1,4 @@
-"""Outcomes of examples, in the format that somebody asked for."""
+"""Outcomes of examples in the requested format."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ def render(
     output_format: str,
     besides: Besides,
 ) -> str:
-    """Write runs as ``full``, ``json`` or ``junit``, with coverage unless None.
+    """Write runs as ``full``, ``json`` or ``junit``, with coverage unless it is None.
 
-    ``besides`` is in ``junit`` alone, of which nothing but the file may be looked at.
+    ``besides`` is written only as ``junit``, whose reader may see nothing but the file.
     """
     match output_format:
         case "json":

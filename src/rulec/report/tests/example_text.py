@@ -24,14 +24,14 @@ from rulec.rulebook.rulebook_model import ExampleState
 from rulec.vocabulary import Quantity, Vocabulary
 
 MOST_MISSING = 5
-"""So many missing edges of a rule are shown; JSON has them all."""
+"""Number of a rule's missing edges shown as text; JSON has all of them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Besides:
-    """What ails a run besides its examples.
+    """Problems of a run other than failing examples.
 
-    ``unread`` is by rulebook why it could not be tested, ``short`` is what ``shortcomings`` says.
+    ``unread``: rulebook -> why it could not be tested; ``short``: result of ``shortcomings``.
     """
 
     unread: Mapping[str, Sequence[Diagnostic]]
@@ -39,7 +39,7 @@ class Besides:
 
 
 def as_text(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None) -> str:
-    """A line for each example, details of failures, and the numbers."""
+    """A line for each example, details of failures, and the totals."""
     verdicts = {True: styled("pass", "green"), False: styled("FAIL", "bold red")}
     lines = [
         f"{verdicts[outcome.passed]}  "
@@ -75,7 +75,7 @@ def asked_rules(
 
 
 def coverage_in_words(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]]) -> str:
-    """The coverage of a rulebook's own rules, and that of all where it inherits some."""
+    """The coverage of a rulebook's own rules, and of all rules if some are inherited."""
     everything = [rule for rules in covered for rule in rules]
     own_rules = asked_rules(runs, covered)
     if len(own_rules) == len(everything):
@@ -86,7 +86,7 @@ def coverage_in_words(runs: Sequence[ExampleRun], covered: Sequence[Sequence[Rul
 
 
 def failures(run: ExampleRun) -> dict[int, Diagnostic]:
-    """The diagnostics of a run's failing examples, by their places among its outcomes."""
+    """The diagnostics of a run's failing examples, by index among its outcomes."""
     turned_round = run.turned_round()
     return {
         number: _failure(outcome, run.rulebook.name, turned_round=outcome.rule.name in turned_round)
@@ -98,7 +98,7 @@ def failures(run: ExampleRun) -> dict[int, Diagnostic]:
 def _failure(example_outcome: ExampleOutcome, rulebook: str, *, turned_round: bool) -> Diagnostic:
     """The diagnostic of a failing, perhaps inherited, example.
 
-    ``turned_round``: all examples of its rule come out the other way.
+    ``turned_round``: every example of its rule has the opposite outcome.
     """
     problem = replace(example_warning(example_outcome, rulebook), severity="error")
     rule = example_outcome.rule
@@ -123,7 +123,7 @@ def shortcomings(
     *,
     fail_on_empty: bool,
 ) -> dict[str, str]:
-    """What is below the required thresholds, ``examples`` or ``coverage`` -> a sentence on it."""
+    """What is below a requirement: ``examples`` or ``coverage`` -> a sentence about it."""
     short = {}
     if fail_on_empty and not any(run.outcomes for run in runs):
         short["examples"] = "there is no example to run"
@@ -139,7 +139,7 @@ def shortcomings(
 
 
 def coverage_lines(rules: Sequence[RuleCoverage], vocabulary: Vocabulary) -> Iterator[str]:
-    """A line for each rule's coverage, with missing parts indented below."""
+    """The lines of each rule's coverage, with missing parts indented below."""
     for rule in rules:
         edges = f"{rule.n_edges - len(rule.missing_edges):,} of {rule.n_edges:,} edges"
         values = (
@@ -172,16 +172,16 @@ def as_percent(number: float) -> str:
 
 
 def missing_examples(rule: RuleCoverage, vocabulary: Vocabulary) -> list[str]:
-    """Examples that would take each missing edge and come close to each limit, each once."""
+    """Examples that would take each missing edge and come close to each limit, without repetition."""
     edges = [*rule.missing_edges, *(limit.example for limit in rule.missing_limits)]
     return list(dict.fromkeys(missing_example(edge, vocabulary) for edge in edges))
 
 
 def missing_example(edge: UncoveredEdge, vocabulary: Vocabulary) -> str:
-    """An example that would take an edge, as a rule's text.
+    """An example that would take an edge, in the rule language.
 
-    What has its default is not said, unless it is a number. What cannot be written as facts stands
-    in a comment behind it.
+    Values equal to their defaults are omitted, except numbers. What cannot be written as facts is
+    added in a comment.
     """
     states = "; ".join(
         " and ".join(_facts(state.says, vocabulary)) or "true" for state in edge.states

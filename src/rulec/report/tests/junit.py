@@ -20,10 +20,10 @@ def as_junit(
     covered: Sequence[Sequence[RuleCoverage]] | None,
     besides: Besides,
 ) -> str:
-    """A suite for each rulebook, in it a case for each example.
+    """A suite for each rulebook with a case for each example.
 
-    A rulebook that could not be tested has one case, with its error; what all of them fall short of
-    is a failure in a suite of its own.
+    A rulebook that could not be tested has one case with its error; requirements not met are
+    failures in a separate suite.
     """
     counts = _counts(runs, errors=len(besides.unread), short=len(besides.short))
     root = element(None, "testsuites", name="rulec", **counts)
