@@ -172,7 +172,7 @@ def as_percent(number: float) -> str:
 
 
 def missing_examples(rule: RuleCoverage, vocabulary: Vocabulary) -> list[str]:
-    """Examples that would take each missing edge and come close to each limit, without repetition."""
+    """Examples that would take each missing edge and come close to each limit, each once."""
     edges = [*rule.missing_edges, *(limit.example for limit in rule.missing_limits)]
     return list(dict.fromkeys(missing_example(edge, vocabulary) for edge in edges))
 
