@@ -77,7 +77,7 @@ def json_lines(drive: DriveMoments) -> Iterator[str]:
 
 @dataclass(slots=True)
 class MomentTally:
-    """How many moments were found, in how many drives of how many."""
+    """The number of moments found, and in how many of all drives."""
 
     surely: int = 0
     perhaps: int = 0
@@ -93,7 +93,7 @@ class MomentTally:
         self.with_some += bool(drive.moments)
 
     def as_text(self) -> str:
-        """The line that ends the list."""
+        """The summary line of the list."""
         perhaps = f", {self.perhaps:,} more perhaps" if self.perhaps else ""
         drives = f"{self.with_some:,} of {counted(self.drives, 'drive')}"
         return f"{counted(self.surely, 'moment')}{perhaps}, in {drives}"

@@ -1,7 +1,7 @@
-"""A forest plot of rates: a row for each rule, a mark for its rate, lines for its intervals.
+"""A forest plot of rates: a row per rule, with a mark for its rate and lines for its intervals.
 
-Lewis and Clarke, "Forest plots: trying to see the wood and the trees" (2001). Rates are on a
-logarithmic axis, since they differ by orders of magnitude; beside it on the left is 0.
+Lewis and Clarke, "Forest plots: trying to see the wood and the trees" (2001). The axis is
+logarithmic, since rates differ by orders of magnitude; 0 is to the left of it.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ from rulec.report.pictures.drawing.picture_formats import Drawing
 from rulec.report.rates.rates_table import group_title, number
 
 PER = {"per_hour": "per hour", "per_1000_km": "per 1000 km", "per_opportunity": "per opportunity"}
-"""The rates that a picture may show, in words."""
+"""The rates that a picture can show -> their names."""
 
 _ROW = 34.0
 _BESIDE = 5.0
-"""How far the outer intervals are from the middle of a row."""
+"""Distance of the outer intervals from the middle of a row."""
 _HEAD = 30.0
 _FOOT = 26.0
 _LONGEST_NAME = 380.0
 _TO_ZERO = 28.0
-"""How far 0 is left of the least power of ten."""
+"""Distance of 0 to the left of the lowest power of ten."""
 _MOST_DECADES = 6
 
 
 def rates_drawing(rates: ViolationRates, per: str) -> Drawing:
-    """The forest plot of one of the rates (a name in ``PER``); its title says what is shown."""
+    """The forest plot of one rate (a name in ``PER``); its title explains what is shown."""
     assert per in RATES, "there are three rates"
     shown = [
         (rule, rate)

@@ -16,7 +16,7 @@ _HEAD = ("rule", "opportunities", "violated", "per hour", "per 1000 km", "per op
 
 
 def as_text(rates: ViolationRates) -> str:
-    """A table for each group; below each rate the interval over drives, in braces."""
+    """A table for each group; the interval over drives is in braces below each rate."""
     lines = [row for line in _about(rates) for row in broken(visible(line), _WIDTH)]
     for group, rules in _groups(rates):
         tested = [rule for rule in rules if _is_tested(rule)]
@@ -58,7 +58,7 @@ def as_markdown(rates: ViolationRates) -> str:
 
 
 def as_csv(rates: ViolationRates) -> str:
-    """A row for each rule and group, with a line of names."""
+    """A row for each rule and group, after a header row."""
     rows = rates.rows()
     return csv_text([*rows[:1], *(row.values() for row in rows)]).rstrip("\r\n")
 
@@ -87,7 +87,7 @@ def _groups(rates: ViolationRates) -> Iterator[tuple[str, list[RuleRates]]]:
 
 
 def group_title(group: Sequence[str], by: Sequence[str]) -> str:
-    """A group by the names and values of what it is told apart by."""
+    """A group as names and values of its properties."""
     pairs = zip(by, group, strict=True)
     return ", ".join(f"{name} {value or 'unknown'}" for name, value in pairs)
 
@@ -122,7 +122,7 @@ def _cells(rule: RuleRates) -> list[str]:
 
 
 def rates_of(rule: RuleRates) -> tuple[Rate | None, ...]:
-    """The rates of a rule, in the order of the table."""
+    """The rates of a rule in the order of the table."""
     return rule.per_hour, rule.per_1000_km, rule.per_opportunity
 
 
@@ -156,7 +156,7 @@ def _between(least: int, most: int) -> str:
 
 
 def number(value: float) -> str:
-    """A number with three digits that count."""
+    """A number with three significant digits."""
     if value >= 1000:
         return f"{value:,.0f}"
     return f"{value:.3g}" if value >= 0.001 or value == 0 else f"{value:.1e}"

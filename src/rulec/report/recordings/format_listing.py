@@ -1,4 +1,4 @@
-"""The formats of recordings and maps, and the words that files of each can tell."""
+"""The formats of recordings and maps, and the words that files of each can provide."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ TELLS_NOT = "."
 class ListedFormat:
     """A format of recordings or, if ``is_map``, of maps.
 
-    ``files`` says how its files are called, ``roads`` where those of recordings are. ``words`` are
-    those that some file of it can tell, in the order of the vocabulary; None if not known.
-    ``takes_map``: its roads may be those of a map that is named.
+    ``files`` describes the names of its files, ``roads`` says where a recording's roads come from.
+    ``words`` are those that some file of the format can provide, in the vocabulary's order; None if
+    unknown. ``takes_map``: the roads may come from a map given separately.
     """
 
     __repr__ = short_repr
@@ -39,12 +39,12 @@ class ListedFormat:
 
 
 def words_in_order() -> tuple[str, ...]:
-    """The words of the vocabulary `road`, which countries' rulebooks are written in."""
+    """The words of the vocabulary `road`, in which countries' rulebooks are written."""
     return tuple(load_vocabulary("road").declarations)
 
 
 def listed_formats(order: Sequence[str]) -> tuple[ListedFormat, ...]:
-    """Every format of recordings, then every format of maps; words in this order."""
+    """Every format of recordings, then every format of maps, with words in this order."""
     recordings = [
         ListedFormat(
             form.name,
@@ -68,7 +68,7 @@ def _words_of(form: str, order: Sequence[str]) -> tuple[str, ...] | None:
 
 
 def as_text(listed: Sequence[ListedFormat], order: Sequence[str], *, words: bool) -> str:
-    """Write a line for each format, and one for each word if these are wanted."""
+    """Write a line for each format, and, if wanted, one for each word."""
     parts = []
     for title, forms in _kinds(listed):
         rows = [(f"  {form.name}", form.files, form.roads, form.title) for form in forms]
@@ -84,7 +84,7 @@ def as_text(listed: Sequence[ListedFormat], order: Sequence[str], *, words: bool
 
 
 def as_markdown(listed: Sequence[ListedFormat], order: Sequence[str], *, words: bool) -> str:
-    """Write tables of the formats, and one of the words if these are wanted."""
+    """Write tables of the formats, and, if wanted, one of the words."""
     parts = []
     for title, forms in _kinds(listed):
         with_map = title == _RECORDINGS
@@ -118,7 +118,7 @@ def _kinds(listed: Sequence[ListedFormat]) -> Iterator[tuple[str, list[ListedFor
 def _word_table(
     listed: Sequence[ListedFormat], order: Sequence[str]
 ) -> tuple[list[ListedFormat], list[tuple[str, ...]]]:
-    """The formats whose words are known, and for each word which of them tell it."""
+    """The formats whose words are known, and for each word which of them provide it."""
     forms = [form for form in listed if form.words is not None]
     words_of_forms = [frozenset(form.words or ()) for form in forms]
     beyond = sorted(frozenset().union(*words_of_forms) - set(order))
@@ -155,7 +155,7 @@ class FormatsDocument(JsonDocument, frozen=True, kw_only=True):
 
 
 def as_json(listed: Sequence[ListedFormat]) -> str:
-    """Write an object with the formats of recordings and those of maps."""
+    """Write an object with the formats of recordings and of maps."""
     return as_indented(
         FormatsDocument(
             recordings=[

@@ -16,11 +16,11 @@ from rulec.report.verdict_findings.verdict_finding import (
 
 
 class JUnitWriter:
-    """A suite for each recording, in it a case for each rule.
+    """A suite for each recording, with a case for each rule.
 
-    A case fails if a hard rule is violated, as the exit status does; what soft rules find is its
-    output. It is skipped, with the reason, if the rule could be judged for nobody, or if it is open
-    and nobody is known to violate it: nothing passes that nobody saw.
+    A case fails if a hard rule is violated, like the exit status; violations of soft rules are its
+    output. It is skipped, with the reason, if the rule could be judged for no vehicle, or if it is
+    open and no violation is known: a case passes only if the rule is known to be kept.
     """
 
     def __init__(self, stream: IO[bytes], about: FindingContext) -> None:
@@ -52,7 +52,7 @@ class JUnitWriter:
         self._stream.write(written(suite, 1))
 
     def close(self) -> None:
-        """Write the end."""
+        """Write the end of the document."""
         self._stream.write(b"</testsuites>\n")
 
 

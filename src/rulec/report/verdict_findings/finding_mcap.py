@@ -1,7 +1,8 @@
 """Findings of verdicts as events in MCAP, which viewers show beside the recording.
 
-What Lichtblick and Foxglove show is of their types ``foxglove.Log`` and ``foxglove.SceneUpdate``:
-https://docs.foxglove.dev/docs/sdk/schemas. Places are in the frame that viewers of OSI call global.
+Lichtblick and Foxglove show messages of the types ``foxglove.Log`` and ``foxglove.SceneUpdate``:
+https://docs.foxglove.dev/docs/sdk/schemas. Positions are in the frame that viewers of OSI call
+global.
 """
 
 from __future__ import annotations
@@ -22,10 +23,10 @@ from rulec.report.verdict_findings.verdict_finding import (
 )
 
 FRAME = "global"
-"""The frame of the recording's coordinates, as the converter of OSI for viewers has it."""
+"""The frame of the recording's coordinates, as named by the OSI converter of viewers."""
 
 LEAST_SHOWN_S = 1.0
-"""A violation of one moment is shown for so long."""
+"""The time for which a violation is shown at least."""
 
 _NS = 1_000_000_000
 _TEXT_HEIGHT_M = 3.0
@@ -35,9 +36,9 @@ _COLOURS = {"hard": (0.84, 0.15, 0.16, 1.0), "soft": (0.93, 0.6, 0.0, 1.0)}
 
 
 class McapWriter:
-    """Three topics: each finding as data, as a line of a log, and as a label where the vehicle is.
+    """Three topics: each finding as data, as a line of a log, and as a label at the vehicle.
 
-    A file has one time line, so it is about one recording.
+    A file has one time line, so it contains one recording.
     """
 
     def __init__(self, stream: IO[bytes], about: FindingContext, name: str) -> None:
@@ -47,7 +48,7 @@ class McapWriter:
         self._recording: RecordingFindings | None = None
 
     def add(self, recording: RecordingFindings) -> None:
-        """Keep the findings of the recording. Raises RulecError R0702 for a second one."""
+        """Store the findings of the recording. Raises RulecError R0702 for a second one."""
         if self._recording is not None:
             raise UNWRITABLE_FILE.error(
                 SourceLocation(self._name),
@@ -84,12 +85,12 @@ def _channels() -> tuple[JsonChannel, ...]:
 
 
 def _messages(finding: VerdictFinding) -> Iterator[TimedMessage]:
-    """The messages of a finding; what has no time is none."""
+    """The messages of a finding; none if it has no time."""
     at_s = finding.from_s if finding.at_s is None else finding.at_s
     if at_s is None:
         return
     begin_ns = max(0, round(at_s * _NS))
-    # Without what is null, which is of none of the types that viewers are told
+    # Without null values, which fit none of the types announced to viewers
     known = {
         name: value for name, value in json.loads(as_json(finding)).items() if value is not None
     }
@@ -159,7 +160,8 @@ _NUMBER, _WHOLE, _STRING, _YES_OR_NO = (
 _TYPES = {str: _STRING, float: _NUMBER, list: _list(_STRING)}
 _FINDING = {
     "title": "rulec.Finding",
-    # Viewers know no alternatives: what may be null is of its other type here, or left out.
+    # Viewers support no alternatives: a value that may be null has its other type here, or is left
+    # out.
     **_object(version=_WHOLE, **{name: _TYPES[kind] for name, kind in COLUMNS.items()}),
 }
 _TIME = _object(sec=_WHOLE, nsec=_WHOLE)

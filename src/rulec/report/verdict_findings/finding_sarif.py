@@ -22,9 +22,9 @@ _LEVELS = {"hard": "error", "soft": "warning"}
 
 
 class SarifWriter:
-    """A run of rulec: a result for what is violated or open, and a notification for the rest.
+    """One SARIF run: results for what is violated or open, notifications for what is not judged.
 
-    Results are written as they come; what could not be judged is kept for the end.
+    Results are written as they come; notifications are stored until the end.
     """
 
     def __init__(self, stream: IO[bytes], about: FindingContext) -> None:
@@ -56,7 +56,7 @@ class SarifWriter:
             self._any = True
 
     def close(self) -> None:
-        """Write what could not be judged, and the end."""
+        """Write the notifications and the end of the document."""
         run = {"executionSuccessful": self._complete, "toolExecutionNotifications": self._notes}
         self._write(f'\n], "invocations": [{json.dumps(run)}]}}]}}\n')
 

@@ -1,4 +1,4 @@
-"""Findings as JSON Lines, CSV and Parquet, a line or a row for each."""
+"""Findings as JSON Lines, CSV and Parquet, with a line or row for each."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class JsonLinesWriter:
         self._columns = columns
 
     def add(self, recording: RecordingFindings) -> None:
-        """Write a line for each."""
+        """Write a line for each finding or row."""
         if self._columns is None:
             lines = [as_json(finding) for finding in recording.findings]
         else:
@@ -37,11 +37,11 @@ class JsonLinesWriter:
             ]
             lines = [json.dumps({"version": 1, **row}, ensure_ascii=False) for row in rows]
         for line in lines:
-            # What no file may hold in UTF-8, half a surrogate pair, JSON writes in the same way.
+            # A lone surrogate, which UTF-8 cannot encode, is written as JSON escapes it.
             self._stream.write(f"{line}\n".encode("utf-8", "backslashreplace"))
 
     def close(self) -> None:
-        """Nothing comes at the end."""
+        """Do nothing: there is no end to write."""
 
 
 class CsvWriter:
@@ -53,11 +53,11 @@ class CsvWriter:
         stream.write(csv_text([columns or COLUMNS]).encode())
 
     def add(self, recording: RecordingFindings) -> None:
-        """Write a row for each."""
+        """Write a row for each finding or row."""
         self._stream.write(csv_text(_rows(recording, self._columns)).encode())
 
     def close(self) -> None:
-        """Nothing comes at the end."""
+        """Do nothing: there is no end to write."""
 
 
 class RowWriter:
@@ -73,12 +73,12 @@ class RowWriter:
         self._writer.add(RecordingFindings("", "", 0, (), tuple(rows)))
 
     def close(self) -> None:
-        """Write what comes at the end."""
+        """Write the end of the table."""
         self._writer.close()
 
 
 def _rows(recording: RecordingFindings, columns: Columns | None) -> Iterator[list[Any]]:
-    """The values of findings, or those of rows if there are columns."""
+    """The values of the findings; if there are columns, those of the rows."""
     if columns is None:
         yield from ([getattr(finding, name) for name in COLUMNS] for finding in recording.findings)
     else:
@@ -87,17 +87,17 @@ def _rows(recording: RecordingFindings, columns: Columns | None) -> Iterator[lis
 
 
 class ParquetWriter:
-    """Findings, or rows of these columns, as Parquet; several texts of one are lists."""
+    """Findings, or rows of these columns, as Parquet; tuples of texts become lists."""
 
     def __init__(self, stream: IO[bytes], name: str, columns: Columns | None = None) -> None:
-        arrow(name)  # what is missing is said before anything is judged
+        arrow(name)  # a missing package is reported before anything is judged
         self._stream = stream
         self._name = name
         self._columns = columns
         self._all_rows: list[list[Any]] = []
 
     def add(self, recording: RecordingFindings) -> None:
-        """Keep the findings."""
+        """Store the findings."""
         self._all_rows += _rows(recording, self._columns)
 
     def close(self) -> None:
@@ -113,5 +113,5 @@ def _plain(value: str | float | tuple[str, ...] | None) -> str | float | list[st
 
 
 def _text(text: str) -> str:
-    """A text in UTF-8, which has no halves of surrogate pairs."""
+    """A text without lone surrogates, which UTF-8 cannot encode."""
     return text.encode("utf-8", "backslashreplace").decode()

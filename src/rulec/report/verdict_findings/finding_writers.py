@@ -1,8 +1,8 @@
-"""The formats that findings are written in, by their names and the endings of their files."""
+"""The formats of findings, by name and file ending."""
 
 from __future__ import annotations
 
-# Imports within functions: each format has libraries of its own, up to 0.1 s, and one is written.
+# Imports within functions: each format needs its own libraries, up to 0.1 s, but one is written.
 from collections.abc import Mapping
 from typing import IO, TYPE_CHECKING, Protocol
 
@@ -18,23 +18,23 @@ ENDINGS: Mapping[str, tuple[str, ...]] = {
     "xqar": (".xqar",),
     "mcap": (".mcap",),
 }
-"""Name of a format -> how its files end."""
+"""Name of a format -> the endings of its files."""
 
 
 class FindingWriter(Protocol):
-    """Writes findings to a stream: recording by recording, and what comes at the end."""
+    """Writes findings to a stream: recording by recording, then the end."""
 
     def add(self, recording: RecordingFindings) -> None:
-        """Take the findings of a recording. Raises RulecError."""
+        """Add the findings of a recording. Raises RulecError."""
 
     def close(self) -> None:
-        """Write what comes at the end. Raises RulecError."""
+        """Write the end. Raises RulecError."""
 
 
 def finding_writer(form: str, stream: IO[bytes], about: FindingContext, name: str) -> FindingWriter:
-    """A writer of a format, for a stream that is called ``name`` in messages.
+    """The writer of a format, for a stream called ``name`` in messages.
 
-    Raises RulecError R0706 if Parquet cannot be written here.
+    Raises RulecError R0706 if Parquet is not available.
     """
     match form:
         case "csv":

@@ -26,14 +26,14 @@ from rulec.report.verdict_findings.verdict_finding import (
 
 @dataclass
 class GatheredFindings:
-    """What was found of some drives: findings, rules that are not judged, how many were judged."""
+    """The results of some drives: findings, rules not judged, and the number of judged drives."""
 
     findings: list[VerdictFinding] = field(default_factory=list)
     not_judged: dict[str, dict[str, RuleNotJudged]] = field(default_factory=dict)
     judged: int = 0
 
     def include(self, later: GatheredFindings) -> None:
-        """Take what was found of later drives, too."""
+        """Add the findings of later drives."""
         self.findings += later.findings
         self.judged += later.judged
         for rule, by_drive in later.not_judged.items():
@@ -51,9 +51,9 @@ class DriveFindings:
     def add(
         self, result: DriveVerdict | NoDrive, explained: Sequence[Explanation] = ()
     ) -> Sequence[VerdictFinding]:
-        """Take what was found of a drive; ``explained`` are its first violations.
+        """Add the findings of a drive; ``explained`` are explanations of its first violations.
 
-        It is what is violated, then what is open, in the order of the verdict.
+        Returns the drive's findings: first violations, then open verdicts, in the verdict's order.
         """
         before = len(self.gathered.findings)
         self._take(result, explained)
@@ -88,7 +88,7 @@ class DriveFindings:
             self.gathered.not_judged.setdefault(rule.rule, {})[drive.arrays.id] = rule
 
     def whole(self) -> RecordingFindings:
-        """All findings; a rule that is judged in no drive is one finding."""
+        """All findings; a rule that is judged in no drive gives one finding."""
         drives = self.gathered.judged
         return RecordingFindings(
             self.file,
@@ -102,7 +102,7 @@ class DriveFindings:
         for name, by_drive in self.gathered.not_judged.items():
             everywhere = len(by_drive) == drives
             for vehicle, rule in [*by_drive.items()][: 1 if everywhere else None]:
-                # One that is too large for the recording's step is none of the compiled rules.
+                # A rule that is too large at the recording's step is not among the compiled rules.
                 too_large = self._own(rule=name, strength=rule.strength)
                 yield VerdictFinding(
                     vehicle="" if everywhere else vehicle,

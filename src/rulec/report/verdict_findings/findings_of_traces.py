@@ -25,7 +25,7 @@ def trace_findings(
     rulebook: CompiledRulebook,
     explained: list[Explanation],
 ) -> Iterator[VerdictFinding]:
-    """What was found of a trace; ``explained`` are its first violations."""
+    """The findings of a trace; ``explained`` are explanations of its first violations."""
     rules = {rule.name: rule for rule in rulebook.rules}
 
     def about(rule: CompiledRule) -> dict[str, Any]:
@@ -71,5 +71,5 @@ def not_judged_trace(file: str, answer: NotJudged, rulebook: str) -> VerdictFind
 
 
 def _time_s(trace: Trace, state: int) -> float:
-    """The time of a state, counted from the first one."""
+    """The time of a state (s), from the first state on."""
     return round(state * trace.step_s, 9)

@@ -1,4 +1,4 @@
-"""Files of MCAP with messages in JSON, by https://mcap.dev/spec, version 0.
+"""MCAP files with messages in JSON, after https://mcap.dev/spec, version 0.
 
 One chunk without compression, with its index, so that viewers can jump to a moment.
 """
@@ -19,7 +19,7 @@ _METADATA_INDEX, _SUMMARY_OFFSET, _DATA_END = 13, 14, 15
 
 @dataclass(frozen=True, slots=True)
 class JsonChannel:
-    """A topic, the name of the type of its messages, and the JSON schema of that."""
+    """A topic, the name of its messages' type, and that type's JSON schema."""
 
     topic: str
     type: str
@@ -28,7 +28,7 @@ class JsonChannel:
 
 @dataclass(frozen=True, slots=True)
 class TimedMessage:
-    """A message of a channel, which counts from 0, in JSON; its time is in ns."""
+    """A message as JSON with its time in ns; ``channel`` is the index of its channel."""
 
     channel: int
     time_ns: int
@@ -42,7 +42,7 @@ def write_mcap(
     messages: Iterable[TimedMessage],
     metadata: Mapping[str, Mapping[str, str]],
 ) -> None:
-    """Write a whole file; the messages are put into the order of their times."""
+    """Write a whole file, with the messages sorted by time."""
     in_order = sorted(messages, key=lambda message: message.time_ns)
     out = _Counted(stream)
     out.write(_MAGIC + _record(_HEADER, _text("") + _text(library)))
@@ -78,7 +78,7 @@ def write_mcap(
 
 
 def _write_chunk(out: _Counted, definitions: bytes, messages: list[TimedMessage]) -> bytes:
-    """Write the chunk with the indexes of its messages; the record that says where they are."""
+    """Write the chunk with its message indexes; return the chunk index record."""
     content = bytearray(definitions)
     indexes: dict[int, list[tuple[int, int]]] = {}
     numbers: dict[int, int] = {}
@@ -121,13 +121,13 @@ def _statistics(channels: int, messages: list[TimedMessage], metadata: int) -> b
 
 
 def _write_summary(out: _Counted, groups: tuple[tuple[int, bytes], ...]) -> None:
-    """Write the records that come last, with where they begin."""
+    """Write the summary section, with the offsets of its groups."""
     start = out.written
     offsets = b""
     for kind, records in groups:
         if records:
             place = struct.pack("<BQQ", kind, out.written, len(records))
-            # Schemas and channels stand together; of mixed groups nothing is said.
+            # Schemas and channels are in one group; mixed groups get no offset record.
             offsets += b"" if kind == _SCHEMA else _record(_SUMMARY_OFFSET, place)
             out.write(records)
     offsets_at = out.written if offsets else 0
@@ -136,7 +136,7 @@ def _write_summary(out: _Counted, groups: tuple[tuple[int, bytes], ...]) -> None
 
 
 class _Counted:
-    """A stream, and how much has been written."""
+    """A stream with the number of bytes written."""
 
     def __init__(self, stream: IO[bytes]) -> None:
         self._stream = stream

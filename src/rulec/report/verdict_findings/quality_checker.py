@@ -1,6 +1,6 @@
 """Findings of verdicts as results of ASAM's Quality Checker Framework (``.xqar``).
 
-https://github.com/asam-ev/qc-framework, the result format of version 1.
+https://github.com/asam-ev/qc-framework, version 1 of the result format.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ _STANDARD = "law"
 
 
 class QualityCheckerWriter:
-    """A bundle for each recording, in it a checker for each rule with its issues.
+    """A bundle for each recording, with a checker for each rule and its issues.
 
-    Hard rules are errors, soft ones warnings, and what is open is information.
+    Violations of hard rules are errors, those of soft rules warnings, open verdicts information.
     """
 
     def __init__(self, stream: IO[bytes], about: FindingContext) -> None:
@@ -61,7 +61,7 @@ class QualityCheckerWriter:
         self._stream.write(written(bundle, 1))
 
     def close(self) -> None:
-        """Write the end."""
+        """Write the end of the document."""
         self._stream.write(b"</CheckerResults>\n")
 
     def _checker(
@@ -99,9 +99,9 @@ class QualityCheckerWriter:
         element(checker, "AddressedRule", ruleUID=uid)
 
     def _uid(self, rule: CompiledRule) -> str:
-        """The rule's name as the framework writes it, with the law's day as its version.
+        """The rule's UID in the framework's form, with the day of the law as its version.
 
-        doc/manual/rule_uid_schema.md there: entity, standard, numbers with points, and a name.
+        See doc/manual/rule_uid_schema.md there: entity, standard, numbers with points, and a name.
         """
         rulebook = self._about.rulebook
         day = (rulebook.at or rulebook.as_of).replace("-", ".")
@@ -112,7 +112,7 @@ class QualityCheckerWriter:
 
 
 def _locations(issue: ElementTree.Element, finding: VerdictFinding) -> None:
-    """When it is decided, and where the vehicle is then."""
+    """Add when the finding is decided, and where the vehicle is then."""
     at_s = finding.from_s if finding.at_s is None else finding.at_s
     if at_s is None:
         return

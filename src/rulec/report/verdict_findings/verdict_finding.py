@@ -23,15 +23,15 @@ Outcome = Literal["violated", "open", "not_judged"]
 class VerdictFinding:
     """A rule that a vehicle violates, whose outcome is open, or that could not be judged.
 
-    ``file`` and ``recording`` say where; of traces ``recording`` is empty. ``vehicle`` is the drive
-    or the trace, empty for all of them, ``other`` whom the rule is about. It lasts ``from_s`` to
-    ``to_s`` (s of the recording); what is open does somewhere in between. ``at_s`` it is decided:
-    from then on the rule cannot be kept. ``measure`` is the comparison that decides most narrowly,
-    ``by`` how much, in ``unit``. What is open or not judged is so on ``open_on``, names that are
-    not told, ``because`` of something. ``x`` and ``y`` (m) and ``lanelet`` are where the vehicle is
-    ``at_s``. Without a rule the file was not judged.
-    ``inherited_from`` is the rulebook whose law the rule is, if that of the finding has not
-    confirmed it; else empty.
+    ``file`` and ``recording`` name the source; for traces ``recording`` is empty. ``vehicle`` is
+    the drive or trace, empty for all of them; ``other`` are the objects that the rule is about. A
+    violation lasts ``from_s`` to ``to_s`` (s of the recording); an open one would be somewhere in
+    between. It is decided ``at_s``: from then on the rule cannot be kept. ``measure`` is the
+    comparison that decides most narrowly, ``by`` the difference in ``unit``. ``open_on`` are the
+    unknown names on which an outcome depends, ``because`` is the reason. ``x``, ``y`` (m) and
+    ``lanelet`` are the vehicle's position ``at_s``. Without a rule, the file was not judged.
+    ``inherited_from`` is the rulebook that the rule comes from, if its own rulebook has not
+    confirmed it as its law; otherwise empty.
     """
 
     __repr__ = short_repr
@@ -60,7 +60,7 @@ class VerdictFinding:
 
     @property
     def says(self) -> str:
-        """The finding in a sentence."""
+        """The finding as a sentence."""
         if not self.rule:
             return self.because
         law = cited_law(self.provision, self.inherited_from)
@@ -78,7 +78,7 @@ class VerdictFinding:
 
 
 def named_rule(rule: CompiledRule) -> dict[str, Any]:
-    """The columns of a finding that say which rule it is about, and whose law that is."""
+    """The columns of a finding that identify its rule and the law that it comes from."""
     return {
         "rule": rule.name,
         "provision": rule.cite,
@@ -88,7 +88,7 @@ def named_rule(rule: CompiledRule) -> dict[str, Any]:
 
 
 def measured(margins: Iterable[Margin]) -> dict[str, Any]:
-    """The columns on the comparison that decides most narrowly, if there is one."""
+    """The columns for the comparison that decides most narrowly; empty if there is none."""
     every = list(margins)
     if not every:
         return {}
@@ -114,7 +114,7 @@ def not_judged(rule: RuleNotJudged) -> dict[str, Any]:
 
 
 def time_in_words(finding: VerdictFinding) -> str:
-    """When it is decided, and from when to when it lasts, in words."""
+    """When the finding is decided and how long it lasts, in words."""
     if finding.from_s is None:
         return ""
     at = finding.from_s if finding.at_s is None else finding.at_s
@@ -143,7 +143,7 @@ COLUMNS: Mapping[str, type] = {
 }
 """The columns of tables of findings, with the types of their values."""
 EMPTY_CELLS: Mapping[type, str | tuple[str, ...]] = {str: "", list: ()}
-"""What a column of this type holds where it does not apply; a column of numbers holds None."""
+"""The value of a column of a type where it does not apply; for a number it is None."""
 
 
 def as_json(finding: VerdictFinding) -> str:
@@ -153,10 +153,10 @@ def as_json(finding: VerdictFinding) -> str:
 
 @dataclass(frozen=True, slots=True)
 class RecordingFindings:
-    """The findings of a recording, or of a file of traces, with the number of its ``drives``.
+    """The findings of a recording or a file of traces, and the number of its ``drives``.
 
-    Without drives, and with one finding without a rule, it could not be judged at all. ``rows`` are
-    those of drives, rules and findings, if they are wanted (``FindingContext.columns``).
+    Without drives, and with a finding without a rule, nothing could be judged. ``rows`` are those
+    of drives, rules and findings, if they are wanted (``FindingContext.columns``).
     """
 
     __repr__ = short_repr
@@ -169,12 +169,12 @@ class RecordingFindings:
 
     @property
     def title(self) -> str:
-        """The file, and the recording's name where that says more."""
+        """The file, with the recording's name if it has one."""
         return f"{self.file}: {self.recording}" if self.recording else self.file
 
     @property
     def by_rule(self) -> Mapping[str, Sequence[VerdictFinding]]:
-        """The findings about each rule; those without one are at ``""``."""
+        """The findings of each rule; those without a rule are under ``""``."""
         by_rule: dict[str, list[VerdictFinding]] = {}
         for finding in self.findings:
             by_rule.setdefault(finding.rule, []).append(finding)
@@ -182,16 +182,16 @@ class RecordingFindings:
 
     @property
     def failure(self) -> str:
-        """Why it could not be judged, empty if it was."""
+        """Why nothing could be judged; empty if something was."""
         whole = (finding.because for finding in self.findings if not finding.rule)
         return next(whole, "") if not self.drives else ""
 
 
 @dataclass(frozen=True)
 class FindingContext:
-    """What all findings have in common: the rulebook, and the version of rulec that judged.
+    """What all findings share: the rulebook and the version of rulec.
 
-    With ``columns`` tables have rows of drives, rules and findings, with these in them.
+    With ``columns``, tables have rows of drives, rules and findings with these columns.
     """
 
     rulebook: CompiledRulebook
@@ -200,5 +200,5 @@ class FindingContext:
 
     @property
     def rules(self) -> Mapping[str, CompiledRule]:
-        """The rules by their names."""
+        """The rules by name."""
         return {rule.name: rule for rule in self.rulebook.rules}

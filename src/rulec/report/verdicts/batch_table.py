@@ -1,4 +1,4 @@
-"""The verdicts on many recordings, added up in one table."""
+"""The verdicts on many recordings, summed up in one table."""
 
 from __future__ import annotations
 
@@ -18,10 +18,11 @@ if TYPE_CHECKING:
 
 @dataclass
 class BatchTally:
-    """Verdicts on recordings, added up rule by rule.
+    """Verdicts on recordings, summed up per rule.
 
-    ``drives`` and ``recordings``: rule -> in how many of them it is violated; ``first``: rule ->
-    file, drive and time (s) of the first one. ``satisfied`` and the like count drives.
+    ``drives`` and ``recordings``: rule -> the number of them in which it is violated; ``first``:
+    rule -> file, drive and time (s) of its first violation. ``satisfied`` and similar fields count
+    drives.
     """
 
     satisfied: int = 0
@@ -51,7 +52,7 @@ class BatchTally:
             self.first.setdefault(rule, (file, ego, times[ego]))
 
     def add_trace(self, verdict: Verdict, rules: Collection[str]) -> None:
-        """Add the verdict on a trace, by these rules."""
+        """Add the verdict on a trace by these rules."""
         satisfied = verdict.satisfied
         self.satisfied += satisfied is True
         self.violated += satisfied is False
@@ -65,7 +66,7 @@ class BatchTally:
         self.judged_in.update(rules)
 
     def include(self, other: BatchTally) -> None:
-        """Add what was judged by the same rulebook elsewhere; where first stays as it is."""
+        """Add another tally by the same rulebook; ``first`` and ``recordings`` stay as they are."""
         self.satisfied += other.satisfied
         self.violated += other.violated
         self.doubtful += other.doubtful
@@ -75,7 +76,7 @@ class BatchTally:
 
     @property
     def counts(self) -> dict[bool | None, int]:
-        """How many drives are satisfied (True), violated (False), and open (None)."""
+        """The number of drives satisfied (True), violated (False) and open (None)."""
         return {True: self.satisfied, False: self.violated, None: self.doubtful}
 
     @property
@@ -85,7 +86,7 @@ class BatchTally:
 
 
 def as_text(total: BatchTally, rules: CompiledRulebook, unread: Sequence[str]) -> str:
-    """A table of what was violated in all recordings, and the line that ends a run."""
+    """A table of the violations in all recordings, and the summary line of the run."""
     recordings = counted(total.judged_recordings, "recording")
     lines = [f"altogether  {recordings} with {counted(total.judged, 'drive')}"]
     if unread:

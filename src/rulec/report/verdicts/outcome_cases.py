@@ -1,8 +1,8 @@
 """Cases of an open verdict, merged into as few as possible.
 
-Cases that differ in one name alone, and have all the values that it can have, are one without it
-(Quine and McCluskey's prime implicants, of more values than two); of these enough are taken to
-cover all, those that cover most first.
+Cases that differ only in one name, and cover all of its values, are merged into one without that
+name (prime implicants as in Quine and McCluskey, for more than two values). From the results enough
+are taken to cover all cases, those that cover most first.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ Case = frozenset[tuple[str, bool | str]]
 
 
 def fewest_cases(outcomes: Sequence[ConditionalOutcome]) -> list[ConditionalOutcome]:
-    """Cases that cover the given ones with their outcomes; what breaks the rule comes first."""
+    """Few cases that cover the given ones with their outcomes; violations come first."""
     by_outcome: dict[OutcomeName, list[Case]] = {}
     for outcome in outcomes:
         by_outcome.setdefault(outcome.outcome, []).append(frozenset(outcome.when.items()))
@@ -43,7 +43,7 @@ def _within(prime: Case, cases: Set[Case]) -> set[Case]:
 
 
 def _primes(cases: Set[Case], values: Mapping[str, Set[bool | str]]) -> list[Case]:
-    """The cases with as few conditions as can be, in an order that is always the same."""
+    """The merged cases with the fewest conditions, in a reproducible order."""
     primes: set[Case] = set()
     while cases:
         merged: set[Case] = set()

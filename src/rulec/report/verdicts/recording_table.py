@@ -12,17 +12,17 @@ from rulec.report.text.terminal_text import counted, first_of, mirrored_line, ta
 from rulec.report.verdicts import verdict_report
 
 MOST_DEFAULTS = 4
-"""So many words that are taken by default are named for a rule; JSON has them all."""
+"""Number of a rule's default words that are named; JSON has all of them."""
 
 MOST_VEHICLES = 6
 MOST_CAUSES = 3
 LONGEST_RULE = 48
 
 MOST_UNJUDGED = 100
-"""So many rules that could not be judged are named; JSON has them all."""
+"""Number of rules that are named as not judged; JSON has all of them."""
 
 LABEL = 12
-"""The columns of what a line is about."""
+"""Width of a line's label in characters."""
 
 
 def as_text(verdicts: RecordingVerdicts, tally: ViolationTally, width: int) -> str:
@@ -49,7 +49,7 @@ def as_text(verdicts: RecordingVerdicts, tally: ViolationTally, width: int) -> s
 
 
 def _rule_counts(verdicts: RecordingVerdicts, tally: ViolationTally, width: int) -> Iterator[str]:
-    """How many rules were judged, which are open or cannot be judged, and for want of what."""
+    """The number of rules judged, open and not judged, and the words that are missing."""
     if not tally.judged:
         return
     rules = verdicts.rules.rules
@@ -70,7 +70,7 @@ def _rule_counts(verdicts: RecordingVerdicts, tally: ViolationTally, width: int)
 
 
 def _unjudged(rules: Sequence[CompiledRule], tally: ViolationTally, width: int) -> Iterator[str]:
-    """The rules that cannot be judged, hard ones first, by the words that they lack."""
+    """The rules that cannot be judged, hard ones first, grouped by the words that are missing."""
     by_words: dict[tuple[str, tuple[str, ...]], list[str]] = {}
     for rule in sorted(rules, key=lambda compiled_rule: compiled_rule.strength != "hard")[
         :MOST_UNJUDGED
@@ -94,7 +94,7 @@ def _unjudged(rules: Sequence[CompiledRule], tally: ViolationTally, width: int) 
 
 
 def _folded(label: str, text: str, width: int) -> list[str]:
-    """A text behind what it is about, in lines of a width."""
+    """A text with a label before it, wrapped to a width."""
     first, later = label.ljust(LABEL), " " * LABEL
     return wrap(text, width, initial_indent=first, subsequent_indent=later, break_on_hyphens=False)
 
@@ -108,7 +108,7 @@ def _not_judged(no_drives: Sequence[NoDrive]) -> Iterator[str]:
 
 
 def defaulted_names(verdicts: RecordingVerdicts, words: frozenset[str]) -> list[str]:
-    """Inputs of rules that a recording's words lack."""
+    """The words that rules read and the recording does not provide."""
     missing = {name for names in verdicts.by_default(words).values() for name in names}
     return [name for name in verdicts.rules.vocabulary.declarations if name in missing]
 
@@ -117,7 +117,7 @@ def _table(verdicts: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
     if not tally.first_s:
         return
     defaults = verdicts.by_default(tally.words or frozenset())
-    # As they were found, so that the first one is the first that is explained
+    # In the order found, so that the first one is the first that is explained
     by_name = {rule.name: rule for rule in verdicts.rules.rules}
     rules = [by_name[name] for name in tally.first_s]
     names = [verdict_report.short_title(rule) for rule in rules]
@@ -138,7 +138,7 @@ def _table(verdicts: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
 
 
 def _findings(causes: Mapping[tuple[str, ...], Sequence[str]]) -> Iterator[str]:
-    """Causes that several drives have in common, those of most drives first."""
+    """Causes shared by several drives, those of most drives first."""
     shared = [(about, drives) for about, drives in causes.items() if about and len(drives) > 1]
     shared.sort(key=lambda cause: -len(cause[1]))
     for about, drives in shared[:MOST_CAUSES]:
@@ -148,6 +148,6 @@ def _findings(causes: Mapping[tuple[str, ...], Sequence[str]]) -> Iterator[str]:
 
 
 def summary(tally: ViolationTally) -> str:
-    """The line that ends a run."""
+    """The summary line of a run."""
     counts = {True: len(tally.satisfied), False: len(tally.violated), None: len(tally.doubtful)}
     return verdict_report.summary(counts, len(tally.not_judged), "drive")

@@ -19,10 +19,10 @@ from rulec.report.text.terminal_text import styled, visible
 from rulec.report.verdicts.verdict_json import ErrorData, error_data
 
 MOST_CHANGES = 20
-"""So many fit on a line; JSON has them all."""
+"""Number of changes shown on a line; JSON has all of them."""
 
 RunningData: TypeAlias = FourValued | Literal["open"]
-"""A verdict after a state; open if it depends on what is unknown."""
+"""A verdict after a state; open if it depends on unknown values."""
 
 _STYLES: Mapping[str, str] = {"satisfied": "green", "violated": "red", "pending": "yellow"}
 
@@ -72,7 +72,7 @@ class StateRefused(JsonDocument, frozen=True, kw_only=True):
 
 
 def as_json(result: SoFar) -> str:
-    """Write the verdicts behind a state."""
+    """Write the verdicts after a state."""
     return as_line(
         filled(
             StateVerdict,
@@ -105,12 +105,12 @@ def _in_a_word(verdict: RunningVerdict) -> RunningData:
 
 
 def refused_as_json(error: RulecError) -> str:
-    """Write why a state could not be taken."""
+    """Write why a state was refused."""
     return as_line(StateRefused(state=None, error=error_data(error)))
 
 
 def as_text(so_far: SoFar) -> str:
-    """The state's number, the verdict of the rulebook, and what has changed."""
+    """The state's number, the rulebook's verdict, and the changes of verdicts."""
     changes = [visible(_change(change)) for change in so_far.changes[:MOST_CHANGES]]
     if len(so_far.changes) > len(changes):
         changes.append(f"and {len(so_far.changes) - len(changes):,} more")

@@ -1,4 +1,4 @@
-"""The verdicts by several rulebooks on the same traces or drives, side by side."""
+"""The verdicts of several rulebooks on the same traces or drives, side by side."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from rulec.report.verdicts.batch_table import BatchTally
 
 
 def as_text(tallies: Sequence[tuple[CompiledRulebook, BatchTally]]) -> str:
-    """A table with a column for each rulebook, and a row for each rule that one says is violated.
+    """A table with a column per rulebook, and a row per rule violated by at least one of them.
 
-    A number is that of the traces or drives that violate the rule.
+    A number counts the traces or drives that violate the rule.
     """
     names = dict.fromkeys(
         rule.name for rules, total in tallies for rule in rules.rules if total.drives[rule.name]

@@ -9,24 +9,24 @@ from rulec.automata.thresholds import exact
 from rulec.logic.printing import number_in_words
 
 _DIGITS = 9
-"""Sums of steps are said without the noise of floats."""
+"""Number of decimals shown, which hides the rounding errors of floats."""
 
 _LONGEST_S = 10**12
-"""A file may have any step; of later states, after 30,000 years, the number says enough."""
+"""A file may have any step; after this time (s), 30,000 years, only the state's number is shown."""
 
 
 @dataclass(frozen=True, slots=True)
 class StateTimes:
-    """Times of states: the first one is at ``start_s``, the next ones ``step_s`` apart.
+    """Times of states: the first one is at ``start_s``, later ones ``step_s`` apart.
 
-    From 0 on, a second apart, which is also the step where nobody has told one, numbers say it all.
+    With start 0 and step 1 s, which is also the step if none is known, only numbers are shown.
     """
 
     start_s: float = 0.0
     step_s: float = 1.0
 
     def of(self, first: int, last: int | None = None) -> str:
-        """What is said behind the number of a state, such as `` (3.7 s)``, or behind a stretch."""
+        """The text after a state's number, such as `` (3.7 s)``, or after a range of states."""
         if self == NUMBERS_ALONE or self._time(first if last is None else last) > _LONGEST_S:
             return ""
         if last in (None, first):

@@ -1,6 +1,6 @@
-"""Folding of large explanations to deciding parts and fitting states.
+"""Fold large explanations to the parts that decide and the states that fit.
 
-An explanation is folded where its table has too many parts, or is too wide; both on their own.
+An explanation is folded if its table has too many parts or is too wide; each independently.
 """
 
 from __future__ import annotations
@@ -12,27 +12,27 @@ from rulec.logic.formula import Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.monitoring.explain.explained_parts import Part
 
 MOST_PARTS = 20
-"""Of a formula with more only those parts are shown that decide."""
+"""Of a formula with more parts, only those that decide are shown."""
 
 LEAST = 24
-"""So many characters of a part are shown, however deep inside the formula it is."""
+"""Number of characters of a part that are shown at least, however deep it is nested."""
 
 _CHAINED = (BinaryOperator.AND, BinaryOperator.OR)
 
 Titled = tuple[str, Part]
-"""A part and its text, indented and cut."""
+"""A part's text, indented and cut, and the part."""
 
 
 def titled(parts: Sequence[Part], widest: int) -> list[Titled]:
-    """All parts, their texts cut at so many characters."""
+    """All parts, with their texts cut to a number of characters."""
     return [("  " * part.depth + cut(part.text, widest), part) for part in parts]
 
 
 def folded(parts: Sequence[Part], widest: int) -> list[Titled]:
-    """The parts that decide, their titles cut at so many characters.
+    """The parts that decide, with their texts cut to a number of characters.
 
-    A part about a single state that is not cut is not taken apart: the facts say the rest. What is
-    joined by `and`, or by `or`, stands side by side.
+    The operands of a part about a single state are omitted unless its text is cut, because the
+    facts show them. The operands of nested `and`, or of nested `or`, are on one level.
     """
     return list(_folded(parts, 0, 0, widest))
 
@@ -49,7 +49,7 @@ def _folded(parts: Sequence[Part], at: int, depth: int, widest: int) -> Iterator
 
 
 def cut(text: str, widest: int) -> str:
-    """So much of a text as fits into so many characters."""
+    """A text, cut to a number of characters."""
     return text if len(text) <= widest else f"{text[: widest - 1]}…"
 
 
@@ -78,11 +78,11 @@ def _is_link(part: Part, operand: Part) -> bool:
 def fitting(
     columns: Sequence[Sequence[str]], states: Sequence[int], decisive: int, columns_left: int
 ) -> list[range]:
-    """Columns that fit into the room, each as a range of states.
+    """Columns that fit into the available width, each as a range of states.
 
-    If there is no room for all, neighbours that are alike become one. If that is not enough, the
-    first, the decisive one and the one before it stay, and as many as possible of: the one before
-    these, the one behind them, and those further back.
+    If not all fit, adjacent equal columns are merged. If that is not enough, the first column, the
+    decisive one and the one before it are kept, and as many as fit of: the column before these, the
+    one after them, and those further back.
     """
     places = [range(n, n + 1) for n in range(len(columns))]
     if sum(width(columns, states, place) for place in places) <= columns_left:
@@ -107,7 +107,7 @@ def width(columns: Sequence[Sequence[str]], states: Sequence[int], places: range
 
 
 def head(states: Sequence[int], places: range) -> str:
-    """The numbers of the states that a column stands for."""
+    """The numbers of the states that a column represents."""
     first, last = states[places[0]], states[places[-1]]
     return str(first) if first == last else f"{first}-{last}"
 

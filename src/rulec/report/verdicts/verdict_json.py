@@ -231,7 +231,7 @@ def as_json(
 
 
 def doubts(verdict: Verdict, rulebook: CompiledRulebook) -> dict[str, Any]:
-    """The fields on what is open, not judged, and presumed."""
+    """The fields about rules that are open, not judged or presumed."""
     return {
         "open": open_data(verdict.open, rulebook),
         "not_judged": not_judged_data(verdict.not_judged, rulebook),
@@ -240,7 +240,7 @@ def doubts(verdict: Verdict, rulebook: CompiledRulebook) -> dict[str, Any]:
 
 
 def open_data(doubtful: Sequence[OpenVerdict], rulebook: CompiledRulebook) -> list[OpenData]:
-    """What is open."""
+    """The open verdicts."""
     return [
         filled(
             OpenData,
@@ -268,7 +268,7 @@ def _inherited_from(name: str, rulebook: CompiledRulebook) -> str | UnsetType:
 
 
 def not_judged_as_json(answer: NotJudged, rulebook: str) -> str:
-    """Write why there is no verdict."""
+    """Write why a trace has no verdict."""
     error = error_data(answer.error)
     return as_line(TraceNotJudged(trace=answer.trace, rulebook=rulebook, error=error))
 
@@ -276,7 +276,7 @@ def not_judged_as_json(answer: NotJudged, rulebook: str) -> str:
 def violations_data(
     verdict: Verdict, rulebook: CompiledRulebook, explained: Sequence[Explanation]
 ) -> list[ViolationData]:
-    """The violations, each with what its rule says of its weight."""
+    """The violations, each with level and weight of its rule."""
     rules = {rule.name: rule for rule in rulebook.rules}
     return [
         filled(

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation
 
 MOST_CASES = 4
-"""So many values of unknown names are shown with their outcome."""
+"""Number of cases shown for an open verdict."""
 
 MOST_VIOLATIONS = 20
-"""So many are shown for a trace; JSON has them all."""
+"""Number of violations shown per trace; JSON has all of them."""
 
 
 def as_text(
@@ -36,11 +36,11 @@ def as_text(
     whom: Sequence[Sequence[str]] = (),
     times: StateTimes = NUMBERS_ALONE,
 ) -> str:
-    """Write a trace's violations, a line each, below its name; with what is open and not judged.
+    """Write a trace's violations line by line below its name; with ``doubts`` also what is open.
 
-    ``explained`` are explanations of the first violations; each follows its line, folded to a
-    ``width`` unless ``every_part`` of it is asked for. ``whom`` are those because of whom the first
-    ones are, where their rules name nobody. ``times`` are those of states.
+    ``explained`` are explanations of the first violations; each follows its line, folded to
+    ``width`` unless ``every_part`` is wanted. ``whom`` names for the first violations who caused
+    them, where their rules name no objects. ``times`` are the times of the states.
     """
     doubtful = [*_open_lines(verdict, rulebook), *_not_judged_lines(verdict)] if doubts else []
     if not verdict.violations and not doubtful:
@@ -88,7 +88,7 @@ def _open_lines(verdict: Verdict, rulebook: CompiledRulebook) -> Iterator[str]:
 
 
 def open_in_words(result: OpenVerdict, most: int = MOST_CASES) -> str:
-    """Why a verdict is open, and how it comes out by what it depends on, in so many cases."""
+    """Why a verdict is open, and its outcome in up to ``most`` cases of what it depends on."""
     parts = []
     if result.depends_on:
         parts.append(f"depends on {', '.join(result.depends_on)}")
@@ -109,7 +109,7 @@ def open_in_words(result: OpenVerdict, most: int = MOST_CASES) -> str:
 
 
 def _conditions(when: Mapping[str, bool | str]) -> str:
-    """What has to hold in all states; if all constant values come to the same, that they are."""
+    """The conditions for all states; without any, all constant values have the same outcome."""
     return " and ".join([_condition(*pair) for pair in when.items()]) or "none of them changes"
 
 
@@ -140,7 +140,7 @@ def in_a_line(
     rulebook: str,
     times: StateTimes = NUMBERS_ALONE,
 ) -> str:
-    """The violated rule of ``rulebook``, its binding and its time."""
+    """The violated rule of ``rulebook``, its binding, and when it was violated."""
     when = (
         "not fulfilled when the trace ends"
         if violation.step is None
@@ -150,13 +150,13 @@ def in_a_line(
 
 
 def short_title(rule: CompiledRule) -> str:
-    """The rule's name and provision, with the book whose law it is if that is not confirmed."""
+    """The rule's name and provision, with its book if inherited and not confirmed."""
     law = " ".join(filter(None, (rule.inherited_from, rule.cite)))
     return f"{rule.name} [{law}]" if law else rule.name
 
 
 def _title(rule: CompiledRule, rulebook: str) -> str:
-    """The rule's name with level and weight unless default, and its place."""
+    """The rule's name with level and weight unless default, and its provision."""
     title, place = rule.name, rule.cite
     if rule.level:
         title += f" in {rule.level}"
@@ -170,7 +170,7 @@ def _title(rule: CompiledRule, rulebook: str) -> str:
 
 
 def judged_by(judged: Mapping[str, int], compiled_by: str) -> str:
-    """The line that says how many traces were judged in C, and how many in Python."""
+    """The line with the numbers of traces judged in C and in Python."""
     parts = [f"engine: {judged.get('c', 0):,} judged in C"]
     if compiled_by:
         parts.append(f"compiled by {compiled_by}")
@@ -180,7 +180,7 @@ def judged_by(judged: Mapping[str, int], compiled_by: str) -> str:
 
 
 def summary(counts: Mapping[bool | None, int], not_judged: int, noun: str = "trace") -> str:
-    """The line that ends a run: counts of traces, or drives, by whether they are satisfied."""
+    """The summary line of a run: the numbers of traces or drives by outcome."""
     total = sum(counts.values()) + not_judged
     satisfied, violated, doubtful = (counts.get(key, 0) for key in (True, False, None))
     parts = [f"{satisfied:,} satisfied", f"{violated:,} violated"]

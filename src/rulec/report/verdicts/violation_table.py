@@ -23,32 +23,32 @@ from rulec.trace import Value
 from rulec.vocabulary.partial_values import Interval
 
 WIDEST = 0.6
-"""A part of the formula is cut at this share of the width; what it is made of stands below it."""
+"""A part of the formula is cut at this share of the width; its own parts follow below it."""
 
 NARROW = 0.48
-"""The same where the table would be too wide."""
+"""The same share for a table that would be too wide."""
 
 WIDEST_NUMBER = 20
-"""A longer number is rounded."""
+"""A number with more characters is rounded."""
 
 MOST_CHANGES = 6
-"""So many different changes are shown that would have kept the rule."""
+"""Number of changes shown that would have kept the rule."""
 
 MOST_SPANS = 12
-"""So many stretches of states that would have to say the same are listed."""
+"""Number of ranges of states listed that would need the same change."""
 
 MOST_OF_NAMES = 16
-"""So many characters of the names of counted objects are shown; JSON has them all."""
+"""Number of characters shown of counted objects' names; JSON has them all."""
 
 INDENT = "    "
 
 
 @dataclass(frozen=True, slots=True)
 class TableOptions:
-    """How a table is laid out and worded.
+    """Layout and wording of a table.
 
-    One that is large or wider than ``width`` is folded, unless ``every_part`` is wanted.
-    ``phrases`` are those that the decisive state is told in, ``times`` stand beside its number.
+    A table that is large or wider than ``width`` is folded, unless ``every_part`` is wanted.
+    ``phrases`` describe the decisive state, ``times`` are shown beside its number.
     """
 
     width: int = PAGE_WIDTH
@@ -88,7 +88,7 @@ def _in_words(explanation: Explanation, options: TableOptions) -> Iterator[str]:
 def decisive_state_in_words(
     explanation: Explanation, phrases: Mapping[str, str], times: StateTimes = NUMBERS_ALONE
 ) -> str:
-    """What decides in the decisive state, as a sentence; empty if nothing can be said."""
+    """The decisive values in the decisive state, as a sentence; empty if there are none to name."""
     decisive = explanation.states.index(explanation.decisive)
     facts = []
     for fact in explanation.facts:
@@ -115,7 +115,7 @@ def _repair(explanation: Explanation, options: TableOptions) -> Iterator[str]:
 
 
 def kept_if(explanation: Explanation, times: StateTimes = NUMBERS_ALONE) -> list[str]:
-    """What states would have had to say for the rule to be kept, a line for each stretch."""
+    """The changes of states that would have kept the rule, a line for each range of states."""
     if explanation.repair is None:
         return ["no trace of as many states keeps it"]
     changes = itertools.groupby(repaired_states(explanation), key=itemgetter(1))
@@ -138,7 +138,7 @@ def _states(run: Sequence[tuple[int, str]], times: StateTimes) -> str:
 
 
 def repaired_states(explanation: Explanation) -> Iterator[tuple[int, str]]:
-    """States by their numbers, and what they would have had to say."""
+    """The numbers of states, and what each should have contained."""
     wording = GuardWording(explanation.rule, explanation.vocabulary)
     for change in explanation.repair or ():
         yield change.place, wording.condition(change.cubes)
@@ -146,10 +146,10 @@ def repaired_states(explanation: Explanation) -> Iterator[tuple[int, str]]:
 
 @dataclass(frozen=True)
 class _Table:
-    """The rows and the columns of the table.
+    """The rows and columns of the table.
 
     The first ``n_facts`` rows are facts, the others parts. ``values`` are the cells of each state,
-    ``columns`` the places of the states that each column stands for.
+    ``columns`` the indices of the states that each column represents.
     """
 
     titles: list[str]
@@ -159,7 +159,7 @@ class _Table:
 
 
 def _table(explanation: Explanation, decisive: int, width: int, *, every_part: bool) -> _Table:
-    """Titles are cut before states are left out."""
+    """The table; titles are cut before states are left out."""
     for share in (WIDEST, NARROW):
         table = _rows(explanation, decisive, every_part, int(share * width))
         if every_part:
@@ -211,9 +211,9 @@ def _cells(fact: Observation, decisive: int) -> list[str]:
 
 
 def _with_margins(cells: Iterable[str], margins: Sequence[Margin | None]) -> list[str]:
-    """Truth values, beside them how narrowly, such as ``F 12.3 < 15.5``.
+    """Truth values with the numbers compared beside them, such as ``F 12.3 < 15.5``.
 
-    Where bounds leave it open what holds is that, such as ``? 1.3 to 1000 >= 3.0``.
+    Where bounds leave the truth value open, it is unknown, such as ``? 1.3 to 1000 >= 3.0``.
     """
     beside = margins or itertools.repeat(None)
     return [
@@ -223,7 +223,7 @@ def _with_margins(cells: Iterable[str], margins: Sequence[Margin | None]) -> lis
 
 
 def shown(value: Value | Interval | None) -> str:
-    """A value as a cell of a table; None is unknown, ``12.3±0.4`` what may be as far from 12.3."""
+    """A value as a cell; None is unknown, ``12.3±0.4`` a value that may differ by 0.4."""
     if value is None:
         return "?"
     if isinstance(value, Interval):
