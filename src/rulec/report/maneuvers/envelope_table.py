@@ -1,4 +1,4 @@
-"""Table of maneuvers' envelopes, for trajectory planners that read columns."""
+"""A table of maneuvers' envelopes, for trajectory planners that read columns."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class EnvelopeLine(JsonDocument, frozen=True, kw_only=True):
 _TYPES = {"maneuver": int, "layer": int, "cell": int, "surface": str}
 
 COLUMNS = {name: _TYPES.get(name, float) for name in EnvelopeLine.__struct_fields__[1:]}
-"""The columns with the types of their values; in all rows of a maneuver the first three agree."""
+"""The columns with their values' types; the first three are equal in all rows of a maneuver."""
 
 
 def write_envelopes(
@@ -45,9 +45,9 @@ def write_envelopes(
     file: str,
     form: Format,
 ) -> None:
-    """Write the envelopes of maneuvers, which are numbered from 1.
+    """Write the envelopes of maneuvers, numbered from 1.
 
-    Raises RulecError: R0706 if Parquet cannot be written here.
+    Raises RulecError: R0706 if Parquet is not available.
     """
     rows = _rows(graph, maneuvers)
     if form == "csv":
@@ -84,7 +84,7 @@ def _rows(
 
 
 def stretches(bounds: Envelope) -> Iterator[tuple[float, float, float, float]]:
-    """Stretches with constant bounds: s from and to, d right and left."""
+    """Stretches with constant bounds: s from, s to, d right, d left (m)."""
     right, left = dict(bounds.d_right), dict(bounds.d_left)
     low = high = 0.0
     for start, end in pairwise([*sorted({*right, *left}), bounds.s_max]):

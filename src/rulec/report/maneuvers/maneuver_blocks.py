@@ -23,16 +23,16 @@ if TYPE_CHECKING:
     from rulec.partition.motion.witness_trajectory import WitnessTrajectory
     from rulec.planning.probability.rule_probability import RuleProbabilities, RuleProbability
 
-# So many are shown in text; JSON has them all.
+# Numbers of items shown as text; JSON has all of them.
 MOST_BINDINGS = 3
 MOST_NAMED = 6
 MOST_VIOLATIONS = 20
 
 _LINE = 100
-"""Characters of a line that lists rules."""
+"""Width in characters of a line that lists rules."""
 
 _LEAST_SHOWN = 0.005
-"""Parts of a cost that are less are not shown."""
+"""Parts of a cost below this value are not shown."""
 
 
 def maneuver_block(
@@ -42,7 +42,7 @@ def maneuver_block(
     remark: str = "",
     details: Sequence[str] = (),
 ) -> list[str]:
-    """Its cost and margin with a remark, details, and its cells with their bounds."""
+    """A maneuver's cost and margin with a remark, details, and its cells with their bounds."""
     margin_s = maneuver.margin_s
     margin = "never changes cell" if margin_s is None else f"margin {margin_s:g} s"
     rows = [
@@ -62,7 +62,7 @@ def maneuver_block(
 
 
 def _cost_parts(maneuver: Maneuver) -> str:
-    """The unit, or what a trajectory's costs are made of, the largest first."""
+    """The unit of the cost, or the parts of a trajectory's cost, the largest first."""
     if maneuver.trajectory is None:
         return " 1/s, "
     parts = {"changes": maneuver.changes or 0.0, **asdict(maneuver.trajectory.cost)}
@@ -72,7 +72,7 @@ def _cost_parts(maneuver: Maneuver) -> str:
 
 
 def _driven(trajectory: WitnessTrajectory) -> str:
-    """How the trajectory that proves it accelerates and brakes, and where it gets."""
+    """The greatest acceleration and braking of the witness trajectory, its speeds and its end."""
     _, s, speed, d, _ = trajectory.states[-1]
     least = min(speed for _, _, speed, _, _ in trajectory.states)
     slowest = "" if least >= min(trajectory.states[0][2], speed) - 0.1 else f", least {least:.1f}"
@@ -89,7 +89,7 @@ def listed_block(
     maneuver: Maneuver,
     verdicts: Mapping[tuple[int, ...], Verdict],
 ) -> list[str]:
-    """A maneuver of a list, with what is open of it."""
+    """A maneuver of a list, with its open verdicts."""
     verdict = verdicts.get(maneuver.nodes)
     doubtful = () if verdict is None else verdict.open
     remark = "; open" if any(open_verdict.strength == "hard" for open_verdict in doubtful) else ""
@@ -108,7 +108,7 @@ def _open_lines(maneuvers: Maneuvers, doubtful: Sequence[OpenVerdict]) -> list[s
 
 
 def ranked_block(maneuvers: Maneuvers, ranked: RankedManeuver) -> list[str]:
-    """A maneuver at its place, with what it violates."""
+    """A ranked maneuver with its violations."""
     same = f"; {shown_count(ranked.members)} violate the same" if ranked.members > 1 else ""
     penalty = _penalty(ranked.penalty)
     if ranked.open:
@@ -146,19 +146,19 @@ def _rule_title(maneuvers: Maneuvers, finding: Violation | OpenVerdict) -> str:
 
 
 def bound_objects(binding: Mapping[str, str]) -> str:
-    """Variables of a rule, and the objects that they stand for."""
+    """The variables of a rule and the objects bound to them."""
     return ", ".join(f"{name} = {visible(item)}" for name, item in binding.items())
 
 
 def _when_lost(maneuvers: Maneuvers, violation: Violation) -> str:
-    """The time from which the rule cannot be kept any more."""
+    """The time from which the rule can no longer be kept."""
     if violation.step is None:
         return "by how it ends"
     return f"cannot be kept any more from {maneuvers.graph.layers[violation.step].start_s:g} s on"
 
 
 def chance_lines(chances: RuleProbabilities) -> list[str]:
-    """The probabilities that are below 1, a line each."""
+    """The probabilities of a maneuver, a line each; rules kept for certain are omitted."""
     rows = [
         ("nobody hits ego", shown_chance(chances.clear)),
         ("every hard rule", shown_chance(chances.hard, chances.hard_at_most)),
@@ -184,7 +184,7 @@ def _of_rule(rule_probability: RuleProbability) -> str:
 
 
 def shown_chance(number: Fraction | None, at_most: Fraction | None = None) -> str:
-    """A probability in text, or its bounds."""
+    """A probability as text, or its bounds."""
     if number is None:
         return "not known"
     above = "" if at_most in (None, number) else f" … {float(at_most or 0):.4g}"
@@ -192,7 +192,7 @@ def shown_chance(number: Fraction | None, at_most: Fraction | None = None) -> st
 
 
 def pruning_lines(maneuvers: Maneuvers, prunings: Sequence[RulePruning]) -> list[str]:
-    """A table of the rules that prune maneuvers, and the names of the others."""
+    """A table of the rules that exclude maneuvers, and the names of the other rules."""
     some_open = any(pruning.open for pruning in prunings)
     rows = [("rule", "violated by", "alone by", *(["open"] if some_open else []), "for example")]
     rows += [
@@ -219,7 +219,7 @@ def pruning_lines(maneuvers: Maneuvers, prunings: Sequence[RulePruning]) -> list
 
 
 def _example(maneuvers: Maneuvers, pruning: RulePruning) -> str:
-    """Times at which an example's relations to the objects, or its surface, change."""
+    """The times at which an example's relations to the objects, or its surface, change."""
     assert pruning.example is not None, "something violates it"
     first = pruning.violations[0]
     labels = [
@@ -231,7 +231,7 @@ def _example(maneuvers: Maneuvers, pruning: RulePruning) -> str:
 
 
 def _label(cell: Cell, objects: Collection[str] | None = None) -> str:
-    """Surface, and relations to some objects, or to all."""
+    """The surface, and the relations to some objects, or to all if ``objects`` is None."""
     signature: Mapping[str, str | tuple[str, str]] = cell.signature
     if objects is not None:
         signature = {name: signature[name] for name in objects if name in signature}

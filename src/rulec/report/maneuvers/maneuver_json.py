@@ -52,7 +52,7 @@ Data = TypeVar("Data", bound=JsonPart)
 
 
 def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
-    """Write the counts and what was asked for."""
+    """Write the counts and the further answers."""
     graph, scenario = maneuvers.graph, maneuvers.graph.scenario
     several = any(obstacle.alternatives for obstacle in scenario.obstacles)
     several = several or answers.worlds is not None
@@ -100,7 +100,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
 
 
 def _dead_end(maneuvers: Maneuvers) -> DeadEndData | None:
-    """The dead end, if there is no maneuver."""
+    """The dead end if there is no maneuver, else None."""
     end = maneuvers.dead_end
     if end is None:
         return None
@@ -168,7 +168,7 @@ def _maneuver(graph: NavigationGraph, maneuver: Maneuver, **details: Any) -> Man
 
 
 def _trajectory(maneuver: Maneuver) -> TrajectoryData | UnsetType:
-    """The trajectory of a maneuver, if it has one, with all that it costs."""
+    """The trajectory of a maneuver, if it has one, with the parts of its cost."""
     driven = maneuver.trajectory
     if driven is None:
         return UNSET
@@ -251,7 +251,7 @@ def _classes(
 
 
 def _above(least: Fraction | None, greatest: Fraction | None) -> float | UnsetType:
-    """The greater bound; nothing if it is the lesser one."""
+    """The upper bound, unset if equal to the lower one."""
     return UNSET if greatest is None or greatest == least else float(greatest)
 
 

@@ -1,4 +1,4 @@
-"""Text report of counts of maneuvers and of further answers."""
+"""Counts of maneuvers and further answers as a text report."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ if TYPE_CHECKING:
     from rulec.planning.probability.rule_probability import AlternativeCounts, RuleProbabilities
 
 MOST_VIOLATIONS = 6
-"""So many of the past's are named in text; JSON has them all."""
+"""Number of past violations named as text; JSON has all of them."""
 
 MOST_DEFAULTS = 4
-"""So many of what has its default are named in text; JSON has them all."""
+"""Number of names listed in a line; JSON has all of them."""
 
 
 @dataclass(frozen=True, slots=True)
 class ManeuverAnswers:
-    """Answers to further questions about maneuvers, None where not asked.
+    """Answers to further questions about maneuvers; None if not asked.
 
-    ``best`` are the least violating maneuvers, where none satisfies every hard rule and there is no
-    longer list of them in ``ranked``. ``chances`` and ``verdicts`` are those of maneuvers, given by
-    their nodes; the latter where not all is known. ``judged`` are the names of the rules that the
-    words of cells judge, None where cells have none.
+    ``best`` are the least violating maneuvers, set if none satisfies every hard rule and ``ranked``
+    does not list them already. ``chances`` and ``verdicts`` map a maneuver's nodes to its
+    probabilities and its verdict; the latter only if some values are unknown. ``judged`` are the
+    names of the rules that can be judged from the words of cells; None if cells have no words.
     """
 
     judged: Sequence[str] | None = None
@@ -50,17 +50,17 @@ class ManeuverAnswers:
 
 
 def horizon_s(graph: NavigationGraph) -> float:
-    """Time from the first layer's start to the last one's, in seconds."""
+    """Time from the start of the first layer to the start of the last one, in seconds."""
     return float((len(graph.layers) - 1) * graph.step)
 
 
 def likeliest(scenario: Scenario) -> float:
-    """The probability that all obstacles do what is likeliest."""
+    """The probability that every obstacle follows its likeliest prediction."""
     return float(prod((obstacle.weight for obstacle in scenario.obstacles), start=Fraction(1)))
 
 
 def derived_signals(maneuvers: Maneuvers, account: Account) -> dict[str, tuple[Any, str]]:
-    """Signals of the scene as a whole, each with value and reason; none if its cells have words."""
+    """Signals of the whole scene, each with value and reason; empty if its cells have words."""
     if maneuvers.words is not None:
         return {}
     supplied = maneuvers.paths.states[0][0]
@@ -72,7 +72,7 @@ def derived_signals(maneuvers: Maneuvers, account: Account) -> dict[str, tuple[A
 
 
 def least_braking(maneuvers: Maneuvers, answers: ManeuverAnswers) -> float | None:
-    """How hard every maneuver brakes at least, if one that is shown brakes hard and all do."""
+    """The least braking (m/s²) of every maneuver, if one shown brakes hard and all have to."""
     shown = [*(answers.listed or ())]
     shown += [maneuver.maneuver for maneuver in (*(answers.best or ()), *(answers.ranked or ()))]
     driven = [maneuver.trajectory for maneuver in shown if maneuver.trajectory is not None]
@@ -82,13 +82,13 @@ def least_braking(maneuvers: Maneuvers, answers: ManeuverAnswers) -> float | Non
 
 
 def lists_none(maneuvers: Maneuvers, answers: ManeuverAnswers) -> bool:
-    """Tell whether a list has no maneuver only because no trajectory was found along any."""
+    """Whether a list is empty only because no trajectory was found along any maneuver."""
     is_bare = answers.listed is not None and not answers.listed
     return is_bare and bool(maneuvers.satisfying or maneuvers.open)
 
 
 def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
-    """Write the counts, and a block for each maneuver asked for."""
+    """Write the counts, and a block for each maneuver requested."""
     graph, rules = maneuvers.graph, maneuvers.rules
     dark = {rule.rule for rule in maneuvers.not_judged}
     hard = [rule.name for rule in rules.rules if rule.strength == "hard"]
@@ -121,7 +121,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         lines += _class_counts(maneuvers, answers.classes[0])
     least = least_braking(maneuvers, answers)
     if least is not None:
-        # Rounded up it would be more than what is proved
+        # Rounded up, it would be more than what is proved
         least = floor(10 * least) / 10
         lines.append(f"emergency   every maneuver brakes by more than {least:.1f} m/s²")
     lines.append(f"computed in {seconds:.3f} s")
@@ -150,21 +150,21 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
 
 
 def _paths(maneuvers: Maneuvers) -> str:
-    """The number of maneuvers, and paths through what they are."""
+    """The number of maneuvers, and the kind of cells they go through."""
     paths = "path" if maneuvers.traces == 1 else "paths"
     cells = "cells" if maneuvers.graph.bounds is None else "reachable cells"
     return f"{shown_count(maneuvers.traces)} {paths} through {cells}"
 
 
 def _judged(maneuvers: Maneuvers, answers: ManeuverAnswers) -> Iterator[str]:
-    """How many rules the words of cells judge."""
+    """The number of rules that can be judged from the words of cells."""
     if answers.judged is not None and maneuvers.traces:
         every = f"{len(answers.judged)} of {len(maneuvers.rules.rules)} could be judged"
         yield f"rules       {every}: kept or violated on half of the maneuvers or more"
 
 
 def _doubts(maneuvers: Maneuvers) -> Iterator[str]:
-    """What not all being known comes to."""
+    """The lines about open maneuvers, unknown values and rules not judged."""
     if maneuvers.in_doubt and maneuvers.judges:
         yield f"violating   {styled(shown_count(maneuvers.violating), 'bold')}"
         more = "" if maneuvers.exact else ", or fewer: there was too much to look at"
@@ -203,7 +203,7 @@ def _scene(maneuvers: Maneuvers) -> Iterator[str]:
 
 
 def _shut_in(maneuvers: Maneuvers) -> Iterator[str]:
-    """The reason where there is no maneuver at all."""
+    """The reason why there is no maneuver at all."""
     graph, end = maneuvers.graph, maneuvers.dead_end
     if end is None:
         return
@@ -222,7 +222,7 @@ def _shut_in(maneuvers: Maneuvers) -> Iterator[str]:
 
 
 def _without_rules(maneuvers: Maneuvers) -> Iterator[str]:
-    """The hard rules each of which alone closes ways, where no maneuver is satisfying."""
+    """The hard rules without which there would be a satisfying maneuver, if there is none."""
     if not maneuvers.traces or maneuvers.satisfying or maneuvers.open or not maneuvers.judges:
         return
     counts = maneuvers.without_each_rule()

@@ -1,4 +1,4 @@
-"""Table of satisfying maneuvers, by scenarios or by rulebooks."""
+"""A table of satisfying maneuvers by scenario or by rulebook."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rulec.report.text.terminal_text import shown_count, table_lines, visible
 
 @dataclass(frozen=True, slots=True)
 class ManeuverCounts:
-    """The numbers of a scenario's maneuvers by one rulebook; ``is_judged`` if a hard rule could."""
+    """A scenario's counts by one rulebook; ``is_judged``: a hard rule could be judged."""
 
     scenario: str
     rulebook: str
@@ -23,7 +23,7 @@ class ManeuverCounts:
 
     @classmethod
     def of(cls, scenario: str, maneuvers: Maneuvers) -> ManeuverCounts:
-        """The numbers of maneuvers, those of ``scenario`` as the command calls it."""
+        """The counts of maneuvers; ``scenario`` is its name on the command line."""
         return cls(
             scenario=scenario,
             rulebook=maneuvers.rules.name,

@@ -21,7 +21,7 @@ from rulec.report.text.markdown import code, escaped, table
 from rulec.report.text.terminal_text import fact_lines, styled, visible
 
 Compared = Mapping[str, AuditChanges]
-"""Rulebook -> what has changed since an older audit of it."""
+"""Rulebook -> the changes since an older audit of it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,7 +66,7 @@ def _with_changes(audit: Audit, changes: AuditChanges | None) -> ComparedAudit:
 
 
 def counts(audit: Audit) -> Iterator[tuple[str, str]]:
-    """Counts of the audit, each with its name in words."""
+    """The audit's counts, each with a label."""
     n = audit.counts
     of_all = f"of {n.rules:,}"
     yield "rules", f"{n.rules:,} ({n.hard:,} hard, {n.soft:,} soft)"
@@ -86,7 +86,7 @@ def counts(audit: Audit) -> Iterator[tuple[str, str]]:
 
 
 def progress(provisions: Sequence[ListedProvision], words: DocumentLanguage = IN_ENGLISH) -> str:
-    """How much of the listed articles is dealt with, in percent, as a bar, and how."""
+    """The share of listed articles dealt with: in percent, as a bar, and by state."""
     states = Counter(article.state for article in provisions)
     done = len(provisions) - states["to do"]
     filled = _BAR * done // len(provisions)
@@ -97,13 +97,13 @@ def progress(provisions: Sequence[ListedProvision], words: DocumentLanguage = IN
 
 
 _BAR = 20
-"""Characters of a progress bar."""
+"""Width of a progress bar in characters."""
 
 
 def provision_row(
     article: ListedProvision, words: DocumentLanguage = IN_ENGLISH
 ) -> tuple[str, str, str]:
-    """Number, heading, and what has become of a listed article."""
+    """A listed article's number, heading and state."""
     say = words.say
     rules = say(" by {}", ", ".join(article.rules)) if article.rules else ""
     because = say(", because {}", article.because) if article.because else ""
@@ -121,7 +121,7 @@ def provision_table(
 
 
 def law_of(audit: Audit) -> str:
-    """The rulebook's law and its day."""
+    """The rulebook's law and its date."""
     since = f", as of {audit.as_of}" if audit.as_of else ""
     return f"{audit.law}{since}" if audit.law else "no law is named"
 

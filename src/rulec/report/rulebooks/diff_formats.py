@@ -1,4 +1,4 @@
-"""The difference of two rulebooks as Markdown, CSV, or what else is asked for."""
+"""The difference of two rulebooks as Markdown, CSV or another requested format."""
 
 from __future__ import annotations
 

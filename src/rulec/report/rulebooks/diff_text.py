@@ -19,10 +19,10 @@ WIDTH = 100
 TABLE_WIDTH = 96
 
 MOST_ROWS = 8
-"""A table with more has no rows for what is by default in all its states."""
+"""A table with more rows omits those that have the default in all states."""
 
 NO_SIGN = {("limit", "km/h", 1000), ("minimum_limit", "km/h", 0)}
-"""Values of the vocabulary `road` that stand for no sign: word, unit and number."""
+"""Values of the vocabulary `road` that mean no sign: word, unit and number."""
 
 COLOURS: dict[RuleRelation, str] = {
     "equal": "green",
@@ -34,7 +34,7 @@ COLOURS: dict[RuleRelation, str] = {
 
 
 def as_text(rulebook_diff: RulebookDiff) -> str:
-    """Write differences first and agreements last."""
+    """Write the differences first and the agreements last."""
     first, second = rulebook_diff.first.name, rulebook_diff.second.name
     blocks = [_head(rulebook_diff)]
     blocks += [
@@ -64,7 +64,7 @@ def as_text(rulebook_diff: RulebookDiff) -> str:
 
 
 def is_worth_a_block(pair: RulePair) -> bool:
-    """Test for more to say of two rules than their equality."""
+    """Whether there is more to say about two rules than that they are equal."""
     return pair.relation != "equal" or bool(pair.notes)
 
 
@@ -78,7 +78,7 @@ def _head(rulebook_diff: RulebookDiff) -> str:
 
 
 def sides(rulebook_diff: RulebookDiff) -> list[str]:
-    """A line on different sides of traffic, if they differ."""
+    """A line on the side of traffic, if the rulebooks differ in it."""
     first, second = rulebook_diff.first, rulebook_diff.second
     if {first.traffic, second.traffic} != {"left", "right"}:
         return []
@@ -87,7 +87,7 @@ def sides(rulebook_diff: RulebookDiff) -> list[str]:
 
 
 def verdict(pair: RulePair, rulebook_diff: RulebookDiff) -> str:
-    """The relation in words."""
+    """The relation of the two rules in words."""
     first, second = rulebook_diff.first.name, rulebook_diff.second.name
     match pair.relation:
         case "equal":
@@ -103,7 +103,7 @@ def verdict(pair: RulePair, rulebook_diff: RulebookDiff) -> str:
 
 
 def about_types(pair: RulePair, rulebook_diff: RulebookDiff) -> str:
-    """Objects of the comparison, if one of the rules has more."""
+    """The object types compared, if one of the rules has more."""
     if not pair.comparison.common:
         return ""
     heads = [
@@ -141,7 +141,7 @@ def _pair(pair: RulePair, rulebook_diff: RulebookDiff) -> Iterator[str]:
 def _in_words(
     table: TraceTable, rulebook_diff: RulebookDiff, phrases: Mapping[str, str]
 ) -> Iterator[str]:
-    """What each state says that the one before did not, as sentences."""
+    """What changes in each state, as sentences."""
     for place, title in enumerate(state_titles(table)):
         facts = []
         for row in table.rows:
@@ -161,7 +161,7 @@ def _only(rules: Sequence[OneSided], has: str, lacks: str, *, from_first: bool) 
         lines.append(
             f"  {rule.rule.strength} rule {rule.rule.name}{visible(only_why(rule, lacks))}"
         )
-        # Once for both: the other one's offer is the same.
+        # Once for both: the other rulebook would offer the same pairs.
         if from_first and rule.alike:
             lines.append(f"    {visible(offered(rule))}")
     title = styled(f"only in {has}", "bold")
@@ -169,7 +169,7 @@ def _only(rules: Sequence[OneSided], has: str, lacks: str, *, from_first: bool) 
 
 
 def only_why(one_sided: OneSided, lacks: str) -> str:
-    """The other rulebook's remark on a rule that it lacks."""
+    """The remark of the rulebook that lacks a rule."""
     if one_sided.remark is None:
         return ""
     verb = "is silent on it" if one_sided.remark.kind == "silent" else "dropped it"
@@ -180,13 +180,13 @@ def only_why(one_sided: OneSided, lacks: str) -> str:
 
 
 def offered(one_sided: OneSided) -> str:
-    """How to compare a rule of the first with those of other names that read the same words."""
+    """How to compare a rule of the first rulebook with rules that read the same words."""
     ways = [f"--pair {one_sided.rule.name}={name}" for name in one_sided.alike]
     return f"reads the same words as {' and '.join(one_sided.alike)}: {' or '.join(ways)}"
 
 
 def summary(rulebook_diff: RulebookDiff) -> str:
-    """The line that ends it."""
+    """The summary line."""
     counted = Counter(pair.relation for pair in rulebook_diff.pairs)
     parts = [f"{counted[relation]:,} {relation}" for relation in COLOURS if counted[relation]]
     parts += [
@@ -203,12 +203,12 @@ def summary(rulebook_diff: RulebookDiff) -> str:
 
 
 def state_titles(table: TraceTable) -> list[str]:
-    """The numbers of the states that each column stands for."""
+    """For each column the numbers of its states."""
     return [str(first) if first == last else f"{first}-{last}" for first, last in table.columns]
 
 
 def table_rows(table: TraceTable) -> list[tuple[str, list[str]]]:
-    """Title and cells of each row."""
+    """The title and cells of each row."""
     return [
         (
             visible(f"{row.title} in {row.unit}" if row.unit else row.title),
@@ -226,7 +226,7 @@ def _cell(row: SignalRow, value: Value | None) -> str:
 
 
 def left_out(table: TraceTable) -> list[str]:
-    """Names without a row, since all their values are defaults."""
+    """Names without a row, because all their values are defaults."""
     usual = [visible(row.title) for row in table.rows if row.is_default]
     return usual if len(table.rows) > MOST_ROWS else []
 

@@ -1,4 +1,4 @@
-"""The language of a document: its sentences, its own texts, and the titles of rules."""
+"""The language of a document: its grammar, its fixed texts, and the titles of rules."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _FOLDER = Path(__file__).parent / "texts"
 
 @dataclass(frozen=True, slots=True)
 class DocumentLanguage:
-    """What a document says.
+    """The texts of a document.
 
-    ``texts`` has for each text in English what is said instead, nothing for English itself;
-    ``titles`` those of rules, and ``topics`` those of topics, by name.
+    ``texts``: English text -> its translation, empty for English itself; ``titles``: rule -> title;
+    ``topics``: topic -> title.
     """
 
     language: Language
@@ -35,11 +35,11 @@ class DocumentLanguage:
     topics: Mapping[str, str]
 
     def say(self, text: str, *values: object) -> str:
-        """A text that is written in English, with values in its places ``{}``."""
+        """The translation of an English text, with values in place of its ``{}``."""
         return self.texts.get(text, text).format(*values)
 
     def title(self, rule: str) -> str:
-        """The title of a rule; its name in spoken words if it has none."""
+        """The title of a rule; without one, its name as words."""
         name = spoken(rule)
         return self.titles.get(rule, f"{name[:1].upper()}{name[1:]}")
 
@@ -48,7 +48,7 @@ IN_ENGLISH = DocumentLanguage(ENGLISH, {}, {}, {})
 
 
 def document_language(rulebook: Rulebook, code: LanguageCode) -> DocumentLanguage:
-    """The language of a document on a rulebook, by its code, such as ``de``."""
+    """The language of a document about a rulebook, by its code, such as ``de``."""
     titles = titles_in(code)
     if code == "en":
         return replace(IN_ENGLISH, titles=titles)

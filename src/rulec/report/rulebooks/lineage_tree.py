@@ -67,7 +67,7 @@ class ForestDocument(JsonDocument, frozen=True, kw_only=True):
 def chosen(
     inherited: rule_lineage.BookLineage, patterns: Sequence[str]
 ) -> rule_lineage.BookLineage:
-    """Lineage of rules that one of the patterns matches; everything without a pattern."""
+    """The lineage of the rules that match one of the patterns; without patterns, everything."""
     if not patterns:
         return inherited
     rules = tuple(
@@ -102,7 +102,7 @@ def as_text(inherited: rule_lineage.BookLineage, width: int, *, color: bool) -> 
 def forest_as_text(
     branches: Sequence[rule_lineage.ExtensionTree], width: int, *, color: bool
 ) -> str:
-    """A tree for each rulebook that extends none."""
+    """A tree for each rulebook that extends no other."""
     return "\n".join(_drawn(_grown(branch), width, color=color) for branch in branches)
 
 
@@ -190,7 +190,7 @@ def as_json(inherited: rule_lineage.BookLineage) -> str:
 
 
 def forest_as_json(branches: Sequence[rule_lineage.ExtensionTree]) -> str:
-    """Write every rulebook, each behind the one that it extends."""
+    """Write every rulebook, each after the one that it extends."""
     return as_indented(ForestDocument(books=list(_members(branches))))
 
 

@@ -17,7 +17,7 @@ from rulec.report.text.terminal_text import styled, table_lines, visible
 from rulec.rulebook.rulebook_model import Strength
 
 SIGNS = {"equal": "=", "stricter": "+", "laxer": "-", "incomparable": "~", "undecided": "?"}
-"""What stands behind a number of rules."""
+"""Relation -> the sign after the number of rules with it."""
 
 ABSENT, SILENT = ".", "/"
 
@@ -73,7 +73,7 @@ class MatrixDocument(JsonDocument, frozen=True, kw_only=True):
 
 
 def render(matrix: ComparisonMatrix, output_format: str) -> str:
-    """The matrix in one of the formats of differences."""
+    """The matrix in the requested format."""
     match output_format:
         case "json":
             return _as_json(matrix)
@@ -147,7 +147,7 @@ _HEADINGS = (TITLE, "Rule by rule", "Pair by pair", "What each law says")
 
 def _as_markdown(matrix: ComparisonMatrix) -> str:
     head = ["", *(code(book.name) for book in matrix.books)]
-    # Sections have the places that headings of these texts get on a page.
+    # The anchors that the headings get on a page.
     places = anchors([*_HEADINGS, *(rule.name for rule in matrix.shared)])[len(_HEADINGS) :]
     by_rule = [
         [f"[{code(name)}](#{place})", *map(escaped, cells)]
@@ -171,7 +171,7 @@ def _as_markdown(matrix: ComparisonMatrix) -> str:
 
 
 def _laws(rule: SharedRule) -> Iterator[str]:
-    """The section on a rule: its laws by their letters, with what their rulebooks cite and say."""
+    """The section on a rule: each law's letter, with what its rulebooks cite and say."""
     yield f"### {escaped(rule.name)}"
     rows = []
     for book in sorted(rule.laws, key=lambda name: (rule.laws[name], name)):
@@ -190,11 +190,11 @@ def _laws(rule: SharedRule) -> Iterator[str]:
 
 
 _COLOURS = 6
-"""So many colours of laws there are on a page."""
+"""Number of different colours for laws on a page."""
 
 
 def _cell_class(text: str) -> str:
-    """The class of a cell with the letter of a law, so that equal laws have equal colours."""
+    """The CSS class of a cell: cells with the same letter (the same law) have the same colour."""
     if text in (ABSENT, SILENT):
         return "absent"
     if len(text.rstrip(digits)) != 1 or not text[0].isalpha():

@@ -41,7 +41,7 @@ class ProofsDocument(JsonDocument, frozen=True, kw_only=True):
 
 
 def render(proofs: Sequence[tuple[str, Sequence[RuleProof]]], output_format: str) -> str:
-    """What has been found of each file, as ``text`` or ``json``."""
+    """The results for each file, as ``text`` or ``json``."""
     if output_format == "json":
         files = [FileProofs(name, [_line(proof) for proof in own]) for name, own in proofs]
         return as_indented(ProofsDocument(files=files))

@@ -71,7 +71,7 @@ class RulesDocument(JsonDocument, frozen=True, kw_only=True):
 def as_document(
     rulebook: str, rules: Sequence[Rule], vocabulary: Vocabulary, page: RulePage | None
 ) -> RulesDocument:
-    """The rules, with the whole page if there is only one."""
+    """The rules, with automaton and traces if there is only one."""
     return RulesDocument(rulebook=rulebook, rules=[_rule(rule, vocabulary, page) for rule in rules])
 
 

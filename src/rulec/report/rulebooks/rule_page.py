@@ -1,4 +1,4 @@
-"""Text page on one rule: its sentence, formula, automaton and traces."""
+"""The text page about a rule: its sentence, formula, automaton and traces."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ from rulec.witnesses.shortest_traces import shortest_traces
 INDENT = "  "
 
 MOST_LISTED = 60
-"""A page lists the transitions of an automaton if they are no more than these."""
+"""A page lists an automaton's transitions if there are at most this many."""
 
 
 @dataclass(frozen=True, slots=True)
 class ShortestTrace:
-    """A trace as an example: further objects, states, and inexpressible parts."""
+    """A trace as an example: further objects, states, and what the rule language cannot express."""
 
     objects: tuple[Variable, ...]
     states: tuple[str, ...]
@@ -45,9 +45,9 @@ class ShortestTrace:
 
 @dataclass(frozen=True, slots=True)
 class RulePage:
-    """A rule with its automaton and, if any, accepted and rejected traces.
+    """A rule with its automaton, and an accepted and a rejected trace if there are any.
 
-    The automaton is that for traces with steps of ``step_s``; None if it is the same for all.
+    The automaton is for traces with steps of ``step_s``; None if it is the same for all steps.
     """
 
     rule: Rule
@@ -58,7 +58,7 @@ class RulePage:
 
 
 def page_of(rule: Rule, compiled: CompiledRule, vocabulary: Vocabulary) -> RulePage:
-    """The page of a rule that has been compiled."""
+    """The page of a compiled rule."""
     traces = shortest_traces(compiled, vocabulary)
     wording = GuardWording(compiled, vocabulary)
     return RulePage(
@@ -78,7 +78,7 @@ def _shown(trace: WitnessTrace | None, wording: GuardWording) -> ShortestTrace |
 
 
 def _remarks(trace: WitnessTrace) -> Iterator[str]:
-    """Numbers of counted objects needed in a state, named ones included."""
+    """The numbers of counted objects needed in each state, including named ones."""
     for number, required in enumerate(trace.required):
         for count, size in required.items():
             noun = spoken(count.type) if size == 1 else plural(spoken(count.type))
@@ -99,7 +99,7 @@ def phrase_of(rule: Rule, vocabulary: Vocabulary, language: Language = ENGLISH) 
 
 
 def restrictions_of(rule: Rule, language: Language = ENGLISH) -> list[Phrase]:
-    """The rule's condition and exceptions as sentences, unless options exclude them."""
+    """The rule's condition and exceptions as sentences, except those excluded by options."""
     phrases = [
         exemption(formula, exemption_.scope, language)
         for exemption_ in rule.exemptions
@@ -160,8 +160,8 @@ def _facts(rule: Rule, rulebook: str) -> Iterator[tuple[str, str]]:
 
 
 def _untold(rule: Rule) -> str:
-    """The words that no format of recordings tells, of a rule of which some are told."""
-    # What recordings tell: for who asks about a rule alone.
+    """The words that no format of recordings provides; empty if that holds for none or for all."""
+    # Loads the table of recordings' words: only for a page about one rule.
     from rulec.extraction.tellable_words import TELLABLE_WORDS
 
     tellable = frozenset[str]().union(*TELLABLE_WORDS.values())
@@ -173,7 +173,7 @@ def _untold(rule: Rule) -> str:
 
 
 def in_english(phrase: Phrase, width: int) -> str:
-    """The sentence with its lists, indented and broken to this width."""
+    """The sentence with its lists, indented and wrapped to a width."""
     shown = []
     for line in lines(phrase):
         indent = INDENT

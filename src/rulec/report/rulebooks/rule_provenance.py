@@ -1,4 +1,4 @@
-"""Provenance of a rule in a chain of rulebooks, in few words."""
+"""The provenance of a rule in a chain of rulebooks, in a few words."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rulec.report.rulebooks.document_language import IN_ENGLISH, DocumentLanguag
 def provenance(
     rule_history: RuleHistory, inherited: BookLineage, words: DocumentLanguage = IN_ENGLISH
 ) -> str:
-    """Provenance of a rule in a chain's last book: own, inherited, overriding, gone; and why."""
+    """How a chain's last book has a rule: own, inherited, overridden or dropped; and why."""
     say = words.say
     book, last = inherited.book, rule_history.last
     open_law = say(", not confirmed") if inherited.inherited_from(rule_history) else ""

@@ -1,4 +1,4 @@
-"""Bases of rules on a partial source, as text and Markdown."""
+"""What rules rest on, given a source that provides only some words, as text and Markdown."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def counted(audit: SourceAudit) -> str:
 
 
 def as_text(audit: SourceAudit, width: int) -> str:
-    """The sums, then the rules by what they rest on, with the names that matter."""
+    """The totals, then the rules by what they rest on, with the names that matter."""
     source = visible(audit.source)
     blocks = [f"{styled('source', 'bold')} {source}: {counted(audit)}"]
     for basis, title in _TITLES.items():

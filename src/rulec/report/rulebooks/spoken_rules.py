@@ -1,4 +1,4 @@
-"""Rules whose sentences speak in the phrases of the vocabulary."""
+"""Rules whose sentences use the phrases of the vocabulary."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rulec.rulebook.vocabulary_phrases import phrases_of
 
 
 def spoken_book(rulebook: Rulebook, language: Language = ENGLISH) -> Rulebook:
-    """The rulebook with phrases in all that its rules require and except; they mean the same."""
+    """The rulebook with phrases in its rules' requirements and exceptions; the meaning stays."""
     phrases = phrases_of(rulebook, language.code)
     if not phrases:
         return rulebook

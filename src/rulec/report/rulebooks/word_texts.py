@@ -1,4 +1,4 @@
-"""What is known of a word: its declaration, what it stands for, and who can tell it."""
+"""Texts about a word: its declaration, its meaning, and which sources provide it."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ SUPPLIERS = {
     "Interpretation": "whoever interprets the scene: what others are about to do, what traffic is "
     "like",
 }
-"""Who supplies a word of the shared vocabulary, by the first word of its comment."""
+"""First word of a comment in the shared vocabulary -> what supplies the word declared."""
 
 RECORDED_VOCABULARIES = frozenset(("road", "paper"))
-"""The vocabularies whose words are found in recordings."""
+"""The vocabularies whose words recordings can provide."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +47,9 @@ class WordData(JsonDocument, frozen=True, kw_only=True):
 
 
 def word_text(name: str, symbols: SymbolTable, *, recorded: bool) -> WordText:
-    """What is known of a signal, a quantity, an enumeration, or one of its values.
+    """The text about a signal, a quantity, an enumeration, or one of its values.
 
-    ``recorded``: say as well which recordings can tell it.
+    ``recorded``: also name the formats of recordings that can provide it.
     """
     item = symbols.items.get(name) or symbols.value_of[name]
     sentences = [f"`{name}` is one of its values."] if name != item.name else []
@@ -67,7 +67,7 @@ def word_text(name: str, symbols: SymbolTable, *, recorded: bool) -> WordText:
 
 
 def type_text(name: str, symbols: SymbolTable) -> WordText:
-    """What is known of a type of objects."""
+    """The text about a type of objects."""
     above = symbols.ancestors(name)[1:]
     sentences = [*described(symbols.type_spans[name])]
     if above:
@@ -76,13 +76,13 @@ def type_text(name: str, symbols: SymbolTable) -> WordText:
 
 
 def tells_words(vocabularies: Iterable[tree.File]) -> bool:
-    """Whether words of these vocabularies, and of who uses them, are looked for in recordings."""
+    """Whether words from these vocabularies, or files using them, may be found in recordings."""
     named = {file.name.text for file in vocabularies if file.name is not None}
     return not named.isdisjoint(RECORDED_VOCABULARIES)
 
 
 def described(span: Span) -> Iterator[str]:
-    """The comment on a declaration, and who supplies what it declares."""
+    """The comment on a declaration, and what supplies the declared word."""
     text = description(span)
     first, colon, rest = text.partition(": ")
     if colon and first in SUPPLIERS:
@@ -93,7 +93,7 @@ def described(span: Span) -> Iterator[str]:
 
 
 def _declared(item: Declaration, span: Span) -> str:
-    """A declaration on one line, as in its file, of whose variables the comment speaks."""
+    """A declaration on one line, with the parameters' names that its comment uses."""
     parameters = re.compile(rf"\b{re.escape(item.name)}\s*(\([^()]*\))")
     written = parameters.search(span.source.text, span.start)
     about = f"({', '.join(item.parameters)})" if item.parameters else ""
@@ -110,7 +110,7 @@ def _declared(item: Declaration, span: Span) -> str:
 
 
 def as_text(word: FoundWord) -> str:
-    """What is known of a word, for a terminal."""
+    """The text about a word for a terminal."""
     text = _known(word)
     paragraphs = [
         f"{word.name}: a word of {_file_of(word)}",
@@ -121,14 +121,14 @@ def as_text(word: FoundWord) -> str:
 
 
 def as_markdown(word: FoundWord) -> str:
-    """What is known of a word, as Markdown."""
+    """The text about a word as Markdown."""
     text = _known(word)
     head = f"# {markdown.escaped(word.name)}: a word of {_file_of(word)}"
     return "\n\n".join([head, *as_paragraphs(text)])
 
 
 def as_paragraphs(text: WordText) -> Iterator[str]:
-    """A word's declaration as code, and what is said of it, in Markdown."""
+    """A word's declaration as code and the sentences about it, in Markdown."""
     yield markdown.fenced(text.declaration, "rulec")
     yield from text.sentences
 
@@ -167,7 +167,7 @@ def _default(value: float | str | bool | None) -> str:
 
 
 def _tellers(name: str) -> str:
-    # What recordings tell, 100 ms: for who asks about a word.
+    # Loads the table of recordings' words, 100 ms: only for texts about a word.
     from rulec.extraction.tellable_words import TELLABLE_WORDS
 
     formats = sorted(form for form, words in TELLABLE_WORDS.items() if name in words)

@@ -55,12 +55,12 @@ _ENDS = {
 
 
 def title_of(rulebook: Rulebook) -> str:
-    """Its title, or its name if it has none."""
+    """The rulebook's title, or its name if it has none."""
     return rulebook.title or rulebook.name
 
 
 def contents_heading(words: DocumentLanguage) -> str:
-    """The heading below which the list of contents stands."""
+    """The heading of the list of contents."""
     return words.say("Contents")
 
 
@@ -70,7 +70,7 @@ def as_markdown(
     words: DocumentLanguage = IN_ENGLISH,
     picture: ExamplePicture | None = None,
 ) -> str:
-    """The whole document; ``picture`` draws its examples, each as the address of an image."""
+    """The whole document; ``picture`` gives for an example the address of its image."""
     rulebook = loaded.rulebook
     contents_here = Heading(2, contents_heading(words))
     top: list[Block] = [Heading(1, title_of(rulebook)), *_top(rulebook, words), contents_here]
@@ -151,7 +151,7 @@ def _articles_section(rulebook: Rulebook, words: DocumentLanguage) -> Iterator[B
         )
         for link, as_of, certainty in pages:
             yield linked(words.say("{} , as of {}", link, as_of) if as_of else link)
-            # Nobody may have opened the link: what rules rest on, their sources say.
+            # The link may never have been opened: the sources of rules say what they were read in.
             yield words.say(
                 "There is the official text; what was read may be a copy of it. This list: {}.",
                 words.say(CERTAINTY[certainty]),
@@ -295,7 +295,7 @@ def _about(item: Declaration, words: DocumentLanguage) -> str:
 
 
 def _kind(item: Declaration, words: DocumentLanguage) -> str:
-    """What a word can be, and what else is declared of it."""
+    """What values a word can have, and other properties declared for it."""
     remarks = {"; never changes": item.constant, "; presumed": item.presumed}
     return _values_of(item, words) + "".join(words.say(x) for x, holds in remarks.items() if holds)
 

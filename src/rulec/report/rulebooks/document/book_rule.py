@@ -25,7 +25,7 @@ from rulec.syntax.tree_printer import clauses_of
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 
 WIDTH = 84
-"""The longest line of a formula: about what a printed page has."""
+"""Longest line of a formula in characters: about the width of a printed page."""
 
 CERTAINTY: Mapping[str, str] = {
     "verified": "✔ verified in the law itself",
@@ -35,7 +35,7 @@ CERTAINTY: Mapping[str, str] = {
 }
 
 NOTHING = "–"
-"""What stands where a state does not say something that has no default either."""
+"""The cell of a state without a value for something that has no default."""
 
 _FORMULAS = ("when", "require", "unless")
 
@@ -45,13 +45,13 @@ ExamplePicture: TypeAlias = Callable[[Example, Rule], str]
 
 
 def rule_heading(rule: Rule, words: DocumentLanguage) -> str:
-    """The heading of its section."""
+    """The heading of a rule's section."""
     title = words.title(rule.name)
     return f"{title} ({rule.cite})" if rule.cite else title
 
 
 def time_in_force(since: str | None, until: str | None, words: DocumentLanguage) -> str:
-    """``from DATE until DATE``; empty if always."""
+    """``from DATE until DATE``; empty if always in force."""
     begins = words.say("from {}", since) if since else ""
     ends = words.say("until {}", until) if until else ""
     return f"{begins} {ends}".strip()
@@ -64,7 +64,7 @@ def rule_section(
     words: DocumentLanguage,
     picture: ExamplePicture | None,
 ) -> Iterator[Block]:
-    """The section on a rule of the rulebook at a chain's end."""
+    """The section on a rule in the last rulebook of a chain."""
     say = words.say
     book, vocabulary = inherited.book, rulebook.vocabulary
     history = next(history for history in inherited.rules if history.name == rule.name)
@@ -198,9 +198,9 @@ def _example(
 def example_rows(
     example: Example, vocabulary: Vocabulary, words: DocumentLanguage = IN_ENGLISH
 ) -> Iterator[list[str]]:
-    """A row for each subject, in order of mention: its value in each state.
+    """A row for each subject, in order of mention, with its value in each state.
 
-    A value in parentheses is a default: the state does not mention it.
+    A value in parentheses is a default, which the state does not mention.
     """
     for name, objects in dict.fromkeys(key for state in example.states for key in state):
         item = vocabulary.declarations[name]
@@ -237,7 +237,7 @@ def _difference(
         old = [line for word in changed for line in before.get(word, [])]
         new = [line for word in changed for line in after.get(word, [])]
         shown = list(unified_diff(old, new, lineterm="", n=len(old) + len(new)))
-        # The first three lines name files and lines, and there are none.
+        # The first three lines would name files and line numbers, which do not exist.
         yield fenced("\n".join(shown[3:]), "diff")
 
 

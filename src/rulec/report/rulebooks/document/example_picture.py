@@ -1,7 +1,7 @@
 """A rule's example as a small picture: a frame for each state, the road seen from above.
 
-Ego drives upwards. What the vocabulary ``road`` says of where others are, which way they move, of
-lights, crossings, speeds and gaps is drawn; the table below the picture says it all.
+Ego drives upwards. Only some words of the vocabulary ``road`` are drawn: others' positions and
+directions, lights, crossings, speeds and gaps; the table below the picture is complete.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from rulec.rulebook.rulebook_model import Example, Rule
 from rulec.vocabulary import Vocabulary
 
 WIDTH, HEIGHT = 96, 132
-"""Of a frame, in px."""
+"""Size of a frame in px."""
 
 MOST_FRAMES = 10
-"""Of longer examples the first states are drawn."""
+"""Of a longer example only the first states are drawn."""
 
 _LANES = {"left_of": 1, "same_lane": 0, "right_of": -1}
-"""How many lanes an object is to the right of ego, which is on the other side of it."""
+"""Ego's lateral position relative to an object -> lanes that the object is right of ego."""
 
 _ROWS = {"behind": -1, "beside": 0, "in_front_of": 1}
-"""How many rows an object is below ego."""
+"""Ego's position along the road relative to an object -> rows that the object is below ego."""
 
 _LIGHTS = ("red_light", "amber_light", "green_light", "red_cross", "flashing_red", "flashing_amber")
 
@@ -35,18 +35,18 @@ _AT_CROSSING = ("waiting_to_cross", "about_to_cross")
 _DISTANCES = ("gap", "time_headway", "lateral_gap")
 
 _PLACED = {"station", "lateral", "crossing_use", "light"}
-"""Of these an example has to say something, or there is little to see."""
+"""An example that mentions none of these is not drawn, because there would be little to see."""
 
 
 @dataclass
 class ExampleFigures:
-    """Pictures of examples, by the addresses that stand for them in a document."""
+    """Pictures of examples, by the addresses used for them in a document."""
 
     vocabulary: Vocabulary
     by_address: dict[str, str] = field(default_factory=dict)
 
     def add(self, example: Example, rule: Rule) -> str:
-        """Draw an example; its address, empty if it says nothing that can be drawn."""
+        """Draw an example and return its address; empty if it mentions nothing that can be drawn."""
         mentioned = {name for state in example.states for name, _ in state}
         if mentioned.isdisjoint(_PLACED):
             return ""
@@ -56,7 +56,7 @@ class ExampleFigures:
 
 
 def picture(example: Example, rule: Rule, vocabulary: Vocabulary) -> str:
-    """The picture as an SVG element, whose colours are those of the page that it stands in."""
+    """The picture as an SVG element, with the colours of the page that contains it."""
     objects = {item.name: item.type for item in (*rule.variables, *example.objects)}
     states = example.states[:MOST_FRAMES]
     width = len(states) * (WIDTH + 8) - 8
@@ -79,7 +79,7 @@ def picture(example: Example, rule: Rule, vocabulary: Vocabulary) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """A state of an example, with the defaults of its vocabulary."""
+    """A state of an example, completed by the defaults of its vocabulary."""
 
     given: Mapping[tuple[str, tuple[str, ...]], bool | str | float]
     vocabulary: Vocabulary
@@ -94,7 +94,7 @@ class _State:
         return (name, objects) in self.given
 
     def has(self, *values: str) -> bool:
-        """Whether any of these values of enumerations, or signals, holds of ego."""
+        """Whether ego has any of these values of enumerations, or signals."""
         return any(
             value is True if name in values else isinstance(value, str) and value in values
             for (name, objects), value in self.given.items()
@@ -132,7 +132,7 @@ def _frame(state: _State, objects: Mapping[str, str], vocabulary: Vocabulary) ->
 
 
 def _other_object(state: _State, name: str, kind: str, vocabulary: Vocabulary) -> Iterator[str]:
-    """An object at its place; nothing if that is not said."""
+    """An object at its position; nothing if the position is not given."""
     if not vocabulary.is_subtype(kind, "road_user") or "station" not in vocabulary.declarations:
         return
     station, lateral = state.value("station", name), state.value("lateral", name)
@@ -164,7 +164,7 @@ def _other_object(state: _State, name: str, kind: str, vocabulary: Vocabulary) -
 
 
 def _crossing_at(state: _State) -> float:
-    """Where the middle of the crossing is: below ego, or before it."""
+    """The y coordinate of the crossing's middle: at ego, or ahead of it."""
     return HEIGHT / 2 if state.has("crossing") else HEIGHT / 2 - 28
 
 
