@@ -67,10 +67,7 @@ class Cells:
         return Cells.in_shape((n_rows, self.shape[1]), rows.take(self.rows), self.columns)
 
     def number(self, row: int, column: int) -> int | None:
-        """The index of the cell at a row and column; None if it is not selected.
-
-        Cells must ascend.
-        """
+        """The index of the cell at a row and column, None if it is not there; cells must ascend."""
         place = row * self.shape[1] + column
         at = int(self.places.searchsorted(place))
         return at if at < len(self) and self.places[at] == place else None

@@ -144,9 +144,7 @@ class EndToEnd:
         return most
 
     def _shifts(self, steps: int) -> Iterator[tuple[int, _Flags]]:
-        """Shifts that together join each state with ``steps`` states on one side of it.
-
-        Each doubles.
+        """Shifts, doubling, that together join each state with ``steps`` states on one side of it.
 
         With each comes a mask of the pairs of columns that far apart that belong to the same drive.
         """
@@ -174,18 +172,12 @@ class EndToEnd:
         return shifted
 
     def enters(self, flags: _Flags) -> _Flags:
-        """Mask of states where a flag holds that did not one state earlier.
-
-        Never a drive's first state.
-        """
+        """Mask of states where a flag holds, but not one state earlier; never a drive's first."""
         entered: _Flags = flags & ~self.before(flags)
         return entered
 
     def changes(self, values: NDArray[Any]) -> _Flags:
-        """Mask of states whose value differs from the previous state's.
-
-        Never a drive's first state.
-        """
+        """Mask of states whose value differs from the previous one; never a drive's first state."""
         changed: _Flags = values != self.before(values)
         return changed
 

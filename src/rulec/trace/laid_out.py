@@ -23,8 +23,7 @@ _LONG = 200
 class LaidOut:
     """Some rows of arrays in several column ranges, placed side by side.
 
-    ``absent`` is a mask, by row and column of the result, of participants absent from a whole
-    range.
+    ``absent``, by row and column of the result, marks participants absent from a whole range.
     """
 
     rows: NDArray[intp]

@@ -148,10 +148,9 @@ def medians_hold(
     count: int,
     holds: Callable[[NDArray[np.float64]], NDArray[np.bool_]],
 ) -> NDArray[np.bool_]:
-    """Whether a condition holds for the median of each of ``count`` groups; False for an empty one.
+    """Whether a condition holds for the median of each of ``count`` groups; False if empty.
 
-    It ``holds`` for all numbers below some limit and no others, so that counting the values it
-    holds for is usually enough.
+    It ``holds`` for all numbers below some limit and no others: counting mostly decides.
     """
     sizes = np.bincount(groups, minlength=count)
     twice = 2 * np.bincount(groups.take(holds(values).nonzero()[0]), minlength=count)

@@ -73,10 +73,7 @@ class TraceArrays:
         return self._of_states(chosen, chosen)
 
     def _of_states(self, chosen: NDArray[np.intp], states: Places) -> TraceArrays:
-        """The trace of the ``chosen`` states.
-
-        ``states`` selects the same in columns of the world.
-        """
+        """The trace of the ``chosen`` states, which are at ``states`` in columns of the world."""
         first = chosen.searchsorted(self.spans[:, 0])
         last = chosen.searchsorted(self.spans[:, 1], side="right") - 1
         there = first <= last

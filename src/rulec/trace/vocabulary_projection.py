@@ -43,10 +43,7 @@ UNTOLD_VALUES: Mapping[str, frozenset[str]] = {
     "surface": frozenset(("tram_track",)),
     "crossing_kind": frozenset(("unmarked_crossing",)),
 }
-"""Enumeration -> values that no format provides.
-
-Where another is recorded, it may be one of these.
-"""
+"""Enumeration -> values that no format provides: where another is recorded, it may be these."""
 
 UNTOLD_TYPES = frozenset({"school_bus", "maintenance_vehicle", "moped", "horse_rider"})
 """Types that no format provides; an object recorded as a supertype may be of one of these."""
@@ -103,10 +100,9 @@ def project_graph(
 ) -> TraceGraph:
     """The graph reduced to a vocabulary's names and types.
 
-    ``supplied`` are the names that a partition supplies: they are dropped if the vocabulary does
-    not declare them, and so are their values for objects that its declaration is not about.
-    ``recorded`` gives the types of each object, most specific first, if the scene was recorded:
-    then all names are filtered.
+    ``supplied`` are the names that a partition supplies: they are dropped if not declared, and so
+    are their values for objects that the declaration is not about. ``recorded`` gives each object's
+    types, most specific first, if the scene was recorded: then all names are filtered.
     """
     objects = dict(traces.objects) if recorded is None else known_types(recorded, vocabulary)
     if not vocabulary.types:

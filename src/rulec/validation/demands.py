@@ -1,6 +1,4 @@
-"""Formulas in negation normal form over letters.
-
-Each part exists once, and past parts are numbered.
+"""Formulas in negation normal form over letters: each part once, past parts numbered.
 
 A part is a number. Conditions on one state are sets of letters, as bits; for the future there are
 bounded ``until`` and its dual ``release``, for the past ``since``. All other operators are

@@ -1,10 +1,9 @@
 """The letters that are possible for a rule's variables, given a vocabulary's facts.
 
 Every fact holds for all distinct objects of its types, and so for every fitting assignment of a
-rule's variables. Facts with words in common are evaluated together over all words that they
-mention, whether the table reads them or not: a letter is possible if some values of all these words
-go with it. Digits that the formula does not distinguish count as one digit here, as in the
-compiler.
+rule's variables. Facts with words in common are evaluated together over all their words, whether
+the table reads them or not: a letter is possible if some values of all these words go with it.
+Digits that the formula does not distinguish count as one, as in the compiler.
 """
 
 from __future__ import annotations
@@ -23,10 +22,7 @@ MOST_CASES = 1 << 16
 
 
 def possible_letters(letters: Letters, book: Mapping[str, Any], rule: Mapping[str, Any]) -> int:
-    """The letters of states in which every fact of a book holds for a rule's variables.
-
-    Facts that count objects are left out.
-    """
+    """The letters in which every fact of a book, except those that count objects, holds."""
     vocabulary = {item["name"]: item for item in book["vocabulary"]["declarations"]}
     types = book["vocabulary"]["types"]
     instances = [

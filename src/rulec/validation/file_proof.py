@@ -74,10 +74,7 @@ def _read(data: bytes) -> Any:
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A JSON object.
-
-    ValueError if a name is repeated, which other readers would read differently.
-    """
+    """A JSON object; ValueError for a repeated name, of which readers may take either value."""
     if len(dict(pairs)) < len(pairs):
         raise ValueError("a name is there twice")
     return dict(pairs)

@@ -1,9 +1,8 @@
 """Positive Boolean functions of demands in a normal form, and maps from such values to letters.
 
 A function is its set of prime implicants, each a set of demands: the minimal disjunctive normal
-form, which is unique for monotone functions (Quine, "Two theorems about truth functions", 1954).
-Demands may imply each other, as `within 2 steps` implies `within 3 steps`; the form is then unique
-up to such implications.
+form, unique for monotone functions (Quine, "Two theorems about truth functions", 1954). Demands may
+imply each other, as `within 2 steps` does `within 3 steps`; it is then unique up to that.
 """
 
 from __future__ import annotations
@@ -31,10 +30,7 @@ _Result = TypeVar("_Result", bound=Hashable)
 
 
 class FunctionAlgebra:
-    """Conjunction and disjunction of functions.
-
-    ``implies`` decides whether one demand implies another.
-    """
+    """Conjunction and disjunction of functions; ``implies`` says if one demand implies another."""
 
     def __init__(self, implies: Callable[[int, int], bool], most_work: int = MOST_WORK) -> None:
         self._implies, self._most_work = implies, most_work

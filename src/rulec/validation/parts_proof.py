@@ -1,9 +1,8 @@
 """Proof of a rule's parts against its formula: what it requires, its exceptions, its condition.
 
 The rule's trigger is derived from the parts, so they must be those of the formula. They are
-combined again here, as docs/language.md describes, and the result must equal the formula literally,
-since equivalent formulas may have different triggers: `never (p and not q)` and `never (not q and
-p)`.
+combined again as docs/language.md describes, and must give the formula literally: equivalent ones
+may have other triggers, such as `never (p and not q)` and `never (not q and p)`.
 """
 
 from __future__ import annotations
@@ -123,10 +122,7 @@ def _counted(phases: Sequence[Phase], exemptions: Sequence[tuple[str, Any]]) -> 
     failing = [part for number, part in enumerate(failing) if part not in failing[:number]]
 
     def entered(number: int, due: Sequence[Any]) -> Any:
-        """The formula from a phase's first instant on.
-
-        Each of ``due`` must still be false at some point.
-        """
+        """The formula from a phase's start on; each of ``due`` must still fail at some point."""
         if number == last:
             return phases[number][0]
         here = within(number, due)
@@ -158,10 +154,7 @@ def _choices(trees: Sequence[Any]) -> list[tuple[Any, ...]]:
 
 
 def _remainder(phase: Phase, at_last: Any, behind: Any) -> Any:
-    """The rest of a phase and the instant after it.
-
-    ``at_last`` holds in the phase's last instant.
-    """
+    """The rest of a phase and the instant after it; ``at_last`` holds in its last instant."""
     tree, bound = phase
     if at_last is True:
         return ["then", tree, behind, *bound]

@@ -29,10 +29,7 @@ _FRACTION = re.compile(r"-?[0-9]{1,1000}(?:/[0-9]{1,1000})?")
 
 
 def exact(text: str) -> Fraction:
-    """The fraction that a text spells in lowest terms.
-
-    Raises UnprovableError for any other text.
-    """
+    """The fraction that a text spells in lowest terms. Raises UnprovableError for other texts."""
     require(bool(_FRACTION.fullmatch(text)), f"{text[:40]!a} is not a number")
     number = Fraction(text)
     require(str(number) == text, f"{text[:40]!a} is not in lowest terms")

@@ -47,10 +47,7 @@ _KM_AN_HOUR = re.compile("km/?(t|tim|u|st|std|ч|год)", re.IGNORECASE)
 
 
 def hour_in_another_language(text: str) -> str:
-    """Help text for km/h written with another language's abbreviation of hour, as `km/t`.
-
-    Else empty.
-    """
+    """Help for km/h written with another language's short form of hour, as `km/t`; else empty."""
     return "an hour is `h`: did you mean `km/h`?" if _KM_AN_HOUR.fullmatch(text) else ""
 
 

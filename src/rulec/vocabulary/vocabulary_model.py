@@ -136,13 +136,10 @@ class Vocabulary:
 def choices(
     types: Sequence[str], objects: Mapping[str, str], vocabulary: Vocabulary, whose: str = ""
 ) -> Iterator[tuple[str, ...]]:
-    """All choices of distinct objects, one of each of the ``types``.
+    """All choices of distinct objects for the types; for no types the single, empty one.
 
-    ``objects`` maps each object to its type. Objects of a subtype fit, too. For no types there is
-    one choice, the empty one.
-
-    Raises RulecError R0718 if there are more than the limit `choices`; the message names ``whose``
-    choices they are.
+    ``objects`` maps each object to its type; objects of a subtype fit, too. Raises RulecError R0718
+    if there are more than the limit `choices`; its message names ``whose`` choices they are.
     """
     if len(types) > 1:
         CHOICES.within(number_of_choices(types, objects, vocabulary), None, whose)

@@ -21,8 +21,7 @@ _MOST_DIGITS = 1000
 class WrittenNumber(float):
     """A number that no float represents: its ``exact`` value and, as a float, the nearest one.
 
-    It equals integers, fractions and other such numbers of the same exact value, but never a plain
-    float.
+    It equals integers, fractions and its like of the same exact value, but never a plain float.
     """
 
     __slots__ = ("exact", "text")

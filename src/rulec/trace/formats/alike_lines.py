@@ -1,9 +1,8 @@
 """Traces in JSON lines whose states are written alike, read together as columns.
 
-Most programs write all states of a trace with the same names in the same order, so that only the
-values differ. The text between values is compared with that of the previous state, for all states
-at once, and the values are read from their expected positions. Lines written otherwise are left to
-be decoded one by one.
+Most programs write all states of a trace with the same names in the same order; only values differ.
+The text between values is compared with that of the previous state, for all states at once, and
+values are read from where they must be. Other lines are left to be decoded one by one.
 """
 
 from __future__ import annotations
@@ -66,9 +65,7 @@ class AlikeLines:
 
 
 def placed_among(places: Mapping[int, int], alike: AlikeLines, first: int) -> AlikeLines:
-    """The traces with indices of items instead of lines.
-
-    A trace without a name gets its line number.
+    """The traces with items' indices for lines; one without a name is named by its line number.
 
     ``first`` is the number of the first line.
     """
@@ -110,8 +107,8 @@ class LineBlock(Sequence["Trace | RulecError"]):
 class _Form:
     """How a state is written: the text before each of its values and after the last.
 
-    ``text`` joins these, with ``_END`` in place of each value and ``%s`` in place of each object's
-    name; ``named`` are the indices of these objects.
+    ``text`` joins these, with ``_END`` for each value and ``%s`` for the names of objects
+    ``named``.
     """
 
     comma: bytes
@@ -160,10 +157,7 @@ def _outlined(
     heading_of: HeadingReader,
     usual: _Form | None,
 ) -> _Outline | None:
-    """The outline of a line, whose first state probably has the ``usual`` form.
-
-    None if irregular.
-    """
+    """A line's outline, whose first state probably has the ``usual`` form; None if irregular."""
     styles = _STYLES if usual is None or usual.comma == _STYLES[0][0] else _STYLES[::-1]
     places = ((line.find(b'"states"' + colon + b"["), comma, colon) for comma, colon in styles)
     begin, comma, colon = next((place for place in places if place[0] >= 0), (-1, b"", b""))

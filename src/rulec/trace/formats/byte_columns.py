@@ -161,10 +161,7 @@ _NO_TEXT = -2
 
 
 def _code(written: bytes, values: list[str]) -> int:
-    """The index of a newly added text in ``values``.
-
-    ``_NO_TEXT`` if it is not a plain JSON string.
-    """
+    """The index of a new text in ``values``, or ``_NO_TEXT`` if it is no plain JSON string."""
     inner = written[1:-1]
     if len(written) < 2 or written[:1] + written[-1:] != b'""' or b'"' in inner:
         return _NO_TEXT

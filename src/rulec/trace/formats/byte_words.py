@@ -30,10 +30,7 @@ def words_for(width: int) -> int:
 
 
 def words_from(text: Bytes, starts: Places, count: int) -> Words:
-    """``count`` words from each start on, as (starts, words).
-
-    Arbitrary where the text ends before.
-    """
+    """``count`` words from each start on, as (starts, words); arbitrary beyond the text."""
     size = max(count, 1) * BYTES
     windows = np.ndarray((len(text) - size + 1,), f"V{size}", text, strides=(1,))
     # ``take`` would first copy all windows.
@@ -42,10 +39,7 @@ def words_from(text: Bytes, starts: Places, count: int) -> Words:
 
 
 def end_as_before(words: Words, width: int) -> NDArray[np.bool_]:
-    """Mask of rows whose last ``width`` bytes equal those of the row before.
-
-    Without the first row.
-    """
+    """Mask of rows, but for the first, whose last ``width`` bytes equal those of the row before."""
     same = np.ones(max(len(words) - 1, 0), dtype=bool)
     masks = np.frombuffer((b"\xff" * width).rjust(BYTES * words.shape[1], b"\0"), "<u8")
     for place, mask in enumerate(masks):

@@ -121,10 +121,7 @@ def rows_of_tracks(line: bytes, place: SourceLocation) -> RulecError | None:
 
 
 def _answer_of_rulec(line: bytes) -> str:
-    """Help for a line that `rulec verify` has written, saying what reads it.
-
-    Empty for other lines.
-    """
+    """Help for a line written by `rulec verify`: what it is, and what reads it; else empty."""
     if b'"outcome":' in line:
         return "it is a finding of `rulec verify`, which `rulec rates` counts"
     if b'"satisfied":' in line:

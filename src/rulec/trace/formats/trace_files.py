@@ -52,9 +52,8 @@ def read_chunks(
 ) -> Iterator[Sequence[Trace | RulecError]]:
     """Read the traces of a stream in chunks; chunks of a table may be a ``Block``.
 
-    With ``together``, chunks of JSON may be a ``LineBlock``, for traces to be judged together. A
-    bad trace is replaced by the RulecError that says why. Raises RulecError R0706 if Parquet cannot
-    be read here.
+    If they are to be judged ``together``, chunks of JSON may be a ``LineBlock``. A bad trace is
+    replaced by the RulecError that says why. Raises RulecError R0706 if Parquet cannot be read.
     """
     if form == "jsonl":
         yield from json_lines.read_chunks(stream, file, together=together)

@@ -1,8 +1,7 @@
 """Arrow arrays as NumPy arrays, taken directly from their buffers.
 
-Arrow's own conversions load pandas where it is installed, which takes longer than reading most
-files. Arrow's functions are called by name because ``pyarrow.compute`` first generates a
-description of each (30 ms).
+Arrow's own conversions load pandas where installed, which takes longer than reading most files. Its
+functions are called by name: ``pyarrow.compute`` first generates descriptions of all (30 ms).
 """
 
 from __future__ import annotations

@@ -43,9 +43,8 @@ def pieces(
 ) -> Iterator[Piece | WholeTraces | Iterator[Row]]:
     """The rows of a stream from its current position, as pieces for ``cut``.
 
-    ``number`` is the number of the next line. ``rows_from`` reads the stream row by row from a line
-    with a given number on; it takes over at the first block that is not plain, and so decides
-    whether anything is wrong.
+    ``number`` is the number of the next line. ``rows_from`` reads row by row from a numbered line
+    on; it takes over at the first block that is not plain, and decides whether anything is wrong.
     """
     offset = stream.tell()
     texts: Types = dict.fromkeys(columns, pyarrow.string())

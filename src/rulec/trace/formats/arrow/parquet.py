@@ -115,10 +115,7 @@ def _pieces(
 
 
 def _first_no_text(batch: Any) -> tuple[int, str] | None:
-    """The first row (from 0) with a text that is not UTF-8, and its column.
-
-    None if there is none.
-    """
+    """The first row, from 0, with a text that is not UTF-8, and its column; None without one."""
     columns = zip(batch.schema.names, batch.columns, strict=True)
     wrong = [(_first_that_fails(column), name) for name, column in columns if not is_valid(column)]
     return min(wrong, default=None)
