@@ -266,7 +266,7 @@ FAST, NEAR, FEW, ONE, ALL, SOON, BACK = range(7)
         ((FAST, "machine", "reads", 1, "thresholds", 0, "inclusive"), True, "do not decide"),
         ((FAST, "machine", "reads", 0, "values"), ["green"], "does not distinguish a value"),
         ((FAST, "machine", "reads", 0, "others"), False, "leave out values"),
-        ((FAST, "machine", "reads", 0, "name"), "p", "as something else"),
+        ((FAST, "machine", "reads", 0, "name"), "p", "misreads a signal"),
         ((FEW, "machine", "dead"), None, "calls dead"),
         ((FEW, "machine", "safe"), 0, "calls safe"),
         ((NEAR, "machine", "reads", 0, "terms", 1, 0), "-1/2", "does not read everything"),

@@ -131,9 +131,7 @@ def check_trace(trace: Trace) -> None:
     for number, state in enumerate(trace.states):
         # A test for Mapping takes far longer than one for dict.
         if type(state) is not dict and not isinstance(state, Mapping):
-            raise NOT_A_TRACE.error(
-                trace.place, f"state {number} is not an object of names and values"
-            )
+            raise NOT_A_TRACE.error(trace.place, f"state {number} does not map names to values")
     check_presence(trace)
 
 

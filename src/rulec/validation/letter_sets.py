@@ -150,11 +150,9 @@ def _digits(entry: Any, vocabulary: Mapping[str, Any]) -> tuple[Any, tuple[str, 
     )
     assert declared is not None
     if declared["kind"] == "signal":
-        require(
-            not entry["values"] and entry["others"] is False, "it treats a signal as something else"
-        )
+        require(not entry["values"] and entry["others"] is False, "it misreads a signal")
         return subject(entry), ("false", "true")
-    require(declared["kind"] == "enumeration", "it reads a number as something else")
+    require(declared["kind"] == "enumeration", "it misreads a number")
     values, known = entry["values"], declared["values"]
     distinct = len(set(values)) == len(values) > 0 and set(values) <= set(known)
     require(distinct, "it reads values that an enumeration does not have")

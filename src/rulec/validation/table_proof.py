@@ -58,10 +58,7 @@ class ClaimedTable:
             for row in rows
         )
         require(fits, "its table has a row that does not fit")
-        require(
-            all(each in states for row in following for each in row),
-            "its table leads to a state that it does not have",
-        )
+        require(all(each in states for row in following for each in row), "its table lacks a state")
         same = int.from_bytes(excluded, "little") == letters.everything & ~possible
         require(same, "the letters that it leaves out are not those that the facts exclude")
         classes = tuple([int.from_bytes(each, "little") for each in bits])

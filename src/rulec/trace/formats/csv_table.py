@@ -141,9 +141,7 @@ _WORDS = {
     "NUL": "it holds a null character",
     "row": f"a row has more than {tables.LONGEST_ROW:,} characters",
 }
-_QUOTES = (
-    "a cell that begins with quotes ends with quotes; are some missing, or is the file cut short?"
-)
+_QUOTES = "a quoted cell ends with quotes; are they missing, or has the file been cut short?"
 
 
 @dataclass(slots=True)

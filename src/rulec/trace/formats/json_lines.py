@@ -200,9 +200,7 @@ def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:
         return _TRACE.bad("these are not traces in JSON but CSV", place, "add `--input-format csv`")
     if PurePath(place.file).suffix == ".rules":
         way_out = f"give traces, and the rulebook with `-r {place.file}`"
-        return _TRACE.bad(
-            "this is a rulebook, not a file of traces", SourceLocation(place.file), way_out
-        )
+        return _TRACE.bad("this is a rulebook, not traces", SourceLocation(place.file), way_out)
     if PurePath(place.file).suffix.lower() in _OF_TEXTS and not first.lstrip().startswith(
         (b"{", b"[")
     ):

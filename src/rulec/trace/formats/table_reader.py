@@ -120,9 +120,7 @@ _BOUNDS = "an interval needs both bounds, such as 1 and 2.5"
 
 _TRACKS = "tables of recorded traffic have `track`, `t`, `x`, `y` (`--input-format tracks`)"
 
-_FORM = (
-    "the first columns are `trace`, `step`, `object`, `type`; further ones are named after values"
-)
+_FORM = "the first columns are `trace`, `step`, `object`, `type`; others are named after values"
 
 
 def problem(message: str, place: SourceLocation, help_text: str = "") -> RulecError:
@@ -236,9 +234,7 @@ class _Building:
         value = self._value(step_s, number)
         # NaN is not equal to itself.
         if type(value) not in _NUMBERS or value != value:
-            raise self._problem(
-                f"`step_s` is {_shown(step_s)}; it must be a number of seconds", number
-            )
+            raise self._problem(f"`step_s` is {_shown(step_s)}; it must be a number (s)", number)
         if self.step_s is not None and self.step_s != value:
             message = f"`step_s` is {_shown(step_s)}; in the rows before it is {self.step_s:g}"
             raise self._problem(message, number)

@@ -110,9 +110,7 @@ def check_writable(trace: Trace) -> None:
             odd = [leave for leave in _leaves(value) if not isinstance(leave, _WRITABLE)]
             if odd or not isinstance(name, str):
                 subject = (
-                    f"`{name}` is {brief(odd[0])}"
-                    if odd
-                    else f"the name {brief(name)} is not a str"
+                    f"`{name}` is {brief(odd[0])}" if odd else f"the name {brief(name)} is no str"
                 )
                 message = f"state {number}: {subject}, which no file can hold"
                 raise NOT_A_TRACE.error(trace.place, message)
