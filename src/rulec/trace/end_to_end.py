@@ -90,7 +90,7 @@ class EndToEnd:
         return flags
 
     def latest(self, flags: _Flags) -> _Columns:
-        """The last column, up to each, with a flag; the one before the drive if there is none."""
+        """For each column, the last up to it with a flag; if none, the one before the drive."""
         # Repeating a value for each gap between flags is faster than searching state by state
         edges = np.concatenate(((-1,), flags.ravel().nonzero()[0], (flags.size,)))
         lengths = edges[1:] - edges[:-1]
@@ -120,7 +120,10 @@ class EndToEnd:
         return places.reshape(flags.shape) - begins
 
     def within(self, flags: _Flags, steps: int, *, around: bool = False) -> _Flags:
-        """Mask of states where a flag holds then or up to ``steps`` later, or also earlier."""
+        """Mask of states where a flag holds then or up to ``steps`` later.
+
+        ``around``: or earlier.
+        """
         if not flags.any():
             return flags
         soon: _Flags = flags & (steps >= 0)

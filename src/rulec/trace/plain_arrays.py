@@ -150,7 +150,7 @@ def medians_hold(
 ) -> NDArray[np.bool_]:
     """Whether a condition holds for the median of each of ``count`` groups; False if empty.
 
-    It ``holds`` for all numbers below some limit and no others: counting mostly decides.
+    It ``holds`` for all numbers below some limit and no others, so counting usually decides.
     """
     sizes = np.bincount(groups, minlength=count)
     twice = 2 * np.bincount(groups.take(holds(values).nonzero()[0]), minlength=count)

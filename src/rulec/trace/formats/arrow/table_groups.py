@@ -116,7 +116,7 @@ class TraceOutline(NamedTuple):
 def trace_outlines(table: Any) -> list[TraceOutline]:
     """The traces of a table that is sorted by trace and step.
 
-    If steps are not whole numbers, no step is reported missing: reading the rows reports them.
+    If steps are not whole numbers, no step is reported missing: reading the rows reports that.
     """
     names = _without_nulls(_as_text(_plain(table.column(TRACE))))
     starts = _starts([names], len(table)) if len(table) else []
