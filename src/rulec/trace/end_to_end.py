@@ -120,10 +120,7 @@ class EndToEnd:
         return places.reshape(flags.shape) - begins
 
     def within(self, flags: _Flags, steps: int, *, around: bool = False) -> _Flags:
-        """Mask of states where a flag holds then or up to ``steps`` later.
-
-        ``around``: or earlier.
-        """
+        """Mask of states with a flag then or up to ``steps`` later; ``around``: or earlier."""
         if not flags.any():
             return flags
         soon: _Flags = flags & (steps >= 0)
