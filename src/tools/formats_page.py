@@ -12,13 +12,14 @@ BEGIN = "<!-- formats: `.ci/task regenerate` writes this table -->\n"
 END = "<!-- end of formats -->\n"
 
 _HEAD = """\
-# What each format can tell
+# What each format provides
 
-The words of the vocabulary [`road`](vocabulary.md) that files of each [format](formats.md) can
-provide for judging by a rulebook. A particular file may lack signs, lamps or weather:
-`rulec audit R --source FILE` shows which words it provides, and which rules they are enough for;
-[Recorded traffic](recorded_words.md) describes how each word is found. `.ci/task regenerate` writes
-this page; `rulec formats --words --output-format markdown` prints its table.
+For each word of the vocabulary [`road`](vocabulary.md), the [formats](formats.md) of which some
+file provides it, so that a rulebook can be judged by it. A particular file may lack signs, lamps or
+weather: `rulec audit R --source FILE` shows the words of one file and the rules that can be judged
+on it. [The words of recorded traffic](recorded_words.md) says how each word is found.
+`.ci/task regenerate` writes this page from the table of
+`rulec formats --words --output-format markdown`.
 
 """
 

@@ -46,7 +46,7 @@ class ExampleFigures:
     by_address: dict[str, str] = field(default_factory=dict)
 
     def add(self, example: Example, rule: Rule) -> str:
-        """Draw an example and return its address; empty if it mentions nothing that can be drawn."""
+        """Draw an example and return its address; empty if nothing in it can be drawn."""
         mentioned = {name for state in example.states for name, _ in state}
         if mentioned.isdisjoint(_PLACED):
             return ""
