@@ -40,10 +40,7 @@ MAX_SETTINGS_BYTES: Final = 1_000_000
 """The largest settings file (bytes)."""
 
 LARGEST_UNPACKED: Final = 4_000_000_000
-"""The largest size (bytes) of a decompressed file.
-
-A file a thousandth of that may expand so far.
-"""
+"""The most bytes of a decompressed file; the gzip file may be a thousandth as large."""
 
 PACKED: Final = b"\x1f\x8b"
 """The first bytes of gzip files (RFC 1952)."""

@@ -37,10 +37,7 @@ class ResourceLimit:
     way_out: str
 
     def value(self) -> int:
-        """The limit in force.
-
-        Raises RulecError R0719 if its setting in the environment is invalid.
-        """
+        """The limit in force. Raises RulecError R0719 if the environment's setting is invalid."""
         return settings_in(os.environ.get(VARIABLE, "").split()).get(self.name, self.usual)
 
     def within(self, amount: int, place: SourceLocation | None, whose: str = "") -> None:

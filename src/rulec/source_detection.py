@@ -18,10 +18,7 @@ _ALIKE = 0.8
 
 
 def is_foreign(text: str) -> bool:
-    """Whether a text begins unlike any source.
-
-    False if it is empty or the first word is misspelt.
-    """
+    """Whether a text begins unlike any source; False if empty or with a misspelt first word."""
     start, end = first_word_at(text)
     word = text[start:end]
     if word in FILE_WORDS or start == len(text):

@@ -136,7 +136,7 @@ def width_of(to: Output) -> int:
 
 
 def print_lost(deed: str, subject: str, signal_number: int | None) -> None:
-    """Say that the process that, for one, ``judged`` something was stopped, and what follows."""
+    """Report a stopped process by its ``deed``, such as "judged", and that it is redone."""
     by = "" if signal_number is None else f" by signal {signal_number}"
     print_remark(
         f"rulec: the process that {deed} {subject} was stopped{by}; another one does it again"

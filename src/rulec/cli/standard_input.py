@@ -79,10 +79,7 @@ def read_as_file(
 
 
 def not_standard_input(why: str) -> Callable[[click.Context, click.Parameter, Any], Any]:
-    """A click callback that refuses ``-`` where standard input is not possible.
-
-    ``why`` is shown.
-    """
+    """A click callback that refuses ``-`` where standard input is impossible, saying ``why``."""
 
     def refused(_: click.Context, __: click.Parameter, value: Any) -> Any:
         if STANDARD_INPUT in (value if isinstance(value, tuple) else (value,)):

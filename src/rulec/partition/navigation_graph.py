@@ -38,10 +38,7 @@ GENTLE, COMFORTABLE = 2.0, 4.0
 """The step is also halved where no path is left within these accelerations and brakings (m/s²)."""
 
 COMFORTABLE_S = Fraction(1, 8)
-"""The shortest step (s) for that.
-
-The longest step with a gentle path is used, else a comfortable.
-"""
+"""The shortest such step (s). The longest with a gentle path is used, else with a comfortable."""
 
 
 class GraphOptions(TypedDict, total=False):

@@ -130,7 +130,7 @@ class Maneuvers(Rows):
     def exact(self) -> bool:
         """Whether ``open`` is exact.
 
-        Otherwise it may be too high, as more was assumed possible than is.
+        If not, more was assumed possible than is, so it may be less.
         """
         readings = [instance.readings for instance in self.hard.instances]
         return all(reading is None or reading.exact for reading in readings)
@@ -175,10 +175,7 @@ class Maneuvers(Rows):
         return self._drivable(self.possible if perhaps else self.product, n)
 
     def _drivable(self, product: Product[Memory], n: int) -> list[Maneuver]:
-        """The ``n`` cheapest of a product.
-
-        With bounds of ego's motion, of those proved drivable.
-        """
+        """The ``n`` cheapest of a product; with bounds of ego's motion, those proved drivable."""
         if self._search is None:
             return _first(n, cheapest(product))
         return proven(product, n, self.graph, self._search)
@@ -265,10 +262,7 @@ class Maneuvers(Rows):
         return dict(sorted(counts.items(), key=lambda item: -item[1]))
 
     def prunings(self) -> list[RulePruning]:
-        """The effect of every rule on the number of maneuvers.
-
-        Raises RulecError as ``best`` does.
-        """
+        """Every rule's effect on the number of maneuvers. Raises RulecError as ``best`` does."""
         every, alone = violating(self._every_perhaps), violating_alone(self.perhaps)
         result = [
             self._pruning(rule, every.get(rule.name), alone.get(rule.name))

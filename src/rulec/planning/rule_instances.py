@@ -81,7 +81,7 @@ def _place_of(
 ) -> SourceLocation | None:
     """The place of the first rule that reads one of these.
 
-    In a compiled file maybe its rulebook's.
+    In a compiled file maybe the rulebook.
     """
     wanted = set(relations)
     reading = (rule for rule in rules.rules if not wanted.isdisjoint(names_in(rule.formula)))

@@ -107,10 +107,7 @@ def read_past(path: Path) -> Before:
 
 
 def only_trace(items: Iterable[Trace | RulecError], place: SourceLocation) -> Trace:
-    """The only trace of a file.
-
-    Raises its error if it is invalid, or R0511 if there are several.
-    """
+    """The only trace of a file. Raises its error if it is invalid, R0511 if there are several."""
     traces = []
     for trace in islice(items, 2):
         if isinstance(trace, RulecError):

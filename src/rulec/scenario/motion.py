@@ -74,10 +74,7 @@ def stands_forever(motion: model.Motion) -> bool:
 
 
 def _heading(motion: model.Motion, start: float, end: float) -> tuple[float, float]:
-    """The displacement within an interval.
-
-    At rest that of the last step before it, else the next one.
-    """
+    """The displacement in an interval; at rest that of the last step before, else of the next."""
     match motion:
         case model.ConstantAcceleration():
             speed = motion.speed or max(motion.acceleration, 0.0)

@@ -38,10 +38,7 @@ class CandidateScore:
 
     @property
     def satisfied(self) -> bool | None:
-        """Whether no hard rule is violated.
-
-        None if one is open, or not judged for the whole candidate.
-        """
+        """Whether no hard rule is violated; None if one is open or not judged throughout."""
         if any(violation.strength == "hard" for violation in self.violations):
             return False
         is_open = any(result.strength == "hard" for result in self.open)

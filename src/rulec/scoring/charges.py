@@ -82,10 +82,7 @@ def _judged(drive: JudgedDrive | _Judged | NoDrive) -> _Judged | NoDrive:
 
 
 def at(violation: Violation, begins: int) -> Violation:
-    """A drive's violation with its step counted in the candidate's states.
-
-    The drive begins there.
-    """
+    """A violation with its step counted from the candidate's first state, not the drive's."""
     step = violation.step
     return replace(violation, step=step + begins) if begins and step is not None else violation
 

@@ -87,10 +87,7 @@ class LetterWitnesses:
         )
 
     def plainest(self, letter_class: int, constants: Digits | None = None) -> int | None:
-        """The possible letter of a class, maybe with given ``constants``, with most defaults.
-
-        Or None.
-        """
+        """A class's possible letter with most defaults (with these ``constants``), or None."""
         return self._nearest_of(letter_class, self._plain, constants)
 
     def nearest(self, letter: int, constants: Digits | None = None) -> list[tuple[int, int]]:

@@ -316,10 +316,7 @@ def default_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None
 def subjects_of(
     vocabulary: Vocabulary, objects: Mapping[str, str], names: Set[str] | None = None
 ) -> Iterator[tuple[Subject, Declaration]]:
-    """The subjects for which states can have values, with their declarations.
-
-    All or of some names.
-    """
+    """The subjects that states can have values for, all or of some names, with declarations."""
     for name, declaration in vocabulary.declarations.items():
         if names is not None and name not in names:
             continue

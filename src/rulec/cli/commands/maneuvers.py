@@ -192,10 +192,7 @@ class ManeuverQuestions:
     worlds: bool
 
     def answered(self, maneuvers: Maneuvers, form: str) -> ManeuverAnswers:
-        """The answers.
-
-        In JSON also those that a text only has for scenes with several predictions.
-        """
+        """The answers; in JSON also those that text gives only for several predictions."""
         # Late import, already loaded here: maneuvers (130 ms).
         from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
 

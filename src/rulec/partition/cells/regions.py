@@ -20,11 +20,8 @@ from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS
 PartitionName = Literal["paper", "fine"]
 
 ExtentName = Literal["lane", "clearance", "body"]
-"""The assumed width of an obstacle: ``lane``, the lanes that it touches.
-
-``clearance``, these lanes without the part of one in which ego can pass beside it; ``body``, what
-it sweeps.
-"""
+"""The assumed width of an obstacle: the lanes that it touches, these without the part of one in
+which ego can pass beside it, or what it sweeps."""
 
 OCCUPIED = ord("o")
 

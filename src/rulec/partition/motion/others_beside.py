@@ -84,9 +84,9 @@ class OthersBeside:
 
     @cached_property
     def body(self) -> tuple[float, float]:
-        """Half of ego's length and width; unknown ones are those of its bounds.
+        """Half of ego's length and width: its own, else those of its bounds.
 
-        They are 0 instead if a body of that size would start inside an obstacle.
+        Those of its bounds are not used if such a body would start inside an obstacle.
         """
         ego, bounds = self._graph.scenario.ego, self._motion.bounds
         length, width = ego.length or bounds.length, ego.width or bounds.width

@@ -42,10 +42,7 @@ class _Edges:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EgoMotion:
-    """Motion along and across the road.
-
-    ``slope`` is the greatest ratio of speed across to along.
-    """
+    """Motion along and across the road; ``slope`` is the greatest ratio of across to along."""
 
     along: AxisMotion
     across: AxisMotion

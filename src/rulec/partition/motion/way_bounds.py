@@ -49,10 +49,7 @@ class WayBounds:
         self._rows: dict[tuple[object, ...], tuple[int, Cut]] = {}
 
     def of(self, path: Sequence[int], before: _Names = frozenset()) -> WayBound | None:
-        """The bound for a path's beginning, with rows ``before`` at least.
-
-        None if it cannot be driven.
-        """
+        """The bound for a path's beginning, with rows ``before``; None if it cannot be driven."""
         cells = [layer.cells[i] for layer, i in zip(self._graph.layers, path, strict=False)]
         low, high = self._motion.cell_bounds(cells)
         until = float(self._motion.layers_s[len(path) - 1])

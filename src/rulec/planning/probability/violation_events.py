@@ -187,10 +187,7 @@ class ViolationEvents:
                 yield binding
 
     def _is_told_by_states(self, rule: CompiledRule) -> bool:
-        """Whether the states alone decide for whom a rule is violated.
-
-        They do not if an object hits ego, or if the rule counts objects or has a past.
-        """
+        """Whether states alone decide if a rule is violated: no hits, counts or past matter."""
         is_hit = any(self._concerns(rule, name) for name in self._path.hit)
         return not (is_hit or counts(rule.formula) or self._past.begun(rule.name))
 

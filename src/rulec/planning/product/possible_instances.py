@@ -30,10 +30,7 @@ from rulec.planning.product.nodes_in_turn import NodesInTurn
 from rulec.trace import Trace, TraceGraph
 
 MOST_SETS = 1 << 10
-"""The most sets of states that are distinguished.
-
-After further ones anything counts as possible.
-"""
+"""The most sets of states distinguished; of further ones everything is assumed possible."""
 
 _NOBODY = -1
 """Instead of a set of states: facts exclude this choice of constants."""

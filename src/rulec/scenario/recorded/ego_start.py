@@ -22,10 +22,7 @@ _FARTHEST = 1e15
 _SAME_PLACE_M = 0.1
 
 _AGAINST_MPS = 2.0
-"""An ego that moves backwards faster than this (m/s) is not turning or parking.
-
-It drives on the oncoming side, or reverses.
-"""
+"""Ego moving backwards faster than this (m/s) is on the oncoming side or reverses, not turning."""
 
 
 @dataclass(frozen=True, slots=True)

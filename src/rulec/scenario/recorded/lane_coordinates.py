@@ -34,10 +34,7 @@ NARROWEST_LANE_M = 1.0
 """Where a lane is narrower than this (m), it has not begun yet or has ended."""
 
 TOUCHING_M = 0.3
-"""A body that reaches into a lane by less than this (m) is not in it.
-
-Recorded positions are no more precise than that.
-"""
+"""A body is not in a lane that it enters by less (m): recorded positions are no more precise."""
 
 _WIDEST_M = 20.0
 """The greatest distance (m) along a road between two edges of one pedestrian crossing."""
@@ -75,10 +72,7 @@ class Lanes:
         return Borders(self.s)
 
     def straightened(self, places: Points) -> Points:
-        """The scenario's ``d`` of places (rows ``s``, ``d``), scaled between the straight bounds.
-
-        One column.
-        """
+        """The scenario's ``d`` of places (rows ``s``, ``d``), as one column."""
         left_of = self.from_bounds(places)
         lane = np.clip((left_of >= 0).sum(axis=1) - 1, 0, left_of.shape[1] - 2)
         row = np.arange(len(places))
@@ -109,10 +103,7 @@ class Lanes:
         return self.there[self.pieces_at(s)]
 
     def pieces_at(self, s: _Values) -> NDArray[intp]:
-        """The index of the interval of ``self.s`` that contains each place.
-
-        Beyond the ends the nearest.
-        """
+        """The index of the interval of ``self.s`` at each place; the nearest beyond the ends."""
         return self._piece(np.where(np.isnan(s), 0.0, s))
 
     def _piece(self, s: _Values) -> NDArray[intp]:

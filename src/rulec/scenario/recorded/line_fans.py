@@ -81,10 +81,7 @@ class LineFans:
 
 
 def line_fans(start: Points, ahead: Points, lengths: _Values, slopes: Points) -> LineFans:
-    """The fans of pieces.
-
-    ``slopes`` (two columns) are those of the bounding lines at either end.
-    """
+    """The fans of pieces; ``slopes`` has a column for the bounding lines at either end."""
     origin = start[:1]
     corners = np.concatenate((start, start[-1:] + ahead[-1:] * lengths[-1:, None])) - origin
     # Neighbouring pieces share a bounding line

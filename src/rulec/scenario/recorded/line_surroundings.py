@@ -32,10 +32,7 @@ class LineSurroundings:
     flags: NDArray[bool_]
 
     def holds(self, x: _Values, y: _Values) -> NDArray[bool_]:
-        """Mask of the places that may be near.
-
-        No place that is near is left out, NaN is not near.
-        """
+        """Mask of the places that may be near, including all that are; False for NaN."""
         (i, j) = (
             # NaN is put in the outermost square, which has no flag
             np.fmin(np.fmax((values - low) * (1 / self.size), 0.0), count - 1).astype(np.int32)

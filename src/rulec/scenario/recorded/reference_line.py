@@ -95,10 +95,7 @@ class ReferenceLine:
         return float(self.headings_at(np.array([s]))[0])
 
     def coordinates(self, places: Points) -> Points:
-        """Frenet coordinates ``s`` and ``d`` of places, one row each.
-
-        NaN for a place without a foot.
-        """
+        """Frenet coordinates ``s`` and ``d`` of places, one row each; NaN without a foot."""
         coordinates, sure = sure_feet(self.piece_fans, places)
         left = (~sure).nonzero()[0]
         low = np.zeros(len(left), dtype=intp)
@@ -280,7 +277,7 @@ def turn(before: Angle, after: Angle) -> Angle:
 def pieces_at(borders: _Values, s: _Values) -> NDArray[intp]:
     """The index of the piece between ascending borders at each place.
 
-    Beyond the ends the nearest.
+    The nearest beyond the ends.
     """
     pieces = borders.searchsorted(np.where(np.isnan(s), 0.0, s), "right") - 1
     return np.minimum(np.maximum(pieces, 0), len(borders) - 2)

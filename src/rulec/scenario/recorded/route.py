@@ -45,7 +45,7 @@ def directions_at(lanelet: Lanelet, along: NDArray[np.float64]) -> NDArray[np.fl
 
 
 def lanelet_of(recording: Recording, state: TrackState) -> str | None:
-    """The id of the lanelet under a vehicle that is best aligned with it.
+    """The lanelet (id) under a vehicle that is best aligned with it.
 
     Else the nearest within 3 m.
     """

@@ -141,7 +141,7 @@ def _motion(
     boxes: Sequence[Box | None],
     prediction: model.Prediction,
 ) -> model.Motion | None:
-    """The motion of a participant.
+    """A participant's motion.
 
     None off the road, or for a constant one without a state at time 0.
     """

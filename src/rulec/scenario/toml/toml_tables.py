@@ -36,10 +36,7 @@ class TomlFile:
     errors: list[Diagnostic] = field(default_factory=list)
 
     def line(self, heading: str, number: int, key: str | None) -> int | None:
-        """The line of a key, else of its table's heading.
-
-        None if neither is on a line of its own.
-        """
+        """The line of a key, else of its table's heading; None if neither has its own line."""
         return self._lines.get((heading, number, key), self._lines.get((heading, number, None)))
 
     @cached_property
@@ -140,10 +137,7 @@ class TomlTable:
 
 
 def shown(value: object) -> str:
-    """A value as the file spells it, quoted and shortened.
-
-    Tables and lists are described in words.
-    """
+    """A value as the file spells it, quoted and shortened; tables and lists are only named."""
     match value:
         case bool():
             return "`true`" if value else "`false`"
