@@ -275,8 +275,7 @@ def refused(problem: OSError, *, is_gone: bool) -> Diagnostic:
     """The message for an operating system error that has no message of its own.
 
     An error with a file name in it is about that file or program; otherwise it is about the working
-    folder if that ``is_gone``, else about standard output, since all other reads and writes name
-    their file.
+    folder if that ``is_gone``, else about standard output, since all else names its file.
     """
     why = reason_in_words(problem)
     if problem.filename is not None:

@@ -203,8 +203,7 @@ def private(name: str, flags: int) -> int:
 def as_before(name: Path, path: Path) -> bool:
     """Give a new file the permissions and the owner of the file that it replaces, if any.
 
-    Returns whether the owner could be kept. Without an old file it has the umask's default
-    permissions.
+    Returns whether the owner could be kept. Without an old file the umask applies.
     """
     is_kept = True
     if path.exists():

@@ -48,8 +48,8 @@ def trace_drawing(
 ) -> Drawing:
     """Draw the values that violated rules read over time, or ``every_row``. Raises RulecError.
 
-    ``objects`` are the objects to show, all if empty; ``patterns`` are those that selected the
-    rules, for the title.
+    ``objects`` are the objects to show, all if empty; ``patterns`` selected the rules, for the
+    title.
     """
     verdict = verify(trace, rules)
     shown = ribbon(trace, rules, verdict, objects, every_row=every_row)

@@ -128,10 +128,7 @@ class Maneuvers(Rows):
 
     @property
     def exact(self) -> bool:
-        """Whether ``open`` is exact.
-
-        If not, more was assumed possible than is, so it may be less.
-        """
+        """Whether ``open`` is exact, not too high because more was assumed possible than is."""
         readings = [instance.readings for instance in self.hard.instances]
         return all(reading is None or reading.exact for reading in readings)
 

@@ -79,10 +79,7 @@ def partition_for(
 def _place_of(
     relations: Collection[str], rules: Rulebook | CompiledRulebook
 ) -> SourceLocation | None:
-    """The place of the first rule that reads one of these.
-
-    In a compiled file maybe the rulebook.
-    """
+    """The place of the first rule that reads one of these, or else of the compiled rulebook."""
     wanted = set(relations)
     reading = (rule for rule in rules.rules if not wanted.isdisjoint(names_in(rule.formula)))
     name = next(reading).name

@@ -167,8 +167,7 @@ def _charges(
 ) -> list[CandidateCharges]:
     """Candidates with everything that their drives violate; ``first`` is their first step.
 
-    ``off_lanes`` are masks of all candidates' states beside all lanes, and of those driven
-    backwards.
+    ``off_lanes`` are masks of all states beside all lanes, and of those driven backwards.
     """
     members = np.array([number for number, _ in block], dtype=np.intp)
     beside, back = (flags[members] for flags in off_lanes)

@@ -133,8 +133,7 @@ class Scores(Rows):
     def nearest_allowed(self, number: int) -> int | None:
         """The allowed candidate nearest to one: itself if it is allowed, None if none is.
 
-        The distance is the mean distance (m) of their places. Raises IndexError for an unknown
-        number.
+        By the mean distance (m) of their places. Raises IndexError for an unknown number.
         """
         number = self._known(number)
         allowed = self.allowed.nonzero()[0]

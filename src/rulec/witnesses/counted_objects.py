@@ -224,8 +224,7 @@ class _CountedType:
     Letters are those of ``reads``; sets of letters are bit sets. ``counted`` has for each count the
     letters with which the object counts, ``allowed`` for each axiom those with which it holds.
     ``inputs`` are values taken from a state: the digits of reads that are not about the object, and
-    for sums about the object the total of the other terms. ``by_given`` caches objects by these
-    values.
+    for sums about the object the total of the other terms. ``by_given`` is a cache by these.
     """
 
     type: str

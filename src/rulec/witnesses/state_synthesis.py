@@ -35,8 +35,8 @@ NumberDigits = Sequence[tuple[NumberRead, int]]
 class JointState:
     """A state: the values that matter; all others are arbitrary.
 
-    ``number_digits`` are the sums that matter, ``counted`` is the number of its own objects that
-    each count counts.
+    ``number_digits`` are the sums that matter, ``counted`` is how many own objects each count
+    counts.
     """
 
     values: Mapping[Subject, Value]
@@ -202,8 +202,7 @@ def numbers_near_thresholds(
     """Numbers of quantities with these digits, close to the thresholds, for tests.
 
     In a sum of several quantities one is close, the others have their defaults or are zero, unless
-    they are compared by themselves. None if there are no such numbers, or floats cannot represent
-    them.
+    they are compared by themselves. None if there are none, or none that floats can represent.
     """
     system, quantities, _ = _linear_system(number_digits, {})
     preferred: dict[Term, Fraction] = {}

@@ -115,8 +115,7 @@ def _settled(
 ) -> Iterator[list[dict[Subject, Value]]]:
     """The states, with one value throughout for each constant that changes.
 
-    A value that one state gives is used in all of them, so that other states do not have the
-    default.
+    A value that one state gives is used in all of them, instead of the default.
     """
     for chosen in product(*changing.values()):
         settled = dict(zip(changing, chosen, strict=True))

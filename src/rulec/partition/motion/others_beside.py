@@ -84,10 +84,7 @@ class OthersBeside:
 
     @cached_property
     def body(self) -> tuple[float, float]:
-        """Half of ego's length and width: its own, else those of its bounds.
-
-        Those of its bounds are not used if such a body would start inside an obstacle.
-        """
+        """Half of ego's length and width, or its bounds' unless that body starts in an obstacle."""
         ego, bounds = self._graph.scenario.ego, self._motion.bounds
         length, width = ego.length or bounds.length, ego.width or bounds.width
         body = centred(ego.s, ego.d, length, width)

@@ -1,8 +1,7 @@
 """Exact probability that a maneuver keeps each rule, and counts for other predictions.
 
 Obstacles follow their predictions independently of each other. Whatever they do, ego goes through
-the same cells. It keeps a rule for some objects if its trace does and none of these objects hits
-it.
+the same cells. It keeps a rule for some objects if its trace does and none of them hits it.
 """
 
 from __future__ import annotations

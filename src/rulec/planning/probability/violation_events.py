@@ -171,8 +171,7 @@ class ViolationEvents:
     def _bindings(self, rule: CompiledRule) -> Iterator[Binding]:
         """Bindings whose objects' predictions can come true together.
 
-        If there are many, only those that may be violated, unless more than the states decides
-        that.
+        If there are many, only those that may be violated, unless that depends on more than states.
         """
         words = self._words
         cast = Cast(words.objects, self._book.vocabulary, len(self._states), words.present)
@@ -249,8 +248,7 @@ class PredictionClasses:
     def groups(self, obstacle: str, binding: Binding) -> list[list[int]]:
         """An obstacle's predictions that do not hit ego, in groups.
 
-        The predictions of a group count alike in every state, for a rule that is about other
-        objects.
+        Those of a group count alike in every state, for a rule that is about other objects.
         """
         result: dict[object, list[int]] = {}
         for number in self._path.weights[obstacle]:

@@ -107,8 +107,7 @@ class PossibleNodes:
     def instances(self, rule: CompiledRule, past: CarriedState) -> list[GraphInstance]:
         """Bind a rule to the graph's objects; no instance if the rule cannot be judged.
 
-        Raises RulecError R0504 if a value without default is missing, R0508 for an impossible
-        state.
+        Raises R0504 if a value without default is missing, R0508 if a state is impossible.
         """
         if self.untold(rule, past):
             return []
@@ -130,10 +129,7 @@ class PossibleNodes:
     def _words(
         self, rule: CompiledRule, machine: UncertainMachine, binding: Binding
     ) -> tuple[tuple[_Word, ...], bool]:
-        """The possible letters of every node, one word for each distinct choice of constants.
-
-        The second result is whether these are exact.
-        """
+        """Possible letters of all nodes per choice of constants, and whether these are exact."""
         supposed, is_exact = self._suppositions.of(rule, binding)
         nodes = Binding(binding.objects, *self._nodes.stretch(binding.first, binding.last))
         words: dict[_Word, None] = {}

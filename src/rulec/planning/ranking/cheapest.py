@@ -23,8 +23,7 @@ class Maneuver:
 
     ``nodes`` are indices, one per layer; ``cost`` is in 1/s. ``margin_s`` is the smallest margin of
     its changes of cell; None if it never changes. If ego's motion has bounds, a ``trajectory``
-    proves that the path can be driven; the cost is the trajectory's plus that of the ``changes`` of
-    cell.
+    proves that the path can be driven; the cost is the trajectory's plus that of its ``changes``.
     """
 
     __repr__ = short_repr

@@ -126,9 +126,8 @@ def ego_motion(
 ) -> EgoMotionFields:
     """Ego's speed along and across a road with direction ``heading`` (rad), and its motion bounds.
 
-    The bounds are those of the participant's type if ego replaces one, else a car's. Raises
-    RulecError R0612 if ego moves backwards along its lanelet ``reference``, because maneuvers only
-    go ahead.
+    They are those of the type of the participant that ego replaces, else a car's. Raises RulecError
+    R0612 if ego moves backwards along its lanelet ``reference``: maneuvers only go ahead.
     """
     types = (body.object_types for body in recording.participants if body.id == start.participant)
     bounds = bounds_of(next(types, ()))

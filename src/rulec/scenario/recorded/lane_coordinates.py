@@ -350,8 +350,7 @@ def crossings_along(
     """The stretches (``s``) that crosswalks cover on the lanes, within ``start`` and ``end``.
 
     A crosswalk has to lie across the line; one beside it belongs to another road, onto which a lane
-    turns off. A road that turns round and comes back beside itself may meet one crosswalk twice, at
-    places far apart along it.
+    turns off. A road that turns round and comes back beside itself may meet one twice, far apart.
     """
     for lanelet in recording.lanelets.values():
         if "crosswalk" not in lanelet.types:

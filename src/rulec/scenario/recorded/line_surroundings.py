@@ -23,8 +23,8 @@ _Values = NDArray[float64]
 class LineSurroundings:
     """A grid of squares, with flags of those that may contain places near a line.
 
-    ``corner`` is the grid's lowest corner, ``size`` a square's edge (m). The outermost squares are
-    not flagged.
+    ``corner`` is the grid's lowest corner, ``size`` a square's edge (m). The outermost have no
+    flag.
     """
 
     corner: Points

@@ -275,9 +275,6 @@ def turn(before: Angle, after: Angle) -> Angle:
 
 
 def pieces_at(borders: _Values, s: _Values) -> NDArray[intp]:
-    """The index of the piece between ascending borders at each place.
-
-    The nearest beyond the ends.
-    """
+    """The index of the piece between ascending borders at each place; beyond, the nearest."""
     pieces = borders.searchsorted(np.where(np.isnan(s), 0.0, s), "right") - 1
     return np.minimum(np.maximum(pieces, 0), len(borders) - 2)

@@ -45,10 +45,7 @@ def directions_at(lanelet: Lanelet, along: NDArray[np.float64]) -> NDArray[np.fl
 
 
 def lanelet_of(recording: Recording, state: TrackState) -> str | None:
-    """The lanelet (id) under a vehicle that is best aligned with it.
-
-    Else the nearest within 3 m.
-    """
+    """The lanelet under a vehicle that is best aligned with it, else the nearest within 3 m."""
     place = shapely.Point(state.x, state.y)
     lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
     far = {lanelet.id: float(shapely.distance(lanelet_area(lanelet), place)) for lanelet in lanes}

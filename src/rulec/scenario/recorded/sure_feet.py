@@ -69,9 +69,7 @@ class PieceFans:
 
     @cached_property
     def alone(self) -> _Values:
-        """How far (m) aside of each piece a place in its fan is in no other fan.
-
-        0 if there are many pieces.
+        """How far (m) aside a piece's fan overlaps no other fan; 0 if there are many pieces.
 
         That is as far as both bounding lines of the fan meet none of the others.
         """

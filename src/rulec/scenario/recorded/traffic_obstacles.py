@@ -141,10 +141,7 @@ def _motion(
     boxes: Sequence[Box | None],
     prediction: model.Prediction,
 ) -> model.Motion | None:
-    """A participant's motion.
-
-    None off the road, or for a constant one without a state at time 0.
-    """
+    """A participant's motion; None off the road, or if constant without a state at time 0."""
     now = boxes[0] if steps and (participant.standing or view.time(steps[0]) == 0) else None
     if participant.standing or prediction == "constant" or (now and len(participant.outlines) == 1):
         if now is None:
