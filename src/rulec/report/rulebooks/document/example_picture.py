@@ -23,7 +23,7 @@ _LANES = {"left_of": 1, "same_lane": 0, "right_of": -1}
 """Ego's lateral position relative to an object -> lanes that the object is right of ego."""
 
 _ROWS = {"behind": -1, "beside": 0, "in_front_of": 1}
-"""Ego's position along the road relative to an object -> rows that the object is below ego."""
+"""Ego's position relative to an object along the road -> rows the object is below ego."""
 
 _LIGHTS = ("red_light", "amber_light", "green_light", "red_cross", "flashing_red", "flashing_amber")
 
