@@ -16,7 +16,7 @@ LINE = 16.0
 STATE_HEIGHT = 34.0
 LAYER_GAP = 26.0
 MORE_GAP = 2.0
-"""The more lines there are between two layers, the more room they need to be told apart."""
+"""Additional distance per line between two layers, to keep lines apart."""
 
 LOOP = 30.0
 MARGIN = 12.0
@@ -26,12 +26,12 @@ MOST_LINES = 5
 
 MOST_STATES = 40
 MOST_TRANSITIONS = 80
-"""Beyond this nobody finds their way through a picture."""
+"""A larger automaton would make an unreadable picture."""
 
 
 @dataclass(frozen=True, slots=True)
 class AutomatonState:
-    """A state's box by its middle and size, with number and text."""
+    """A state's box as middle and size (px), with its number and text."""
 
     middle: Point
     width: float
@@ -40,7 +40,7 @@ class AutomatonState:
 
     @property
     def height(self) -> float:
-        """The box's height, by its lines of text."""
+        """The box's height, which depends on its lines of text."""
         return _state_height(self.text)
 
 
@@ -48,8 +48,8 @@ class AutomatonState:
 class TransitionLine:
     """A transition as points from source to target, with its condition's position.
 
-    A loop has the three points of its triangle; its condition is centred on ``label_at`` in height,
-    and stands to its left if ``leftward``.
+    A loop has the three points of its triangle; its condition is vertically centred on
+    ``label_at``, and to its left if ``leftward``.
     """
 
     transition: Transition
@@ -65,7 +65,7 @@ class TransitionLine:
 
 @dataclass(frozen=True, slots=True)
 class AutomatonDrawing:
-    """All of it, in px from the upper left corner."""
+    """The whole drawing, in px from the upper left corner."""
 
     width: float
     height: float
@@ -74,7 +74,7 @@ class AutomatonDrawing:
 
 
 def is_too_large(automaton: Automaton) -> bool:
-    """Would a picture be of no use?"""
+    """Whether a picture would be too large to be useful."""
     return len(automaton.fates) > MOST_STATES or len(automaton.transitions) > MOST_TRANSITIONS
 
 
@@ -93,8 +93,8 @@ def _broken(text: str) -> tuple[str, ...]:
 class _AutomatonLayout:
     """Layered layout: states in every other layer, lines with conditions between.
 
-    A line that goes on past a layer has a place of its own there, so that it passes no text. Boxes
-    are numbered, states before such places.
+    A line that passes a layer has a box of its own there, so that it crosses no text. Boxes are
+    numbered, those of states first.
     """
 
     def __init__(self, automaton: Automaton) -> None:
@@ -151,7 +151,7 @@ class _AutomatonLayout:
         ]
         x = arrange(boxes, links)
         into = Counter(boxes[lower].layer for _, lower in links)
-        # Half the height of each layer, where lines run straight.
+        # Half the height of each layer, within which lines are straight.
         bands: list[float] = []
         middles: list[float] = []
         bottom = MARGIN
@@ -220,10 +220,10 @@ def _state_height(text: Sequence[str]) -> float:
 
 
 def _levels(automaton: Automaton) -> list[int]:
-    """The level of each state: below every smaller-numbered state that it meets.
+    """The level of each state: below all connected states that rank before it.
 
-    States are numbered breadth-first from the start. Those in which the verdict is final come last,
-    for nothing leads away from them.
+    States are numbered breadth-first from the start. States with a final verdict rank last, because
+    no transition leaves them.
     """
 
     def rank(state: int) -> tuple[bool, int]:

@@ -1,4 +1,4 @@
-"""A rule's automaton for people: states, and transitions in words."""
+"""A rule's automaton for readers: states, and transitions with conditions in words."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from rulec.report.text.terminal_text import visible
 from rulec.vocabulary import Vocabulary
 
 Fate = Literal["open", "violated", "satisfied"]
-"""Is the verdict final in this state, and which?"""
+"""Whether the verdict is final in a state, and which one it is."""
 
 
 @dataclass(frozen=True, slots=True)
 class Transition:
-    """Steps between two states; ``accepted`` judges a trace that ends there.
+    """Steps between two states; ``accepted`` is the verdict on a trace that ends with such a step.
 
-    ``condition`` is what holds of the state of the world that is read, ``otherwise`` that this is
-    easier said as what the other transitions from there are not.
+    ``condition`` is the condition on the state of the world read; ``otherwise``: it is simpler to
+    describe it as the rest after the other transitions from the source.
     """
 
     source: int
@@ -32,13 +32,13 @@ class Transition:
 
     @property
     def label(self) -> str:
-        """The condition, as short as it can be said."""
+        """The condition in its shortest form."""
         return "otherwise" if self.otherwise else self.condition
 
 
 @dataclass(frozen=True, slots=True)
 class Automaton:
-    """States from 0, the initial one, with fates; transitions from open ones."""
+    """States from 0, the initial one, with fates; transitions from the open states."""
 
     fates: tuple[Fate, ...]
     transitions: tuple[Transition, ...]

@@ -12,15 +12,15 @@ from rulec.report.automata.automaton_model import Automaton, Fate, Transition
 from rulec.report.pictures.drawing import canvas
 
 HEAD = 8.0
-"""The length of an arrow's head in px."""
+"""The length of an arrowhead in px."""
 
 CORNER = 17.0
-"""The radius of the corners of a state from which the rule can still be kept, in px."""
+"""The corner radius in px of a state that is not violated."""
 
 PIECES = 10
-"""The straight pieces that a curve is drawn with."""
+"""Number of straight pieces in a curve."""
 
-# Dashes, corners and words tell the verdict; the colours repeat it.
+# Dashes, corners and words show the verdict; colours repeat it.
 _STYLES: dict[Fate, str] = {"open": "state", "violated": "violated", "satisfied": "chosen"}
 
 _LEGEND = {
@@ -30,7 +30,7 @@ _LEGEND = {
 
 
 def as_picture(automaton: Automaton, title: str) -> canvas.Picture:
-    """Draw an automaton below its title and above what the lines mean."""
+    """Draw an automaton between its title and the legend of its lines."""
     drawing = layout.draw(automaton)
     used = {_line_style(transition) for transition in automaton.transitions}
     legend = [(style, text) for style, text in _LEGEND.items() if style in used]

@@ -1,4 +1,4 @@
-"""A rule's automaton as lines of text, and in the language of Graphviz."""
+"""A rule's automaton as lines of text, and in Graphviz's language."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rulec.report.text.terminal_text import counted, styled, table_lines, visibl
 WORDS = {True: "accepted", False: "rejected"}
 
 MOST_LINES = 6
-"""Of a condition that takes more lines only the beginning is shown: nobody would read it."""
+"""A condition with more lines is cut after these, because it would not be read."""
 
 _FINAL = {
     "violated": "violated for good: whatever follows, the trace is rejected",
@@ -19,7 +19,7 @@ _FINAL = {
 
 
 def as_text(automaton: Automaton, width: int) -> str:
-    """A paragraph per state; the last column is the verdict at end."""
+    """A paragraph per state; the last column is the verdict if the trace ends there."""
     head = f"{counted(len(automaton.fates), 'state')}; a trace starts in state 0"
     if automaton.transitions:
         head += ", and is accepted or rejected as it says behind its last step"
@@ -62,7 +62,7 @@ def _broken(label: str, label_width: int) -> list[str]:
 
 
 _WIDEST = 32
-"""Labels are broken at so many characters."""
+"""Width at which labels are wrapped, in characters."""
 
 _DOT_NAMES: dict[Fate, str] = {
     "open": "{}",

@@ -1,7 +1,7 @@
 """Layered layout of boxes with few crossing links.
 
 The layered drawing of Sugiyama, Tagawa, Toda, "Methods for visual understanding of hierarchical
-system structures" (1981): orders by barycentres, then places by least squares.
+system structures" (1981): order by barycentres, then positions by least squares.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ SWEEPS = 24
 
 @dataclass(frozen=True, slots=True)
 class LayoutBox:
-    """A box in a layer: its extent left and right of where links arrive, and its height."""
+    """A box in a layer: its extent left and right of its links' end, and its height."""
 
     layer: int
     left: float
@@ -24,10 +24,10 @@ class LayoutBox:
 
 
 def arrange(boxes: Sequence[LayoutBox], links: Sequence[tuple[int, int]]) -> list[float]:
-    """The place of every box across its layer, from 0: where its links arrive.
+    """The position of every box within its layer, from 0: where its links end.
 
-    ``links`` are pairs of boxes, by number, of neighbouring layers, the earlier layer first. Boxes
-    have their margins.
+    ``links`` are pairs of box numbers in adjacent layers, the earlier layer first. Boxes include
+    their margins.
     """
     above: list[list[int]] = [[] for _ in boxes]
     below: list[list[int]] = [[] for _ in boxes]
@@ -92,9 +92,9 @@ def _placed(
 def _apart(
     layer: Sequence[int], boxes: Sequence[LayoutBox], desired: Mapping[int, float]
 ) -> dict[int, float]:
-    """Places nearest to those desired, in order and without overlaps.
+    """The positions nearest to those desired, in order and without overlaps.
 
-    Least squares under an order: pool adjacent violators.
+    Least squares under an order constraint: pool adjacent violators.
     """
     offsets, reach = [], 0.0
     for number, box in enumerate(layer):

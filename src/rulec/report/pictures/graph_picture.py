@@ -18,7 +18,7 @@ _ORDER = ("unused", "rejected", "satisfying", "way")
 
 
 class _Columns:
-    """Positions of nodes by their labels: a layer's above each other, left lane on top."""
+    """Positions of nodes, given their labels: a layer's nodes in a column, the left lane on top."""
 
     def __init__(self, labels: Sequence[Sequence[str]]) -> None:
         self.labels = labels
@@ -44,7 +44,7 @@ class _Columns:
 def graph_picture(
     graph: NavigationGraph, edges: AcceptedEdges, maneuver: Maneuver | None, *, judged: bool
 ) -> Picture:
-    """The picture; ``judged``: do rules tell satisfying maneuvers from others?"""
+    """The picture; ``judged``: whether rules separate satisfying maneuvers from others."""
     cells = [list(enumerate(layer.cells)) for layer in graph.layers]
     columns = _Columns(
         [[f"{i} {captions.in_letters(cell)}".strip() for i, cell in row] for row in cells]

@@ -34,7 +34,7 @@ _MEANING: dict[PartitionName, str] = {
 
 
 def legend(entries: Sequence[tuple[str, str]], notes: Iterable[str]) -> Picture:
-    """Lay out swatches of styles with what they stand for, then notes."""
+    """Lay out swatches of styles with their meanings, then notes."""
     marks: list[Mark] = []
     x, y = canvas.MARGIN, canvas.LINE_HEIGHT
     for style, words in entries:
@@ -60,7 +60,7 @@ def _swatch(style: str, x: float, y: float) -> Mark:
 
 
 def ticks(low: float, high: float, at_most: int) -> list[float]:
-    """Multiples of 1, 2 or 5 powers of ten within an interval; none in one without end."""
+    """Multiples of 1, 2 or 5 powers of ten within an interval; none if the interval is infinite."""
     span = high - low
     if not isfinite(span):
         return []
@@ -73,11 +73,11 @@ def ticks(low: float, high: float, at_most: int) -> list[float]:
 def scene_title(
     graph: NavigationGraph, maneuvers: Maneuvers | None, maneuver: Maneuver | None, number: int
 ) -> str:
-    """The scenario, and which maneuver is shown."""
+    """The scenario and the maneuver shown."""
     name = graph.scenario.name
     if maneuvers is None:
         return f"{name}: {graph.nodes:,} cells in {len(graph.layers)} layers"
-    # Those that are open are among them, and all where no hard rule is judged
+    # The count includes open maneuvers, and all maneuvers if no hard rule is judged
     may = "that may satisfy" if maneuvers.open or not maneuvers.judges else "that satisfy"
     number_of = shown_count(maneuvers.satisfying + maneuvers.open)
     by = f"of {number_of} {may} {maneuvers.rules.name}"
@@ -100,7 +100,7 @@ def graph_title(graph: NavigationGraph, judged: Maneuvers | None, maneuvers: int
 
 
 def trace_title(verdict: Verdict, rules: CompiledRulebook, only: Sequence[str] = ()) -> str:
-    """The trace and its verdict, ``only`` of some rules and objects."""
+    """The trace and its verdict, ``only`` for some rules and objects."""
     number = len(verdict.violations)
     count = counted(number, "violation") if number else "no violation"
     doubtful = f", {len(verdict.open):,} open" if verdict.open else ""
@@ -109,7 +109,7 @@ def trace_title(verdict: Verdict, rules: CompiledRulebook, only: Sequence[str] =
 
 
 def in_letters(cell: Cell) -> str:
-    """A letter per obstacle (two with ``fine``), in the layer's object order."""
+    """A letter per obstacle (two with ``fine``), in the order of the layer's objects."""
     if len(cell.objects) > MOST_SPELLED:
         return ""
     letters = [
@@ -129,7 +129,7 @@ def in_full(cell: Cell) -> str:
 
 
 def meaning(graph: NavigationGraph) -> str:
-    """Explanation of the letters, and the obstacles that they are about."""
+    """The meaning of the letters, and the obstacles that they refer to."""
     names = list(graph.objects)
     objects = f"of {names[0]}" if len(names) == 1 else f"of {', '.join(names)} in this order"
     return f"{_MEANING[graph.partition]}; {objects}"

@@ -16,7 +16,7 @@ from rulec.scenario import Box, Road
 from rulec.scenario.motion import span, swept
 
 _LANE_HEIGHT = 46.0
-"""Of a lane as wide as the road's lanes are on average, in px."""
+"""Height in px of a lane with the average width of the road's lanes."""
 
 _TAKEN = {
     "lane": "the lanes of an obstacle",
@@ -129,7 +129,7 @@ def _labels(
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """Mapping of places on the road to places in the picture."""
+    """Maps positions on the road to positions in the picture."""
 
     outline: Box
     top: float
@@ -137,28 +137,28 @@ class _Frame:
 
     @property
     def along(self) -> float:
-        """Px for a metre of s."""
+        """Px per metre of s."""
         return canvas.TEXT_WIDTH / (self.outline.s_max - self.outline.s_min)
 
     @property
     def across(self) -> float:
-        """Px for a metre of d."""
+        """Px per metre of d."""
         return _LANE_HEIGHT * self.lanes / (self.outline.d_max - self.outline.d_min)
 
     @property
     def bottom(self) -> float:
-        """The lower border of the road, in px."""
+        """The y coordinate of the road's lower border (px)."""
         return self.top + _LANE_HEIGHT * self.lanes
 
     def at(self, s: float, d: float) -> Point:
-        """A place on the road."""
+        """The point in the picture for a position on the road."""
         return (
             canvas.MARGIN + (s - self.outline.s_min) * self.along,
             self.top + (self.outline.d_max - d) * self.across,
         )
 
     def box(self, box: Box) -> canvas.Rectangle:
-        """A box as far as it is on the road."""
+        """The part of a box that is on the road, in px."""
         outline = self.outline
         left, top = self.at(max(box.s_min, outline.s_min), min(box.d_max, outline.d_max))
         right, bottom = self.at(min(box.s_max, outline.s_max), max(box.d_min, outline.d_min))

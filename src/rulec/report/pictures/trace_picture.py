@@ -32,7 +32,7 @@ _INDENT = 4 * canvas.CHARACTER
 
 @dataclass(frozen=True, slots=True)
 class _Axis:
-    """Time axis: the left end of each state, ``step_s`` apart."""
+    """The time axis: state -> x coordinate of its left end; states are ``step_s`` apart."""
 
     left: float
     states: int
@@ -43,7 +43,7 @@ class _Axis:
 
 
 def ribbon_picture(ribbon: Ribbon, rules: CompiledRulebook) -> Picture:
-    """The picture, with the violations in words below it."""
+    """The picture, with descriptions of the violations below it."""
     trace = ribbon.trace
     titles = [_title(row) for row in ribbon.rows]
     left = canvas.MARGIN + canvas.text_width(titles) + 10
@@ -125,7 +125,7 @@ def _violations(ribbon: Ribbon, axis: _Axis, top: float) -> Iterator[Mark]:
 
 
 def _segments(row: RibbonRow, axis: _Axis, y: float) -> Iterator[Mark]:
-    """A segment for each run of a value, and the value where there is room for it."""
+    """A segment for each run of a value, with the value as text if it fits."""
     for run in row.runs:
         if run.value is None:
             yield from _unknown(row, run, axis, y)
@@ -143,7 +143,7 @@ def _time_span(run: ValueRun, axis: _Axis) -> str:
 
 
 def _unknown(row: RibbonRow, run: ValueRun, axis: _Axis, y: float) -> Iterator[Mark]:
-    """A hatched segment; nothing where nobody is there to have a value."""
+    """A hatched segment; nothing where the object is absent."""
     if not run.unknown:
         return
     left, right = axis.x(run.first), axis.x(run.last + 1)
@@ -160,7 +160,7 @@ def _unknown(row: RibbonRow, run: ValueRun, axis: _Axis, y: float) -> Iterator[M
 
 
 def ribbon_entries(ribbon: Ribbon) -> list[tuple[str, str]]:
-    """What the styles of a ribbon mean, for the legend."""
+    """The styles of a ribbon with their meanings, for the legend."""
     used = {
         value_style(row, run.value): row
         for row in ribbon.rows

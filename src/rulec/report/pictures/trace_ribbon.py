@@ -17,15 +17,15 @@ from rulec.vocabulary import Enumeration, Quantity, Vocabulary
 from rulec.vocabulary.partial_values import Interval, PartialValue
 
 WORD_STYLES = 6
-"""So many styles there are for the values of enumerations."""
+"""Number of styles for the values of enumerations."""
 
 
 @dataclass(frozen=True, slots=True)
 class ValueRun:
-    """A run of states, ``first`` to ``last`` included, with a constant value.
+    """A run of states with a constant value, from ``first`` to ``last`` inclusive.
 
-    ``value`` is None where it is ``unknown``, or who it is about is not there. A number that is
-    known within bounds is their middle, and ``bounds`` says them, such as ``4 to 1000``.
+    ``value`` is None where it is ``unknown``, or where its object is absent. For a number known
+    within bounds it is their middle, and ``bounds`` shows them, such as ``4 to 1000``.
     """
 
     first: int
@@ -39,8 +39,8 @@ class ValueRun:
 class RibbonRow:
     """One thing that rules read, such as ``position(v1)``, over a whole trace.
 
-    ``values`` are those that there can be, in the vocabulary's order; none for a quantity. A number
-    that is known within bounds is their middle, which may be wrong by up to ``error``.
+    ``values`` are the possible values in the vocabulary's order; empty for a quantity. A number
+    known within bounds is shown as their middle, which may be wrong by up to ``error``.
     """
 
     title: str
@@ -52,7 +52,7 @@ class RibbonRow:
 
 @dataclass(frozen=True, slots=True)
 class Ribbon:
-    """A trace's rows and violations; ``left_out`` further rows are default or not asked for."""
+    """A trace's rows and violations; ``left_out`` counts rows omitted as default or unwanted."""
 
     trace: Trace
     rows: tuple[RibbonRow, ...]
@@ -60,7 +60,7 @@ class Ribbon:
     violations: tuple[Violation, ...]
 
     def decisive(self, violation: Violation) -> int:
-        """The state that decides a violation; beyond the last for the end."""
+        """The state that decides a violation; one past the last if the end decides."""
         return len(self.trace.states) if violation.step is None else violation.step
 
 
@@ -72,10 +72,10 @@ def ribbon(
     *,
     every_row: bool = False,
 ) -> Ribbon:
-    """Collect the rows that violated rules read: of nobody, of objects in question, of pairs.
+    """Collect the rows that violated rules read about the world, the bound objects and their pairs.
 
-    If there is no violation, or with ``every_row``, those that any rule reads and the trace speaks
-    of. ``only``: the objects to tell of, if not of all.
+    Without violations, or with ``every_row``, the rows that any rule reads and the trace mentions.
+    ``only``: show only these objects, if not empty.
     """
     shown_objects = set(only) or set(trace.objects)
     violations = tuple(
@@ -106,7 +106,7 @@ def ribbon(
 
 
 def _pairs(trace: Trace, names: Iterable[str]) -> list[tuple[str, str]]:
-    """Pairs of objects mentioned in some state; others have defaults alone."""
+    """Pairs of objects mentioned in some state; all other pairs have only defaults."""
     pairs = {
         (first, second)
         for name in names
@@ -181,7 +181,7 @@ _LIGHTS = {"red_light": "red", "amber_light": "yellow", "green_light": "green"}
 
 
 def value_style(row: RibbonRow, value: Value | None) -> str:
-    """The style of a value: what is true or false has other ones than words, lights their own."""
+    """The style of a value: truth values, words and lights have different ones."""
     if value is None:
         return "unknown"
     if isinstance(value, bool):
@@ -190,13 +190,13 @@ def value_style(row: RibbonRow, value: Value | None) -> str:
 
 
 def extremes(row: RibbonRow) -> tuple[float, float]:
-    """The least and the greatest value of a quantity."""
+    """The smallest and the largest value of a quantity."""
     numbers = [float(run.value) for run in row.runs if run.value is not None]
     return min(numbers, default=0.0), max(numbers, default=0.0)
 
 
 def in_words(value: Value) -> str:
-    """A value in a row."""
+    """A value as text in a row."""
     if isinstance(value, bool):
         return "true" if value else "false"
     return shown(value)

@@ -1,1 +1,1 @@
-"""Text that all reports share: the terminal, Markdown, lists, formulas in words."""
+"""Text shared by all reports: the terminal, Markdown, lists, formulas in words."""

@@ -20,26 +20,26 @@ if TYPE_CHECKING:
 REFRESH_S = 0.2
 
 PAGE_WIDTH = 100
-"""The width of a text that goes to no terminal."""
+"""The width of a text that is not shown on a terminal."""
 
 
 def page_width(stream: TextIO | None = None) -> int:
-    """Width of a text on standard output, or another stream, in characters."""
+    """The width of a text on a stream in characters, by default on standard output."""
     if not (stream or sys.stdout).isatty():
         return PAGE_WIDTH
-    # Archives and their packing, 3 ms: only for a terminal.
+    # Archives and compression, 3 ms: only for a terminal.
     from shutil import get_terminal_size
 
     return max(40, get_terminal_size((PAGE_WIDTH, 24)).columns)
 
 
 def print_line(text: str) -> None:
-    """One line of the answer, whatever names are in it."""
+    """Print one line of the answer; any names in it are made visible."""
     print_result(visible(text))
 
 
 def print_result(text: str, form: str = "text") -> None:
-    """A part of the answer, in a format."""
+    """Print a part of the answer in a format."""
     text = outgoing(text, form, color=wants_color(sys.stdout))
     if _bar is not None and sys.stdout.isatty():
         _bar.show(text)
@@ -48,14 +48,14 @@ def print_result(text: str, form: str = "text") -> None:
 
 
 def print_remark(text: str) -> None:
-    """One line on standard error, whatever names are in it."""
+    """Print one line on standard error; any names in it are made visible."""
     print_aside(visible(text))
 
 
 def print_aside(text: str) -> None:
-    """Text on standard error, above the progress bar if there is one."""
+    """Print text on standard error, above the progress bar if there is one."""
     text = outgoing(text, color=True)
-    # Where standard error cannot be written, the exit status has to do.
+    # If standard error cannot be written, the exit status has to suffice.
     with suppress(OSError):
         if _bar is not None:
             _bar.show(text)
@@ -64,10 +64,10 @@ def print_aside(text: str) -> None:
 
 
 class _Bar:
-    """A progress bar, and text that scrolls away above it.
+    """A progress bar, and text that scrolls above it.
 
-    A terminal shows both at once, so the bar has to make room for the text. It does so a few times
-    a second, whatever the number of lines.
+    A terminal shows both, so the bar is redrawn below the text. That happens a few times a second,
+    however many lines there are.
     """
 
     def __init__(self, bar: Progress, task: TaskID) -> None:
@@ -85,7 +85,7 @@ class _Bar:
         self._bar.update(self._task, completed=done)
 
     def flush(self) -> None:
-        # rich takes 40 ms, and is for terminals alone.
+        # rich takes 40 ms, and is only needed on terminals.
         from rich.text import Text
 
         if self._lines:
@@ -99,16 +99,16 @@ _bar: _Bar | None = None
 
 @contextmanager
 def progress(task: str, total: float | None) -> Iterator[Callable[[float], None]]:
-    """A progress bar on a terminal, nothing at all elsewhere.
+    """A progress bar on a terminal, nothing elsewhere.
 
-    ``total`` is None if it is not known; then the bar has a count. Yields a function that is told
-    how much is done so far.
+    ``total`` is None if unknown; then the bar shows a count. Yields a function to be called with
+    the amount done so far.
     """
     global _bar
     if not sys.stderr.isatty():
         yield lambda _: None
         return
-    # rich takes 40 ms, and is for terminals alone.
+    # rich takes 40 ms, and is only needed on terminals.
     from rich.console import Console
     from rich.progress import MofNCompleteColumn, Progress
 

@@ -1,4 +1,4 @@
-"""Rows as CSV (RFC 4180), of which a spreadsheet computes nothing."""
+"""Rows as CSV (RFC 4180) in which spreadsheets evaluate nothing."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rulec.report.text.terminal_text import visible
 
 
 def csv_text(rows: Iterable[Iterable[object]], line_end: str = "\r\n") -> str:
-    """Lines of texts and numbers; several texts are parted by semicolons, None is empty."""
+    """Lines of texts and numbers; items of a tuple are separated by semicolons, None is empty."""
     text = io.StringIO()
     csv.writer(text, lineterminator=line_end).writerows(map(_cell, row) for row in rows)
     return text.getvalue()

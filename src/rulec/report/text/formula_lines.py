@@ -9,7 +9,7 @@ INDENT = "  "
 
 _BOUND = r"(\[[^]]*\])?"
 
-# From the loosest to the tightest, as the grammar has them. `weak until` is one operator.
+# From the loosest to the tightest, as in the grammar. `weak until` is one operator.
 _OPERATORS = [
     re.compile(rf"(?<!\bweak)(?<!\bstrong) (?={words} )")
     for words in (
@@ -25,10 +25,10 @@ _OPERATORS = [
 
 
 def formula_lines(text: str, width: int) -> list[str]:
-    """The lines of a formula that is given as one line.
+    """The lines of a formula given as one line.
 
-    It is broken before the operators that bind loosest, and behind parentheses that hold too much
-    for a line. Only what has no operator outside of brackets may be wider than ``width``.
+    It is broken before the operators that bind loosest, and after parentheses whose content is too
+    long for a line. Only a part without an operator outside of brackets may exceed ``width``.
     """
     return list(_lines(text, width))
 
@@ -58,7 +58,7 @@ def _lines(text: str, width: int) -> Iterator[str]:
 
 
 def _outside(text: str) -> list[bool]:
-    """For every character: does it stand outside of all parentheses and brackets?"""
+    """For every character: whether it is outside of all parentheses and brackets."""
     depth, result = 0, []
     for character in text:
         depth += (character in "([") - (character in ")]")

@@ -1,4 +1,4 @@
-"""Conditions of an automaton's edges in short words, and states as examples."""
+"""Conditions of an automaton's edges as short text, and states as in examples."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ _OF_WHOLE_NUMBERS: dict[Relation, tuple[Relation, int]] = {
     ">": (">=", 1),
     ">=": (">", -1),
 }
-"""`< 2` is `<= 1`."""
+"""For whole numbers `< 2` is the same as `<= 1`."""
 
 _SIGN = re.compile(r"<=|>=|!=|<|>|=")
 
 
 class GuardWording:
-    """The words of one rule: its reads and its comparisons."""
+    """The texts for what a rule reads and for its comparisons."""
 
     def __init__(self, rule: CompiledRule, vocabulary: Vocabulary) -> None:
         self._reads = rule.machine.reads
@@ -52,7 +52,7 @@ class GuardWording:
                     self._said.setdefault((atom.terms, _DENIAL[relation], limit), _denied(text))
 
     def condition(self, cubes: Sequence[Cube]) -> str:
-        """A condition for exactly the letters of these cubes; ``true`` of all."""
+        """A condition that holds exactly for the letters of these cubes; ``true`` for all."""
         texts = []
         for cube in cubes:
             literals = [
@@ -124,7 +124,7 @@ class GuardWording:
         return ""
 
     def state(self, state: ExampleState) -> str:
-        """A state as an example writes it, without defaults."""
+        """A state as written in an example, without defaults."""
         axioms = []
         for (name, variables), value in state.items():
             declaration = self._vocabulary.declarations[name]
@@ -141,7 +141,7 @@ class GuardWording:
 
 
 def _alike(comparison: Comparison) -> Iterator[tuple[Relation, Fraction]]:
-    """The comparison, and its equivalent for counts, which are whole numbers."""
+    """The comparison, and the equivalent one for counts, which are whole numbers."""
     yield comparison.relation, comparison.limit
     match comparison.terms:
         case ((_, Count()),) if (
@@ -152,7 +152,7 @@ def _alike(comparison: Comparison) -> Iterator[tuple[Relation, Fraction]]:
 
 
 def runs(numbers: Sequence[int]) -> list[range]:
-    """Ascending numbers as ranges of neighbours."""
+    """Ascending numbers as ranges of consecutive ones."""
     ranges: list[range] = []
     for number in numbers:
         if ranges and ranges[-1].stop == number:

@@ -22,14 +22,14 @@ from rulec.report.text.pygments_lexer import RulecLexer
 _STYLE = Path(__file__).with_name("html_page.css")
 
 _MOST_NESTED = 800
-"""What lies deeper, two steps for a list in a list, is left out, and with it all that follows."""
+"""Deeper content (two levels for each nested list) is omitted, with all that follows it."""
 
 _LEXERS: dict[str, type[Lexer]] = {"rulec": RulecLexer, "diff": DiffLexer}
 
 
 @dataclass(frozen=True, slots=True)
 class PageTexts:
-    """A page's title, the heading below which its list of contents stands, and its language."""
+    """A page's title, the heading above its list of contents, and its language."""
 
     title: str
     contents: str = ""
@@ -44,8 +44,8 @@ def as_html(
 ) -> str:
     """The page; HTML in the Markdown is shown as text.
 
-    ``figures`` are the SVG elements that stand for images, by their addresses. ``cell_class`` gives
-    the class of a table's cell by its text, empty for none.
+    ``figures`` maps addresses of images to the SVG elements that replace them. ``cell_class`` gives
+    the CSS class for a table cell's text, empty for none.
     """
     options = {"html": False, "highlight": _highlighted, "maxNesting": _MOST_NESTED}
     parser = MarkdownIt("commonmark", options).enable("table")
@@ -79,12 +79,12 @@ def _highlighted(text: str, language: str, _: str) -> str:
 
 @cache
 def _formatter() -> HtmlFormatter[str]:
-    # Classes, not colours, so that they follow the reader's theme. To make one takes 1 ms.
+    # Classes instead of colours, so that they follow the reader's theme. Making it takes 1 ms.
     return HtmlFormatter(nowrap=True)
 
 
 def _name_headings(tokens: Sequence[Token]) -> None:
-    """Every heading can be linked to."""
+    """Give every heading an id that can be linked to."""
     headings = [pair for pair in pairwise(tokens) if pair[0].type == "heading_open"]
     texts = ["".join(child.content for child in inline.children or ()) for _, inline in headings]
     for (token, _), name in zip(headings, anchors(texts), strict=True):

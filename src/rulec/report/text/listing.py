@@ -1,4 +1,4 @@
-"""Lists of names, for people or as JSON."""
+"""Lists of names, as text or as JSON."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LONGEST_TITLE = 90
 
 @dataclass(frozen=True, slots=True)
 class Listed:
-    """A name, its title, and the file behind it, if any."""
+    """A name, its title, and its file, if there is one."""
 
     name: str
     title: str
@@ -35,7 +35,7 @@ class ListingDocument(JsonDocument, frozen=True, kw_only=True):
 
 
 def as_text(kinds: Mapping[str, Sequence[Listed]]) -> str:
-    """Write a line for each name, below its kind if several."""
+    """Write a line for each name, below its kind if there are several."""
     rows = [
         (visible(item.name), visible(shorten(item.title, LONGEST_TITLE, placeholder=" …")))
         for listed in kinds.values()

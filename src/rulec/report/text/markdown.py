@@ -1,4 +1,4 @@
-"""Markdown (CommonMark with tables) in which any text means itself."""
+"""Markdown (CommonMark with tables) in which any text is shown literally."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def escaped(text: str) -> str:
     start = _START.match(plain)
     if start is None:
         return plain
-    # A list's dash, a heading's underline, or the number of a list's item.
+    # A list's dash, a heading's underline, or a list item's number.
     cut = start.end(1) if start[1].isdigit() else start.start(1)
     return f"{plain[:cut]}\\{plain[cut:]}"
 
@@ -37,7 +37,7 @@ def linked(text: str) -> str:
 
 
 def code(text: str) -> str:
-    """A name or formula as code, with any sign, also in tables."""
+    """A name or formula as code; any characters are allowed, in tables as well."""
     shown = visible(text).replace("|", r"\|")
     longest = max((len(run) for run in re.findall("`+", shown)), default=0)
     if not longest:
@@ -47,20 +47,20 @@ def code(text: str) -> str:
 
 
 def fenced(text: str, language: str) -> str:
-    """Lines of code."""
+    """Lines of code as a fenced block."""
     longest = max((len(run) for run in re.findall("`+", text)), default=0)
     fence = "`" * max(3, longest + 1)
     return f"{fence}{language}\n{text}\n{fence}"
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table; its cells are Markdown already."""
+    """A table; its cells are already Markdown."""
     lines = [head, ["---"] * len(head), *rows]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
 def anchors(headings: Sequence[str]) -> list[str]:
-    """A distinct anchor for each plain-text heading of a page, as most viewers make them."""
+    """A distinct anchor for each plain-text heading of a page, formed as most viewers do."""
     taken: set[str] = set()
     names = []
     for heading in headings:
@@ -76,7 +76,7 @@ def anchors(headings: Sequence[str]) -> list[str]:
 
 @dataclass(frozen=True, slots=True)
 class Heading:
-    """A heading; ``text`` is plain."""
+    """A heading; ``text`` is plain text."""
 
     level: int
     text: str
@@ -87,7 +87,7 @@ Block = Heading | str
 
 
 def written(blocks: Iterable[Block]) -> str:
-    """The page, without a line end behind it."""
+    """The page, without a final line end."""
     return "\n\n".join(
         f"{'#' * block.level} {escaped(block.text)}" if isinstance(block, Heading) else block
         for block in blocks

@@ -1,7 +1,7 @@
-"""The last gate of what is printed: nothing drives a terminal, a runner or a spreadsheet.
+"""The last filter for output: nothing may control a terminal, a CI runner or a spreadsheet.
 
-Names come from data, from files and from compiled rulebooks, and may be any text. Whoever
-prints one makes it `visible`, line ends included; what was forgotten there is escaped here.
+Names come from data, files and compiled rulebooks, and may contain any text. Code that prints a
+name makes it `visible`, including line ends; what was forgotten there is escaped here.
 """
 
 from __future__ import annotations
@@ -13,39 +13,40 @@ from typing import IO, Any, Final
 _CONTROLS: Final = "\x00-\x08\x0b-\x1f\x7f-\x9f"
 REORDERING: Final = "\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"
 _STYLE: Final = re.compile("(\x1b\\[[0-9;]*m)")
-"""Colours, which rulec writes itself, and which cannot do harm."""
+"""Colours, which rulec itself writes and which do no harm."""
 _HIDDEN: Final = re.compile(f"[{_CONTROLS}{REORDERING}\u2028\u2029\ufeff\ud800-\udfff]")
 _ANYWHERE: Final = re.compile(r"(?<=#)#(?=\[|vso\[|teamcity\[)")
 _AT_START: Final = re.compile(r"^([^\S\n]*):(?=:(?!: ))", re.MULTILINE)
-"""What GitHub's, Azure's and TeamCity's runners obey, wherever it stands or where a line begins.
+"""Commands of GitHub's, Azure's and TeamCity's runners, anywhere or at the start of a line.
 
-A diagnostic's `::: FILE` is no command: none has a name that begins with a colon.
+A diagnostic's `::: FILE` is no command, because no command's name begins with a colon.
 """
 
 MARKUP: Final = frozenset({"html", "svg", "junit", "xqar"})
 JSON: Final = frozenset({"json", "jsonl", "sarif"})
 _FORMULA: Final = ("=", "+", "-", "@", "\t", "\r", "'")
-"""How a cell begins that a spreadsheet computes (OWASP), or takes for a text by this sign."""
+"""The first character of a cell that a spreadsheet evaluates (OWASP), or reads as a text marker."""
 
 
 def outgoing(text: str, form: str = "text", *, color: bool = False) -> str:
-    """A text as it may go out in a format: no control or reordering character, no command.
+    """A text made safe for output in a format: no control or reordering characters, no commands.
 
-    In JSON and markup what is escaped keeps its meaning. ``color``: styles stay.
+    In JSON and markup, escaped characters keep their meaning. ``color``: keep styles.
     """
     if form == "csv" and "\r\n" in text:
-        # Its own line ends, and not those of names.
+        # CSV's own line ends, unlike those in names, are kept.
         return "\r\n".join(outgoing(line, form) for line in text.split("\r\n"))
     if form in JSON:
         return _ANYWHERE.sub(r"\\u0023", _HIDDEN.sub(_as_json, text))
     if form == "junit":
-        # Its texts have lines of their own; styles of pages begin lines so, too.
+        # Its texts contain lines; not for other markup, where styles of pages have lines like
+        # these.
         text = _AT_START.sub(r"\1&#x3a;", text)
     if form in MARKUP:
         return _ANYWHERE.sub("&#x23;", _HIDDEN.sub(_as_reference, text))
     if _HIDDEN.search(text):
         parts = _STYLE.split(text) if color else [text]
-        # Every second one is a style.
+        # Every second part is a style.
         parts[::2] = [_HIDDEN.sub(_as_escape, part) for part in parts[::2]]
         text = "".join(parts)
     if form == "github":
@@ -54,7 +55,7 @@ def outgoing(text: str, form: str = "text", *, color: bool = False) -> str:
 
 
 class OutgoingLines(RawIOBase):
-    """A stream of lines in a format, on its way to another one."""
+    """A stream that filters lines in a format on their way to another stream."""
 
     def __init__(self, stream: IO[bytes], form: str) -> None:
         self._stream = stream
@@ -62,11 +63,11 @@ class OutgoingLines(RawIOBase):
         self._rest = b""
 
     def writable(self) -> bool:
-        """Yes, which is asked by what writes text to it."""
+        """Return True; code that writes text to the stream asks for it."""
         return True
 
     def write(self, data: Any) -> int:
-        """Take bytes, and put the lines among them that are whole."""
+        """Take bytes, and pass on the complete lines."""
         lines, end, rest = bytes(data).rpartition(b"\n")
         if end:
             self._put(self._rest + lines + end)
@@ -75,7 +76,7 @@ class OutgoingLines(RawIOBase):
         return len(data)
 
     def finish(self) -> None:
-        """Put what has no line end yet."""
+        """Pass on an incomplete last line."""
         self._put(self._rest)
         self._rest = b""
 
@@ -85,7 +86,7 @@ class OutgoingLines(RawIOBase):
 
 
 def spreadsheet_text(text: str) -> str:
-    """A text as a cell; what a spreadsheet would compute gets an apostrophe before it."""
+    """A text as a cell; an apostrophe precedes text that a spreadsheet would evaluate."""
     return f"'{text}" if text.startswith(_FORMULA) else text
 
 
@@ -94,7 +95,7 @@ def _as_json(match: re.Match[str]) -> str:
 
 
 def _as_reference(match: re.Match[str]) -> str:
-    # XML has no reference for control characters, which therefore are shown as such.
+    # XML has no references for control characters, so their code is shown.
     code = ord(match[0])
     return f"&#x{code:x};" if code > 0x9F and not 0xD800 <= code < 0xE000 else _as_escape(match)
 

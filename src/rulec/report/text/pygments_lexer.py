@@ -32,7 +32,7 @@ class RulecLexer(RegexLexer):
             (r"\s+", Blank.Whitespace),
             (words.COMMENT, Comment.Single),
             (words.STRING, String.Double),
-            (r'"[^"\n]*$', String.Double),  # one whose end is missing is meant as one
+            (r'"[^"\n]*$', String.Double),  # a string without an end is still meant as one
             (words.RULE_NAME, _NAMED),
             (words.DEFINED_NAME, _NAMED),
             (words.DATE, Literal.Date),

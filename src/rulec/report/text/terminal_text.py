@@ -18,7 +18,7 @@ MOST_DIGITS = 30
 _PLAIN, _COLORED = "NO_COLOR", "FORCE_COLOR"
 
 _JOINT = "\0"
-"""Stands for a space at which no line ends, in texts that have no control characters."""
+"""Stands for a space at which no line may be broken, in texts without control characters."""
 
 _KEPT_TOGETHER = re.compile(
     r"(?:§|\b(?:Abs|Art|No|Nr|Reg|Sec)\.|\b(?:Rule|state)) (?=\d)"
@@ -45,9 +45,9 @@ def _shown(character: str) -> str:
 
 @contextmanager
 def colored(choice: str) -> Iterator[None]:
-    """Have colour ``always``, ``never``, or ``auto``, by the stream, while the block runs.
+    """Use colour ``always``, ``never``, or ``auto`` (by stream) in a block.
 
-    It is said in the environment, by which other processes go as well.
+    It is set in the environment, so that it also applies to other processes.
     """
     before = dict(os.environ)
     try:
@@ -66,20 +66,20 @@ def colored(choice: str) -> Iterator[None]:
 
 
 def wants_color(stream: TextIO) -> bool:
-    """Test for a terminal without a request for plain text (no-color.org, force-color.org)."""
+    """Whether to use colour, by environment (no-color.org, force-color.org) and terminal."""
     if os.environ.get(_PLAIN):
         return False
     return bool(os.environ.get(_COLORED)) or stream.isatty()
 
 
 def styled(text: str, style: str, color: bool | None = None) -> str:
-    """A text in a style of rich's, such as ``bold red``.
+    """A text in one of rich's styles, such as ``bold red``.
 
-    ``color``: may there be escape sequences? As standard output wants it, if None.
+    ``color``: whether escape sequences are allowed; None: as standard output wants it.
     """
     if not text or not (wants_color(sys.stdout) if color is None else color):
         return text
-    # 30 ms, and for terminals alone.
+    # 30 ms, and only on terminals.
     from rich.color import ColorSystem
     from rich.style import Style
 
@@ -87,10 +87,10 @@ def styled(text: str, style: str, color: bool | None = None) -> str:
 
 
 def cell_width(text: str) -> int:
-    """Columns of a terminal that a text takes, whatever its style."""
+    """The columns that a text takes on a terminal, ignoring its style."""
     if text.isascii() and "\x1b" not in text:
         return len(text)
-    # 7 ms, and seldom needed.
+    # 7 ms, and rarely needed.
     from rich.cells import cell_len
 
     return cell_len(unstyle(text))
@@ -107,11 +107,11 @@ def table_lines(
     """Rows with aligned columns, a line each.
 
     Args:
-        rows: equally many cells in each, which may be styled.
-        indent: what every line begins with.
-        gap: what stands between columns.
-        right: the columns that are aligned on the right.
-        ruled: the rows below which a line is drawn.
+        rows: the same number of cells in each, which may be styled.
+        indent: the beginning of every line.
+        gap: the text between columns.
+        right: the columns to align on the right.
+        ruled: the rows below which to draw a line.
     """
     columns = list(zip(*rows, strict=True))
     measured = columns if right or ruled else columns[:-1]
@@ -130,13 +130,13 @@ def table_lines(
 
 
 def broken(text: str, width: int, first: str = "", later: str = "") -> list[str]:
-    """A text broken to lines of a width, never between "§" and its number, or "30" and "km/h".
+    """A text wrapped to a width, never between "§" and its number, or "30" and "km/h".
 
     Args:
-        text: what is broken.
-        width: how many characters a line may have, but for words that are longer.
-        first: what the first line begins with.
-        later: what the others begin with.
+        text: the text to wrap.
+        width: the most characters in a line, except for longer words.
+        first: the beginning of the first line.
+        later: the beginning of the other lines.
     """
     joined = _KEPT_TOGETHER.sub(lambda match: match[0][:-1] + _JOINT, text)
     lines = wrap(joined, width, initial_indent=first, subsequent_indent=later)
@@ -144,7 +144,7 @@ def broken(text: str, width: int, first: str = "", later: str = "") -> list[str]
 
 
 def fact_lines(facts: Sequence[tuple[str, str]], width: int) -> list[str]:
-    """Names with texts beside them, which are broken to lines of a width."""
+    """Names with texts beside them, which are wrapped to a width."""
     text_width = max(
         20, width - max((cell_width(visible(name)) for name, _ in facts), default=0) - 4
     )
@@ -156,7 +156,7 @@ def fact_lines(facts: Sequence[tuple[str, str]], width: int) -> list[str]:
 
 
 def shown_count(count: int) -> str:
-    """A count for people: exact if short, else its magnitude."""
+    """A count for readers: exact if short, otherwise its magnitude."""
     digits = str(count)
     if len(digits) <= MOST_DIGITS:
         return f"{count:,}"
@@ -164,7 +164,7 @@ def shown_count(count: int) -> str:
 
 
 def counted(number: int, noun: str, several: str = "") -> str:
-    """A number of things, such as ``1 file`` and ``1,000 files``."""
+    """A number with its noun, such as ``1 file`` and ``1,000 files``."""
     return f"{number:,} {noun if number == 1 else several or f'{noun}s'}"
 
 
@@ -178,6 +178,6 @@ def mirrored_line(side: str) -> str:
 
 
 def first_of(names: Sequence[str], most: int) -> str:
-    """So many names, and how many more there are."""
+    """The first ``most`` names, and how many more there are."""
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return f"{', '.join(names[:most])}{more}"

@@ -1,4 +1,4 @@
-"""Changes in a text, as a unified diff that `patch` takes."""
+"""Changes in a text, as a unified diff for `patch`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def as_diff(name: str, before: str, after: str) -> str:
 
 
 def for_terminal(diff: str) -> str:
-    """The diff for display: no character can drive the terminal."""
+    """The diff for display, without characters that control a terminal."""
     return "\n".join(map(_shown, diff.removesuffix("\n").split("\n")))
 
 

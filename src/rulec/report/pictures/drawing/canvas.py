@@ -1,7 +1,7 @@
-"""Shapes of a picture: areas, lines and words, in px.
+"""Shapes of a picture: areas, lines and texts, in px.
 
-``y`` grows downwards. A style is a name in ``styles.STYLES``; a tip is what a reader is told who
-points at a mark.
+``y`` grows downwards. A style is a name in ``styles.STYLES``; a tip is shown when the pointer is
+over a mark.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ Rectangle = tuple[float, float, float, float]
 """Left, top, right, bottom."""
 
 WIDTH = 900.0
-"""Of every picture, so that they can stand below each other."""
+"""The width of every picture, so that pictures can be stacked."""
 
 MARGIN = 14.0
-"""Left free at the sides."""
+"""The free space at the left and the right."""
 
 TEXT_WIDTH = WIDTH - 2 * MARGIN
-"""Between the margins."""
+"""The width between the margins."""
 
 LINE_HEIGHT = 16.0
-"""From one line of text to the next."""
+"""The distance between lines of text."""
 
 CHARACTER = 7.3
-"""The width of a character, a little more than that of the usual fixed-width fonts."""
+"""The width of a character, slightly larger than in the usual fixed-width fonts."""
 
 
 @dataclass(frozen=True, slots=True)
 class Area:
-    """A filled shape: an outline and, if there are more rings, holes."""
+    """A filled shape: an outline and, if there are further rings, holes."""
 
     rings: tuple[tuple[Point, ...], ...]
     style: str
@@ -64,7 +64,7 @@ class LabelText:
 
     @property
     def bounds(self) -> Rectangle:
-        """The room that it takes, that of one line."""
+        """The rectangle of its text, which is one line."""
         width, height = text_width([self.text]), LINE_HEIGHT - 2
         before = {"start": 0.0, "middle": width / 2, "end": width}[self.anchor]
         x, y = self.at
@@ -78,7 +78,7 @@ Mark = Area | Polyline | LabelText
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """Marks, the later above the earlier, on a ground of this size."""
+    """Marks on a ground of this size; later marks are drawn over earlier ones."""
 
     title: str
     width: float
@@ -87,7 +87,7 @@ class Picture:
 
 
 def text_width(lines: Iterable[str]) -> float:
-    """The width of the widest line, whatever the fixed-width font."""
+    """The width of the widest line, enough for any usual fixed-width font."""
     columns = (
         sum(2 if unicodedata.east_asian_width(character) in "WF" else 1 for character in line)
         for line in lines
@@ -96,7 +96,7 @@ def text_width(lines: Iterable[str]) -> float:
 
 
 def paragraph(text: str, at: Point, width: float, style: str) -> list[LabelText]:
-    """A text broken to a width, with the middle of its first line at ``at``."""
+    """A text wrapped to a width, with the middle of its first line at ``at``."""
     lines = broken(text, int(width / CHARACTER))
     x, y = at
     return [LabelText(line, (x, y + n * LINE_HEIGHT), style=style) for n, line in enumerate(lines)]
@@ -109,7 +109,7 @@ def corners(rectangle: Rectangle) -> tuple[Point, ...]:
 
 
 def centred(middle: Point, half_width: float, half_height: float) -> Rectangle:
-    """A rectangle around its middle."""
+    """A rectangle around a middle."""
     x, y = middle
     return x - half_width, y - half_height, x + half_width, y + half_height
 
@@ -120,7 +120,7 @@ def filled(rectangle: Rectangle, style: str, tip: str = "") -> Area:
 
 
 def moved(mark: Mark, right: float, down: float) -> Mark:
-    """A copy of the mark at another place."""
+    """A copy of the mark, moved to the right and down."""
 
     def there(points: Iterable[Point]) -> tuple[Point, ...]:
         return tuple((x + right, y + down) for x, y in points)
@@ -135,7 +135,7 @@ def moved(mark: Mark, right: float, down: float) -> Mark:
 
 
 def stacked(title: str, pictures: Sequence[Picture]) -> Picture:
-    """One picture below the other."""
+    """The pictures stacked from top to bottom as one."""
     marks: list[Mark] = []
     down = 0.0
     for picture in pictures:

@@ -1,4 +1,4 @@
-"""Rings and lines cut at a rectangle (Sutherland and Hodgman 1974; Liang and Barsky 1984)."""
+"""Clip rings and lines to a rectangle (Sutherland and Hodgman 1974; Liang and Barsky 1984)."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def clipped_lines(line: Sequence[Point], box: Rectangle) -> Iterator[tuple[Point
 
 
 def _inside(start: Point, end: Point, box: Rectangle) -> tuple[float, float]:
-    """From which to which part of a segment it is inside; none if the first is not less."""
+    """The part of a segment inside the box, as fractions from and to; nothing if from >= to."""
     low, high = 0.0, 1.0
     for side, limit in enumerate(box):
         axis, sign = side % 2, 1 if side < 2 else -1

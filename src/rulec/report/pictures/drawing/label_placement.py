@@ -1,4 +1,4 @@
-"""Places for words, so that no two lie on each other."""
+"""Places for labels, so that no two overlap."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from itertools import islice, product
 from rulec.report.pictures.drawing.canvas import LabelText, Rectangle
 
 _ROOM = 4.0
-"""Between words and what is beside them, in px."""
+"""Distance between a label and what is beside it, in px."""
 
 _LARGE = 0.6
-"""Of the largest room's size; such rooms are all as good."""
+"""Share of the largest box's size from which on boxes count as equally good."""
 
 _SHIFTS = (0.5, 0.25, 0.75, 0.1, 0.9)
-"""Where along a rectangle words are tried, as a part of the way that they can go."""
+"""Positions of a label tried within a box, as fractions of its free space."""
 
 
 @dataclass
 class Placing:
-    """The rectangles that are taken already."""
+    """The rectangles that are occupied."""
 
     taken: list[Rectangle] = field(default_factory=list)
 
     def take(self, words: LabelText) -> bool:
-        """Put words where they stand, if nothing is there."""
+        """Occupy a label's place, if nothing is there; return whether it was free."""
         bounds = words.bounds
         if any(_meet(bounds, other) for other in self.taken):
             return False
@@ -33,13 +33,13 @@ class Placing:
         return True
 
     def first_free(self, choices: Iterable[LabelText]) -> list[LabelText]:
-        """Take the first choice whose place is free; empty if none is."""
+        """Occupy the first choice whose place is free; empty if none is."""
         return list(islice(filter(self.take, choices), 1))
 
     def place(self, texts: Sequence[str], boxes: Sequence[Rectangle]) -> LabelText | None:
-        """Place the first text that fits into a room, upright if possible.
+        """Place the first text that fits into a box, upright if possible.
 
-        Of the large rooms that in the middle is tried first. None if no text fits anywhere.
+        Of the large boxes the one nearest to the middle is tried first. None if no text fits.
         """
         ordered = sorted(boxes, key=_preference(boxes))
         choices = (

@@ -1,6 +1,6 @@
 """A picture as PNG or PDF.
 
-The only file that knows matplotlib, which is installed on request.
+The only module that imports matplotlib, which is installed on request.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from rulec.report.pictures.drawing.styles import DARK, LIGHT, STYLES
 from rulec.report.text.terminal_text import visible
 
 DOTS_PER_PX = 2
-"""So that it can be printed."""
+"""Enough for printing."""
 
 MOST_DOTS = 30_000
-"""A file that is larger either way is drawn with one dot a px, or not at all."""
+"""A picture larger in either direction is drawn with one dot per px, or not at all."""
 
 _POINTS = 72 / 96
-"""A px in points, in which matplotlib measures lines and letters."""
+"""One px in points, matplotlib's unit for widths and font sizes."""
 
 
 Printed = Literal["png", "pdf"]
@@ -39,7 +39,7 @@ _ALIGNMENTS = {"start": "left", "middle": "center", "end": "right"}
 
 
 def as_printed(picture: Picture, form: Printed, file: str, *, dark: bool = False) -> bytes:
-    """The picture on light or dark ground.
+    """The picture on a light or dark ground.
 
     Raises RulecError: R0707 if matplotlib is missing, or the picture is too large.
     """
@@ -76,15 +76,15 @@ def as_printed(picture: Picture, form: Printed, file: str, *, dark: bool = False
     stream = io.BytesIO()
     FigureCanvasAgg(figure)
     with warnings.catch_warnings():
-        # A letter that the font does not have is drawn as a box; nobody could do anything about it.
+        # A character that the font lacks is drawn as a box; the warning would help no user.
         warnings.filterwarnings("ignore", "Glyph .* missing", UserWarning)
-        # Nothing that another run would write differently.
+        # No metadata that differ between runs.
         figure.savefig(stream, format=form, metadata=_METADATA[form])
     return stream.getvalue()
 
 
 def _draw(axes: Any, mark: Mark, order: int, colours: Mapping[str, str]) -> None:
-    # As above: only who asks for PNG or PDF has matplotlib.
+    # As above: matplotlib is installed only for PNG and PDF.
     from matplotlib.lines import Line2D
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
@@ -125,6 +125,6 @@ def _draw(axes: Any, mark: Mark, order: int, colours: Mapping[str, str]) -> None
 
 
 def _turning(ring: Sequence[Point], *, left: bool) -> Sequence[Point]:
-    """A ring turned left or right, as matplotlib needs to fill it."""
+    """A ring oriented to the left or right, as matplotlib needs it for filling."""
     area = sum(x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in pairwise([*ring, ring[0]]))
     return ring if (area > 0) == left else ring[::-1]

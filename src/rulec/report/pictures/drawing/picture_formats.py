@@ -16,7 +16,7 @@ from rulec.report.text.terminal_text import visible
 
 Format = Literal["svg", "png", "pdf", "html"]
 
-# The page may show itself and fetch nothing.
+# The page may use only its own content and load nothing.
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 
 _SLIDER = """\
@@ -32,7 +32,7 @@ _SLIDER = """\
 class Drawing:
     """Titled pictures, one for each moment, with a legend of their colours.
 
-    ``page`` makes the page for a browser in a theme, if it is not just these pictures.
+    ``page`` makes the HTML page in a theme, if it differs from these pictures.
     """
 
     title: str
@@ -42,7 +42,7 @@ class Drawing:
 
 
 def as_bytes(drawing: Drawing, form: str, file: str, theme: Theme = "auto") -> bytes:
-    """The file's content; PNG and PDF are light where the reader's theme would decide.
+    """The content of the file; PNG and PDF are light if the theme is ``auto``.
 
     Raises RulecError: R0707 if a PNG or PDF cannot be made.
     """
@@ -65,7 +65,7 @@ def as_bytes(drawing: Drawing, form: str, file: str, theme: Theme = "auto") -> b
 
 
 def _as_page(drawing: Drawing) -> str:
-    """One self-contained page, complete without its script."""
+    """A self-contained page, which is complete without its script."""
     title = escape(visible(drawing.title))
     below = [drawing.legend] if drawing.legend else []
     frames = "\n".join(_figure(picture) for picture in drawing.pictures)
@@ -97,7 +97,7 @@ def _figure(picture: Picture) -> str:
 
 
 def as_svg(picture: Picture, theme: Theme = "auto") -> str:
-    """A file of its own."""
+    """The content of an SVG file."""
     return _inline_svg(picture, f"<style>\n{as_css(_styles([picture]), theme)}\n</style>\n")
 
 
@@ -131,7 +131,8 @@ def _drawn(mark: Mark) -> Iterator[str]:
             turn = f' transform="rotate(-90 {x:.1f} {y:.1f})"' if turned else ""
             place = f'x="{x:.1f}" y="{y + 4:.1f}" text-anchor="{anchor}"{turn}'
             if STYLES[style].halo:
-                # A text of its own: many viewers do not know in which order to paint one's parts.
+                # A separate text: many viewers do not support the order of painting fill and
+                # stroke.
                 halo = f'class="{style} halo" aria-hidden="true"'
                 yield f"<text {halo} {place}>{escape(visible(text))}</text>"
             yield f'<text class="{style}" {place}>{escape(visible(text))}</text>'

@@ -1,7 +1,7 @@
-"""Styles of marks, on light and on dark ground.
+"""Styles of marks on light and dark ground.
 
-The two colours that tell verdicts apart are blue and vermilion of Okabe and Ito's palette (Color
-Universal Design, 2008), lightened for dark ground; dashes repeat what they say.
+The two colours of verdicts are blue and vermilion from Okabe and Ito's palette (Color Universal
+Design, 2008), lightened for dark ground; dashes repeat their meaning.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from types import MappingProxyType
 from typing import Literal
 
 Theme = Literal["auto", "light", "dark"]
-"""The ground; ``auto`` is the one that its reader prefers."""
+"""The ground; ``auto`` follows the reader's preference."""
 
 
 @dataclass(frozen=True, slots=True)
 class Style:
     """Colour names, line width in px, and dashes (on, off) in px.
 
-    A halo keeps words apart from what they stand on.
+    A halo separates text from its background.
     """
 
     fill: str = ""
@@ -122,7 +122,7 @@ DARK = MappingProxyType({name: dark for name, (_, dark) in _ON_LIGHT_AND_DARK.it
 
 
 def as_css(used: Collection[str], theme: Theme = "auto") -> str:
-    """CSS classes of the styles; ``auto`` is light and, where preferred on screen, dark."""
+    """CSS classes of the styles; ``auto`` is light, and dark on screens where that is preferred."""
     first = DARK if theme == "dark" else LIGHT
     dark = "\n".join(f"  {rule}" for rule in _rules(used, DARK, shape=False))
     preferred = f"@media screen and (prefers-color-scheme: dark) {{\n{dark}\n}}"

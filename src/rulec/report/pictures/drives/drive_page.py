@@ -1,4 +1,4 @@
-"""A drive as one self-contained page: all moments, a slider, the violations as a list."""
+"""A drive as a self-contained page: all moments, a slider, the violations as a list."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from rulec.report.text.terminal_text import visible
 def drive_page(
     scene: DriveScene, state: int, violation: SceneViolation | None, theme: Theme = "auto"
 ) -> str:
-    """The page, opened at a state; without its script it shows the picture of that moment."""
+    """The page, opened at a state; without its script it shows the picture of that state."""
     title = escape(visible(scene.title))
     chosen = -1 if violation is None else scene.violations.index(violation)
     data = scene_data(scene) | {"state": state, "chosen": chosen}
-    # Nothing in the data can end the element that it stands in.
+    # Escaped, so that the data cannot close the element that contains it.
     text = json.dumps(data, separators=(",", ":"), ensure_ascii=False).replace("<", "\\u003c")
     fixed = "" if theme == "auto" else f' data-theme="{theme}"'
     values = {
@@ -35,7 +35,7 @@ def drive_page(
         "data": text,
         "script": _beside("drive_page.js"),
     }
-    # One pass over the template: what is put in is not looked at again.
+    # A single pass over the template: inserted text is not searched for placeholders.
     head, *parts = _beside("drive_page.html").split("{{")
     pieces = (part.split("}}", 1) for part in parts)
     return head + "".join(values[name] + rest for name, rest in pieces)

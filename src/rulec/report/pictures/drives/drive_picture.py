@@ -1,4 +1,4 @@
-"""Picture of one moment of a drive: the road from above, and who violates what."""
+"""The picture of one moment of a drive: the road from above, and who violates what."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rulec.report.pictures.drives.drive_scene import Body, DriveScene, SceneViol
 _HEIGHT = 430.0
 _TOP = canvas.MARGIN + canvas.LINE_HEIGHT
 _LEAST_M = (80.0, 22.0)
-"""So much is seen at least, along and up."""
+"""The smallest area shown (m), along and up."""
 _AROUND_M = np.array([14.0, 9.0])
 _SMALLEST_PX = 5.0
 _MOST_LISTED = 12
@@ -27,7 +27,7 @@ _COLOURS = {"red": "red", "yellow": "yellow", "green": "green", "redYellow": "re
 
 
 def drive_picture(scene: DriveScene, state: int, violation: SceneViolation | None) -> Picture:
-    """One moment; ``violation`` is the one that is looked at."""
+    """The picture of a state; ``violation`` is the one in focus."""
     view = _view(scene, state, violation)
     heading = f"{scene.time_s(state):g} s"
     placing = Placing()
@@ -40,7 +40,7 @@ def drive_picture(scene: DriveScene, state: int, violation: SceneViolation | Non
     against = set(violation.against) if violation else set()
     placing.taken += _boxes(scene, state, view, {scene.ego, *against})
     labels = []
-    # The smaller above the larger, so that nobody is hidden.
+    # Smaller bodies over larger ones, so that none is hidden.
     for body in sorted(scene.bodies, key=Body.size, reverse=True):
         style = "own" if body.id == scene.ego else "against" if body.id in against else "vehicle"
         drawn = list(_body(body, state, view, style))
@@ -59,7 +59,7 @@ def drive_picture(scene: DriveScene, state: int, violation: SceneViolation | Non
 
 
 def drive_entries(scene: DriveScene, violation: SceneViolation | None) -> list[tuple[str, str]]:
-    """What styles mean, for the legend."""
+    """The styles with their meanings, for the legend."""
     entries = [("own", f"ego, {scene.ego}")]
     if violation is not None and violation.against:
         entries.append(("against", "whom the violation is against"))
@@ -74,7 +74,7 @@ def drive_entries(scene: DriveScene, violation: SceneViolation | None) -> list[t
 
 @dataclass(frozen=True, slots=True)
 class _View:
-    """The part of the world that is seen: its left and upper end (m), px for a metre, and room."""
+    """The visible part of the world: left and top (m), px per metre, and its rectangle in px."""
 
     left: float
     top: float
@@ -82,7 +82,7 @@ class _View:
     box: canvas.Rectangle
 
     def at(self, points: Points) -> list[Point]:
-        """Places in the picture: y grows upwards in the world, downwards here."""
+        """Points in the picture; y grows upwards in the world, but downwards here."""
         x = self.box[0] + (points[:, 0] - self.left) * self.scale
         y = self.box[1] + (self.top - points[:, 1]) * self.scale
         return list(zip(x.tolist(), y.tolist(), strict=True))
@@ -93,19 +93,19 @@ class _View:
         return inside and top + margin <= point[1] <= bottom - margin
 
     def area(self, ring: Points, style: str, tip: str = "") -> Iterator[Area]:
-        """A ring as far as it is seen."""
+        """The visible part of a ring."""
         corners = clipped_ring(self.at(ring), self.box)
         if len(corners) > 2:
             yield Area((corners,), style, tip)
 
     def lines(self, line: Points, style: str, tip: str = "") -> Iterator[Polyline]:
-        """A line as far as it is seen."""
+        """The visible parts of a line."""
         for part in clipped_lines(self.at(line), self.box):
             yield Polyline(part, style, tip)
 
 
 def _view(scene: DriveScene, state: int, violation: SceneViolation | None) -> _View:
-    """Ego and those against whom the violation is, with some room around them."""
+    """A view of ego and the objects of the violation, with some space around them."""
     wanted = {scene.ego, *(violation.against if violation else ())}
     outlines = [body.outline(state) for body in scene.bodies if body.id in wanted]
     points = np.concatenate([outline for outline in outlines if outline is not None])
@@ -131,7 +131,7 @@ def _trail(scene: DriveScene, view: _View) -> Iterator[Mark]:
 
 
 def _body(body: Body, state: int, view: _View, style: str) -> Iterator[Mark]:
-    """The outline, with a line across its front end."""
+    """A participant's outline, with a line across its front."""
     outline, row = body.outline(state), body.row(state)
     if outline is None or row is None:
         return
@@ -191,7 +191,7 @@ def _within(label: LabelText, view: _View) -> bool:
 
 
 def _link(violation: SceneViolation, state: int, view: _View, placing: Placing) -> Iterator[Mark]:
-    """The distance between ego and the other one, with its length."""
+    """The line between ego and the other participant, with its length."""
     text = violation.gap_text(state)
     if not text:
         return
@@ -237,7 +237,7 @@ def _signs(scene: DriveScene, view: _View, placing: Placing) -> Iterator[Mark]:
 
 
 def _scale(view: _View) -> Iterator[Mark]:
-    """A line of 10 or 20 m, at the lower right."""
+    """A scale bar of 10, 20 or 50 m, at the lower right."""
     metres = 10 if 10 * view.scale > 40 else 20 if 20 * view.scale > 40 else 50
     right, y = view.box[2] - 10, view.box[3] - 10
     left = right - metres * view.scale
@@ -249,7 +249,7 @@ def _scale(view: _View) -> Iterator[Mark]:
 def _words(
     scene: DriveScene, violation: SceneViolation | None, y: float
 ) -> tuple[list[LabelText], float]:
-    """The violation in words, and the others of the drive in a line each."""
+    """The violation in words, and a line for each further violation of the drive."""
     labels: list[LabelText] = []
     lines: list[tuple[str, str]] = []
     if violation is not None:
@@ -276,7 +276,7 @@ def _words(
 
 
 def chosen_moment(scene: DriveScene, at_s: float | None) -> tuple[int, SceneViolation | None]:
-    """The state to draw and the violation to tell of: the first, or that nearest to a time."""
+    """The state to draw with its violation: the first one, or the one nearest to a time."""
     ordered: Sequence[SceneViolation] = scene.violations
     if at_s is None:
         return (ordered[0].state, ordered[0]) if ordered else (scene.states // 2, None)

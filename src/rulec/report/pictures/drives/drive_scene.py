@@ -1,7 +1,7 @@
-"""A drive as a moving scene: road, lights, outlines of everybody, violations.
+"""A drive as a moving scene: road, lights, outlines of all participants, violations.
 
-Places are metres in the recording's own frame, x to the right and y up, from ``origin``; a state is
-a moment of the drive, from 0.
+Positions are in m in the recording's frame, x to the right and y up, relative to ``origin``; a
+state is a moment of the drive, counted from 0.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ MarkKind = Literal["solid", "broken", "unsaid"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RoadArea:
-    """A lanelet's area, with what is told of it where one points."""
+    """A lanelet's area, with a tip for the pointer."""
 
     ring: Points
     surface: Surface
@@ -35,7 +35,7 @@ class RoadArea:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RoadMark:
-    """A bound of lanes; ``unsaid`` is one of whose mark the map says nothing."""
+    """A boundary of lanes; ``unsaid`` if the map does not specify its marking."""
 
     line: Points
     kind: MarkKind
@@ -43,19 +43,19 @@ class RoadMark:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SceneLight:
-    """A light above its line, with its colours as (first state, colour)."""
+    """A light at its stop line, with its colours as (first state, colour)."""
 
     line: Points
     colours: tuple[tuple[int, str], ...]
 
     def colour_at(self, state: int) -> str:
-        """Its colour in a state."""
+        """The colour in a state."""
         return next(colour for first, colour in reversed(self.colours) if first <= state)
 
 
 @dataclass(frozen=True, slots=True)
 class SceneSign:
-    """A sign beside the road: what stands on it, and its name."""
+    """A sign beside the road: its position, its text and its name."""
 
     place: tuple[float, float]
     text: str
@@ -66,8 +66,9 @@ class SceneSign:
 class Body:
     """A participant with its poses from state ``first`` on.
 
-    ``poses`` are x, y and heading (rad) by state, NaN where it is not there or out of sight;
-    ``shapes`` its outlines in its own frame, ``shape`` which of them it has; ``speeds`` km/h.
+    ``poses`` are x, y (m) and heading (rad) by state, NaN where it is absent or out of sight;
+    ``shapes`` are its outlines in its own frame, ``shape`` the index of the outline by state;
+    ``speeds`` are in km/h.
     """
 
     id: str
@@ -83,13 +84,13 @@ class Body:
         return float(np.ptp(self.shapes[0], axis=0).prod())
 
     def row(self, state: int) -> int | None:
-        """The row of a state; None if it is not there."""
+        """The row of a state in ``poses``; None if the participant is absent."""
         row = state - self.first
         there = 0 <= row < len(self.poses) and not np.isnan(self.poses[row, 0])
         return row if there else None
 
     def outline(self, state: int) -> Points | None:
-        """The corners of its body in a state; None if it is not there."""
+        """The corners of its outline in a state; None if it is absent."""
         row = self.row(state)
         if row is None:
             return None
@@ -102,15 +103,15 @@ class Body:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SceneViolation:
-    """A violation at the ``state`` that decides it, the last if only the end does.
+    """A violation at the ``state`` that decides it; the last state if only the end decides.
 
-    ``short`` names the rule's strength, its article and the objects; ``against`` are these by the
-    ids of their participants. ``measured`` says by how much, a line for each comparison,
-    ``deciding_values`` what else decides then; ``read`` is what the rule reads of these objects,
-    ``decides`` which rows of it, and ``narrowly`` by row and state how narrowly a signal was
-    decided, where it is known.
-    ``links`` are, by state, the nearest points of ego and the other one (x, y, x, y), NaN where one
-    of them is missing; ``gaps`` the rulebook's own gap (m) to it, None where it has none.
+    ``short`` has the rule's strength, its article and the objects; ``against`` are the ids of these
+    objects' participants. ``measured`` has a line for each comparison with its margin,
+    ``deciding_values`` the other values that decide; ``read`` is the ribbon of what the rule reads
+    about the objects, ``decides`` the rows of it that decide, and ``narrowly`` maps a row to the
+    margin of its signal by state, where known.
+    ``links`` are, by state, the nearest points of ego and the other participant (x, y, x, y), NaN
+    where one is absent; ``gaps`` is the rulebook's gap (m) to it, None where there is none.
     """
 
     rule: str
@@ -130,20 +131,20 @@ class SceneViolation:
     gaps: tuple[float | Interval | None, ...]
 
     def gap_text(self, state: int) -> str:
-        """The distance to the other one in a state, empty if there is none."""
+        """The distance to the other participant in a state; empty if there is none."""
         ax, ay, bx, by = self.links[state].tolist()
         gap = self.gaps[state]
         if np.isnan(ax):
             return ""
         if isinstance(gap, Interval):
             return f"{number_with_error(gap.middle, gap.error, 1)} m"
-        # Beside each other bodies have no gap along the road; what is drawn is measured then.
+        # Bodies beside each other have no gap along the road; then the distance drawn is shown.
         return f"{gap or np.hypot(bx - ax, by - ay):.1f} m"
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class DriveScene:
-    """What is to be seen of a drive in ``states`` states; ``bodies`` begin with ego."""
+    """The visible content of a drive in ``states`` states; the first of ``bodies`` is ego."""
 
     title: str
     notes: tuple[str, ...]
@@ -159,9 +160,9 @@ class DriveScene:
     violations: tuple[SceneViolation, ...]
 
     def time_s(self, state: int) -> float:
-        """The recording's time (s) of a state."""
+        """The time of a state in the recording (s)."""
         return round(self.start_s + state * self.step_s, 9)
 
     def nearest_state(self, time_s: float) -> int:
-        """The state whose time is nearest."""
+        """The state nearest to a time."""
         return round(min(max((time_s - self.start_s) / self.step_s, 0), self.states - 1))

@@ -1,4 +1,4 @@
-"""The nearest points of two bodies, state by state."""
+"""The nearest points of two bodies by state."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from rulec.recordings.recording import Points
 from rulec.report.pictures.drives.drive_scene import Body
 
 _AS_NEAR_M = 0.25
-"""Points that are farther by less are as near: of parallel sides the middle is taken."""
+"""Points farther by less (m) count as equally near: for parallel sides the middle is taken."""
 
 
 def nearest_points(ego: Body, other: Body | None, states: int) -> NDArray[float64]:
-    """Nearest points (x, y, x, y) by state, NaN where one of both is missing."""
+    """The nearest points (x, y, x, y) by state, NaN where one body is absent."""
     links = np.full((states, 4), np.nan)
     for state in range(states) if other else ():
         own, theirs = ego.outline(state), other.outline(state) if other else None
@@ -24,9 +24,9 @@ def nearest_points(ego: Body, other: Body | None, states: int) -> NDArray[float6
 
 
 def _nearest(own: Points, theirs: Points) -> NDArray[float64]:
-    """The middle of all corners and feet that are as near as the nearest ones.
+    """The middle of all point pairs that are about as near as the nearest one.
 
-    Of bodies that overlap a place that both cover.
+    For overlapping bodies, a point that both cover, twice.
     """
     common = np.concatenate([own[_inside(own, theirs)], theirs[_inside(theirs, own)]])
     if len(common):
@@ -41,7 +41,7 @@ def _nearest(own: Points, theirs: Points) -> NDArray[float64]:
 
 
 def _feet(corners: Points, ring: Points) -> tuple[Points, Points, NDArray[float64]]:
-    """Corners, each with its nearest point on a ring, and their distances."""
+    """The corners, the nearest point on a ring for each, and their distances."""
     start, along = ring, np.roll(ring, -1, axis=0) - ring
     length = np.maximum((along**2).sum(axis=1), 1e-12)
     part = np.clip(((corners[:, None] - start) * along).sum(axis=2) / length, 0, 1)
@@ -53,7 +53,7 @@ def _feet(corners: Points, ring: Points) -> tuple[Points, Points, NDArray[float6
 
 
 def _inside(points: Points, ring: Points) -> NDArray[np.bool_]:
-    """Flags of points inside a convex ring."""
+    """Mask of the points inside a convex ring."""
     along = np.roll(ring, -1, axis=0) - ring
     to = points[:, None] - ring
     across = along[:, 0] * to[..., 1] - along[:, 1] * to[..., 0]

@@ -1,4 +1,4 @@
-"""A scene as compact data for its page: centimetres and milliradians, each from the one before."""
+"""A scene as compact data for its page: centimetres and milliradians, as differences."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MRAD = 1000
 
 
 def scene_data(scene: DriveScene) -> dict[str, Any]:
-    """The scene: what never moves, bodies by state, violations."""
+    """The scene: static content, bodies by state, violations."""
     return {
         "ego": scene.ego,
         "start": scene.start_s,
@@ -36,7 +36,7 @@ def scene_data(scene: DriveScene) -> dict[str, Any]:
 
 
 def _line(points: Points) -> list[int]:
-    """Places in turn, without points that a line of 2 cm does not show."""
+    """Points as differences in cm, without points that are equal to the one before."""
     places = np.rint(points * _CM).astype(int)
     kept = places[np.append(True, np.any(np.diff(places, axis=0) != 0, axis=1))]
     steps: list[int] = np.diff(kept, axis=0, prepend=0).ravel().tolist()
@@ -44,7 +44,7 @@ def _line(points: Points) -> list[int]:
 
 
 def _steps(values: NDArray[float64]) -> list[int]:
-    """Whole numbers as differences; one that is missing is like the one before."""
+    """Whole numbers as differences; a missing value repeats the one before."""
     known = np.maximum.accumulate(np.where(np.isnan(values), 0, np.arange(len(values))))
     steps: list[int] = np.diff(np.rint(values[known]).astype(int), prepend=0).tolist()
     return steps
@@ -104,7 +104,7 @@ def _span(links: NDArray[float64]) -> tuple[int, int]:
 
 
 def _row(row: RibbonRow) -> dict[str, Any]:
-    """A row by its runs: last state, value, style, bounds; no value where nobody is there."""
+    """A row as runs: last state, value, style, bounds; no value where the object is absent."""
     number = not row.values
     runs: list[list[Any]] = []
     for run in row.runs:

@@ -19,7 +19,7 @@ from rulec.report.pictures.drives.drive_scene import (
 )
 
 MAP_REACH_M = 150.0
-"""A lanelet farther from ego's path is not drawn."""
+"""A lanelet farther from ego's path (m) is not drawn."""
 
 _FOOTWAYS = frozenset({"sidewalk", "bicycleLane"})
 _MARKS: dict[LaneMark | None, MarkKind] = {
@@ -39,7 +39,7 @@ _SAME_MARK_M = 0.2
 
 
 def lanelets_near(recording: Recording, path: Points) -> list[Lanelet]:
-    """The lanelets near a path, crosswalks last, since they lie above."""
+    """The lanelets near a path; crosswalks come last, to be drawn over the others."""
     low, high = path.min(axis=0) - MAP_REACH_M, path.max(axis=0) + MAP_REACH_M
     near = [
         lanelet
@@ -55,7 +55,7 @@ def _meets(lanelet: Lanelet, low: NDArray[float64], high: NDArray[float64]) -> b
 
 
 def _distance(lanelet: Lanelet, path: Points) -> float:
-    """The distance (m) from a path's points to the segments of a lanelet's centre."""
+    """The smallest distance (m) of a sample of the path's points to a lanelet's centre line."""
     start, along = lanelet.centre[:-1], np.diff(lanelet.centre, axis=0)
     length = np.maximum((along**2).sum(axis=1), 1e-9)
     from_start = path[:: max(1, len(path) // 200), None, :] - start
@@ -81,7 +81,7 @@ def _surface(lanelet: Lanelet) -> Surface:
 
 
 def road_marks(lanelets: Sequence[Lanelet], origin: Points) -> Iterator[RoadMark]:
-    """The bounds of lanes, each once, though neighbours share them."""
+    """The boundaries of lanes, each once, even if neighbouring lanelets share it."""
     drawn: set[tuple[int, ...]] = set()
     for lanelet in lanelets:
         if _surface(lanelet) == "crossing":
@@ -95,7 +95,7 @@ def road_marks(lanelets: Sequence[Lanelet], origin: Points) -> Iterator[RoadMark
 
 
 def scene_lights(lanelets: Iterable[Lanelet], origin: Points, steps: range) -> Iterator[SceneLight]:
-    """The lights of lanelets, with their colours over some time steps."""
+    """The lights of lanelets, with their colours over a range of time steps."""
     for lanelet in lanelets:
         end = np.stack([lanelet.left[-1], lanelet.right[-1]]) - origin
         for number, light in enumerate(lanelet.lights):
@@ -110,7 +110,7 @@ def scene_lights(lanelets: Iterable[Lanelet], origin: Points, steps: range) -> I
 
 
 def scene_signs(lanelets: Sequence[Lanelet], origin: Points) -> Iterator[SceneSign]:
-    """The signs where they begin to hold, at the right of the road."""
+    """The signs at the right of the road, where they begin to apply."""
     by_id = {lanelet.id: lanelet for lanelet in lanelets}
     for lanelet in lanelets:
         before = [by_id[name] for name in lanelet.predecessors if name in by_id]

@@ -1,4 +1,4 @@
-"""A drive of a recording and its verdict, made a scene."""
+"""Make a scene of a recorded drive and its verdict."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ from rulec.report.verdicts.verdict_report import in_a_line, open_in_words
 from rulec.vocabulary.partial_values import Interval
 
 SIGHT_M = 120.0
-"""A participant that is farther from ego is not drawn."""
+"""A participant farther from ego (m) is not drawn."""
 
 MOST_VIOLATIONS = 50
-"""So many are drawn of a drive."""
+"""Number of a drive's violations that are drawn."""
 
 MOST_OPEN = 6
-"""So many rules that are open, or cannot be judged, are named."""
+"""Number of rules named that are open, or that cannot be judged."""
 
 _KMH = 3.6
 
@@ -45,9 +45,9 @@ def drive_scene(
     verdicts: RecordingVerdicts,
     kept: frozenset[str] | None = None,
 ) -> DriveScene:
-    """The scene of a drive, with its violations of the rules ``kept``, None being all.
+    """The scene of a drive, with its violations of the rules ``kept``; None for all rules.
 
-    A recording that was mirrored to be judged is drawn as it was recorded.
+    A recording that was mirrored for judging is drawn as recorded.
     """
     chosen = [
         violation for violation in verdict.violations if kept is None or violation.rule in kept
@@ -75,7 +75,7 @@ def drive_scene(
     lanelets = scene_map.lanelets_near(recording, path)
     bodies = _bodies(tracks, row, origin)
     known = {body.id for body in tracks.participants}
-    # An object has a number more than its participant when it has come back.
+    # An object's name is its participant's id, with a number appended if it has returned.
     participants = {
         name: name if name in known else name.rpartition("_")[0] for name in drive.arrays.objects
     }
@@ -101,7 +101,7 @@ def drive_scene(
 
 
 def _notes(verdicts: RecordingVerdicts, verdict: Verdict) -> Iterator[str]:
-    """What else is to be known: what is open, what was not judged, how it was judged."""
+    """Further remarks: open verdicts, rules not judged, and how it was judged."""
     for result in verdict.open[:MOST_OPEN]:
         about = f" for {' and '.join(result.binding.values())}" if result.binding else ""
         yield f"{result.rule}{about}: {open_in_words(result)}"
@@ -123,7 +123,7 @@ def _in_time(violations: Sequence[Violation]) -> list[Violation]:
 
 
 def _bodies(tracks: Tracks, ego: int, origin: Points) -> tuple[Body, ...]:
-    """Ego, then everybody else in sight of it at some time."""
+    """Ego, then all participants that are within sight of it at some time."""
     distance = np.hypot(tracks.x - tracks.x[ego], tracks.y - tracks.y[ego])
     in_sight = tracks.present & (np.nan_to_num(distance, nan=np.inf) <= SIGHT_M)
     others = [row for row in np.flatnonzero(in_sight.any(axis=1)).tolist() if row != ego]
@@ -165,7 +165,7 @@ def _in_own_frame(outline: Points, pose: NDArray[float64]) -> Points:
 
 
 def _ring(points: Points) -> Points:
-    """The corners in their order: of a polygon the middles of its sides may stand behind them."""
+    """The corners in order, without the middles of the sides that may follow them in the array."""
     corners = points[: len(points) // 2]
     middles = (corners + np.roll(corners, -1, axis=0)) / 2
     behind = len(points) % 2 == 0 and np.allclose(points[len(corners) :], middles, atol=0.02)
@@ -218,7 +218,7 @@ def _objects_of(violation: Violation) -> str:
 
 
 def _deciding_values(explanation: Explanation) -> Iterator[str]:
-    """The values that decide, but for numbers: these are measured."""
+    """The deciding values except numbers, which are in ``measured``."""
     at = explanation.states.index(explanation.decisive)
     for fact in explanation.facts:
         value = fact.values[at]
