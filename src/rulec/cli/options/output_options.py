@@ -123,7 +123,7 @@ def output_options(
 ) -> Callable[[Decorated], Decorated]:
     """``-o FILE``, ``--output-format NAME`` and, if ``json`` is a format, ``--json``.
 
-    The verb is given ``to``, an Output; with ``multiple`` a tuple of them.
+    The verb receives ``to``, an Output; with ``multiple`` a tuple of them.
 
     Args:
         endings: the formats.
@@ -234,7 +234,7 @@ def chosen_format(
 
 
 def _one_format(named: Mapping[str, str]) -> str | None:
-    """The format that these options name, if any. Raises click.UsageError if there are two."""
+    """The format that these options name, if any. Raises click.UsageError if they differ."""
     if len(set(named.values())) > 1:
         raise click.UsageError(f"{' and '.join(named)} contradict each other.")
     return next(iter(named.values()), None)

@@ -127,7 +127,7 @@ def only_sources(rulebooks: Iterable[str], lack: str) -> None:
     """Refuse compiled rulebooks, with a reason such as ``"cannot be audited"``.
 
     Raises:
-        click.UsageError: one of these is compiled.
+        click.UsageError: a rulebook is compiled.
     """
     compiled = next((rulebook for rulebook in rulebooks if rulebook.endswith(".json")), None)
     if compiled is not None:
@@ -250,7 +250,7 @@ def is_from(context: click.Context, field: str, source: ParameterSource) -> bool
 
 
 def jobs_option(task: str) -> Callable[[Decorated], Decorated]:
-    """``-j N``, from which Jobs are made."""
+    """``-j N``, read as Jobs."""
     return click.option(
         "-j",
         "--jobs",

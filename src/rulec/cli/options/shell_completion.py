@@ -77,7 +77,7 @@ def complete_codes(
 
 
 def _folders() -> tuple[Path, ...]:
-    """The project's own folders; none, silently, if its settings are wrong."""
+    """The project's own folders; empty, without a message, if its settings are wrong."""
     try:
         return search_path()
     except RulecError:
