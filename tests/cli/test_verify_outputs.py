@@ -170,7 +170,7 @@ def test_a_broken_recording_on_standard_input_has_that_name(verify, monkeypatch)
         ((A, "-o", A), "is named already, and would be overwritten"),
         (("drives", "-o", A), "is recorded traffic, a map, or read along with these"),
         ((A, "-o", "a.csv", "-o", "b.csv", "--json"), "each says its own format"),
-        ((A, "-o", "-", "-o", "-"), "standard output takes one format"),
+        ((A, "-o", "-", "-o", "-"), "standard output can have only one format"),
         (("drives", "-o", "a.mcap"), "MCAP has one time line"),
         ((A, "-o", "a.xls"), "one of .txt, .json, .jsonl, .ndjson, .csv, .parquet, .pq, .xml"),
     ],

@@ -41,11 +41,11 @@ _EXIT_STATUS = (
 )
 
 _ENVIRONMENT = {
-    "RULEC_CACHE_DIR": "Where is kept what was checked, formatted and compiled, in place of "
-    "$XDG_CACHE_HOME/rulec or ~/.cache/rulec.",
-    "RULEC_JOBS": "How many processes there may be, where -j does not say so.",
-    "RULEC_LIMITS": "Limits that are lifted or lowered, as --limit has them.",
-    "NO_COLOR, FORCE_COLOR": "No colour at all, or colour in pipes, too; --color outweighs both.",
+    "RULEC_CACHE_DIR": "The folder of the cache of checked, formatted and compiled files, in place "
+    "of $XDG_CACHE_HOME/rulec or ~/.cache/rulec.",
+    "RULEC_JOBS": "The number of processes, where -j does not give it.",
+    "RULEC_LIMITS": "Limits to raise or lower, written as for --limit.",
+    "NO_COLOR, FORCE_COLOR": "No colour at all, or colour even in pipes; --color overrides both.",
 }
 
 

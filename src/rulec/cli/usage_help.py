@@ -11,7 +11,7 @@ from rulec.cli.verb_table import VERBS
 from rulec.diagnostics import nearest_name
 
 _TRACES = "`rulec traces s2 -r de -o traces.jsonl` writes some to try"
-_RECORDINGS = "`rulec formats` lists what recorded traffic may be"
+_RECORDINGS = "`rulec formats` lists the formats of recorded traffic"
 
 EXAMPLES = {
     "audit": ("rulec audit de",),
@@ -155,7 +155,7 @@ def ways_out(problem: click.UsageError) -> Iterator[str]:
     missing = problem.param if isinstance(problem, click.MissingParameter) else None
     if missing is not None and missing.name in ("rulebook", "rulebooks"):
         yield from _rulebook_hint(context) or (
-            "`rulec list rulebooks` shows which there are, such as `de`",
+            "`rulec list rulebooks` shows the available ones, such as `de`",
         )
         return
     verb = context.command_path.removeprefix("rulec").strip()

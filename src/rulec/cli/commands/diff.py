@@ -70,7 +70,7 @@ if TYPE_CHECKING:
     "--witness",
     type=click.Path(dir_okay=False, allow_dash=True),
     metavar="FILE",
-    help="Write the traces that one forbids and the other allows to FILE, as JSON Lines.",
+    help="Write the traces that one rulebook forbids and the other allows to FILE, as JSON Lines.",
 )
 @shared.no_cache_option
 @shared.at_option

@@ -56,7 +56,7 @@ _picture_options = output_options(
 _judging_options = shared.combined(
     [
         shared.rulebook_option(
-            _WHY_ONE, shared.RULEBOOK_HELP + " Left out, nothing is judged.", required=False
+            _WHY_ONE, shared.RULEBOOK_HELP + " Without it, nothing is judged.", required=False
         ),
         shared.number_option(
             "--maneuver",

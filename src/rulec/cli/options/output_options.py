@@ -248,13 +248,13 @@ def _refuse_doubtful(to: Sequence[Output], values: Mapping[str, Any]) -> None:
         RulecError: R0702 or R0730, one of them cannot be written.
     """
     if sum(not output.is_file for output in to) > 1:
-        raise click.UsageError("standard output takes one format.")
+        raise click.UsageError("standard output can have only one format.")
     for output in to:
         if not output.is_file and output.form in _BINARY and sys.stdout.isatty():
             raise click.UsageError(f"{output.form} is no text: write it to a file, with -o FILE")
     written = [output.path for output in to if output.is_file]
     if len(set(map(_identity, written))) < len(written):
-        raise click.UsageError("a file is named twice by -o.")
+        raise click.UsageError("-o names the same file twice.")
     refuse_overwriting(to, list(_texts(values.values())))
     for output in to:
         if output.is_file and not output.is_folder:
