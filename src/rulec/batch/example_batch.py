@@ -47,8 +47,8 @@ def measured_runs(
 ) -> Iterator[MeasuredRun | RulecError]:
     """The run of each rulebook with its coverage, or why there is none, in the rulebooks' order.
 
-    ``lost`` is called with a rulebook whose process was killed, and the signal, before it is run
-    again.
+    ``lost`` is called with a rulebook whose process was killed (and is started again), and the
+    signal.
     """
     # A browser's Python has no processes: imported only if several may be requested.
     from rulec.batch.worker_pool import LostTask, in_order

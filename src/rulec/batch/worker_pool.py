@@ -61,10 +61,9 @@ def in_order(
     """Each task with each of its results, in the order of the tasks.
 
     ``work`` is sent to other processes, so it has to be a module's function or a partial of one,
-    and give the same results on each call. If one process is enough or a single task is left, it is
-    called in this process. ``tell`` is called with the number of finished tasks. If a task's
-    process is killed, ``lost`` is called with the task and the signal, and a new process repeats
-    the task once.
+    and always give the same results. For one process or a single task it is called in this process.
+    ``tell`` is called with the number of finished tasks. If a task's process is killed, ``lost`` is
+    called with the task and the signal, and a new process repeats the task once.
     """
     begin = monotonic()
     here = 0

@@ -191,10 +191,7 @@ def example_warnings(
 
 
 def is_inherited(outcome: ExampleOutcome, book: str) -> bool:
-    """Whether the rule or the example comes from another rulebook than ``book``.
-
-    Then ``book`` has to undo its own change, rather than correct the rule or the example.
-    """
+    """Whether rule or example are from another book, so that ``book`` should undo its change."""
     own, example = outcome.rule.span, outcome.example.span
     apart = own is not None and example is not None and own.source != example.source
     return outcome.rule.book != book or apart

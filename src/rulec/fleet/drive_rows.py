@@ -154,8 +154,8 @@ class DriveRows:
 def driven_m(drive: Drive) -> float | None:
     """The distance that ego drove (m) along its positions; None if these are unknown.
 
-    Recorded positions fluctuate: a position counts only if it is at least ``MOVED_M`` away from the
-    last one counted.
+    Recorded positions fluctuate: one counts only if it is at least ``MOVED_M`` from the last one
+    counted.
     """
     places = drive.places
     if not places:

@@ -15,8 +15,7 @@ TableKind = Literal["tracks", "traces"]
 FILE, RECORDING, MAP, ROWS = "file", "recording", "map", "rows"
 """Columns that both kinds of tables may have in addition.
 
-They contain a row's file, its recording, the recording's map, and the row count of its recording or
-trace.
+They contain a row's file, recording, map, and the row count of its recording or trace.
 """
 
 MOST_SEEN = 1 << 12

@@ -62,9 +62,8 @@ class RuleTitle:
 class Counted:
     """The drives in files of findings; ``not_judged`` is the number of drives without a verdict.
 
-    ``judged_by`` maps a rulebook's hash to the first of its rows, which names version, thresholds
-    and assumptions, in the order of the files. ``rules`` maps a hash to the rules that drives were
-    judged by.
+    ``judged_by`` maps a rulebook's hash to its first row, which names version, thresholds and
+    assumptions, in the files' order. ``rules`` maps a hash to the rules that drives were judged by.
     """
 
     by: tuple[GroupKey, ...]

@@ -89,8 +89,7 @@ def _counts(file: Path, folder: Path) -> bool:
 def finding_rows(path: Path) -> Iterator[FindingRow]:
     """The rows of drives and of rules in a file.
 
-    Raises RulecError R0701 if it cannot be read, R0706 without pyarrow, R0716 if it has no
-    findings.
+    Raises RulecError R0701 for an unreadable file, R0706 without pyarrow, R0716 without findings.
     """
     name = path.name.lower().removesuffix(".gz")
     if name.endswith(_PARQUET):

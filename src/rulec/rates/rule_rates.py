@@ -34,9 +34,8 @@ class Rate:
     """A rate from ``least`` to ``most``, which differ if some verdict is open.
 
     ``exact`` is its interval if events are independent. ``bootstrap`` is the interval over drives,
-    None where it says nothing: without violations, or with fewer than two drives. ``clustered`` is
-    the interval if only drives are independent, and a drive may violate at each of its
-    opportunities.
+    None if it says nothing: without violations, or for fewer than two drives. ``clustered`` is the
+    interval if only drives are independent, and may violate at every opportunity.
     """
 
     least: float

@@ -24,8 +24,8 @@ class JsonPart(msgspec.Struct, frozen=True, kw_only=True):
 class JsonDocument(msgspec.Struct, frozen=True, kw_only=True):
     """A whole output, or a line of one.
 
-    ``version`` grows with every change that a reader has to know of: a field that goes, or that
-    means something else. Fields may be added without it.
+    ``version`` grows with every change that readers have to know of: a field that is removed, or
+    that changes its meaning. Fields may be added without a new version.
     """
 
     version: Literal[1] = 1
@@ -58,8 +58,7 @@ def as_indented(document: Any) -> str:
 def as_builtins(document: Any) -> Any:
     """Turn a document into dicts, lists, texts and numbers.
 
-    They are written by ``json``, which spells numbers as Python does and allows integers of any
-    size.
+    ``json`` writes them: it spells numbers as Python does, and allows integers of any size.
     """
     return msgspec.to_builtins(document, enc_hook=_plain)
 

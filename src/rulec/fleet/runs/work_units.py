@@ -29,9 +29,8 @@ class TablePiece(NamedTuple):
 class WorkUnit:
     """What is judged in one go into one file of findings: a recording, or a ``piece`` of a table.
 
-    The drives of a piece are those whose first row is in it. Keys in ``others`` belong to drives
-    that begin in an earlier piece; drives with keys in ``spread`` also have rows in the ``further``
-    pieces.
+    A piece's drives are those whose first row is in it. Keys in ``others`` are of drives that begin
+    in an earlier piece; drives with keys in ``spread`` have more rows in the ``further`` pieces.
     """
 
     path: str

@@ -23,21 +23,21 @@ class PlaceData(JsonPart, frozen=True, kw_only=True):
 
 
 class LabelData(JsonPart, frozen=True, kw_only=True):
-    """A further place worth looking at."""
+    """A further place worth showing."""
 
     place: PlaceData | None
     message: str
 
 
 class FixData(JsonPart, frozen=True, kw_only=True):
-    """An edit that mends something: what stands at ``place`` becomes ``text``."""
+    """An edit that corrects a mistake: the text at ``place`` is replaced by ``text``."""
 
     place: PlaceData
     text: str
 
 
 class FindingData(JsonDocument, frozen=True, kw_only=True):
-    """A mistake or a warning; what it does not have is empty."""
+    """A mistake or a warning; fields that do not apply are empty."""
 
     code: str
     severity: Literal["error", "warning"]

@@ -111,8 +111,7 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True
 class Complaints:
     """Errors about many inputs: the first of each kind are shown, others counted.
 
-    Repetitions of the same text are only counted, too, as with an error in each drive of a
-    recording.
+    Repetitions of the same text are only counted, too, such as an error in each drive of a file.
     """
 
     def __init__(self, most: int = 10) -> None:

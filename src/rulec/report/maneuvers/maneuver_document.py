@@ -33,7 +33,7 @@ class SceneData(JsonPart, frozen=True, kw_only=True):
 
 
 class DeadEndData(JsonPart, frozen=True, kw_only=True):
-    """When the last layer begins that a way reaches, who closes it, which options open one."""
+    """The start of the last layer reached, what closes it, and which options would open a way."""
 
     last_s: float
     closed_by: Sequence[str]
@@ -41,9 +41,9 @@ class DeadEndData(JsonPart, frozen=True, kw_only=True):
 
 
 class TrajectoryData(JsonPart, frozen=True, kw_only=True):
-    """A trajectory that proves a maneuver drivable: in m, m/s and m/s², and what it costs.
+    """A trajectory that proves a maneuver drivable (m, m/s, m/s²), and its costs.
 
-    ``states`` are at the ends of pieces: time, s, speed along, d, speed across. In between
+    ``states`` are at the ends of pieces: time, s, speed along, d, speed across. In between,
     accelerations are constant.
     """
 
@@ -54,7 +54,7 @@ class TrajectoryData(JsonPart, frozen=True, kw_only=True):
 
 
 class LevelPenalty(JsonPart, frozen=True, kw_only=True):
-    """The summed weight of violated rules by levels; null is no level."""
+    """The summed weight of violated rules by levels; null stands for no level."""
 
     strength: Strength
     levels: Sequence[str | None]
@@ -62,9 +62,9 @@ class LevelPenalty(JsonPart, frozen=True, kw_only=True):
 
 
 class ManeuverViolation(JsonPart, frozen=True, kw_only=True):
-    """A violated rule; ``lost_s`` is null if final only at the end.
+    """A violated rule; ``lost_s`` is null if only the end decides.
 
-    ``inherited_from`` names the rulebook whose law it is where this one has not confirmed it.
+    ``inherited_from`` names the rulebook that it comes from, if this one has not confirmed it.
     """
 
     rule: str
@@ -106,7 +106,7 @@ class BindingProbability(JsonPart, frozen=True, kw_only=True):
 class RuleProbabilityData(JsonPart, frozen=True, kw_only=True):
     """The probability that a rule is kept, null if unknown.
 
-    If there is a ``kept_at_most`` both are bounds, since it depends on unknown values.
+    With ``kept_at_most`` both are bounds, because it depends on unknown values.
     """
 
     rule: str
@@ -117,7 +117,7 @@ class RuleProbabilityData(JsonPart, frozen=True, kw_only=True):
 
 
 class ChancesData(JsonPart, frozen=True, kw_only=True):
-    """The probabilities that nobody hits ego, and that rules are kept."""
+    """The probabilities that no obstacle hits ego, and that rules are kept."""
 
     clear: float
     every_hard_rule: float | None
@@ -128,9 +128,9 @@ class ChancesData(JsonPart, frozen=True, kw_only=True):
 class ManeuverData(JsonPart, frozen=True, kw_only=True):
     """A maneuver: cost (1/s), margin, cells and bounds in time.
 
-    One that is ranked has ``place``, ``penalty``, ``members`` with this penalty and ``violations``;
-    a class's has ``members``, an example of a pruning ``violations``. Where not all is known
-    ``open`` is what depends on it; it is in the ``penalty``, and not in the one ``at_least``.
+    A ranked one has ``place``, ``penalty``, ``violations``, and the number of ``members`` with that
+    penalty; a class's has ``members``, a pruning's example ``violations``. If values are unknown,
+    ``open`` verdicts depend on them; they count in ``penalty``, but not in ``at_least``.
     """
 
     place: int | UnsetType = UNSET
@@ -148,7 +148,7 @@ class ManeuverData(JsonPart, frozen=True, kw_only=True):
 
 
 class PastViolation(JsonPart, frozen=True, kw_only=True):
-    """A violation by the past, which no maneuver can mend."""
+    """A violation in the past, which no maneuver can undo."""
 
     rule: str
     binding: Mapping[str, str]
@@ -167,9 +167,9 @@ class WorldData(JsonPart, frozen=True, kw_only=True):
 
 
 class PruningData(JsonPart, frozen=True, kw_only=True):
-    """Counts of maneuvers violating a rule, and no other hard one (``alone``).
+    """Counts of maneuvers that violate a rule, and of those that violate no other hard rule.
 
-    On ``open`` more it depends on what is unknown.
+    The latter is ``alone``. For ``open`` further maneuvers it depends on unknown values.
     """
 
     rule: str
@@ -183,7 +183,7 @@ class PruningData(JsonPart, frozen=True, kw_only=True):
 class ClassesData(JsonPart, frozen=True, kw_only=True):
     """The counts of homotopy classes, and the cheapest satisfying members of some.
 
-    So many more are ``open``.
+    ``open`` counts further classes whose verdict is open.
     """
 
     total: int
@@ -195,14 +195,15 @@ class ClassesData(JsonPart, frozen=True, kw_only=True):
 
 
 class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
-    """The counts of maneuvers in a scenario, and further answers asked for.
+    """The counts of maneuvers in a scenario, and the further answers requested.
 
-    On ``open`` more than those ``satisfying`` it depends on what is ``unknown``; ``exact`` is false
-    if there was too much to look at, and some may be known after all. ``judged`` are the rules that
-    half of them or more keep or violate for sure, null unless cells have words. With ``bounds`` of
-    ego's motion (m, s) they are paths through reachable cells, else through all. ``least_braking``
-    (m/s²) is there where one is shown that brakes hard, and none brakes less than that; ``in_way``,
-    the obstacles that are, where no trajectory was found along any of those to be listed.
+    For ``open`` maneuvers, besides those ``satisfying``, the verdict depends on ``unknown`` values;
+    ``exact`` is false if there were too many cases to examine, so that some verdicts may be known
+    after all. ``judged`` are the rules kept or violated for certain by at least half of the
+    maneuvers, null unless cells have words. With ``bounds`` of ego's motion (m, s) maneuvers are
+    paths through reachable cells, else all. ``least_braking`` (m/s²) is set if a maneuver shown
+    brakes hard, and none brakes less; ``in_way``, the obstacles in the way, if no trajectory was
+    found along any to be listed.
     """
 
     scenario: str

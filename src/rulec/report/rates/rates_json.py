@@ -18,7 +18,7 @@ class JudgedByData(JsonPart, frozen=True, kw_only=True):
 
 
 class RateData(JsonPart, frozen=True, kw_only=True):
-    """A rate, at least and at most, with its intervals."""
+    """A rate as its least and most possible value, with its intervals."""
 
     least: float
     most: float
@@ -50,7 +50,7 @@ class RuleRatesData(JsonPart, frozen=True, kw_only=True):
 
 
 class RatesDocument(JsonDocument, frozen=True, kw_only=True):
-    """What ``rulec rates --json`` prints."""
+    """The output of ``rulec rates --json``."""
 
     by: tuple[GroupKey, ...]
     drives: int

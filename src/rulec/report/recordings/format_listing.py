@@ -130,7 +130,7 @@ def _word_table(
 
 
 class RecordingFormatData(JsonPart, frozen=True, kw_only=True):
-    """A format of recordings; ``words`` are those that some file tells, null if not known."""
+    """A format of recordings; ``words`` are those that some file provides, null if unknown."""
 
     name: str
     title: str
@@ -148,7 +148,7 @@ class MapFormatData(JsonPart, frozen=True, kw_only=True):
 
 
 class FormatsDocument(JsonDocument, frozen=True, kw_only=True):
-    """The formats that are read, in the order in which files are looked at."""
+    """The formats that can be read, in the order in which they are tried."""
 
     recordings: Sequence[RecordingFormatData]
     maps: Sequence[MapFormatData]

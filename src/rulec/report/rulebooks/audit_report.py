@@ -32,7 +32,7 @@ class ComparedAudit(Audit):
 
 
 class AuditDocument(JsonDocument, frozen=True, kw_only=True):
-    """The audits of rulebooks; ``sources`` say what their rules rest on, if that was asked for."""
+    """The audits of rulebooks, and of what rules rest on with given ``sources``, if requested."""
 
     audits: Sequence[ComparedAudit]
     sources: Sequence[SourceAudit] = ()

@@ -25,7 +25,7 @@ class BookData(JsonPart, frozen=True, kw_only=True):
 
 
 class RuleSide(JsonPart, frozen=True, kw_only=True):
-    """A rule as one rulebook says it, with its weight exactly."""
+    """A rule as in one rulebook, with its exact weight."""
 
     strength: Strength
     variables: Sequence[Variable]
@@ -50,9 +50,9 @@ class TraceData(JsonPart, frozen=True, kw_only=True):
 
 
 class RulePairData(JsonPart, frozen=True, kw_only=True):
-    """A rule of both rulebooks; the relation is first to second.
+    """A rule of both rulebooks; the relation is that of the first to the second.
 
-    Where they speak of different types of objects, it is compared on those in common.
+    If they refer to different types of objects, they are compared on the common ones.
     """
 
     rule: str

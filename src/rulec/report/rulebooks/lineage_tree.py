@@ -40,7 +40,7 @@ class LineageStepData(JsonPart, frozen=True, kw_only=True):
 class RuleLineageData(JsonPart, frozen=True, kw_only=True):
     """A rule's history from its declaration, perhaps to its removal.
 
-    ``inherited_from`` names the rulebook whose law it is where the last one has not confirmed it.
+    ``inherited_from`` names the rulebook that it comes from, if the last one has not confirmed it.
     """
 
     name: str
@@ -59,7 +59,7 @@ class LineageDocument(JsonDocument, frozen=True, kw_only=True):
 
 
 class ForestDocument(JsonDocument, frozen=True, kw_only=True):
-    """Every rulebook, each behind the one that it extends."""
+    """Every rulebook, each after the one that it extends."""
 
     books: Sequence[rule_lineage.BookHeader]
 

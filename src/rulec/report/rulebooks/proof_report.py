@@ -14,9 +14,9 @@ from rulec.validation.file_proof import RuleProof
 class ProofLine(msgspec.Struct, frozen=True):
     """A rule of a file: ``because`` says why it is not proved, null if it is.
 
-    ``step_s`` is the step that its tables are for, as the file spells it, null for any. ``states``
-    are a shortest trace that they judge otherwise than the formula, if that is why.
-    ``compilers_agree``: two compilers have come to its table, as its file says.
+    ``step_s`` is the step of its tables, as the file spells it, null for any. ``states`` are a
+    shortest trace on which tables and formula differ, if that is the reason. ``compilers_agree``:
+    two compilers have produced its table, according to the file.
     """
 
     rule: str
@@ -35,7 +35,7 @@ class FileProofs(msgspec.Struct, frozen=True):
 
 
 class ProofsDocument(JsonDocument, frozen=True, kw_only=True):
-    """What has been found of each rule of each file."""
+    """The result for each rule of each file."""
 
     files: Sequence[FileProofs]
 

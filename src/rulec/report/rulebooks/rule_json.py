@@ -17,7 +17,7 @@ from rulec.vocabulary import Vocabulary
 
 
 class StateData(JsonPart, frozen=True, kw_only=True):
-    """A state of the automaton, with the verdict if final there."""
+    """A state of the automaton, with the verdict if it is final there."""
 
     state: int
     fate: Fate
@@ -33,9 +33,9 @@ class AutomatonData(JsonPart, frozen=True, kw_only=True):
 class RuleData(JsonPart, frozen=True, kw_only=True):
     """A rule, in English and as a formula.
 
-    If it is the only one, it has its automaton, for steps of ``step_s`` unless that is null, and
-    a shortest trace that it rejects and one close to it that it accepts, null where there are none.
-    ``inherited_from`` names the rulebook whose law it is where this one has not confirmed it.
+    If it is the only one, it has its automaton, for steps of ``step_s`` unless that is null, and a
+    shortest trace that it rejects and a similar one that it accepts, null if there is none.
+    ``inherited_from`` names the rulebook that it comes from, if this one has not confirmed it.
     """
 
     name: str

@@ -38,7 +38,7 @@ class WordText:
 
 
 class WordData(JsonDocument, frozen=True, kw_only=True):
-    """A word: the file that declares it, how, and what is known of it, a paragraph each."""
+    """A word: the file that declares it, its declaration, and paragraphs about it."""
 
     word: str
     declared_in: str

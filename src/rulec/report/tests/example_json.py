@@ -18,7 +18,7 @@ ExampleVerdict = Literal["accept", "reject"]
 
 
 class OutcomeData(JsonPart, frozen=True, kw_only=True):
-    """An example: its stated verdict, and its rule's verdict."""
+    """An example: the verdict it states, and the rule's verdict."""
 
     rulebook: str
     rule: str
@@ -47,7 +47,7 @@ class MissingValueData(JsonPart, frozen=True, kw_only=True):
 
 
 class MissingLimitData(JsonPart, frozen=True, kw_only=True):
-    """A limit that no example is close to where it has this value, and one that would be."""
+    """A limit that no example comes close to with this value, and an example that would."""
 
     limit: str
     value: bool
@@ -70,7 +70,7 @@ class RuleCoverageData(JsonPart, frozen=True, kw_only=True):
 
 
 class CoverageData(JsonPart, frozen=True, kw_only=True):
-    """The coverage of a rulebook's own rules together, with inherited ones, and of each."""
+    """The coverage of own rules, of all with inherited ones, and of each rule."""
 
     percent: float
     percent_with_inherited: float
@@ -78,7 +78,7 @@ class CoverageData(JsonPart, frozen=True, kw_only=True):
 
 
 class ExamplesRun(JsonDocument, frozen=True, kw_only=True):
-    """The examples of rulebooks; ``coverage`` is null if nobody asked for it."""
+    """The examples of rulebooks; ``coverage`` is null unless requested."""
 
     examples: Sequence[OutcomeData]
     passed: int

@@ -26,7 +26,7 @@ class Listed:
 
 
 class ListingDocument(JsonDocument, frozen=True, kw_only=True):
-    """A list for each kind asked for; names without file lack paths."""
+    """A list for each kind requested; names without a file have no path."""
 
     rulebooks: Sequence[Listed] | UnsetType = UNSET
     vocabularies: Sequence[Listed] | UnsetType = UNSET

@@ -1,8 +1,7 @@
 """Findings of verdicts as events in MCAP, which viewers show beside the recording.
 
-Lichtblick and Foxglove show messages of the types ``foxglove.Log`` and ``foxglove.SceneUpdate``:
-https://docs.foxglove.dev/docs/sdk/schemas. Positions are in the frame that viewers of OSI call
-global.
+Lichtblick and Foxglove show the types ``foxglove.Log`` and ``foxglove.SceneUpdate``:
+https://docs.foxglove.dev/docs/sdk/schemas. The frame is called global by viewers of OSI.
 """
 
 from __future__ import annotations

@@ -125,8 +125,8 @@ def time_in_words(finding: VerdictFinding) -> str:
 
 _DOC = """A finding: a rule that is ``violated``, ``open`` or ``not_judged``.
 
-See docs/commands.md, Findings; null is what does not apply, an empty ``inherited_from`` means
-that the rule is the rulebook's own law.
+See docs/commands.md, Findings; fields that do not apply are null, an empty ``inherited_from``
+means that the rule is the rulebook's own law.
 """
 FindingLine = msgspec.defstruct(
     "FindingLine",

@@ -21,8 +21,7 @@ class BatchTally:
     """Verdicts on recordings, summed up per rule.
 
     ``drives`` and ``recordings``: rule -> the number of them in which it is violated; ``first``:
-    rule -> file, drive and time (s) of its first violation. ``satisfied`` and similar fields count
-    drives.
+    rule -> file, drive and time (s) of its first violation. ``satisfied`` etc. count drives.
     """
 
     satisfied: int = 0

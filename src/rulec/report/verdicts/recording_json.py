@@ -43,7 +43,7 @@ class RecordedNotJudged(verdict_json.TraceNotJudged, frozen=True, kw_only=True):
 
 
 class NotDriven(JsonDocument, frozen=True, kw_only=True):
-    """A vehicle without a drive to judge, and ``why_not``."""
+    """A vehicle without a drive to judge; ``why_not`` is the reason."""
 
     trace: str
     rulebook: str

@@ -30,7 +30,7 @@ _STYLES: Mapping[str, str] = {"satisfied": "green", "violated": "red", "pending"
 class ChangeData(JsonPart, frozen=True, kw_only=True):
     """A change of a rule's verdict on a binding by a state.
 
-    ``ended``: one of the objects is no longer there.
+    ``ended``: one of the objects is no longer present.
     """
 
     rule: str
@@ -43,7 +43,7 @@ class ChangeData(JsonPart, frozen=True, kw_only=True):
 
 
 class RangeData(JsonPart, frozen=True, kw_only=True):
-    """The best and the worst of a verdict that is open."""
+    """The best and the worst possible value of an open verdict."""
 
     best: FourValued
     worst: FourValued
@@ -65,7 +65,7 @@ class StateVerdict(JsonDocument, frozen=True, kw_only=True):
 
 
 class StateRefused(JsonDocument, frozen=True, kw_only=True):
-    """A line that is no state, or not one that can follow."""
+    """A line that is no state, or a state that cannot follow the one before."""
 
     state: None
     error: ErrorData

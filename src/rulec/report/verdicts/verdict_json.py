@@ -18,7 +18,7 @@ from rulec.vocabulary.partial_values import Interval, OneOf, PartialValue, Unkno
 
 
 class BoundsData(JsonPart, frozen=True, kw_only=True, rename={"low": "from", "high": "to"}):
-    """A number that lies between two others."""
+    """A number known only within bounds."""
 
     low: float
     high: float
@@ -28,9 +28,9 @@ Value = bool | int | float | str | BoundsData | None
 
 
 class FactData(JsonPart, frozen=True, kw_only=True):
-    """Something that the rule reads, and its value or bounds in each state, null if unknown.
+    """Something that the rule reads, with its value or bounds in each state, null if unknown.
 
-    ``unit`` is a quantity's; ``objects`` are, for a count, those that counted in each state.
+    ``unit`` is that of a quantity; ``objects`` are, for a count, the objects counted in each state.
     """
 
     reads: str
@@ -52,17 +52,17 @@ class FormulaPart(JsonPart, frozen=True, kw_only=True):
 
 
 class RepairData(JsonPart, frozen=True, kw_only=True):
-    """A state to be changed for the rule to be kept."""
+    """A change of a state with which the rule would be kept."""
 
     state: int
     says: str
 
 
 class ExplanationData(JsonPart, frozen=True, kw_only=True):
-    """Explanation of a violation; null ``repair``: no equally long trace complies.
+    """Explanation of a violation; null ``repair``: no trace of the same length complies.
 
-    ``looked_at``, of a long trace: the first and the last state of the window that was looked at,
-    for which no repair was.
+    ``looked_at``, for a long trace: the first and last state of the part that was searched for a
+    repair, without finding one.
     """
 
     book: str
@@ -88,9 +88,9 @@ class ErrorData(JsonPart, frozen=True, kw_only=True):
 class MarginData(JsonPart, frozen=True, kw_only=True):
     """A comparison that decides: ``value`` stands in ``relation`` to ``limit``, in ``unit``.
 
-    Both may be wrong by their errors; of a number that is known no better than to half of it there
-    are bounds, and no error. They differ ``by`` so much, for sure by ``at_least``; with bounds both
-    are for sure.
+    Both may be wrong by their errors; a number known no better than to half of its value has bounds
+    and no error. They differ ``by`` this much, and for certain by ``at_least``; with bounds both
+    are certain.
     """
 
     text: str
@@ -105,7 +105,7 @@ class MarginData(JsonPart, frozen=True, kw_only=True):
 
 
 class DrivePlaceData(JsonPart, frozen=True, kw_only=True):
-    """Where ego's middle is (m, as recorded), and the lanelet of its lane there."""
+    """The position of ego's middle (m, as recorded), and the lanelet of its lane there."""
 
     x: float
     y: float
@@ -117,9 +117,9 @@ class EvidenceData(JsonPart, frozen=True, kw_only=True):
 
     The names that the rule reads were ``measured``, ``assumed`` by the user, taken ``by_default``,
     or ``unknown`` in some state without making a difference. ``from_s`` and ``to_s`` are times of
-    the recording; ``place`` is ego's when the rule is lost, at ``time_s`` of the violation.
-    ``whom`` are those because of whom a word is as it is, as who overtakes ego, where the rule
-    itself names nobody.
+    the recording; ``place`` is ego's position when the rule is lost, at ``time_s`` of the
+    violation. ``whom`` are the participants that cause a word's value, such as the one overtaking
+    ego, if the rule itself names none.
     """
 
     measured: Sequence[str]
@@ -134,11 +134,11 @@ class EvidenceData(JsonPart, frozen=True, kw_only=True):
 
 
 class ViolationData(JsonPart, frozen=True, kw_only=True):
-    """A violated rule and binding; ``step`` null if only the end decides.
+    """A violated rule and binding; ``step`` is null if only the end decides.
 
-    Of recorded traffic, ``time_s`` is the step's time, and ``by_default`` names what the rule reads
-    and nothing supplies. ``inherited_from`` names the rulebook whose law the rule is where this one
-    has not confirmed it; without it the rule is this one's own law.
+    In recorded traffic, ``time_s`` is the time of the step, and ``by_default`` are the names that
+    the rule reads and no source supplies. ``inherited_from`` names the rulebook that the rule comes
+    from, if this one has not confirmed it as its law; without it the rule is this one's own law.
     """
 
     rule: str
@@ -155,7 +155,7 @@ class ViolationData(JsonPart, frozen=True, kw_only=True):
 
 
 class ConditionalData(JsonPart, frozen=True, kw_only=True):
-    """The outcome if unknown names always have these values; numbers are within the bounds."""
+    """The outcome if unknown names always have these values, and numbers are within the bounds."""
 
     when: Mapping[str, bool | str]
     outcome: Literal["kept", "violated", "open"]
@@ -164,8 +164,8 @@ class ConditionalData(JsonPart, frozen=True, kw_only=True):
 class OpenData(JsonPart, frozen=True, kw_only=True):
     """A rule and binding whose outcome is not settled.
 
-    ``depends_on`` is the smallest set of names that decides; ``exact`` is false if there was too
-    much to look at.
+    ``depends_on`` is the smallest set of names that decides; ``exact`` is false if there were too
+    many cases to examine.
     """
 
     rule: str
@@ -179,7 +179,7 @@ class OpenData(JsonPart, frozen=True, kw_only=True):
 
 
 class NotJudgedRule(JsonPart, frozen=True, kw_only=True):
-    """A rule that this source cannot be known to violate, for want of ``untold`` names."""
+    """A rule that cannot be found violated from this source, as ``untold`` names are missing."""
 
     rule: str
     strength: Literal["hard", "soft"]
@@ -189,10 +189,10 @@ class NotJudgedRule(JsonPart, frozen=True, kw_only=True):
 
 
 class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
-    """The verdict on a trace: does it keep every hard rule?
+    """The verdict on a trace: whether it keeps every hard rule.
 
     ``satisfied`` is null if no hard rule is violated, but one is open or not judged. ``presumed``
-    names hold by presumption, because no source tells them. ``engine`` judged, if asked for.
+    names hold by presumption, as no source supplies them. ``engine`` judged, if requested.
     """
 
     trace: str
@@ -206,7 +206,7 @@ class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
 
 
 class TraceNotJudged(JsonDocument, frozen=True, kw_only=True):
-    """A trace that could not be judged; ``trace`` null without an id."""
+    """A trace that could not be judged; ``trace`` is null without an id."""
 
     trace: str | None
     rulebook: str

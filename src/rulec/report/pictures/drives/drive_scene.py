@@ -67,8 +67,7 @@ class Body:
     """A participant with its poses from state ``first`` on.
 
     ``poses`` are x, y (m) and heading (rad) by state, NaN where it is absent or out of sight;
-    ``shapes`` are its outlines in its own frame, ``shape`` the index of the outline by state;
-    ``speeds`` are in km/h.
+    ``shapes`` its outlines in its own frame, ``shape`` their index by state; ``speeds`` km/h.
     """
 
     id: str
