@@ -138,7 +138,7 @@ def test_a_word_of_a_vocabulary(capsys):
         "\n"
         "Supplied by the scene: ego's own motion, and what is measured of others.\n"
         "\n"
-        "Recordings of every format can tell it.\n"
+        "Recordings of every format can provide it.\n"
     )
 
 
@@ -149,8 +149,8 @@ def test_a_word_of_a_vocabulary(capsys):
             "beside",
             ["    station(o: road_user) is one of behind, beside, in_front_of\n", "is one of its"],
         ),
-        ("enters_box", ["vocabulary `road`", "No format of recordings tells it."]),
-        ("tunnel", ["Recordings that can tell it: ", "sumo"]),
+        ("enters_box", ["vocabulary `road`", "No format of recordings provides it."]),
+        ("tunnel", ["Recordings that can provide it: ", "sumo"]),
         ("told_to_go", ["Where no source tells it, its default holds."]),
         ("ego_mass", ["It stays the same as long as a trace goes on."]),
         (

@@ -31,7 +31,7 @@ def test_text(answer):
     assert out.splitlines()[:7] == [
         "scenario    road: 4 s in steps of 0.5 s, partition paper, adjacency touch",
         "obstacles   1 on the road of lanelet 1",
-        "recorded    until 0 s; who is there then is taken to go on at its last speed",
+        "recorded    until 0 s; participants present then are assumed to keep their last speed",
         "derived     CONGESTED = false: it takes 3 vehicles that go ego's way on its road, here 1",
         "graph       18 nodes, 16 edges",
         "maneuvers   1 path through cells",

@@ -232,7 +232,7 @@ def test_rules_without_a_verdict_are_named_hard_ones_first(tmp_path, capsys, mon
     assert lines[at + 1 : at + 4] == [
         "no verdict  hard: fog, thick_fog (visibility); loaded (ego_mass)",
         "no verdict  soft: comfort (visibility)",
-        "            `rulec explain WORD` says which recordings can tell a word in brackets",
+        "            `rulec explain WORD` says which recordings can provide a word in brackets",
     ]
     monkeypatch.setattr("rulec.cli.commands.verify.page_width", lambda: 40)
     main(["verify", three_cars(tmp_path), "-r", str(book), "--explain", "0"])

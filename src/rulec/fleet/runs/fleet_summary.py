@@ -84,7 +84,7 @@ def _files(run: FleetRun) -> Iterator[str]:
     for lost in run.tally.lost:
         yield f"lost        {lost}: its process was stopped twice, perhaps for lack of memory"
     for path in run.leftovers:
-        yield f"left over   {path}: it is of no input of this run"
+        yield f"left over   {path}: it belongs to no input of this run"
     written = run.units - run.before - len(run.tally.lost)
     before = f"; {run.before:,} more were there before" if run.before else ""
     files = "file" if written == 1 else "files"

@@ -167,7 +167,7 @@ def _doubts(maneuvers: Maneuvers) -> Iterator[str]:
     """The lines about open maneuvers, unknown values and rules not judged."""
     if maneuvers.in_doubt and maneuvers.judges:
         yield f"violating   {styled(shown_count(maneuvers.violating), 'bold')}"
-        more = "" if maneuvers.exact else ", or fewer: there was too much to look at"
+        more = "" if maneuvers.exact else ", or fewer: there were too many cases to examine"
         yield f"open        {styled(shown_count(maneuvers.open), 'bold')} more{more}"
     if maneuvers.unknown:
         names = first_of(maneuvers.unknown, MOST_DEFAULTS)
@@ -178,7 +178,7 @@ def _doubts(maneuvers: Maneuvers) -> Iterator[str]:
     if maneuvers.not_judged:
         dark = first_of([rule.rule for rule in maneuvers.not_judged], MOST_DEFAULTS)
         number = f"{len(maneuvers.not_judged)} of {len(maneuvers.rules.rules)} rules"
-        yield visible(f"not judged  {number}, for want of what they read: {dark}")
+        yield visible(f"not judged  {number}, because words that they read are missing: {dark}")
 
 
 def _scene(maneuvers: Maneuvers) -> Iterator[str]:
@@ -192,8 +192,8 @@ def _scene(maneuvers: Maneuvers) -> Iterator[str]:
     yield f"obstacles   {kept} on the road of lanelet {account.reference}{out}"
     if float(len(maneuvers.graph.layers) * maneuvers.graph.step) > account.until_s:
         yield (
-            f"recorded    until {max(account.until_s, 0):g} s; who is there then is taken to go on "
-            "at its last speed"
+            f"recorded    until {max(account.until_s, 0):g} s; participants present then are "
+            "assumed to keep their last speed"
         )
     for name, (value, because) in derived_signals(maneuvers, account).items():
         shown = str(value).lower() if isinstance(value, bool) else value

@@ -51,8 +51,8 @@ def rates_drawing(rates: ViolationRates, per: str) -> Drawing:
     percent = f"{100 * rates.confidence:g} %"
     title = (
         f"Violations {PER[per]} by {books}: {rates.drives:,} drives; {percent} intervals, "
-        "above for independent opportunities, amid over drives, below for independent drives of "
-        "any kind; two boxes: the least and the most"
+        "above for independent opportunities, in the middle over drives, below for independent "
+        "drives of any kind; two boxes: the least and the most"
     )
     return Drawing(title, [_forest(title, rates, shown)], None)
 

@@ -78,7 +78,7 @@ def as_text(listed: Sequence[ListedFormat], order: Sequence[str], *, words: bool
         heads = [f"  {number}  {form.name}" for number, form in enumerate(forms, 1)]
         numbers = [str(number) for number in range(1, len(forms) + 1)]
         lines = table_lines([("  word", *numbers), *((f"  {row[0]}", *row[1:]) for row in table)])
-        title = f"words that some file of a format can tell ({TELLS}) or none can ({TELLS_NOT})"
+        title = f"words that some file of a format can provide ({TELLS}) or none can ({TELLS_NOT})"
         parts.append("\n".join([title, *heads, *lines]))
     return "\n\n".join(parts)
 

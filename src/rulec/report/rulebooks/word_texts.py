@@ -172,7 +172,7 @@ def _tellers(name: str) -> str:
 
     formats = sorted(form for form, words in TELLABLE_WORDS.items() if name in words)
     if not formats:
-        return "No format of recordings tells it."
+        return "No format of recordings provides it."
     if len(formats) == len(TELLABLE_WORDS):
-        return "Recordings of every format can tell it."
-    return f"Recordings that can tell it: {', '.join(formats)}."
+        return "Recordings of every format can provide it."
+    return f"Recordings that can provide it: {', '.join(formats)}."

@@ -36,7 +36,7 @@ def as_text(verdicts: RecordingVerdicts, tally: ViolationTally, width: int) -> s
     if verdicts.mirrored:
         lines.append(mirrored_line(str(recording.side)))
     elif recording.side is None and verdicts.rules.traffic == "left":
-        lines.append("side        nothing tells on which side traffic keeps: taken to be the left")
+        lines.append("side        the side of traffic is unknown: assumed to be the left")
     defaults = defaulted_names(verdicts, tally.words or frozenset())
     if defaults:
         lines.append(f"by default  {first_of(defaults, MOST_DEFAULTS)}: the recording does not say")
@@ -89,7 +89,7 @@ def _unjudged(rules: Sequence[CompiledRule], tally: ViolationTally, width: int) 
     if len(rules) > MOST_UNJUDGED:
         yield from _folded("", f"and {len(rules) - MOST_UNJUDGED:,} more", width)
     if by_words:
-        way_out = "`rulec explain WORD` says which recordings can tell a word in brackets"
+        way_out = "`rulec explain WORD` says which recordings can provide a word in brackets"
         yield from _folded("", way_out, width)
 
 

@@ -99,7 +99,7 @@ def open_in_words(result: OpenVerdict, most: int = MOST_CASES) -> str:
     if "not over" in result.because:
         parts.append("not over when the trace is cut" if not parts else "not over")
     if "step" in result.because:
-        parts.append("hangs on a bound that is no multiple of the step")
+        parts.append("depends on a bound that is no multiple of the step")
     fewest = fewest_cases(result.outcomes)
     cases = [f"{case.outcome} if {_conditions(case.when)}" for case in fewest[:most]]
     if len(fewest) > most:
@@ -175,7 +175,7 @@ def judged_by(judged: Mapping[str, int], compiled_by: str) -> str:
     if compiled_by:
         parts.append(f"compiled by {compiled_by}")
     if judged.get("python"):
-        parts.append(f"{judged['python']:,} in Python, where C does not tell")
+        parts.append(f"{judged['python']:,} in Python, where C gives no verdict")
     return ", ".join(parts)
 
 

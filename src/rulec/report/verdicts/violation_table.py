@@ -105,7 +105,7 @@ def _repair(explanation: Explanation, options: TableOptions) -> Iterator[str]:
     if explanation.looked_at is not None:
         first, last = explanation.looked_at
         when = options.times.of(first, last)
-        yield f"{INDENT}(states {first}-{last}{when} were looked at, of a long trace)"
+        yield f"{INDENT}(states {first}-{last}{when} of this long trace were examined)"
         return
     changes = kept_if(explanation, options.times)
     for line in changes[:MOST_CHANGES]:
