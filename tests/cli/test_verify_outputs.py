@@ -169,7 +169,7 @@ def test_a_broken_recording_on_standard_input_has_that_name(verify, monkeypatch)
     [
         ((A, "-o", A), "is named already, and would be overwritten"),
         (("drives", "-o", A), "is recorded traffic, a map, or read along with these"),
-        ((A, "-o", "a.csv", "-o", "b.csv", "--json"), "each says its own format"),
+        ((A, "-o", "a.csv", "-o", "b.csv", "--json"), "the ending of each decides its format"),
         ((A, "-o", "-", "-o", "-"), "standard output can have only one format"),
         (("drives", "-o", "a.mcap"), "MCAP has one time line"),
         ((A, "-o", "a.xls"), "one of .txt, .json, .jsonl, .ndjson, .csv, .parquet, .pq, .xml"),
@@ -253,7 +253,10 @@ def test_several_rulebooks_on_traces_and_in_files(verify):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ([A, "-o", "x.sarif"], "sarif is of one rulebook; of several give one of text, json,"),
+        (
+            [A, "-o", "x.sarif"],
+            "sarif can contain only one rulebook; for several give one of text, json,",
+        ),
         (["-"], "standard input is read once"),
     ],
 )

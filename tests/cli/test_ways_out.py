@@ -61,7 +61,10 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
     ("arguments", "way_out"),
     [
         (["show", "germany"], "  = help: did you mean `de` (Germany)?"),
-        (["verify", "x"], "  = help: `rulec list rulebooks` shows the available ones, such as `de`"),
+        (
+            ["verify", "x"],
+            "  = help: `rulec list rulebooks` shows the available ones, such as `de`",
+        ),
         (["explain", "spede"], "did you mean the word `speed`?"),
         (["verify", "-r", "de"], "  = help: such as `rulec verify traces.jsonl -r de`"),
         (["verify", "-r", "de"], "`rulec traces s2 -r de -o traces.jsonl` writes some to try"),

@@ -139,7 +139,7 @@ def print_lost(deed: str, subject: str, signal_number: int | None) -> None:
     """Report a stopped process by its ``deed``, such as "judged", and that it is redone."""
     by = "" if signal_number is None else f" by signal {signal_number}"
     print_remark(
-        f"rulec: the process that {deed} {subject} was stopped{by}; another one does it again"
+        f"rulec: the process that {deed} {subject} was stopped{by}; another one repeats the work"
     )
 
 
@@ -193,7 +193,7 @@ def told_apart(references: Sequence[str]) -> dict[str, str]:
         if other != reference:
             raise click.UsageError(
                 f"`{other}` and `{reference}` would be written to the same files; "
-                "give each a call of its own, with a folder of its own"
+                "give each a separate call with a separate folder"
             )
     return named
 

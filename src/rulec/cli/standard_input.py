@@ -102,7 +102,9 @@ def refuse_twice(context: click.Context) -> None:
         if (own == STANDARD_INPUT and before not in _OUTPUTS) or own in ("-r-", "--rulebook=-")
     ]
     if len(readers) > 1:
-        raise click.UsageError("`-` is standard input, which is one thing; give a file for another")
+        raise click.UsageError(
+            "`-` is standard input, which is read once; give a file for the other"
+        )
 
 
 @contextmanager

@@ -104,7 +104,7 @@ def command(
     if len(rulebooks) != 2:
         books = " ".join(rulebooks)
         raise click.UsageError(
-            f"it compares two rulebooks: of {len(rulebooks)}, `rulec diff --all {books}`"
+            f"it compares two rulebooks; for {len(rulebooks)}, use `rulec diff --all {books}`"
             if len(rulebooks) > 2
             else f"with which rulebook is it to be compared? As in `rulec diff {books or 'de'} nl`"
         )
@@ -212,7 +212,7 @@ def _compared(rulebooks: Sequence[str], pairs: AllPairs, to: Output, *, recalls:
             question.remember(known, paths)
     text, alone, is_complete, is_uniform = known
     if alone:
-        print_remark(f"left out, for they share no rule with others: {', '.join(alone)}")
+        print_remark(f"left out, because they share no rule with others: {', '.join(alone)}")
     if text is None:
         print_remark("there are no two rulebooks to compare")
         return ExitStatus.NOT_ANSWERED

@@ -50,7 +50,7 @@ def command(rulebooks: tuple[str, ...], to: Output, language: str, at: str) -> i
     if not to.is_folder:
         if len(books) > 1:
             raise click.UsageError(
-                f"these are {len(books)} rulebooks, and a document is of one: give a folder for "
+                f"a document describes one rulebook, and these are {len(books)}: give a folder for "
                 "their documents, as in `-o laws/`"
             )
         put_answer(open_session(at).doc(books[0], form, tongue), to)

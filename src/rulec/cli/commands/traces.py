@@ -131,7 +131,7 @@ def _write_drives(
     from rulec.trace.formats.trace_files import write_traces
 
     if (option := _given_maneuvers_option(options)) is not None:
-        raise click.UsageError(f"{option} is for maneuvers, not for what is --recorded.")
+        raise click.UsageError(f"{option} is for maneuvers, not for --recorded drives.")
     book = None if rulebook is None else read_machines(rulebook)
     vocabulary = None if book is None else book.vocabulary
     egos = () if options["ego"] is None else (options["ego"],)

@@ -233,13 +233,13 @@ def _check_inputs(request: VerifyRequest) -> None:
                 check_readable(Path(path))
         raise click.UsageError(
             f"{option} is for recorded traffic, and no file looks like it; add `--input-format "
-            "tracks`, or another of `rulec formats`, to hear what is missing"
+            "tracks`, or another of `rulec formats`, to learn what is missing"
         )
     if request.ends is not None and request.recordings:
         raise click.UsageError("--end is for traces; a recording is always cut.")
     if request.engine == "c" and request.recordings:
         raise click.UsageError(
-            "--engine c is for traces; `rulec traces --recorded` writes drives as such."
+            "--engine c is for traces; `rulec traces --recorded` writes drives as traces."
         )
     step_s = request.step_s
     if step_s is not None and (request.recordings or Fraction(str(float(step_s))) != step_s):
@@ -251,7 +251,7 @@ def _check_outputs(request: VerifyRequest, to: Sequence[Output], *, n_books: int
     for output in to if n_books > 1 else ():
         if output.form not in _OF_SEVERAL_BOOKS:
             raise click.UsageError(
-                f"{output.form} is of one rulebook; of several give one of "
+                f"{output.form} can contain only one rulebook; for several give one of "
                 f"{', '.join(_OF_SEVERAL_BOOKS)}, or judge by each in a call of its own"
             )
     if len(request.recordings) > 1 and any(printed.form == "mcap" for printed in to):

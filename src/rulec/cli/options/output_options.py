@@ -181,7 +181,7 @@ def output_options(
             if len(outputs) > 1 and not multiple:
                 raise click.UsageError("-o is given twice; there is one answer.")
             if len(outputs) > 1 and form is not None:
-                raise click.UsageError("With several files each says its own format, by its end.")
+                raise click.UsageError("With several files, the ending of each decides its format.")
             to = tuple(
                 Output(path, chosen_format(endings, path, form, instead=instead))
                 for path in outputs or (STANDARD_OUTPUT,)

@@ -321,7 +321,7 @@ def requested_drives(
     from rulec.extraction.traffic_thresholds import threshold_options
 
     if options["assumed"] and vocabulary is None:
-        raise click.UsageError("--assume needs a rulebook, in whose words it is: --rulebook R")
+        raise click.UsageError("--assume needs a rulebook that has these words: --rulebook R")
     texts = [text for text in options["assumed"] if text != "defaults"]
     try:
         return RequestedDrives(
@@ -348,7 +348,7 @@ def scene_reading(options: dict[str, Any], vocabulary: Vocabulary | None) -> dic
         return {}
     if vocabulary is None:
         option = "--assume" if assumed else "--told-only"
-        raise click.UsageError(f"{option} needs a rulebook, in whose words it is: --rulebook R")
+        raise click.UsageError(f"{option} needs a rulebook that has the words: --rulebook R")
     return {"assumptions": assumptions(None, assumed, vocabulary), "told_only": told_only}
 
 
