@@ -102,9 +102,7 @@ def refuse_twice(context: click.Context) -> None:
         if (own == STANDARD_INPUT and before not in _OUTPUTS) or own in ("-r-", "--rulebook=-")
     ]
     if len(readers) > 1:
-        raise click.UsageError(
-            "`-` is standard input, which is read once; give a file for the other"
-        )
+        raise click.UsageError("`-` is standard input, read only once; give a file for another")
 
 
 @contextmanager
