@@ -83,7 +83,7 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
             "--automaton: there is no `png`; it is one of text,",
         ),
         (["diff", "de"], "with which rulebook is it to be compared? As in `rulec diff de nl`"),
-        (["diff", "de", "nl", "fr"], "of 3, `rulec diff --all de nl fr`"),
+        (["diff", "de", "nl", "fr"], "for 3, use `rulec diff --all de nl fr`"),
         (["test", "de", "--fail"], "no option `--fail`; did you mean `--fail-on-empty`?"),
         (["test", "de", "--own"], "error: there is no option `--own`\n"),
         (["verify", "x", "-r", "de", "-o", "x.html"], "`rulec draw`.\n  = usage"),
