@@ -118,7 +118,7 @@ def test_sarif_rules_are_those_of_the_results():
     for rule in rules:
         assert rule["shortDescription"]["text"] == all_codes()[rule["id"]].title
         assert "Corrected:" in rule["help"]["text"]
-        assert "```rulec mended\n" in rule["help"]["markdown"]
+        assert "```rulec corrected\n" in rule["help"]["markdown"]
 
 
 def test_sarif_says_when_a_file_could_not_be_read():
