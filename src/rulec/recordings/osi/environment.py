@@ -25,7 +25,7 @@ _COUNTRIES: Mapping[int, str] = {
 """.replace("\n", " ").split(",")
     )
 }
-"""ISO 3166-1: number -> code of three letters, of those whose side of traffic is known."""
+"""ISO 3166-1 numeric code -> alpha-3 code, for countries whose side of traffic is known."""
 
 _RAIN = frozenset({"light", "moderate", "heavy", "very_heavy", "extreme"})
 _FALLS: Mapping[str, bool] = {"none": False, "very_light": True, **dict.fromkeys(_RAIN, True)}
@@ -33,23 +33,29 @@ _DARK: Mapping[str, bool] = {
     **dict.fromkeys(("level1", "level2", "level3", "level4"), True),
     **dict.fromkeys(("level8", "level9"), False),
 }
-"""Below 10 lx the sun has set, from 1,000 lx on it has not; in between an overcast day may be."""
+"""Ambient light level -> dark: true below 10 lx, false from 1,000 lx.
+
+Between, it may be overcast.
+"""
 
 _FAR = frozenset({"excellent", "good", "moderate", "poor", "mist"})
 _FAR_M = 1000.0
-"""In the standard's words fog begins below 1000 m; lighter haze has its names, too."""
+"""The standard calls it fog below 1000 m of visibility; lighter haze has levels of its own."""
 
 
 def country_of(number: int) -> tuple[str, Side | None]:
-    """The code of a country and its side of traffic; empty and None for 0 and for others."""
+    """A country's alpha-3 code and its side of traffic.
+
+    Empty and None for 0 or an unlisted number.
+    """
     code = _COUNTRIES.get(number, "")
     return code, side_in(code) if code else None
 
 
 def weather_of(environment: Fields, lanes: Iterable[Fields]) -> Weather:
-    """The weather: rain, or water on some lane, is wet; ice on some lane icy.
+    """The weather: wet if it rains or any lane has water on it, icy if any lane has ice.
 
-    It is dry, or free of ice, only where all lanes that say anything of it say so.
+    It is dry, or free of ice, only if all lanes with surface data say so.
     """
     roads = [part(lane, "classification", "road_condition") for lane in lanes]
     water = [road["surface_water_film"] for road in roads if "surface_water_film" in road]

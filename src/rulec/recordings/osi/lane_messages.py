@@ -1,4 +1,4 @@
-"""Lanes and their boundaries as a trace has them, before they are lanelets."""
+"""The lanes and lane boundaries of a trace, before they become lanelets."""
 
 from __future__ import annotations
 
@@ -19,27 +19,28 @@ _MARKS: Mapping[str, LaneMark] = {
     "botts_dots": "broken",
     "no_line": "none",
 }
-"""Types of boundaries; kerbs, edges and rails are no marks."""
+"""Boundary type -> lane mark; kerbs, edges and rails are not marks."""
 
 MOST_REFERENCES = 200_000
 MOST_POINTS = 10_000_000
-"""Of all lanes together; a map of a town has a hundredth of it."""
+"""Limit on the points of all lanes together; the map of a town has a hundredth of it."""
 
 _CLOSEST_M = 0.001
 
 
 class Boundary(NamedTuple):
-    """A boundary: its line, and its mark if it is one."""
+    """A lane boundary: its line, and its mark if it is a marking."""
 
     line: Points
     mark: LaneMark | None
 
 
 class TraceLane(NamedTuple):
-    """A lane, its left and right as its points run; ``forward``: does traffic run so, too?
+    """A lane, with left and right as seen along its points.
 
-    Of boundaries there are the ids, of lanes beside it, too; ``linked`` are those before and after
-    it. ``pairs``: the lanes that ways through an area of an intersection lead from and to.
+    ``forward``: whether traffic runs in the direction of the points. Boundaries and adjacent lanes
+    are given by id. ``linked``: the lanes before and after it. ``pairs``: for an intersection area,
+    the lanes that each way through it leads from and to.
     """
 
     id: str
@@ -58,7 +59,7 @@ class TraceLane(NamedTuple):
 
 
 def read_boundaries(messages: Mapping[str, Fields], file: WireFile) -> dict[str, Boundary]:
-    """Boundaries by id, without those that are no line. Raises RulecError R0610."""
+    """Boundaries by id, without those that have no line. Raises RulecError R0610."""
     boundaries = {}
     for key, fields in messages.items():
         points = (part(point, "position") for point in fields.get("boundary_line", ()))
@@ -70,7 +71,7 @@ def read_boundaries(messages: Mapping[str, Fields], file: WireFile) -> dict[str,
 
 
 def line_of(vectors: Iterable[Fields], file: WireFile) -> Points:
-    """A line without repeated points. Raises RulecError R0610 for one that is no such line."""
+    """A line without repeated points. Raises RulecError R0610 if the points do not make a line."""
     points = places(vectors, file)
     if len(points) and np.ptp(points, axis=0).max() > LONGEST_M:
         why = f"a line of a lane is longer than {LONGEST_M / 1000:g} km"
@@ -86,7 +87,7 @@ def read_lanes(messages: Mapping[str, Fields], file: WireFile) -> list[TraceLane
 def check_size(
     lanes: Iterable[TraceLane], boundaries: Mapping[str, Boundary], file: WireFile
 ) -> None:
-    """Raise RulecError R0610 if what lanes refer to would take long to go through."""
+    """Raise RulecError R0610 if the lanes' references would take too long to follow."""
     references = points = 0
     for lane in lanes:
         bounds = (*lane.left_bounds, *lane.right_bounds)

@@ -14,17 +14,19 @@ from rulec.recordings.osi.lane_shapes import LaneShape, lane_shape, way_across
 from rulec.recordings.recording import Lanelet, LaneMark, Points, Side
 
 MEET_M = 1.0
-"""A lane leads to another one if the lines across them, at its end and the other's start, are no
-farther apart: of those that a trace connects some do not meet at all."""
+"""The largest gap (m) between the end line of a lane and the start line of the next one.
+
+Some lanes that a trace declares connected do not meet at all.
+"""
 
 LONGEST_WAY_M = 300.0
-"""Across an area of an intersection."""
+"""The longest way (m) across an intersection area."""
 
 _TOGETHER = 0.8
-"""Lanes side by side for so much of either are neighbours."""
+"""Lanes are neighbours if they run side by side for at least this share of each."""
 
 _DOUBLE_M = 0.6
-"""Solid lines of two lanes so near to each other are one double line."""
+"""Solid lines of two adjacent lanes that are this close (m) are one double line."""
 
 _LIKE = 0.7
 
@@ -45,7 +47,7 @@ _KINDS: Mapping[str, tuple[str, ...]] = {
     "intersection": ("intersection",),
     "nondriving": ("restricted_area",),
 }
-"""Types by subtype, and by kind where the subtype says nothing."""
+"""Lane types by subtype, and by lane type where the subtype gives none."""
 
 _DRIVEN_ON = frozenset({"intersection", "bicycleLane", "shoulder", "exitRamp", "accessRamp"})
 
@@ -54,7 +56,7 @@ _DRIVEN_ON = frozenset({"intersection", "bicycleLane", "shoulder", "exitRamp", "
 class LaneNetwork:
     """The lanelets of a trace by id, and what was wrong or missing in it, for remarks.
 
-    ``of_lane``: the lanelets of a lane of the trace, of which an area of an intersection has many.
+    ``of_lane``: the lanelets of each lane of the trace; an intersection area has many.
     """
 
     lanelets: dict[str, Lanelet] = field(default_factory=dict)
@@ -68,7 +70,7 @@ class LaneNetwork:
 
 
 def lane_network(lanes: Sequence[TraceLane], boundaries: Mapping[str, Boundary]) -> LaneNetwork:
-    """The lanelets of lanes."""
+    """The network of lanelets made of a trace's lanes."""
     network = LaneNetwork()
     middles = {lane.id: lane.centre for lane in lanes if len(lane.centre) > 1}
     known: dict[str, TraceLane] = {}
@@ -146,7 +148,7 @@ def replace_id(area: TraceLane, name: str) -> TraceLane:
 
 
 def _in_traffic(lane: TraceLane, shape: LaneShape) -> tuple[TraceLane, LaneShape]:
-    """A lane and its shape, both turned round if traffic runs against its points."""
+    """A lane and its shape, both reversed if traffic runs against the order of the points."""
     if lane.forward is not False:
         return lane, shape
     turned = lane._replace(
@@ -177,10 +179,10 @@ def _links(
     areas: set[str],
     network: LaneNetwork,
 ) -> list[tuple[str, str]]:
-    """The pairs of lanes of which one leads to the other.
+    """The pairs (lane, next lane) of connected lanes.
 
-    Which of two comes first their ends show: traces call what lies before the first point of a lane
-    its antecessor, or what traffic comes from.
+    The geometry of the ends decides which comes first: some traces call the lane before a lane's
+    first point its antecessor, others the lane that traffic comes from.
     """
     links = []
     for name, lane in known.items():
@@ -199,7 +201,7 @@ def _links(
 
 
 def _meet(before: LaneShape, after: LaneShape) -> bool:
-    """True if a lane's end is another one's start, and they lead the same way there."""
+    """Whether the first lane ends where the second starts, in the same direction."""
     ahead, onward = before.centre[-1] - before.centre[-2], after.centre[1] - after.centre[0]
     if float(ahead @ onward) <= 0:
         return False
@@ -210,7 +212,7 @@ def _meet(before: LaneShape, after: LaneShape) -> bool:
 
 
 def _beside(name: str, others: Sequence[str], shapes: Mapping[str, LaneShape]) -> str | None:
-    """The lane of several beside another one that is so for most of both, and leads its way."""
+    """The candidate that runs beside a lane for most of both lengths and in its direction."""
     own = shapes[name].centre
     shares = {
         other: min(_share(own, shapes[other].centre), _share(shapes[other].centre, own))
@@ -227,14 +229,14 @@ def _direction(line: Points) -> Points:
 
 
 def _share(line: Points, other: Points) -> float:
-    """Which part of a line is beside another one, by where that begins and ends."""
+    """The share of a line that runs beside another one, measured from the other's two ends."""
     string = shapely.LineString(line)
     start, end = shapely.line_locate_point(string, shapely.points(other[[0, -1]]))
     return float((end - start) / max(string.length, 1e-9))
 
 
 def _mutual(lanelets: dict[str, Lanelet]) -> dict[str, Lanelet]:
-    """The lanelets, without neighbours that have another one there."""
+    """The lanelets, with neighbour relations kept only if they hold in both directions."""
 
     def agreed(name: str, other: str | None, side: str) -> str | None:
         known = None if other is None else getattr(lanelets[other], side)
@@ -251,7 +253,7 @@ def _mutual(lanelets: dict[str, Lanelet]) -> dict[str, Lanelet]:
 
 
 def _facing(known: Mapping[str, TraceLane], others: Sequence[str], *, left: bool) -> Iterator[str]:
-    """The boundaries of lanes beside one that are on its side, whichever way they lead."""
+    """The boundaries of adjacent lanes on the side facing this lane, whatever their direction."""
     for other in others:
         if other in known:
             lane = known[other]
@@ -268,9 +270,9 @@ def _facing(known: Mapping[str, TraceLane], others: Sequence[str], *, left: bool
 def _mark(
     own: Sequence[str], facing: Iterator[str], boundaries: Mapping[str, Boundary]
 ) -> LaneMark | None:
-    """The mark of a side; None if it is none or changes on the way.
+    """The mark of a lane's side; None if there is none or it changes along the lane.
 
-    A double line is two boundaries, one of either lane.
+    A double line is two boundaries, one of each lane.
     """
     marks = {boundaries[x].mark for x in own if x in boundaries}
     mark = marks.pop() if len(marks) == 1 else None
@@ -291,7 +293,7 @@ def _runs_along(line: shapely.LineString, other: shapely.LineString) -> bool:
 
 
 def _side(known: Mapping[str, TraceLane], shapes: Mapping[str, LaneShape]) -> Side | None:
-    """The side of traffic: lanes that lead the other way are on the other one."""
+    """The side of traffic, from the side on which oncoming lanes lie; None if unknown."""
     sides: set[Side] = set()
     for name, lane in known.items():
         if lane.kind != "driving":

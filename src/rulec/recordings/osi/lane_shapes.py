@@ -1,8 +1,8 @@
-"""The shapes of lanes: bounds and middle with as many points each, as their points run.
+"""The shapes of lanes: bounds and centre line with equally many points, in the points' order.
 
-A lane has a line to which all is related: its centre line, or its longest boundary. Boundaries
-become distances beside that line, so that they may consist of several, begin and end elsewhere, as
-dashed ones do at a dash, or be missing on one side.
+Each lane has a reference line: its centre line, or else its longest boundary. Boundaries become
+lateral offsets from that line, so they may consist of several parts, begin and end elsewhere
+(dashed ones at a dash), or be missing on one side.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ from rulec.recordings.polylines import line_length
 from rulec.recordings.recording import Points
 
 USUAL_WIDTH_M = 3.5
-"""Of a lane of which nothing tells its width."""
+"""The width (m) assumed for a lane whose width is unknown."""
 
 WIDTHS_M = (2.0, 5.0)
-"""Lanes beside each other whose middles are so far apart at least and at most have that width."""
+"""Adjacent centre lines this far apart (m, least and most) give the lanes' width."""
 
 _BEYOND_M = 1.0
-"""Lanes beside each other may end so far beyond each other."""
+"""How far (m) the ends of adjacent lanes may lie beyond each other."""
 
 _CLOSEST_M = 0.01
 _SHARPEST = 0.5
 
 
 class LaneShape(NamedTuple):
-    """Left and right bound and middle; ``assumed``: is a width not from the trace?"""
+    """Left and right bound and centre line; ``assumed``: whether a width is not from the trace."""
 
     left: Points
     right: Points
@@ -42,7 +42,7 @@ class LaneShape(NamedTuple):
 
 
 class _Line:
-    """A line of two or more points, and places along and beside it."""
+    """A polyline of at least two points, with positions along and beside it."""
 
     def __init__(self, points: Points) -> None:
         steps = np.diff(points, axis=0)
@@ -53,7 +53,7 @@ class _Line:
         self._string = shapely.LineString(points)
 
     def beside(self, points: Points) -> tuple[NDArray[float64], NDArray[float64]]:
-        """How far along the line places are (m), and how far to its left, in order along it."""
+        """Each point's distance along the line (m) and offset to its left (m), in order."""
         along = shapely.line_locate_point(self._string, shapely.points(points))
         piece = self._piece(along)
         away = points - self.points[piece]
@@ -66,7 +66,7 @@ class _Line:
         return along[order], left[order]
 
     def at(self, along: NDArray[float64], left: NDArray[float64] | float = 0.0) -> Points:
-        """The places so far along the line, and so far to its left."""
+        """The points at the given distances along the line and offsets to its left."""
         x, y = (np.interp(along, self.reached, axis) for axis in self.points.T)
         piece = self._piece(along)
         ahead = self._ahead[piece].copy()
@@ -88,9 +88,9 @@ class _Line:
 def lane_shape(
     lane: TraceLane, boundaries: Mapping[str, Boundary], middles: Mapping[str, Points]
 ) -> LaneShape | None:
-    """The shape of a lane; None if it has neither a middle nor boundaries.
+    """The shape of a lane; None if it has neither a centre line nor boundaries.
 
-    ``middles`` are those of all lanes, for what no boundary tells.
+    ``middles``: the centre lines of all lanes, used where boundaries are missing.
     """
     bounds = lane.left_bounds, lane.right_bounds
     sides = [[boundaries[x].line for x in ids if x in boundaries] for ids in bounds]
@@ -114,7 +114,7 @@ def lane_shape(
 
 
 def _side(line: _Line, parts: Iterable[Points]) -> tuple[NDArray[float64], NDArray[float64]]:
-    """Places along a line and beside it of the boundaries of one side, in order."""
+    """The boundaries of one side as distances along and offsets beside a line, in order."""
     beside = sorted((line.beside(points) for points in parts), key=lambda x: float(x[0].mean()))
     along, left = (np.concatenate(rows) for rows in zip(*beside, strict=True))
     order = np.argsort(along, kind="stable")
@@ -128,9 +128,9 @@ def _widths(
     right: NDArray[float64] | None,
     middles: Mapping[str, Points],
 ) -> tuple[tuple[float, float], bool]:
-    """Half the widths of a side without boundary (m), and whether any is a usual one.
+    """Left and right half widths (m) for sides without boundary, and whether any is the default.
 
-    By lanes beside it, then as on its other side.
+    A half width comes from the adjacent lanes, else from the lane's other side.
     """
     if left is not None and right is not None:
         return (0.0, 0.0), False
@@ -149,7 +149,7 @@ def _widths(
 
 
 def _half(line: _Line, beside: Sequence[str], middles: Mapping[str, Points]) -> float | None:
-    """Half the distance to the middle of a lane beside; None if none is as far as lanes are."""
+    """Half the distance to an adjacent lane's centre line; None if no distance is plausible."""
     for name in beside:
         if name in middles:
             along, left = line.beside(middles[name])
@@ -161,7 +161,7 @@ def _half(line: _Line, beside: Sequence[str], middles: Mapping[str, Points]) -> 
 
 
 def way_across(before: LaneShape, after: LaneShape) -> LaneShape:
-    """The shape of a way from a lane's end to another's start, where only its ends are known."""
+    """The shape of a way from one lane's end to another's start, from these ends alone."""
     length = float(np.hypot(*(after.centre[0] - before.centre[-1])))
     at = np.linspace(0.0, 1.0, int(np.clip(length, 8, 64)) + 1)[:, None]
     ends = zip(before[:3], after[:3], strict=True)
@@ -170,9 +170,9 @@ def way_across(before: LaneShape, after: LaneShape) -> LaneShape:
 
 
 def _curve(before: Points, after: Points, at: NDArray[float64]) -> Points:
-    """A cubic curve (Hermite's) on from the end of one line to the start of another.
+    """A cubic Hermite curve from the end of one line to the start of another.
 
-    ``at``: parts of the way.
+    ``at``: the positions on it, as fractions.
     """
     start, end = before[-1], after[0]
     length = max(float(np.hypot(*(end - start))), _CLOSEST_M)

@@ -1,8 +1,8 @@
-"""Traffic lights of an ASAM OSI trace: bulbs, the heads that they make, and what a lane is shown.
+"""Traffic lights of an ASAM OSI trace: bulbs, their heads, and what each lane is shown.
 
-In the standard each bulb is a light of its own, with its colour, icon and mode; those of one head
-are assigned to the same lanes, and stand within a metre. Some simulators write a light that has one
-colour after the other, which is a head of a single bulb.
+In the standard each bulb is a light of its own, with colour, icon and mode; the bulbs of one head
+are assigned to the same lanes and stand within a metre. Some simulators write one light that
+changes its colour, which is a head with a single bulb.
 """
 
 from __future__ import annotations
@@ -35,8 +35,10 @@ ICONS: Mapping[str, frozenset[str]] = {
     "straight_ahead_right": frozenset({"straight", "right"}),
     "left_right": frozenset({"left", "right"}),
 }
-"""Where one may go by lights for vehicles; others are for people on foot, cycles, buses, trams,
-or, with a cross, close a lane."""
+"""Icon -> the directions that it applies to, for icons for vehicles.
+
+Icons that are not listed are for pedestrians, cycles, buses or trams, or, as a cross, close a lane.
+"""
 
 _HEAD_M = 1.0
 _TURNED = np.radians(30.0)
@@ -44,7 +46,7 @@ _TURNED = np.radians(30.0)
 
 @dataclass(slots=True)
 class Bulb:
-    """A light of a trace as far as that has been read: what it showed at each moment."""
+    """A light of a trace read so far: what it showed at each moment."""
 
     id: str
     icon: str
@@ -65,7 +67,7 @@ class Bulb:
         )
 
     def add(self, moment: int, fields: Fields) -> None:
-        """Note what it shows at a moment; at moments without it nothing is known."""
+        """Note what it shows at a moment; at moments without a message its state is unknown."""
         self.codes.extend(bytes(max(moment + 1 - len(self.codes), 0)))
         state = part(fields, "classification")
         mode, colour = state.get("mode"), state.get("color")
@@ -79,7 +81,7 @@ class Bulb:
 
 @dataclass(frozen=True, slots=True)
 class Head:
-    """Bulbs that stand together: where one may go by them, and what they showed by step."""
+    """Bulbs that stand together: the directions that they apply to, and what they show by step."""
 
     directions: frozenset[str]
     has_red: bool
@@ -94,8 +96,8 @@ def with_lights(
 ) -> dict[str, Lanelet]:
     """The lanelets with the lights that their lanes were shown.
 
-    ``of_lane``: the lanelets of a lane of the trace. A light that is assigned to a way through an
-    intersection is for who goes that way.
+    ``of_lane``: the lanelets of each lane of the trace. A light assigned to a way through an
+    intersection applies to traffic that takes that way.
     """
     by_lane: dict[str, list[Bulb]] = defaultdict(list)
     for bulb in bulbs:
@@ -128,7 +130,7 @@ def _lit(
     own: Sequence[Head],
     to_way: Mapping[str, Sequence[Head]],
 ) -> Lanelet:
-    """A lanelet with its lights, by the way on where they differ."""
+    """A lanelet with its lights, separately for each way onward if these differ."""
     known = [lanelets[x] for x in lanelet.successors if x in lanelets]
     by_way = {
         onward.id: _combined(
@@ -149,7 +151,7 @@ def _lit(
 
 
 def _direction(lanelet: Lanelet, onward: Lanelet) -> str:
-    """Where a way on leads, by its end."""
+    """The direction of the way onward, from how it ends."""
     before, after = (_heading(x.centre[-2:]) for x in (lanelet, onward))
     turned = wrapped(after - before)
     return "straight" if abs(turned) < _TURNED else "left" if turned > 0 else "right"
@@ -161,14 +163,14 @@ def _heading(pair: Points) -> float:
 
 
 def _towards(heads: Sequence[Head], direction: str | None) -> list[Head]:
-    """The heads that are for a direction: those with arrows that may stop it, else all."""
+    """The heads for a direction: those with arrows that apply to it, else all heads."""
     heads = [x for x in heads if direction is None or direction in x.directions]
     arrows = [x for x in heads if x.directions != _ANYWHERE and x.has_red]
     return arrows if arrows and direction is not None else heads
 
 
 def _combined(heads: Sequence[Head]) -> ObservedLight | None:
-    """What several heads show together: one repeats another, or allows what another does not."""
+    """What several heads show together: the same state, or one allows what another does not."""
     if not heads:
         return None
     if len(heads) == 1:
@@ -185,7 +187,7 @@ def _combined(heads: Sequence[Head]) -> ObservedLight | None:
 
 
 def _heads(bulbs: Sequence[Bulb], grid: TimeGrid) -> list[Head]:
-    """The heads of the bulbs of a lane: those with like icons that stand together."""
+    """The heads of a lane's bulbs: bulbs with the same icons that stand together."""
     groups: list[list[Bulb]] = []
     for bulb in bulbs:
         for group in groups:
@@ -213,7 +215,7 @@ def _head(bulbs: Sequence[Bulb], grid: TimeGrid) -> Head:
 
 
 def _colour(red: bool, yellow: bool, green: bool) -> str:
-    """What a head shows, empty where that is none of the usual; one that blinks is as if off."""
+    """A head's colour, empty for an unusual combination; a flashing bulb counts as off."""
     if red and green:
         return ""
     if red:

@@ -1,4 +1,4 @@
-"""Logical lanes of ASAM OSI, from version 3.5 on: more about lanes, or lanes of their own."""
+"""Logical lanes of ASAM OSI, from version 3.5: they add to lanes, or replace missing ones."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ _SETTINGS: Mapping[str, str] = {
     **dict.fromkeys(("town", "town_arterial", "town_collector", "town_local"), "urban"),
     **dict.fromkeys(("town_expressway", "town_play_street", "town_private"), "urban"),
 }
-"""Types of roads -> where lanelets are."""
+"""Road type -> the setting of a lanelet (town, country or motorway)."""
 
 
 class LogicalLane(NamedTuple):
-    """A logical lane as a lane, and the lanes that it is made of."""
+    """A logical lane in the form of a lane, and the ids of the lanes that it consists of."""
 
     lane: TraceLane
     physical: tuple[str, ...]
@@ -74,7 +74,7 @@ def _others(fields: Fields, name: str) -> tuple[str, ...]:
 
 
 def _limit(fields: Fields, file: WireFile) -> float | None:
-    """The lowest limit for everybody (m/s)."""
+    """The lowest speed limit that applies to all traffic (m/s)."""
     limits = [
         limit_of(part(rule, "speed_limit", "speed_limit_value"), file)
         for rule in fields.get("traffic_rule", ())
@@ -99,7 +99,7 @@ def logical_boundaries(
 
 
 def with_logical(lanes: Sequence[TraceLane], logical: Sequence[LogicalLane]) -> list[TraceLane]:
-    """Lanes with the limits and types that all logical lanes made of them have."""
+    """The lanes, each with the limits and types that all its logical lanes share."""
     of_lane: dict[str, list[TraceLane]] = {}
     for logical_lane in logical:
         for name in logical_lane.physical:
@@ -115,5 +115,5 @@ def with_logical(lanes: Sequence[TraceLane], logical: Sequence[LogicalLane]) -> 
 
 
 def lanes_by_logical(logical: Sequence[LogicalLane]) -> dict[str, tuple[str, ...]]:
-    """Logical lane -> the lanes that it is made of."""
+    """Lanes of each logical lane, by its id."""
     return {lane.lane.id: lane.physical for lane in logical}

@@ -1,4 +1,4 @@
-"""Messages as dictionaries of their fields, which tables have checked."""
+"""Messages as dictionaries of their fields, already checked against the field tables."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.recording import Points
 
 Fields: TypeAlias = Mapping[str, Any]
-"""Field -> its value; a list where there may be many, which is missing if there is none."""
+"""Field -> its value; a list if the field is repeated, and no entry if it is empty."""
 
 
 def fields_of(items: Iterable[WireField]) -> dict[str, Any]:
@@ -30,26 +30,23 @@ def fields_of(items: Iterable[WireField]) -> dict[str, Any]:
 
 
 def decoded(data: bytes, table: Table, file: WireFile) -> Fields:
-    """The fields of a message that was kept as bytes; ``file`` is where it is from.
-
-    Raises RulecError R0610.
-    """
+    """The fields of a message that was kept as bytes from ``file``."""
     return fields_of(WireFile(data, file.path, file.form).fields(table))
 
 
 def id_of(fields: Fields, name: str = "id") -> str | None:
-    """The id in a field, None if there is none. Senders of version 3 leave out a 0."""
+    """The id in a field; None if there is none. Protocol Buffers 3 senders omit an id of 0."""
     identifier = fields.get(name)
     return None if identifier is None else str(identifier.get("value", 0))
 
 
 def ids_of(fields: Fields, name: str) -> tuple[str, ...]:
-    """The ids in a field of which there may be many, each once."""
+    """The ids in a repeated field, without duplicates."""
     return tuple(dict.fromkeys(str(entry.get("value", 0)) for entry in fields.get(name, ())))
 
 
 def assigned_lanes(fields: Fields) -> tuple[str, ...]:
-    """The lanes that a classification names, and the logical ones, whose ids are others."""
+    """The ids of the lanes, then of the logical lanes, that a classification is assigned to."""
     logical = (
         id_of(entry, "assigned_lane_id") for entry in fields.get("logical_lane_assignment", ())
     )
@@ -57,14 +54,14 @@ def assigned_lanes(fields: Fields) -> tuple[str, ...]:
 
 
 def part(fields: Fields, *names: str) -> Fields:
-    """A message in a message, without any fields if it is missing."""
+    """A message nested in a message; without fields if it is missing."""
     for name in names:
         fields = fields.get(name, {})
     return fields
 
 
 def number(fields: Fields, name: str, wrong: WireFile) -> float:
-    """A number, 0 if it is missing. Raises RulecError R0610 for one that is huge or none."""
+    """A number, 0 if missing. Raises RulecError R0610 if it is huge or not finite."""
     value = float(fields.get(name, 0.0))
     if not abs(value) < LARGEST:
         raise wrong.form.refused(wrong.path, f"`{name}` is {value:g}, which is no such number")
@@ -72,6 +69,6 @@ def number(fields: Fields, name: str, wrong: WireFile) -> float:
 
 
 def places(vectors: Iterable[Fields], wrong: WireFile) -> Points:
-    """Places (m) from vectors. Raises RulecError R0610 for one that is huge or none."""
+    """Places (m) from vectors. Raises RulecError R0610 if a number is huge or not finite."""
     rows = [(number(vector, "x", wrong), number(vector, "y", wrong)) for vector in vectors]
     return np.array(rows, dtype=float).reshape(-1, 2)

@@ -1,4 +1,4 @@
-"""Even time steps for the moments of a trace, whose times jitter by some nanoseconds or more."""
+"""Even time steps for a trace's moments, whose times jitter by some nanoseconds or more."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rulec.recordings.osi.trace_file import OSI
 from rulec.recordings.recording import MOST_STEPS, SPARSEST
 
 UNEVEN = 0.1
-"""Times may be off their time step by so much of it; recorders that miss it more are uneven."""
+"""How far a time may be off its step, as a fraction of it; beyond that, recording is uneven."""
 
 _UNSAID = 0.01
 _UNITS = (1_000_000, 100_000, 10_000, 1_000, 1)
@@ -22,7 +22,7 @@ _NS = 1e9
 
 
 class TimeGrid(NamedTuple):
-    """The time step (s), the step of each moment from 0 on, and how far off times are (s)."""
+    """The time step (s), the step number of each moment from 0 on, and the time errors (s)."""
 
     step_s: float
     steps: NDArray[int64]
@@ -30,15 +30,15 @@ class TimeGrid(NamedTuple):
 
     @property
     def is_even(self) -> bool:
-        """True if times are off by a hundredth of a step at most."""
+        """Whether every time is off by at most a hundredth of a step."""
         return self.off_s <= _UNSAID * self.step_s
 
 
 def time_grid(path: Path, times: Sequence[int]) -> TimeGrid:
-    """The grid of ascending times (ns): the roundest step that they keep to, from the first on.
+    """The time grid of ascending times (ns): the roundest step that fits, from the first time on.
 
-    Moments may be missing. With one moment only the step is 0.1 s. Raises RulecError R0610 for
-    times that keep to no step, or are too far apart.
+    Moments may be missing. For a single moment the step is 0.1 s. Raises RulecError R0610 for times
+    that fit no step or are too far apart.
     """
     since = np.array(times, dtype=int64) - times[0]
     if len(times) == 1:

@@ -30,7 +30,7 @@ _KINDS: Mapping[str, str] = {
     "bus": "bus",
     "wheelchair": "pedestrian",
 }
-"""Types of vehicles; trailers do not drive, and of others nothing is known."""
+"""Vehicle type -> kind of participant; trailers are left out, other types are unknown."""
 
 _ON_CALL = frozenset({"ambulance", "fire", "police"})
 _DRIVEN = frozenset({"car", "truck", "bus", "motorcycle", "unknown"})
@@ -43,7 +43,7 @@ USUAL_SIZES: Mapping[str, tuple[float, float]] = {
     "pedestrian": (0.5, 0.5),
     "train": (30.0, 2.65),
 }
-"""Length and width (m) where a trace does not say any; ``USUAL_SIZE`` for others."""
+"""Length and width (m) by kind, used if a trace gives none; ``USUAL_SIZE`` for other kinds."""
 
 USUAL_SIZE = (4.5, 1.8)
 
@@ -56,7 +56,7 @@ _STANDING: Mapping[str, str] = {
     **dict.fromkeys(("reflective_structure", "emitting_structure"), "pillar"),
     **dict.fromkeys(("unknown", "other"), "pillar"),
 }
-"""What stands on the ground and is in the way; one drives under bridges, and over bumps."""
+"""Kinds of stationary objects that block the way; bridges and bumps do not."""
 
 _MOTION, _NUMBERS = 7, 9
 _CREEPING_MPS = 0.1
@@ -94,14 +94,14 @@ _LAMPS: tuple[tuple[str, frozenset[Lamp], Mapping[str, frozenset[Lamp]]], ...] =
         for name, lamp in _BEAMS
     ),
 )
-"""Field -> the lamps that it tells of, and those that are lit by its value."""
+"""Field, the lamps that it describes, and the lamps that are lit for each of its values."""
 
 _Shown = tuple[frozenset[Lamp], frozenset[Lamp]]
 
 
 @dataclass(slots=True)
 class MovingObject:
-    """A moving object as far as a trace has been read; 80 bytes each moment."""
+    """A moving object read so far; it takes 80 bytes per moment."""
 
     kinds: Counter[str] = field(default_factory=Counter)
     moments: array[int] = field(default_factory=lambda: array("q"))
@@ -133,19 +133,19 @@ class MovingObject:
 
     @property
     def kind(self) -> str:
-        """The type that it has in most messages."""
+        """Its most frequent type."""
         return max(self.kinds, key=self.kinds.__getitem__, default="unknown")
 
     @property
     def size(self) -> tuple[float, float] | None:
-        """The medians of the lengths and widths that messages say; None if none says both."""
+        """The medians of the lengths and widths in its messages; None if no message has both."""
         sizes = np.array(self.rows).reshape(-1, _NUMBERS)[:, _MOTION:]
         known = sizes[sizes.min(axis=1) > 0]
         return (median(known[:, 0]), median(known[:, 1])) if len(known) else None
 
 
 def _kind_of(fields: Fields) -> str:
-    """The type of a moving object, in the words of recordings."""
+    """A moving object's type, in the words of recordings."""
     kind = fields.get("type", "unknown")
     if kind == "pedestrian":
         return "pedestrian"
@@ -159,7 +159,7 @@ def _kind_of(fields: Fields) -> str:
 
 
 def _lamps(state: Fields) -> _Shown:
-    """The lamps that a state tells of, and those of them that are lit."""
+    """The lamps that a state describes, and those of them that are lit."""
     known: frozenset[Lamp] = frozenset()
     lit: frozenset[Lamp] = frozenset()
     for name, lamps, by_value in _LAMPS:
@@ -187,7 +187,7 @@ def participants(objects: Mapping[str, MovingObject], grid: TimeGrid) -> Iterato
 def _lamps_by_step(
     body: MovingObject, grid: TimeGrid, shows: frozenset[Lamp]
 ) -> dict[int, frozenset[Lamp]]:
-    """Lamps that are lit, at the steps that tell of all that it shows."""
+    """The lit lamps by step, for the steps that describe every lamp in ``shows``."""
     lamps = {}
     now: _Shown = (frozenset(), frozenset())
     for moment in body.moments if shows else ():
@@ -198,7 +198,7 @@ def _lamps_by_step(
 
 
 def _track_rows(rows: NDArray[float64], times: NDArray[float64]) -> NDArray[float64]:
-    """x, y, heading, and speed and acceleration along it; what is not said is from places."""
+    """x, y, heading, and speed and acceleration along it; missing values come from positions."""
     x, y, heading, *motion = rows.T
     if len(x) < 2:
         velocity = np.nan_to_num(np.stack(motion[:2]))
@@ -217,7 +217,10 @@ def _track_rows(rows: NDArray[float64], times: NDArray[float64]) -> NDArray[floa
 
 
 def _directions(velocity: NDArray[float64]) -> NDArray[float64]:
-    """The directions of motion; who stands keeps the last one, or has the next."""
+    """The directions of motion.
+
+    At standstill the last direction is kept, or the next one is used.
+    """
     moves = np.hypot(*velocity) > _CREEPING_MPS
     if not moves.any():
         return np.zeros(velocity.shape[1])
@@ -228,7 +231,7 @@ def _directions(velocity: NDArray[float64]) -> NDArray[float64]:
 
 
 def standing(objects: Iterable[tuple[str, Fields]], file: WireFile) -> Iterator[Participant]:
-    """What stands on the ground, from ids and messages. Raises RulecError R0610."""
+    """Stationary objects on the ground, from ids and messages. Raises RulecError R0610."""
     for key, fields in objects:
         kind = _STANDING.get(part(fields, "classification").get("type", "unknown"))
         if kind is not None and (outline := _outline(part(fields, "base"), file)) is not None:
@@ -236,7 +239,7 @@ def standing(objects: Iterable[tuple[str, Fields]], file: WireFile) -> Iterator[
 
 
 def _outline(base: Fields, file: WireFile) -> Points | None:
-    """The outline of what stands; None if it has no size."""
+    """The outline of a stationary object; None if it has no size."""
     size = part(base, "dimension")
     length, width = (abs(number(size, name, file)) / 2 for name in ("length", "width"))
     corners = places(base.get("base_polygon", ()), file)

@@ -31,14 +31,14 @@ from rulec.recordings.recording_messages import NET_MISSING
 _NAMED = 5
 
 _USUAL_SIDE: Side = "right"
-"""That of OpenDRIVE's roads that do not say theirs."""
+"""The side of traffic assumed for OpenDRIVE roads that give none."""
 
 
 def read_osi(path: Path, map_path: Path | None = None) -> Recording:
     """Read a trace, on its own lanes or on those of a map.
 
-    Raises RulecError R0610 for a file that cannot be read as what it should be, R0614 if there are
-    neither lanes in it nor a map, R0701 if a file cannot be opened.
+    Raises RulecError R0610 for a file that is not of the right format, R0614 if it has no lanes and
+    there is no map, R0701 if a file cannot be opened.
     """
     content = read_content(path)
     grid = time_grid(path, content.times)
@@ -69,7 +69,7 @@ def read_osi(path: Path, map_path: Path | None = None) -> Recording:
 
 
 def _network(content: TraceContent, file: WireFile) -> LaneNetwork:
-    """The lanelets of a trace: of its lanes, else of its logical ones."""
+    """The lanelets of a trace: from its lanes, else from its logical lanes."""
     messages = content.static
     boundaries = read_boundaries(messages["lane_boundary"], file)
     lanes = read_lanes(messages["lane"], file)
@@ -91,7 +91,7 @@ def _network(content: TraceContent, file: WireFile) -> LaneNetwork:
 def _lanelets(
     content: TraceContent, network: LaneNetwork, grid: TimeGrid, file: WireFile
 ) -> dict[str, Lanelet]:
-    """The lanelets with what stands beside them and is painted on them."""
+    """The lanelets with their signs, lights and road markings."""
     lanelets = with_lights(network.lanelets, content.bulbs.values(), network.of_lane, grid)
     signs = content.static["traffic_sign"].items()
     constant = [fields for key, fields in signs if key not in content.changing_signs]
@@ -109,7 +109,7 @@ def _participants(content: TraceContent, grid: TimeGrid, file: WireFile) -> Iter
 
 
 def _map_beside(path: Path) -> Path:
-    """The map beside a trace that has its name. Raises RulecError R0614 if there is none."""
+    """The map next to a trace with the same name. Raises RulecError R0614 if there is none."""
     stem = path.name.split(".")[0]
     for beside in sorted(path.parent.glob(f"{escape(stem)}.*")):
         if beside != path and any(form.recognises(Glance(beside)) for form in MAP_FORMATS):

@@ -1,8 +1,8 @@
-"""The fields of ASAM OSI's messages that are read, by their numbers in the standard's definitions.
+"""The fields of ASAM OSI messages that are read, by their numbers in the standard.
 
 ASAM OSI 3.0 to 3.8, https://opensimulationinterface.github.io/osi-antora-documentation/; numbers
-never change their meaning within a major version. Enumerations are those of the messages' own
-fields; a number that a later version has added is ``other``.
+never change their meaning within a major version. Enumerations are those of the fields' own
+messages; a number added by a later version is ``other``.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from rulec.recordings.encodings.wire_format import Field, Kind, Table, Words
 
 
 def _words(text: str) -> Words:
-    """Words from 0 on, in the order of an enumeration; ``-`` for numbers that it leaves out."""
+    """Words numbered from 0, in the order of an enumeration; ``-`` for unused numbers."""
     names = enumerate(text.split())
     return Words({number: name for number, name in names if name != "-"}, other="other")
 
@@ -298,7 +298,7 @@ STATIC: dict[str, Table] = {
     "logical_lane_boundary": LOGICAL_BOUNDARY,
     "logical_lane": LOGICAL_LANE,
 }
-"""What does not change: the first message of each id counts, and is decoded only once."""
+"""Static content: only the first message of each id counts, and it is decoded once."""
 
 GROUND_TRUTH: Table = {
     2: Field("timestamp", TIME),
@@ -326,14 +326,16 @@ SENSOR_DATA: Table = {
     8: Field("sensor_view", SENSOR_VIEW, many=True),
 }
 MESSAGES = {"GroundTruth": GROUND_TRUTH, "SensorView": SENSOR_VIEW, "SensorData": SENSOR_DATA}
-"""The kinds of messages that have, or may have, ground truth in them."""
+"""The message types that have, or may have, ground truth in them."""
 
 LIKE_TRUTH: Table = {
     2: Field("timestamp", TIME),
     **{number: Field("static", "bytes", many=True) for number in (7, 8, 9, 10, 19)},
 }
-"""Enough of ground truth to tell it from a light or a mounting position, which have other fields
-of these numbers or none."""
+"""The fields that distinguish ground truth from a light or a mounting position.
+
+Those have other fields, or none, at these numbers.
+"""
 
 VIEWS: Table = {8: Field("view", {7: Field("truth", "bytes", many=True)}, many=True)}
 TRUTHS: Table = {7: Field("truth", "bytes", many=True)}

@@ -1,4 +1,4 @@
-"""Traffic signs, stop lines and pedestrian crossings of an ASAM OSI trace, on its lanelets."""
+"""Traffic signs, stop lines and pedestrian crossings of an ASAM OSI trace, put on its lanelets."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _NAMES: Mapping[str, str] = {
     "overtaking_ban_for_trucks_begin": "NO_OVERTAKING_TRUCKS_START",
     "traffic_light_green_arrow": "GREEN_ARROW",
 }
-"""The names that signs have in recordings; others are not about driving, or end something."""
+"""OSI sign type -> name in recordings; other signs do not concern driving, or end something."""
 
 _LIMITS = frozenset({"MAX_SPEED", "MAX_SPEED_ZONE_START"})
 _PAINTED = frozenset({"painted_traffic_sign", "symbolic_traffic_sign"})
@@ -41,7 +41,7 @@ _Lanes = Mapping[str, Sequence[str]]
 
 
 def limit_of(value: Fields, file: WireFile) -> float | None:
-    """A limit (m/s), None if its unit is not said. Raises RulecError R0610."""
+    """A speed limit (m/s); None if its unit is unknown. Raises RulecError R0610."""
     unit = SPEED_UNITS.get(value.get("value_unit", "unknown"))
     limit = number(value, "value", file)
     return limit * unit if unit is not None and limit > 0 else None
@@ -52,7 +52,7 @@ def with_signs(
 ) -> dict[str, Lanelet]:
     """The lanelets with the signs that are assigned to their lanes.
 
-    A sign with another one below it is for some hours, places or vehicles only, and left out.
+    A sign with a supplementary sign applies only to some hours, places or vehicles and is left out.
     """
     signed = dict(lanelets)
     for fields in signs:
@@ -83,7 +83,7 @@ def _lanelets_of(sign: Fields, of_lane: _Lanes) -> Iterator[str]:
 def with_stop_lines(
     lanelets: Mapping[str, Lanelet], marks: Iterable[Fields], of_lane: _Lanes, file: WireFile
 ) -> dict[str, Lanelet]:
-    """The lanelets with the stop lines on their lanes: the mark of a sign to stop."""
+    """The lanelets with the stop lines on their lanes: road markings of the sign type for stop."""
     lined = dict(lanelets)
     for fields in marks:
         mark = part(fields, "classification")
@@ -101,7 +101,7 @@ def _is_mark_of(mark: Fields, sign: str) -> bool:
 
 
 def _across(lanelet: Lanelet, place: Points) -> Points:
-    """The ends of the line across a lanelet beside a place."""
+    """The end points of the line across a lanelet at a place."""
     reached = arc_lengths(lanelet.centre)
     along = shapely.line_locate_point(shapely.LineString(lanelet.centre), shapely.points(place))
     ends = [
@@ -114,7 +114,7 @@ def _across(lanelet: Lanelet, place: Points) -> Points:
 def with_crossings(
     lanelets: Mapping[str, Lanelet], marks: Mapping[str, Fields], of_lane: _Lanes, file: WireFile
 ) -> dict[str, Lanelet]:
-    """The lanelets, and one for each pedestrian crossing that is painted."""
+    """The lanelets, plus one for each painted pedestrian crossing."""
     crossed = dict(lanelets)
     for key, fields in marks.items():
         mark = part(fields, "classification")
@@ -127,9 +127,9 @@ def with_crossings(
 
 
 def _ground_outline(base: Fields, file: WireFile) -> Points | None:
-    """The four corners of a box seen from above, as small as they can be; None if it has no area.
+    """The corners of the smallest box around an object seen from above; None without area.
 
-    A mark stands upright in its own coordinates and is laid on the ground by its orientation.
+    A mark stands upright in its own coordinates; its orientation lays it on the ground.
     """
     size, turned = part(base, "dimension"), part(base, "orientation")
     half = [abs(number(size, name, file)) / 2 for name in ("length", "width", "height")]
@@ -154,7 +154,7 @@ def _ground_outline(base: Fields, file: WireFile) -> Points | None:
 
 
 def _crossing(key: str, outline: Points, lanes: Sequence[Lanelet]) -> Lanelet:
-    """A crossing: one walks across its lanes; where none is known, along its longer side."""
+    """A crossing: one walks across its lanes or, if these are unknown, along its longer side."""
     ahead = outline[1] - outline[0]
     if lanes:
         along = lanes[0].centre[-1] - lanes[0].centre[0]

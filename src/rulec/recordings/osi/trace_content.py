@@ -1,4 +1,4 @@
-"""Contents of an ASAM OSI trace, collected message by message."""
+"""The contents of an ASAM OSI trace, collected message by message."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rulec.recordings.osi.trace_file import OSI, Frame, frames
 from rulec.recordings.recording import MOST_STEPS
 
 MOST_STATIC_BYTES = 200_000_000
-"""Of all lanes, boundaries, signs and the like together, each once."""
+"""Limit on the bytes of all lanes, boundaries, signs and other static messages, each once."""
 
 MOST_OBJECTS = 100_000
 _ONLY_ID: Table = {1: STATIC["lane"][1]}
@@ -23,7 +23,7 @@ _ONLY_ID: Table = {1: STATIC["lane"][1]}
 
 @dataclass(slots=True)
 class TraceContent:
-    """A trace as far as it has been read. ``static``: kind -> id -> message."""
+    """A trace read so far. ``static``: kind -> id -> message."""
 
     times: list[int] = field(default_factory=list)
     objects: dict[str, MovingObject] = field(default_factory=dict)
@@ -39,7 +39,7 @@ class TraceContent:
     _first: dict[str, dict[str, bytes]] = field(default_factory=lambda: {x: {} for x in STATIC})
 
     def add(self, frame: Frame) -> None:
-        """Note what a message holds. Raises RulecError R0610."""
+        """Add the contents of a frame. Raises RulecError R0610."""
         if self.times and frame.time <= self.times[-1]:
             if frame.time == self.times[-1]:
                 # Several sensors may have a view of one moment

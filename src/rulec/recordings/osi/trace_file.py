@@ -22,15 +22,15 @@ OSI = BinaryFormat(
     "its messages have to be `GroundTruth`, or `SensorView` with ground truth in them",
 )
 LARGEST_MESSAGE = 100_000_000
-"""Bytes; a map of a whole town has a tenth of it."""
+"""Limit on the size of a message in bytes; the map of a whole town has a tenth of it."""
 
 _SIZE = struct.Struct("<I")
 _HINTS = {"gt": "GroundTruth", "sv": "SensorView", "sd": "SensorData"}
-"""What the standard has in names of files: 20210818T150542Z_gt_370_300_1523_track.osi."""
+"""Part of a file's name -> message type: 20210818T150542Z_gt_370_300_1523_track.osi."""
 
 
 class Frame(NamedTuple):
-    """The ground truth at a moment, its time (ns) and its host, and what it was read from."""
+    """The ground truth at a moment, its time (ns), its host vehicle, and the message it is from."""
 
     ground_truth: dict[str, Any]
     time: int
@@ -39,7 +39,7 @@ class Frame(NamedTuple):
 
 
 def frames(path: Path) -> Iterator[Frame]:
-    """The moments of a trace. Raises RulecError R0610, R0701, some of them on the way."""
+    """The frames of a trace. Raises RulecError R0610 or R0701, possibly during iteration."""
     with opened(path) as stream:
         is_mcap = stream.read(len(MAGIC)) == MAGIC
     messages = _in_mcap(path) if is_mcap else _in_osi(path)
@@ -56,7 +56,7 @@ def frames(path: Path) -> Iterator[Frame]:
 
 
 def _frame(kind: str, file: WireFile) -> Frame | None:
-    """The ground truth in a message, None if it has none."""
+    """The ground truth in a message; None if it has none."""
     message = fields_of(file.fields(MESSAGES[kind]))
     views = message.get("sensor_view", [message])
     view = next((view for view in views if "global_ground_truth" in view), None)
@@ -71,7 +71,7 @@ def _frame(kind: str, file: WireFile) -> Frame | None:
 
 
 def _in_osi(path: Path) -> Iterator[tuple[str, bytes]]:
-    """Kind and bytes of the messages of a file in which each follows its size."""
+    """Type and bytes of each message of a file in which every message follows its size."""
     kind, place = "", 0
     with opened(path) as stream:
         while head := stream.read(_SIZE.size):
@@ -92,10 +92,10 @@ def _in_osi(path: Path) -> Iterator[tuple[str, bytes]]:
 
 
 def _kind(path: Path, data: bytes) -> str:
-    """The kind of a file's messages: by its name, else by what the first one has in it.
+    """The type of a file's messages: from its name, else from the first message.
 
-    Ground truth has lights where a view has its ground truth, and marks where data have views;
-    neither lights nor marks have as many fields, nor a time, which is of whole numbers.
+    Where ground truth has lights, a view has its ground truth; where ground truth has marks, sensor
+    data have views. Neither lights nor marks have as many fields, or a time of whole numbers.
     """
     hints = {_HINTS[part] for part in path.name.lower().split("_") if part in _HINTS}
     if len(hints) == 1:
@@ -109,7 +109,7 @@ def _kind(path: Path, data: bytes) -> str:
 
 
 def _probed(path: Path, data: bytes, table: Table) -> dict[str, Any]:
-    """The fields of what may be a message with such fields; none if it is not."""
+    """The fields of bytes that may be a message of this table; none if they are not."""
     try:
         return fields_of(WireFile(data, path, OSI).fields(table))
     except RulecError:
@@ -117,9 +117,9 @@ def _probed(path: Path, data: bytes, table: Table) -> dict[str, Any]:
 
 
 def _in_mcap(path: Path) -> Iterator[tuple[str, bytes]]:
-    """Kind and bytes of the messages of one channel: the first of those with most of them.
+    """Type and bytes of the messages of one channel: the one with the most messages.
 
-    Channels of ground truth come first, then those of views, then those of data with views.
+    Channels of ground truth are preferred to those of views, and these to sensor data with views.
     """
     counts = Counter(message.channel for message in read_messages(path, OSI))
     order = list(MESSAGES)
@@ -135,7 +135,7 @@ def _in_mcap(path: Path) -> Iterator[tuple[str, bytes]]:
 
 
 def _kind_of(channel: McapChannel) -> str:
-    """The kind of a channel's messages, empty if it is of no use here."""
+    """The type of a channel's messages; empty if it is not usable here."""
     package, _, name = channel.schema.rpartition(".")
     known = package in ("osi3", "") and name in MESSAGES and channel.encoding == "protobuf"
     return name if known else ""
