@@ -1,11 +1,11 @@
-"""Header line of a CSV: names of columns and their delimiter."""
+"""The header line of a CSV file: names of columns and their delimiter."""
 
 from __future__ import annotations
 
 import zlib
 
 PARQUET = (".parquet", ".pq")
-"""How names of tables that are no CSV end."""
+"""Suffixes of Parquet files."""
 
 PARQUET_MARK = b"PAR1"
 PACKED = b"\x1f\x8b"
@@ -14,7 +14,7 @@ _SEPARATORS = ",;\t"
 
 
 def names_in(head: bytes) -> tuple[str, ...]:
-    """The names in the first line of a CSV, in small letters; none if that is no text."""
+    """The names in the first line of a CSV file, in lower case; none if it is not text."""
     if head.startswith(PACKED):
         try:
             head = zlib.decompressobj(zlib.MAX_WBITS | 16).decompress(head, LONGEST_LINE)
@@ -30,19 +30,19 @@ def names_in(head: bytes) -> tuple[str, ...]:
 
 
 def is_parquet(name: str, beginning: bytes) -> bool:
-    """True for a table that begins or is called like Parquet."""
+    """Whether a table's first bytes or name are those of a Parquet file."""
     return beginning.startswith(PARQUET_MARK) or name.lower().endswith(PARQUET)
 
 
 def separator_of(head: str) -> str:
-    """What stands between the names of columns; a blank where there is nothing else."""
+    """The delimiter between the names of columns; a blank if there is no other."""
     counts = {mark: head.count(mark) for mark in _SEPARATORS}
     most = max(_SEPARATORS, key=lambda mark: counts[mark])
     return most if counts[most] else " "
 
 
 def is_number(text: str) -> bool:
-    """True if a text spells a number."""
+    """Whether a text is a number."""
     try:
         float(text)
     except ValueError:

@@ -1,4 +1,4 @@
-"""Formats of files by name, and the error for a file of another one."""
+"""File formats by name, and the error for a file that is not of the expected format."""
 
 from __future__ import annotations
 
@@ -12,14 +12,17 @@ from rulec.recordings.recording_messages import NOT_A_RECORDING
 
 @dataclass(frozen=True, slots=True)
 class FileFormat:
-    """A format of files: its name with an article, help, and how large a file may be."""
+    """A file format: its name with an article, a help text, and the largest size of a file."""
 
     words: str
     help: str
     largest_bytes: int = 200_000_000
 
     def content(self, path: Path) -> bytes:
-        """All bytes of a file. Raises RulecError R0610 for too many, R0701 if it cannot be read."""
+        """All bytes of a file.
+
+        Raises RulecError R0610 if it is too large, R0701 if it cannot be read.
+        """
         most = self.largest_bytes
         with opened(path) as stream:
             data = stream.read(most + 1)
@@ -36,7 +39,7 @@ class FileFormat:
         expected: str = "",
         help_text: str = "",
     ) -> RulecError:
-        """The error (R0610) for a file of another format, with the line if that is known."""
+        """The error (R0610) for a file that is not of this format, with the line if known."""
         message = f"the file cannot be read as {self.words}: {why}"
         where = SourceLocation(str(path), place)
         return NOT_A_RECORDING.error(where, message, expected=expected, help=help_text or self.help)
@@ -51,7 +54,7 @@ class XmlFormat(FileFormat):
 
 @dataclass(frozen=True, slots=True)
 class BinaryFormat(FileFormat):
-    """A format of binary files, in which places are counted in bytes."""
+    """A format of binary files, in which places are byte offsets."""
 
     largest_bytes: int = 50_000_000
 
@@ -64,7 +67,7 @@ class BinaryFormat(FileFormat):
         expected: str = "",
         help_text: str = "",
     ) -> RulecError:
-        """The error (R0610) for a file of another format, with the byte if that is known."""
+        """The error (R0610) for a file that is not of this format, with the byte if known."""
         where = "" if place is None else f"at byte {place:,}, "
         # The class's own: a dataclass with slots is made anew, so that ``super()`` is another one.
         return FileFormat.refused(

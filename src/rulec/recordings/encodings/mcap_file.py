@@ -1,7 +1,7 @@
-"""MCAP files as a stream of messages, safe against harmful files.
+"""MCAP files as a stream of messages, safe against malicious files.
 
-By https://mcap.dev/spec, version 0. Nothing is needed for it but what chunks are packed with; the
-index at the end is not used, so that a file is read from its beginning to its end.
+See https://mcap.dev/spec, version 0. The only dependencies are the compression libraries for
+chunks. The index at the end is not used: a file is read from beginning to end.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from rulec.recordings.encodings.packed_chunks import unpacked
 from rulec.recordings.encodings.xml_element import short
 
 MAGIC = b"\x89MCAP0\r\n"
-"""What a file begins and ends with."""
+"""The bytes at the beginning and the end of a file."""
 
 LARGEST_RECORD = 100_000_000
-"""Bytes of a record or of an unpacked chunk; recorders begin a new chunk after a megabyte."""
+"""Limit on the bytes of a record or an unpacked chunk; recorders begin a chunk per megabyte."""
 
 MOST_CHANNELS = 10_000
 
@@ -34,7 +34,7 @@ _CHUNK_HEAD = struct.Struct("<QQQI")
 
 
 class McapChannel(NamedTuple):
-    """A channel: its topic, how its messages are written, and the name of their schema."""
+    """A channel: its topic, the encoding of its messages, and the name of their schema."""
 
     id: int
     topic: str
@@ -43,7 +43,7 @@ class McapChannel(NamedTuple):
 
 
 class McapMessage(NamedTuple):
-    """A message, the byte that it begins at (that of its chunk, if in one), its time in ns."""
+    """A message, the byte where it (or the chunk that holds it) begins, and its time in ns."""
 
     channel: McapChannel
     time: int
@@ -58,7 +58,7 @@ class _Record(NamedTuple):
 
 
 def read_messages(path: Path, form: FileFormat) -> Iterator[McapMessage]:
-    """The messages of a file, in its order. Raises RulecError R0610, R0701 on the way."""
+    """The messages in the order of the file. Raises RulecError R0610, R0701 during iteration."""
     contents = _Contents(path, form)
     with opened(path) as stream:
         if stream.read(len(MAGIC)) != MAGIC:
@@ -92,7 +92,7 @@ def _records(stream: IO[bytes], path: Path, form: FileFormat) -> Iterator[_Recor
 
 @dataclass(slots=True)
 class _Contents:
-    """Schemas and channels as far as a file has been read."""
+    """The schemas and channels read so far."""
 
     path: Path
     form: FileFormat
@@ -100,7 +100,7 @@ class _Contents:
     channels: dict[int, McapChannel] = field(default_factory=dict)
 
     def add(self, record: _Record) -> Iterator[McapMessage]:
-        """The message in a record, if it is one; what it says of others is kept."""
+        """The message in a record, if it holds one; schemas and channels are stored."""
         try:
             if record.kind == _MESSAGE:
                 yield self._message(record)
@@ -168,7 +168,7 @@ class _Contents:
 
 
 def _text(content: bytes, at: int) -> tuple[str, int]:
-    """The text at a place, after its length, and where it ends."""
+    """The length-prefixed text at a position, and the position after it."""
     (size,) = _WORD.unpack_from(content, at)
     begin = at + _WORD.size
     if size > len(content) - begin:

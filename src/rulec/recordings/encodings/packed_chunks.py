@@ -1,12 +1,12 @@
-"""Chunks of bytes packed with LZ4 or Zstandard, unpacked to the size that is stated and no more."""
+"""Byte chunks packed with LZ4 or Zstandard, unpacked to at most their stated size."""
 
 from __future__ import annotations
 
 
 def unpacked(packed: bytes, method: str, size: int) -> bytes:
-    """The bytes of a chunk: ``method`` is ``lz4`` (frames), ``zstd``, or empty for none.
+    """The unpacked bytes of a chunk; ``method`` is ``lz4`` (frames), ``zstd``, or empty for none.
 
-    Raises ValueError for one that is damaged, is not of its size, or is packed otherwise.
+    Raises ValueError if the chunk is damaged, has another size, or uses another method.
     """
     if not method:
         content = packed

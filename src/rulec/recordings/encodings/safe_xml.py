@@ -1,7 +1,7 @@
-"""XML as a stream, safe against harmful files and in little memory.
+"""XML as a stream, safe against malicious files, with little memory.
 
 Documents that define entities are refused at the definition, before anything is expanded or
-fetched. Packed files are unpacked on the way (`rulec.files.opened`), up to the same limit.
+fetched. Packed files are unpacked while they are read (`rulec.files.opened`), up to the same limit.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rulec.recordings.encodings.xml_element import XmlElement, short
 from rulec.trace.formats.stream_lines import packed
 
 LONGEST_TAG = 1_000_000
-"""Bytes; expat keeps a tag in memory until it ends."""
+"""Limit on the bytes of a tag: expat keeps a tag in memory until it ends."""
 
 _BLOCK = 1 << 16
 _SUFFIXES = (".xml", ".xml.gz")
@@ -37,9 +37,9 @@ def scan(
     end: Callable[[str], None] | None = None,
     comment: Callable[[str], None] | None = None,
 ) -> None:
-    """Scan an XML file once, with callbacks where elements begin and end, and for comments.
+    """Scan an XML file once, with callbacks for element starts, element ends, and comments.
 
-    Raises RulecError R0610 for a file that is none, R0701 for one that cannot be read.
+    Raises RulecError R0610 if it is not such a file, R0701 if it cannot be read.
     """
     parser = ParserCreate()
 
@@ -57,11 +57,9 @@ def scan_names(
     end: Callable[[str], None],
     text: Callable[[str], None],
 ) -> None:
-    """Scan an XML file once; elements begin with their name, attributes and line.
+    """Scan an XML file once; ``begin`` gets each element's name, attributes and line.
 
-    Text comes in pieces of some kB.
-
-    Raises RulecError: as for ``scan``.
+    Text comes in pieces of some kB. Raises RulecError as ``scan`` does.
     """
     parser = ParserCreate()
 
@@ -129,9 +127,9 @@ def _scan(
 
 
 def root_of(path: Path, form: FileFormat) -> str:
-    """The name of a file's root element; ``form`` says what to call a file that has none.
+    """The name of a file's root element; error messages name ``form`` as the expected format.
 
-    Raises RulecError R0610 for a file that is no XML, R0701 for one that cannot be read.
+    Raises RulecError R0610 if the file is not XML, R0701 if it cannot be read.
     """
     parser = ParserCreate()
     names: list[str] = []
@@ -165,7 +163,7 @@ def root_of(path: Path, form: FileFormat) -> str:
 
 
 def is_xml(path: Path) -> bool:
-    """True if a file's name or first bytes show XML, perhaps packed."""
+    """Whether a file's name or first bytes are those of XML, possibly packed."""
     if path.name.lower().endswith(_SUFFIXES):
         return True
     try:
@@ -180,7 +178,7 @@ def is_xml(path: Path) -> bool:
 
 
 def blocks_of(path: Path) -> Iterator[bytes]:
-    """The bytes of a file, unpacked, in blocks. Raises RulecError R0701."""
+    """The unpacked bytes of a file, in blocks. Raises RulecError R0701."""
     with opened(path) as stream:
         while block := stream.read(_BLOCK):
             yield block

@@ -1,4 +1,4 @@
-"""Columns of a table: numbers and texts as arrays, and what is wrong in a row of it."""
+"""Columns of a table: numbers and texts as arrays, and errors about rows."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.value_display import short_repr
 
 MOST_ROWS = 20_000_000
-"""All of NGSIM in one table has 12 million."""
+"""Limit on the rows of a table; all of NGSIM in one table has 12 million."""
 
 MOST_COLUMNS = 1000
 
 Floats = NDArray[float64]
 Refused = Callable[..., RulecError]
-"""Makes the error for a table: ``why``, the row's place or None, ``expected``, ``help_text``."""
+"""Makes a table's error from ``why``, the row's place or None, ``expected``, ``help_text``."""
 
 
 class Texts(NamedTuple):
-    """A column of texts: for each row a code, the place of its text among the ``names``."""
+    """A text column: each row's code is an index into ``names``."""
 
     codes: NDArray[int64]
     names: tuple[str, ...]
@@ -35,7 +35,7 @@ class Texts(NamedTuple):
     def groups(
         self, by: NDArray[np.integer[Any]] | None = None
     ) -> Iterator[tuple[str, NDArray[np.intp]]]:
-        """Each text that occurs, with the places of its rows, ascending ``by`` other numbers."""
+        """Each text that occurs, with the indices of its rows, sorted by ``by`` if given."""
         order = np.lexsort((self.codes,) if by is None else (by, self.codes))
         starts = np.flatnonzero(np.diff(self.codes[order], prepend=-1)).tolist()
         for start, end in pairwise([*starts, len(order)]):
@@ -46,7 +46,7 @@ class Texts(NamedTuple):
         return self.names[int(self.codes[row])]
 
     def having(self, name: str) -> NDArray[bool_]:
-        """Flags of the rows with a text."""
+        """Mask of the rows with a text."""
         code = self.names.index(name) if name in self.names else -1
         flags: NDArray[bool_] = self.codes == code
         return flags
@@ -54,9 +54,9 @@ class Texts(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Columns:
-    """Columns that were read, by the names in the table's head; what is empty is NaN, or ``""``.
+    """Columns by their names in the table's head; empty cells are NaN or ``""``.
 
-    ``rows`` are the places of the rows, lines of a file for one.
+    ``rows``: the places of the rows, such as line numbers.
     """
 
     __repr__ = short_repr
@@ -72,7 +72,7 @@ class Columns:
         return self.refused(why, place, expected=expected, help_text=help_text)
 
     def part(self, chosen: NDArray[np.intp]) -> Columns:
-        """Some of the rows."""
+        """The columns, reduced to the chosen rows."""
         return Columns(
             self.refused,
             {name: column[chosen] for name, column in self.numbers.items()},
@@ -83,9 +83,9 @@ class Columns:
 
 @dataclass(frozen=True, slots=True)
 class ColumnTable:
-    """A table that can be read: the names of its columns, and the reader of some of them.
+    """A table before it is read: the names of its columns, and the function that reads some.
 
-    ``read`` takes the names of columns of numbers and of those of texts.
+    ``read`` takes the names of the number columns and of the text columns.
     """
 
     __repr__ = short_repr
@@ -96,7 +96,7 @@ class ColumnTable:
 
 
 class ColumnKind(NamedTuple):
-    """A column that a table may have, and how it may be called: a name -> its unit in ours."""
+    """A column that a table may have: each name for it, with the unit's size in rulec's unit."""
 
     name: str
     also: Mapping[str, float]
@@ -105,7 +105,7 @@ class ColumnKind(NamedTuple):
 
 
 class NamedColumns(NamedTuple):
-    """Columns of a table by our names for them, in our units; names that nobody reads."""
+    """Columns of a table under rulec's names and in rulec's units, and the unread names."""
 
     columns: Columns
     numbers: Mapping[str, Floats]
@@ -113,11 +113,11 @@ class NamedColumns(NamedTuple):
     unread: tuple[str, ...]
 
     def number(self, name: str) -> Floats | None:
-        """A column of numbers, or None if the table has none."""
+        """A number column, or None if the table lacks it."""
         return self.numbers.get(name)
 
     def as_given(self, kind: ColumnKind) -> tuple[str, float]:
-        """What a column is called in the table, and its unit there in ours."""
+        """A column's name in the table, and the size of its unit in rulec's unit."""
         known = {kind.name: 1.0, **kind.also}
         for name in self.columns.numbers:
             if (ours := name.strip().casefold()) in known:
@@ -125,7 +125,7 @@ class NamedColumns(NamedTuple):
         return kind.name, 1.0
 
     def part(self, chosen: NDArray[np.intp]) -> NamedColumns:
-        """Some of the rows."""
+        """The columns, reduced to the chosen rows."""
         return NamedColumns(
             self.columns.part(chosen),
             {name: column[chosen] for name, column in self.numbers.items()},
@@ -135,10 +135,10 @@ class NamedColumns(NamedTuple):
 
 
 def named_columns(table: ColumnTable, kinds: Sequence[ColumnKind]) -> NamedColumns:
-    """Read the columns that we know, whatever they are called.
+    """Read the columns that are known, under any of their names.
 
-    Raises RulecError for a required one that is missing or has empty cells, and for one that is
-    there twice.
+    Raises RulecError for a required column that is missing or has empty cells, and for a column
+    that occurs twice.
     """
     ours = {alias: kind for kind in kinds for alias in (kind.name, *kind.also)}
     heading_of: dict[str, str] = {}
@@ -176,7 +176,7 @@ def named_columns(table: ColumnTable, kinds: Sequence[ColumnKind]) -> NamedColum
 
 
 def unread_remark(unread: Iterable[str], kinds: Sequence[ColumnKind]) -> str:
-    """What to say of columns that are not read but are called almost as one that would be."""
+    """A remark on unread columns whose names resemble those of known columns."""
     known = [kind.name for kind in kinds]
     near = [(short(name), nearest_name(name.strip(), known)) for name in unread]
     similar = [f"`{name}` (is it `{known_name}`?)" for name, known_name in near if known_name]
@@ -200,7 +200,7 @@ def _missing(
 
 
 def _with_unit(kind: ColumnKind, unread: Iterable[str]) -> str | None:
-    """A heading with something behind the name, such as `x [m]`."""
+    """An unread heading with a known name and something after it, such as `x [m]`."""
     names = (kind.name, *kind.also)
     bare = ((name, re.match(r"\w*", name.strip().casefold())) for name in unread)
     return next((name for name, match in bare if match and match[0] in names), None)
@@ -223,9 +223,9 @@ def _check_full(columns: Columns, name: str, kind: ColumnKind) -> None:
 
 
 def checked_numbers(values: Sequence[str], largest: float = LARGEST) -> tuple[Floats, int | None]:
-    """The numbers that texts spell, NaN for empty ones; the place of the first that is none.
+    """The numbers in texts, NaN for empty ones, and the index of the first that is not a number.
 
-    Truths are 1 and 0 where there is nothing else.
+    Booleans become 1 and 0 if the column holds nothing else.
     """
     try:
         numbers = np.fromiter(map(float, values), float, len(values))
@@ -239,7 +239,7 @@ def checked_numbers(values: Sequence[str], largest: float = LARGEST) -> tuple[Fl
 
 
 def _number(text: str) -> float:
-    """A number, NaN for what is empty, infinity for what is no number."""
+    """A number; NaN for an empty text, infinity for one that is not a number."""
     try:
         return float(text)
     except ValueError:
@@ -252,4 +252,4 @@ def _flag(text: str) -> float:
 
 _EMPTY = ("", "na", "<na>", "n/a", "null", "none", "-")
 _FLAGS = {"true", "false", "nan", *_EMPTY}
-"""What a column of truths holds, as pandas writes it."""
+"""The texts in a Boolean column, as pandas writes it."""

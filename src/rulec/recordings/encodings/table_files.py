@@ -1,4 +1,4 @@
-"""Tables from files, CSV or Parquet, and from columns in memory."""
+"""Tables read from CSV or Parquet files, and from columns in memory."""
 
 from __future__ import annotations
 
@@ -41,17 +41,17 @@ from rulec.trace.formats.arrow.parquet_columns import parquet_columns, parquet_n
 from rulec.trace.formats.stream_lines import foreign
 
 LARGEST_NUMBER = 1e19
-"""Nanoseconds since 1970 have nineteen digits."""
+"""Limit on numbers: nanoseconds since 1970 have nineteen digits."""
 
 _BEGINNING = 1000
 _ROWS_AT_ONCE = 1 << 16
 
 
 def open_table(path: Path, form: FileFormat, names: Sequence[str] = ()) -> ColumnTable:
-    """The table in a file; ``names`` are those of its columns if its first row has none.
+    """The table in a file; ``names`` are its column names if the file has no header row.
 
-    Raises RulecError R0610 for a file that is none, R0701 for one that cannot be read, R0706 if
-    Parquet cannot be read here.
+    Raises RulecError R0610 for a file that is not a table, R0701 for one that cannot be read, R0706
+    if Parquet cannot be read here.
     """
 
     def refused(
@@ -108,7 +108,7 @@ def _checked_names(names: tuple[str, ...], refused: Any) -> tuple[str, ...]:
 
 @contextmanager
 def _lines(path: Path, form: FileFormat, refused: Any) -> Iterator[io.TextIOWrapper]:
-    """The lines of a text that may be packed, read within limits."""
+    """The lines of a text file, possibly packed, read within limits."""
     with opened(path) as stream:
         packed = stream.read(2) == PACKED
         stream.seek(0)
@@ -127,7 +127,7 @@ def _lines(path: Path, form: FileFormat, refused: Any) -> Iterator[io.TextIOWrap
 
 
 class _Bounded(io.RawIOBase):
-    """A stream that ends in an error beyond a size."""
+    """A stream that raises an error beyond a size."""
 
     def __init__(self, stream: Any, most: int, refused: Any) -> None:
         self._stream, self._left, self._most, self._refused = stream, most, most, refused
@@ -151,7 +151,7 @@ def _read(
     refused: Any,
     line: int,
 ) -> Columns:
-    """The wanted columns of numbers and of texts, block by block."""
+    """The wanted number and text columns, read block by block."""
     numbers, texts = wanted
     at = {name: place for place, name in enumerate(names)}
     parts_of: dict[str, list[NDArray[Any]]] = {name: [] for name in (*numbers, *texts)}
@@ -241,14 +241,14 @@ _WAYS_OUT = (
         "write seconds, such as 0.1, as pandas' `t.dt.total_seconds()` gives them",
     ),
 )
-"""What stands in the place of a number, and what to write."""
+"""Pattern of a text found instead of a number, and advice on what to write."""
 
 
 def _stripped(codes: NDArray[int64], known: Mapping[str, int]) -> Texts:
-    """The texts without blanks around them; those that are one then have one code.
+    """The texts without surrounding blanks; equal texts get the same code.
 
-    Of whole numbers that are all written with a decimal, as pandas does where ids have a gap, the
-    decimal is left out.
+    If all are whole numbers with a decimal, as pandas writes ids in a column with gaps, the decimal
+    is dropped.
     """
     names: dict[str, int] = {}
     stripped = [name.strip() for name in known]
@@ -262,9 +262,9 @@ _EXPECTED = 'expected a data frame, or a dict of columns, such as `{"track": [1,
 
 
 def table_of(columns: Mapping[str, Any], words: str) -> ColumnTable:
-    """The table of columns in memory: sequences of equal length, a data frame's for one.
+    """The table of columns in memory: sequences of equal length, such as a data frame's.
 
-    ``words`` say what is read from it. Raises RulecError R0610.
+    ``words`` says what is read, for messages. Raises RulecError R0610.
     """
 
     def refused(
@@ -304,7 +304,7 @@ def _array(name: str, values: Any, refused: Any) -> NDArray[Any]:
 def columns_of(
     values: Mapping[str, NDArray[Any]], numbers: Sequence[str], texts: Sequence[str], refused: Any
 ) -> Columns:
-    """Columns from arrays, which have to be of one length; rows count from 0."""
+    """Columns from arrays, which must have the same length; rows count from 0."""
     for name, column in values.items():
         if column.ndim != 1:
             raise refused(f"its column `{short(name)}` is no row of values")
@@ -347,7 +347,7 @@ def _texts(column: NDArray[Any]) -> Texts:
 
 
 def _text(cell: object) -> str:
-    """A cell as text: ids that are numbers, which a gap made floats, have no decimals."""
+    """A cell as text; ids that a gap turned into floats lose their decimals."""
     if cell is None or (isinstance(cell, float) and cell != cell):
         return ""
     return str(int(cell)) if isinstance(cell, float) and cell.is_integer() else str(cell)

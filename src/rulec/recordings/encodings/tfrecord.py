@@ -1,7 +1,8 @@
-"""TensorFlow's record files (TFRecord): lengths, checksums and bytes, one record after the other.
+"""TensorFlow record files (TFRecord): a sequence of lengths, checksums and bytes.
 
-By https://www.tensorflow.org/tutorials/load_data/tfrecord: a length of 8 bytes with its checksum,
-as many bytes with theirs. Checksums are CRC-32C (Castagnoli; RFC 3720, B.4), rotated and shifted.
+See https://www.tensorflow.org/tutorials/load_data/tfrecord: a length of 8 bytes with its checksum,
+then that many bytes with theirs. Checksums are CRC-32C (Castagnoli; RFC 3720, B.4), rotated and
+shifted.
 """
 
 from __future__ import annotations
@@ -27,11 +28,11 @@ _REVERSED_CASTAGNOLI = 0x82F63B78
 _MASK = 0xA282EAD8
 _ALL_BITS = 0xFFFFFFFF
 _LANES = 512
-"""Parts of a long record whose checksums are computed side by side."""
+"""The number of parts of a long record whose checksums are computed in parallel."""
 
 
 class TfRecord(NamedTuple):
-    """A record: its number from 1 on, the byte that its content begins at, and the content."""
+    """A record: its number from 1, the byte at which its content begins, and the content."""
 
     number: int
     place: int
@@ -39,10 +40,10 @@ class TfRecord(NamedTuple):
 
 
 def tfrecords(path: Path, form: BinaryFormat) -> Iterator[TfRecord | RulecError]:
-    """The records of a file, with an error (R0610) in the place of one that is broken.
+    """The records of a file, with an error (R0610) in place of each broken one.
 
-    After a broken length nothing can be found any more, and the error is the last that comes.
-    Raises RulecError R0610 for an empty file, R0701 for one that cannot be read.
+    After a broken length no further record can be found, so that error is the last item. Raises
+    RulecError R0610 for an empty file, R0701 for one that cannot be read.
     """
     with opened(path) as stream:
         number = place = 0
@@ -79,7 +80,7 @@ def _broken_head(head: bytes, most: int) -> str:
 
 
 def masked_checksum(content: bytes) -> int:
-    """The checksum of some bytes as record files have it."""
+    """The masked checksum of some bytes, as record files contain it."""
     check = checksum(content)
     return (((check >> 15) | (check << 17)) + _MASK) & _ALL_BITS
 
@@ -97,10 +98,10 @@ def checksum(content: bytes) -> int:
 
 
 def _checksum_of_parts(content: bytes, size: int, state: int) -> int:
-    """The register after ``_LANES`` parts of one size.
+    """The register after ``_LANES`` parts of equal size.
 
-    The register is linear in itself and in the bytes: all parts begin with 0, side by side, and
-    then each adds what the one before it becomes over so many bytes of 0.
+    The register is linear in itself and in the bytes. So all parts start with 0, in parallel, and
+    then each adds the effect of its predecessor's register, shifted by ``size`` bytes of 0.
     """
     columns = np.frombuffer(content, dtype=np.uint8).reshape(_LANES, size).T.astype(uint32)
     registers = np.zeros(_LANES, dtype=uint32)
@@ -120,7 +121,7 @@ def _checksum_of_parts(content: bytes, size: int, state: int) -> int:
 
 
 def _shifted_bits(size: int) -> list[int]:
-    """What each bit of the register becomes over so many bytes of 0."""
+    """What each bit of the register becomes after ``size`` bytes of 0."""
     table = _table()
     bits = np.uint32(1) << np.arange(32, dtype=uint32)
     for _ in range(size):

@@ -1,4 +1,4 @@
-"""Elements of a file as trees, whatever form they are written in."""
+"""Elements of a file as trees, whatever the encoding."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.xml_element import LARGEST, short
 
 MOST_ELEMENTS = 1_000_000
-"""In one child of the root, some 300 MB of memory."""
+"""Limit on the elements in one child of the root, about 300 MB of memory."""
 
 LONGEST_TEXT = 1_000
-"""Characters that are kept of an element's text; numbers and words are shorter."""
+"""The number of characters kept of an element's text; numbers and words are shorter."""
 
 LONGEST_ID = 18
-"""Digits."""
+"""Limit on the digits of an id."""
 
 SMALLEST = 1e-100
-"""Numbers closer to 0 are 0: geometry squares what it divides by, which then is none."""
+"""Numbers closer to 0 than this are read as 0: geometry would square them and divide by 0."""
 
 
 Texts = tuple[bytes, ...]
@@ -28,9 +28,9 @@ Texts = tuple[bytes, ...]
 
 @dataclass(frozen=True, slots=True)
 class AlikeElements:
-    """Elements one after the other that hold the same ones: how many, and what they say.
+    """Consecutive elements with the same child elements: their number and contents.
 
-    ``columns``: for each of the elements in them that somebody wants, its text in all of them.
+    ``columns``: for each wanted child element, its text in all of them.
     """
 
     count: int
@@ -39,10 +39,10 @@ class AlikeElements:
 
 @dataclass(slots=True)
 class Tree:
-    """An element with its text, and those in it. Its methods raise RulecError R0610.
+    """An element with its text and children. Its methods raise RulecError R0610.
 
-    ``place`` is the line or byte that it begins in, as its format counts; ``alike`` are children
-    that no trees have been made of, since there are very many.
+    ``place`` is the line or byte where it begins, depending on the format; ``alike`` are children
+    that have no trees of their own because they are very many.
     """
 
     # Not frozen: a recording has millions, whose text and children come later
@@ -56,25 +56,25 @@ class Tree:
     alike: AlikeElements | None = None
 
     def first(self, name: str) -> Tree | None:
-        """The first child of a name."""
+        """The first child with a name."""
         for child in self.children:
             if child.name == name:
                 return child
         return None
 
     def child(self, name: str) -> Tree:
-        """The first child of a name, which must be there."""
+        """The first child with a name, which must exist."""
         tree = self.first(name)
         if tree is None:
             raise self.wrong(f"the element `{self.name}` has no `{name}`")
         return tree
 
     def all(self, name: str) -> list[Tree]:
-        """All children of a name."""
+        """All children with a name."""
         return [child for child in self.children if child.name == name]
 
     def attribute(self, key: str) -> str:
-        """An attribute's text, which must be there."""
+        """An attribute's text, which must exist."""
         value = self.attributes.get(key)
         if value is None:
             raise self.wrong(f"the element `{self.name}` has no `{key}`")
@@ -89,11 +89,11 @@ class Tree:
         return str(int(text))
 
     def ids(self, name: str) -> tuple[str, ...]:
-        """What all children of a name refer to."""
+        """The ids that all children with a name refer to."""
         return tuple([child.id("ref") for child in self.children if child.name == name])
 
     def number(self, key: str = "") -> float:
-        """The number that the text spells, or an attribute; it must not be huge."""
+        """The number in the text or, with ``key``, in an attribute; it must not be huge."""
         text = self.attribute(key) if key else self.text
         try:
             value = float(text)
@@ -104,7 +104,7 @@ class Tree:
         return value if abs(value) > SMALLEST else 0.0
 
     def whole(self) -> int:
-        """The whole number that the text spells, which must not be huge."""
+        """The whole number in the text, which must not be huge."""
         try:
             value = int(self.text)
         except ValueError:
@@ -114,18 +114,18 @@ class Tree:
         return value
 
     def one_of(self, words: Collection[str]) -> str:
-        """The text, which must be one of some words."""
+        """The text, which must be one of ``words``."""
         if self.word not in words:
             raise self.wrong(_quoted(self.name, self.text), f"one of {', '.join(sorted(words))}")
         return self.word
 
     @property
     def word(self) -> str:
-        """The text without blanks around it."""
+        """The text without surrounding blanks."""
         return self.text.strip()
 
     def wrong(self, why: str, expected: str = "") -> RulecError:
-        """The error (R0610) for where the element begins."""
+        """The error (R0610) at the place where the element begins."""
         expected = expected and f"expected {expected}"
         return self.form.refused(self.path, why, self.place, expected=expected)
 

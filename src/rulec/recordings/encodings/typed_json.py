@@ -1,4 +1,4 @@
-"""JSON read into types within bounds; what no type asks for is skipped."""
+"""JSON read into types within limits; keys that no type declares are skipped."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ T = TypeVar("T")
 def read_json(path: Path, form: FileFormat, kind: type[T]) -> T:
     """The content of a file as a value of a type, which bounds its depth.
 
-    Raises RulecError R0610 for a file that is larger than the format allows, broken, or holds
-    something else, with the place in it as a path of keys or a byte; R0701 if it cannot be opened.
+    Raises RulecError R0610 for a file that is too large for the format, broken, or of other
+    content, with the place as a path of keys or a byte; R0701 if it cannot be opened.
     """
     data = form.content(path)
     try:

@@ -1,6 +1,6 @@
-"""Protocol Buffers' wire format, decoded by tables of fields, safe against harmful files.
+"""Protocol Buffers' wire format, decoded by tables of fields, safe against malicious files.
 
-By https://protobuf.dev/programming-guides/encoding/. Nothing is decoded that no table asks for.
+See https://protobuf.dev/programming-guides/encoding/. Only fields in the tables are decoded.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.file_format import BinaryFormat
 
 MOST_VALUES = 1_000_000
-"""In one field of the outermost message, some 300 MB of memory."""
+"""Limit on the values in one field of the outermost message, about 300 MB of memory."""
 
 DEEPEST = 64
-"""Messages in each other."""
+"""Limit on the depth of nested messages."""
 
 _LONGEST_VARINT = 10
 _GOES_ON = 0x80
@@ -41,7 +41,7 @@ _DOUBLE, _FLOAT = struct.Struct("<d"), struct.Struct("<f")
 
 
 class Words(NamedTuple):
-    """An enumeration: words by number, and one for all ``other`` numbers, if these may be."""
+    """An enumeration: words by number, and the word for ``other`` numbers if these are allowed."""
 
     by_number: Mapping[int, str]
     other: str = ""
@@ -49,7 +49,7 @@ class Words(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """A field of a message: its name, what it holds, and whether there may be ``many`` of it."""
+    """A field of a message: its name, its content, and whether it is repeated (``many``)."""
 
     name: str
     holds: Kind | Words | Table
@@ -57,7 +57,7 @@ class Field:
 
 
 Table: TypeAlias = Mapping[int, Field]
-"""A kind of messages: those of its fields that are wanted, by number."""
+"""A message type: its wanted fields by number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ Value: TypeAlias = "int | float | bool | str | bytes | Message"
 
 
 class WireField(NamedTuple):
-    """A value of a field, and the byte that it begins at."""
+    """A value of a field, and the byte where it begins."""
 
     field: Field
     value: Value
@@ -80,7 +80,7 @@ class WireField(NamedTuple):
 
 @dataclass(slots=True)
 class WireFile:
-    """A file's bytes, or those from its byte ``begin`` on. Its methods raise RulecError R0610."""
+    """A file's bytes, or those from byte ``begin`` on. Its methods raise RulecError R0610."""
 
     data: bytes
     path: Path
@@ -89,11 +89,11 @@ class WireFile:
     _n_values: int = 0
 
     def fields(self, table: Table) -> Iterator[WireField]:
-        """The fields of the outermost message, one after the other."""
+        """The fields of the outermost message, in order."""
         return self._fields(table, 0, len(self.data), 0)
 
     def wrong(self, why: str, place: int, expected: str = "") -> RulecError:
-        """The error for a byte."""
+        """The error at a byte."""
         expected = expected and f"expected {expected}"
         return self.form.refused(self.path, why, self.begin + place, expected=expected)
 
@@ -124,7 +124,7 @@ class WireFile:
             place = stop
 
     def _content(self, wire_type: int, place: int, end: int, begin: int) -> tuple[int, int]:
-        """Where the value of a field begins and ends."""
+        """The positions where the value of a field begins and ends."""
         if wire_type == _VARINT:
             return place, self._varint(place, end)[1]
         if wire_type == _COUNTED:
@@ -192,7 +192,7 @@ class WireFile:
             raise self.wrong(why, place + reason.start) from None
 
     def _varint(self, place: int, end: int) -> tuple[int, int]:
-        """The number of 64 bits that begins at a byte, and where it ends."""
+        """The 64-bit number that begins at a byte, and the position after it."""
         if place < end and self.data[place] < _GOES_ON:
             return self.data[place], place + 1
         value = shift = 0
@@ -214,7 +214,7 @@ class WireFile:
 def wire_file(path: Path, form: BinaryFormat) -> WireFile:
     """The bytes of a file.
 
-    Raises RulecError R0610 for one that is empty or too large, R0701 if it cannot be read.
+    Raises RulecError R0610 if it is empty or too large, R0701 if it cannot be read.
     """
     data = form.content(path)
     if not data:
@@ -229,10 +229,10 @@ def _wire_type(holds: Kind | Words | Table) -> int:
 
 
 def _fits(field: Field, wire_type: int) -> bool:
-    """True for its own wire type, and for many numbers packed into one value."""
+    """Whether a wire type is the field's own, or that of many numbers packed into one value."""
     return wire_type == _wire_type(field.holds) or (field.many and wire_type == _COUNTED)
 
 
 def _signed(bits: int) -> int:
-    """A number in two's complement."""
+    """A number in two's complement, as signed."""
     return bits - (bits >> 63 << 64)

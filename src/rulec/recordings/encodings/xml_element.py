@@ -1,4 +1,4 @@
-"""Formats of XML files, and their elements with checked attributes."""
+"""Formats of XML files, and XML elements with checked attributes."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.file_format import FileFormat
 
 LARGEST = 1e8
-"""Numbers in a file are smaller than this, places included: the earth is not so large."""
+"""Limit on numbers in a file, coordinates (m) included: larger than the earth's circumference."""
 
 
 @dataclass(slots=True)
 class XmlElement:
-    """An element of a file that is being read. Its methods raise RulecError R0610."""
+    """An element of a file while it is read. Its methods raise RulecError R0610."""
 
     # Not frozen: a recording has millions, and a frozen one takes five times as long to make
     name: str
@@ -25,18 +25,18 @@ class XmlElement:
     form: FileFormat
 
     def get(self, key: str) -> str:
-        """An attribute's text, empty if it is missing."""
+        """An attribute's text; empty if it is missing."""
         return self.attributes.get(key, "")
 
     def text(self, key: str) -> str:
-        """An attribute's text, which must not be missing or empty."""
+        """An attribute's text, which must be neither missing nor empty."""
         value = self.attributes.get(key)
         if not value:
             raise self.wrong(f"a `{self.name}` has no `{key}`")
         return value
 
     def number(self, key: str, default: float | None = None) -> float:
-        """The number in an attribute, or its default."""
+        """The number in an attribute; its default if missing."""
         if default is not None and key not in self.attributes:
             return default
         return self.as_number(key, self.text(key))
@@ -49,7 +49,7 @@ class XmlElement:
         return value
 
     def as_number(self, key: str, text: str) -> float:
-        """The number that a text spells, which must not be huge."""
+        """The number in a text, which must not be huge."""
         try:
             value = float(text)
         except ValueError:
@@ -60,11 +60,11 @@ class XmlElement:
         return value
 
     def wrong(self, why: str, expected: str = "") -> RulecError:
-        """The error (R0610) for the place that the parser has come to."""
+        """The error (R0610) at the parser's current position."""
         expected = expected and f"expected {expected}"
         return self.form.refused(self.path, why, self.parser.CurrentLineNumber, expected=expected)
 
 
 def short(text: str) -> str:
-    """A file's text for a message: short, and without control characters."""
+    """Text of a file for use in a message: short, and without control characters."""
     return "".join(c if c.isprintable() else "?" for c in text[:40])

@@ -1,9 +1,9 @@
 """XML files as trees.
 
-Small ones that are as they should be are made in one go by the standard library's builder, which
-takes a third of the time; elements that are all alike are taken out before. Of others the root's
-children come one after the other, with the line of every element; only one of them is in memory at
-a time, so a file may be larger than that.
+Small, regular files are built in one go by the standard library, which takes a third of the time;
+runs of uniform elements are taken out before. In other files the root's children are read one after
+the other, with the line of every element; only one of them is in memory at a time, so the file may
+be larger than memory.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from rulec.recordings.encodings.tree import LONGEST_TEXT, MOST_ELEMENTS, AlikeEl
 from rulec.recordings.encodings.xml_element import short
 
 LARGEST_BYTES = 4_000_000
-"""Larger files are read one child of the root after the other, in little memory."""
+"""Files of more bytes are read one child of the root at a time, with little memory."""
 
 MOST_TAGS = 600_000
-"""Of elements that begin and end, together: some 60 MB of memory."""
+"""Limit on start and end tags together: about 60 MB of memory."""
 
 DEEPEST = 20
 
@@ -43,9 +43,11 @@ def scan_trees(
     root: Callable[[Tree], None],
     child: Callable[[Tree], None],
 ) -> None:
-    """Scan an XML file once; callbacks get the root, without children, and each of its children.
+    """Scan an XML file once.
 
-    Raises RulecError R0610 for a file that is none, R0701 for one that cannot be read.
+    Callbacks get the root, without children, and then each of its children.
+
+    Raises RulecError R0610 if it is not such a file, R0701 if it cannot be read.
     """
     # The elements that have begun
     open_trees: list[Tree] = []
@@ -85,15 +87,15 @@ def scan_trees(
 
 
 Way = tuple[str, ...]
-"""The names of elements, each in the one before."""
+"""A path of element names, each within the one before."""
 
 
 @dataclass(frozen=True, slots=True)
 class Alike:
-    """Elements ``child``, of which there are very many in each ``parent``.
+    """Elements ``child``, of which each ``parent`` has very many.
 
-    ``wanted``: of the names on the way to each text in one, which texts are wanted; None if such
-    elements have to be looked at one by one.
+    ``wanted``: maps the path of names to each text in a child to whether that text is wanted; None
+    if such elements must be read one by one.
     """
 
     parent: str
@@ -102,10 +104,10 @@ class Alike:
 
 
 def whole_tree(path: Path, form: XmlFormat, alike: Sequence[Alike]) -> Tree | None:
-    """The root of an XML file with all in it, without lines; None if it takes a closer look.
+    """The root of an XML file with all its content, without lines; None if it needs ``scan_trees``.
 
-    Of what is ``alike`` no trees are made. Raises RulecError R0610 for what is packed and damaged,
-    R0701 for a file that cannot be read.
+    No trees are made of elements that are ``alike``. Raises RulecError R0610 if a packed file is
+    damaged, R0701 if it cannot be read.
     """
     data = bytearray()
     for block in blocks_of(path):
@@ -126,11 +128,11 @@ def whole_tree(path: Path, form: XmlFormat, alike: Sequence[Alike]) -> Tree | No
 
 
 def without_alike(data: bytes, alike: Sequence[Alike]) -> tuple[bytes, list[AlikeElements]]:
-    """A document without runs of elements that are alike, and these.
+    """A document without runs of uniform elements, and these runs.
 
-    Where one was its parent has its number, in an attribute. Nothing else is left out than elements
-    without attributes, with blanks and texts without markup in them, so that what is not
-    well-formed stays so.
+    An attribute of the parent holds the number of the run removed from it. Only elements without
+    attributes, blanks, and texts without markup are removed, so a document that is not well-formed
+    stays so.
     """
     parts: list[bytes] = []
     runs: list[AlikeElements] = []
@@ -147,7 +149,7 @@ def without_alike(data: bytes, alike: Sequence[Alike]) -> tuple[bytes, list[Alik
 
 
 _Cut = tuple[int, int, int, AlikeElements]
-"""Where the parent's tag ends, where its children begin and end, and what they say."""
+"""Where the parent's tag ends, where its children begin and end, and their contents."""
 
 
 def _cuts(data: bytes, alike: Alike) -> Iterator[_Cut]:
@@ -172,9 +174,9 @@ def _cuts(data: bytes, alike: Alike) -> Iterator[_Cut]:
 
 @dataclass(frozen=True, slots=True)
 class _Shape:
-    """What finds elements that hold the same ones, and how many tags each has.
+    """A pattern that matches elements with the same child elements, and the tags that each has.
 
-    ``order`` are the wanted ones' places among those that are found.
+    ``order``: the positions of the wanted texts among those matched.
     """
 
     pattern: re.Pattern[bytes]
@@ -183,7 +185,7 @@ class _Shape:
 
 
 def _elements(run: bytes, shapes: Sequence[_Shape]) -> AlikeElements | None:
-    """The elements of a run, if all are of one of the shapes, and there is no other tag in it."""
+    """The elements of a run, if each matches one of the shapes and there is no other tag."""
     tags = run.count(b"<")
     for shape in shapes:
         matches = shape.pattern.findall(run)
@@ -194,7 +196,7 @@ def _elements(run: bytes, shapes: Sequence[_Shape]) -> AlikeElements | None:
 
 
 def _shape(run: bytes, end_of_child: bytes, alike: Alike) -> _Shape | None:
-    """The shape of the first element of a run; None if it has to be looked at by itself."""
+    """The shape of the first element of a run; None if it must be read by itself."""
     whole = run[: run.find(end_of_child) + len(end_of_child)]
     tags = _TAG.findall(whole)
     if len(tags) > _MOST_TAGS_ALIKE or b"".join(b"<%s%s>%s" % tag for tag in tags) != whole:
@@ -226,7 +228,7 @@ def _shape(run: bytes, end_of_child: bytes, alike: Alike) -> _Shape | None:
 
 
 def _begins_well(head: bytes, form: XmlFormat) -> bool:
-    """True if the root begins in the first bytes of a file, with nothing defined before."""
+    """Whether the root begins in the first bytes of a file, with no definitions before it."""
     parser = ParserCreate()
     seen: list[str] = []
 

@@ -1,1 +1,1 @@
-"""Lanes from centre lines, and from tables of them."""
+"""Lanes made from centre lines and from tables of centre lines."""

@@ -1,4 +1,4 @@
-"""Lanes as a table: points of their centre lines in order, and what else is known of each."""
+"""Lanes as a table: the points of their centre lines in order, with further attributes."""
 
 from __future__ import annotations
 
@@ -76,18 +76,18 @@ def read_lane_map(path: Path) -> RoadMap:
 
 
 def lane_map(columns: Mapping[str, Any]) -> RoadMap:
-    """The roads in columns in memory. Raises RulecError R0610."""
+    """The roads in columns held in memory. Raises RulecError R0610."""
     return road_map_of(table_of(columns, "lanes"))
 
 
 def road_map_of(table: ColumnTable) -> RoadMap:
-    """The roads in a table. Raises RulecError for what makes no sense in it."""
+    """The roads in a table. Raises RulecError if its content is inconsistent."""
     named = named_columns(table, LANE_COLUMNS)
     return _LaneTable(named).road_map()
 
 
 class _LaneTable:
-    """A table of lanes that is being read."""
+    """A table of lanes while it is read."""
 
     def __init__(self, named: NamedColumns) -> None:
         self.named = named
@@ -196,7 +196,7 @@ class _LaneTable:
         return kept, filled[first]
 
     def _text(self, name: str, own: NDArray[np.intp]) -> str:
-        """What some row of a lane says in a column of texts; the others repeat it or are empty."""
+        """The value of a lane in a text column: one row suffices, others repeat it or are empty."""
         texts = self.named.texts.get(name)
         if texts is None:
             return ""

@@ -1,4 +1,4 @@
-"""Lanelets along centre lines, and how they follow each other where nobody says so."""
+"""Lanelets along centre lines, and their successors where the source gives none."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rulec.recordings.polylines import parallel_line
 from rulec.recordings.recording import CYCLES_TOO, STRAIGHT_ON, TAXIS_TOO, Lanelet, Points
 
 USUAL_WIDTH_M = 3.5
-"""The width of a lane of which nothing is said, which is that of most rural roads and motorways."""
+"""The default width (m) of a lane, which is that of most rural roads and motorways."""
 
 CLOSEST_M = 0.01
 
@@ -32,7 +32,7 @@ LANE_TYPES = frozenset(
         *("restricted_area", CYCLES_TOO, TAXIS_TOO, STRAIGHT_ON, "unknown"),
     )
 )
-"""Types of lanelets that rules are about, or that maps have besides."""
+"""Types of lanelets that rules refer to, and others that maps contain."""
 
 
 def lanelet_along(
@@ -43,9 +43,10 @@ def lanelet_along(
     stops_at_end: bool = False,
     **more: Any,
 ) -> Lanelet:
-    """A lanelet along different points, with its width (m) in all or at each of them.
+    """A lanelet along a line of distinct points; the width (m) is one number, or one per point.
 
-    ``stops_at_end``: there is a stop line across its end. ``more``: fields of a ``Lanelet``.
+    ``stops_at_end``: whether there is a stop line across its end. ``more``: fields of a
+    ``Lanelet``.
     """
     left, right = (parallel_line(centre, way * np.asarray(width) / 2) for way in (1, -1))
     if stops_at_end:
@@ -54,7 +55,7 @@ def lanelet_along(
 
 
 def linked(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
-    """The lanelets, with predecessors for all successors and the reverse; neighbours, too."""
+    """The lanelets with successors, predecessors and neighbours made mutual."""
     after: dict[str, list[str]] = defaultdict(list)
     before: dict[str, list[str]] = defaultdict(list)
     left, right = {}, {}
@@ -82,9 +83,9 @@ def linked(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
 
 
 def with_ends_that_meet(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
-    """The lanelets; those follow each other whose centre lines meet, and lead the same way there.
+    """The lanelets, linked where centre lines meet and have the same direction.
 
-    They meet where one's end is within ``MEETING_M`` of the other's beginning.
+    Lines meet if one's end is within ``MEETING_M`` of the other's start.
     """
     names = list(lanelets)
     lines = [lanelets[name].centre for name in names]

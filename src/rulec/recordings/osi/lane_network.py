@@ -136,7 +136,7 @@ def lane_network(lanes: Sequence[TraceLane], boundaries: Mapping[str, Boundary])
 
 
 def replace_id(area: TraceLane, name: str) -> TraceLane:
-    """A way across an area, which has its types and no boundaries or lanes beside."""
+    """A way across an intersection area, with the area's types but no boundaries or neighbours."""
     nothing: tuple[str, ...] = ()
     return area._replace(
         id=name,

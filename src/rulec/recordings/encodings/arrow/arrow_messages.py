@@ -1,8 +1,8 @@
-"""Unpacked size of Arrow messages, found before Arrow unpacks them.
+"""The unpacked size of Arrow messages, determined before Arrow unpacks them.
 
-By the Arrow columnar format's "Serialization and Interprocess Communication" (format version 1.5):
+See the Arrow columnar format, "Serialization and Interprocess Communication" (format version 1.5):
 a file holds messages, each with metadata as a flatbuffer and a body whose buffers may be packed.
-Which sizes are said there is read here; everything else is left to Arrow.
+Only the stated sizes are read here; everything else is left to Arrow.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ _MOST_BUFFERS = 100_000
 
 
 class OddMessageError(Exception):
-    """The metadata of a message do not hold together."""
+    """The metadata of a message are inconsistent."""
 
 
 @dataclass(frozen=True, slots=True)
 class BatchSize:
-    """The rows that a batch says it has, and the bytes that its buffers unpack to."""
+    """The stated number of rows of a batch, and the bytes that its buffers unpack to."""
 
     rows: int
     unpacked_bytes: int
 
 
 def batch_size(metadata: bytes, body: memoryview) -> BatchSize:
-    """The size of a message's batch; nothing for messages of other kinds.
+    """The size of a message's batch; zero for messages of other kinds.
 
     Raises OddMessageError.
     """
@@ -83,7 +83,7 @@ def _unsigned(data: bytes, at: int) -> int:
 
 
 def _place(data: bytes, table: int, field: int) -> int | None:
-    """Where a field of a table is; None if it is left out."""
+    """The position of a flatbuffer table's field; None if the field is absent."""
     virtual = table - struct.unpack_from("<i", data, table)[0]
     if virtual < 0:
         raise OddMessageError

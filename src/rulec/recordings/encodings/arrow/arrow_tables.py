@@ -29,26 +29,26 @@ from rulec.trace.formats.arrow.parquet import without_arrow
 
 MOST_ROWS = 5_000_000
 MOST_CELLS = 100_000_000
-"""Rows times columns that are read: one value may stand for many, packed into no bytes at all."""
+"""Limit on rows times columns read: a repeated value may be packed into almost no bytes."""
 
 MOST_BYTES = 1_000_000_000
-"""That the columns which are read unpack to."""
+"""Limit on the unpacked bytes of the columns that are read."""
 
 LONGEST_TEXT = 200
 
 PARQUET_MARK, FEATHER_MARK = b"PAR1", b"ARROW1"
 _FIRST_FEATHER = b"FEA1"
 _STREAM_MARK = b"\xff\xff\xff\xff"
-"""With which every message begins; that of the schema is a stream's first one."""
+"""The mark at the start of every message; a stream's first message is its schema."""
 
 _HEADER_BYTES = 8
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ArrowTable:
-    """Columns of a file by name, without gaps; numbers are finite, below ``LARGEST``.
+    """Columns of a file by name, without missing values; numbers are finite and below ``LARGEST``.
 
-    ``metadata`` are those of its schema.
+    ``metadata``: the metadata of its schema.
     """
 
     path: Path
@@ -61,13 +61,13 @@ class ArrowTable:
     metadata: Mapping[bytes, bytes] = field(default_factory=dict)
 
     def refused(self, row: int, why: str, expected: str = "") -> RulecError:
-        """The error (R0610) for a row, the first of which is 1."""
+        """The error (R0610) for a row, counted from 1."""
         return self.form.refused(self.path, why, row + 1, expected=expected)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Wanted:
-    """The columns to read, by what they hold; those in ``optional`` may be missing."""
+    """The columns to read, by their kind; those in ``optional`` may be missing."""
 
     numbers: tuple[str, ...] = ()
     whole: tuple[str, ...] = ()
@@ -80,20 +80,20 @@ class Wanted:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All of them."""
+        """The names of all columns to read."""
         return (*self.numbers, *self.whole, *self.texts, *(column.name for column in self.nested))
 
     @property
     def nested(self) -> tuple[Nested, ...]:
-        """Those with lists in them, and those of bytes."""
+        """The columns that hold lists, and those that hold bytes."""
         return (*self.nested_numbers, *self.nested_whole, *self.nested_texts, *self.nested_bytes)
 
 
 def read_table(path: Path, form: FileFormat, wanted: Wanted) -> ArrowTable:
     """Read columns of a Parquet or Feather file.
 
-    Raises RulecError R0610 for a file that is none, is damaged or too large, or lacks a column,
-    R0701 if it cannot be opened, R0706 without pyarrow.
+    Raises RulecError R0610 for a file that is not of this format, is damaged or too large, or lacks
+    a column, R0701 if it cannot be opened, R0706 without pyarrow.
     """
     arrow = _arrow(path)
     data = form.content(path)

@@ -1,4 +1,4 @@
-"""Columns of Arrow's with lists in them: vectors of a fixed length, and lists of any."""
+"""Arrow columns of lists: vectors of a fixed length, and lists of any length."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Nested:
-    """A column to read: ``listed`` if each row has a list, ``width`` of vectors, 0 of others."""
+    """A column to read: ``listed`` if each row holds a list.
+
+    ``width`` of vectors, 0 for scalars.
+    """
 
     name: str
     listed: bool = False
@@ -22,9 +25,9 @@ class Nested:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class NestedColumn:
-    """What is in the rows of a column, one after the other, and where each row begins.
+    """The values of all rows of a column, concatenated, and the position where each row begins.
 
-    ``values`` are as the column's kind is read; the rows of vectors are rows of an array.
+    ``values`` have the type of the column's kind; for vectors, they are the rows of an array.
     """
 
     starts: NDArray[int64]
@@ -32,12 +35,12 @@ class NestedColumn:
 
     @property
     def row_of(self) -> NDArray[int64]:
-        """The number of the row that each value is from."""
+        """The row number of each value."""
         return np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))
 
 
 class OddColumnError(Exception):
-    """A column is not of its kind; ``row`` is the first that is wrong, counted from 1."""
+    """A column is not of its kind; ``row`` is the first wrong one, counted from 1."""
 
     def __init__(self, why: str, row: int | None = None) -> None:
         self.why, self.row = why, row
@@ -46,7 +49,7 @@ class OddColumnError(Exception):
 def nested_column(
     wanted: Nested, column: Any, arrow: Any, read: Callable[[str, Any, Any], Any]
 ) -> NestedColumn:
-    """The values of a column, each read by ``read``. Raises OddColumnError."""
+    """The values of a column, converted by ``read``. Raises OddColumnError."""
     array = column.combine_chunks()
     starts = np.arange(len(array) + 1)
     if wanted.listed:
