@@ -1,4 +1,4 @@
-"""Files of Argoverse 2 that belong together, by their names."""
+"""Files of Argoverse 2 that belong together, found by their names."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ _MOST_NAMED = 3
 
 
 def is_named(path: Path, pattern: str) -> bool:
-    """True for a file with such a name, and for a folder with such a file."""
+    """Whether a file has such a name, or a folder contains such a file."""
     return has(path, pattern) or (not is_folder(path) and fnmatchcase(path.name, pattern))
 
 
 def has(folder: Path, pattern: str) -> bool:
-    """True for a folder with such a file."""
+    """Whether a folder contains such a file."""
     return is_folder(folder) and next(folder.glob(pattern), None) is not None
 
 
 def only_in(path: Path, pattern: str, form: FileFormat) -> Path:
-    """The file itself, or the only one with such a name in a folder. Raises RulecError R0610."""
+    """The file itself, or the only file with such a name in a folder. Raises RulecError R0610."""
     return _only(path, path, pattern, form, "name one of them") if is_folder(path) else path
 
 
 def map_beside(path: Path, form: FileFormat) -> Path:
-    """The map beside a file, or in the folder `map` there. Raises RulecError R0610."""
+    """The map next to a file, or in the folder `map` there. Raises RulecError R0610."""
     folder = path.parent if has(path.parent, MAP) else path.parent / "map"
     return _only(path, folder, MAP, form, "name the map with --map FILE")
 

@@ -1,4 +1,4 @@
-"""Poses in three dimensions: from ego's frame to the city's."""
+"""Poses in three dimensions, for transforms from ego's frame to the city's."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ _Floats = NDArray[float64]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CityPoses:
-    """Rotations (3 x 3 matrices) and translations (m), a row for each."""
+    """Rotations (3 x 3 matrices) and translations (m), one row each."""
 
     rotations: _Floats
     translations: _Floats
 
     @property
     def headings(self) -> _Floats:
-        """The directions (rad) in the plane of the x axes."""
+        """The directions (rad) of the x axes in the plane."""
         headings: _Floats = np.arctan2(self.rotations[:, 1, 0], self.rotations[:, 0, 0])
         return headings
 
     def taken(self, rows: NDArray[intp]) -> CityPoses:
-        """Those of some rows."""
+        """The poses in the given rows."""
         return CityPoses(self.rotations[rows], self.translations[rows])
 
     def after(self, inner: CityPoses) -> CityPoses:
-        """Poses in these frames as poses in the frame that these are in, row by row."""
+        """Poses in these frames, converted to these frames' outer frame, row by row."""
         moved = np.einsum("nij,nj->ni", self.rotations, inner.translations) + self.translations
         return CityPoses(np.einsum("nij,njk->nik", self.rotations, inner.rotations), moved)
 
@@ -39,7 +39,7 @@ class CityPoses:
 def poses_in(
     table: ArrowTable, rows: NDArray[int64], places: _Floats, quaternions: _Floats
 ) -> CityPoses:
-    """The poses in some rows of a table. Raises RulecError R0610 for a quaternion of 0."""
+    """The poses in rows of a table. Raises RulecError R0610 for a quaternion of 0."""
     flat = np.abs(quaternions).max(axis=1, initial=0.0) < 1e-6
     if flat.any():
         raise table.refused(int(rows[np.argmax(flat)]), "its quaternion is 0")

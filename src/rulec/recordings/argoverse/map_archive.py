@@ -1,8 +1,8 @@
 """Argoverse 2's map of a log as lanelets.
 
-By the data set's own API (`argoverse/av2-api`, `av2.map`): lane segments with bounds in the
-direction of travel, the paint of each, neighbours that may lead the other way, and pedestrian
-crossings as two edges, along which people walk. Both data sets have the same file.
+See the data set's own API (`argoverse/av2-api`, `av2.map`): lane segments with bounds in the
+direction of travel and the paint of each, neighbours that may have the opposite direction, and
+pedestrian crossings as two edges along which people walk. Both data sets have the same file.
 """
 
 from __future__ import annotations
@@ -77,7 +77,10 @@ class _MapArchive(msgspec.Struct, frozen=True):
 
 
 def read_map_archive(path: Path) -> RoadMap:
-    """Read a map. Raises RulecError R0610 if it is none, R0701 if it cannot be opened."""
+    """Read a map.
+
+    Raises RulecError R0610 if the file is not a map, R0701 if it cannot be opened.
+    """
     archive = read_json(path, MAP_ARCHIVE, _MapArchive)
     if not archive.lane_segments:
         raise MAP_ARCHIVE.refused(path, "there is no lane segment in it")
@@ -134,7 +137,7 @@ def _known(names: Iterable[int], bounds: Mapping[int, object]) -> tuple[str, ...
 def _beside(
     own: int, other: int | None, bounds: Mapping[int, tuple[Points, Points]], *, left: bool
 ) -> str | None:
-    """The lane beside one if it leads the same way."""
+    """The id of the neighbouring lane if it has the same direction."""
     return str(other) if leads_the_same_way(bounds, own, other, left=left) else None
 
 
@@ -149,10 +152,10 @@ MARKS: Mapping[str, LaneMark] = MappingProxyType(
         "NONE": "none",
     }
 )
-"""Types of paint -> marks.
+"""Paint types -> marks.
 
-Of two different lines the first that is named is the one on the lane's own side
-(`av2.rendering.map` draws them so). What a blue line means the data set does not say.
+Of two different lines the first in the name is the one on the lane's own side (`av2.rendering.map`
+draws them so). The data set does not define blue lines.
 """
 
 
@@ -174,7 +177,7 @@ def _crosswalks(path: Path, archive: _MapArchive) -> Iterator[Lanelet]:
 
 
 def _bounds(path: Path, called: str, lines: tuple[_Line, _Line]) -> tuple[Points, Points] | None:
-    """The two lines; None if one of them is no longer than nothing."""
+    """The two bounds; None if one of them has no length."""
     bounds = []
     for line in lines:
         points: NDArray[float64] = np.array([(point.x, point.y) for point in line]).reshape(-1, 2)

@@ -1,8 +1,8 @@
 """Scenarios of Argoverse 2's motion forecasting.
 
-A table (`scenario_*.parquet`) with a row for each object and time step, and the map beside it. By
-`av2.datasets.motion_forecasting`: a place is the middle of the object's box, a heading counts in
-the map's frame, a velocity is one of the instant.
+A table (`scenario_*.parquet`) with a row for each object and time step, and the map next to it.
+According to `av2.datasets.motion_forecasting`, a position is the middle of the object's box, a
+heading refers to the map's frame, and a velocity is instantaneous.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ MOTION = FileFormat(
 )
 
 EGO = "AV"
-"""The id of the track of the car that recorded all others."""
+"""The track id of the recording vehicle."""
 
 FORM = "Argoverse 2 motion forecasting"
 
 _STEP_S = 0.1
-"""Between two time steps: the data set has ten a second."""
+"""The time step (s): the data set has ten per second."""
 
 _WANTED = Wanted(
     numbers=("position_x", "position_y", "heading", "velocity_x", "velocity_y"),
@@ -53,9 +53,9 @@ _WANTED = Wanted(
 
 
 def read_motion(path: Path, map_path: Path | None = None) -> Recording:
-    """Read a scenario, or the one in a folder, on the map given or the one beside it.
+    """Read a scenario, or the one in a folder, on the given map or the one next to it.
 
-    Raises RulecError R0610 for a file that is none or has no map, R0701 if a file cannot
+    Raises RulecError R0610 for a file that is not a scenario or has no map, R0701 if a file cannot
     be opened, R0706 without pyarrow.
     """
     path = only_in(path, SCENARIO, MOTION)

@@ -1,6 +1,6 @@
 """Object categories of Argoverse 2, with usual sizes.
 
-By `av2.datasets.motion_forecasting.data_schema.ObjectType`, and by
+Sources: `av2.datasets.motion_forecasting.data_schema.ObjectType`, and
 `av2.datasets.sensor.constants.AnnotationCategories` with the data set's annotation taxonomy.
 """
 
@@ -12,13 +12,13 @@ from types import MappingProxyType
 from rulec.recordings.recording import StatedError
 
 EGO_SIZE_M = 4.877, 2.0
-"""Argoverse's car, a Ford Fusion Hybrid, as `EGO_VEHICLE` in annotations with ego."""
+"""Length and width (m) of Argoverse's car, a Ford Fusion Hybrid, from `EGO_VEHICLE` annotations."""
 
 EGO_MIDDLE_M = 1.34
-"""How far its middle is ahead of its rear axle, the origin of its frame.
+"""The distance (m) from the rear axle, the origin of ego's frame, forward to ego's middle.
 
-That the origin is there, `argoverse/argoverse-api` issue 286 and av2-api's tests of maps say. The
-middle is from the measures of the model: 4.869 m long, 2.850 m from axle to axle.
+Sources for the origin: `argoverse/argoverse-api` issue 286 and av2-api's tests of maps. The
+distance follows from the model's dimensions: 4.869 m long, wheelbase 2.850 m.
 """
 
 MOTION_TYPES: Mapping[str, str] = MappingProxyType(
@@ -33,7 +33,7 @@ MOTION_TYPES: Mapping[str, str] = MappingProxyType(
         "unknown": "unknown",
     }
 )
-"""Types of objects in motion forecasting -> types of participants."""
+"""Object types of motion forecasting -> types of participants."""
 
 USUAL_SIZES_M: Mapping[str, tuple[float, float]] = MappingProxyType(
     {
@@ -45,19 +45,19 @@ USUAL_SIZES_M: Mapping[str, tuple[float, float]] = MappingProxyType(
         "riderless_bicycle": (1.7, 0.6),
     }
 )
-"""Lengths and widths where a file says none.
+"""Lengths and widths (m) assumed where a file gives none.
 
-Those of vehicles are the middle of what nine in ten of the cars in a sensor log have there, 4.0 to
-5.5 m by 1.7 to 2.3 m; a bus is a North American one of 40 feet.
+Those of vehicles are the middle of the range of nine in ten cars in a sensor log, 4.0 to 5.5 m by
+1.7 to 2.3 m; a bus is a North American one of 40 feet.
 """
 
 OTHER_SIZE_M = 0.6, 0.6
 
 ASSUMED_ERROR = StatedError(0.3, 0.0)
-"""How far (m) the outline of an assumed size may be wrong at an end, as a half of what two may.
+"""The error (m) of one end of an outline with assumed size, as half the error of two ends.
 
-Half of the lengths of nine cars in ten differ from half of the usual one by up to 0.4 m: by 0.6 m
-for two of them (JCGM 100:2008, 5.1.2). Trucks are called vehicles, too, and may be longer.
+Half the length of nine cars in ten differs from half the usual length by up to 0.4 m; for two cars
+this gives 0.6 m (JCGM 100:2008, 5.1.2). Trucks also count as vehicles here, and may be longer.
 """
 
 CATEGORIES: Mapping[str, str] = MappingProxyType(
@@ -81,13 +81,13 @@ CATEGORIES: Mapping[str, str] = MappingProxyType(
 )
 """Categories of sensor logs -> types of participants.
 
-Riders and what they ride have a box each. A trailer is nobody who drives, but in the way.
+A rider and the ridden vehicle have a box each. A trailer does not drive, but is an obstacle.
 """
 
 RIDES: Mapping[str, str] = MappingProxyType(
     {"MOTORCYCLIST": "MOTORCYCLE", "BICYCLIST": "BICYCLE", "WHEELED_RIDER": "WHEELED_DEVICE"}
 )
-"""Riders -> what they ride."""
+"""Category of a rider -> category of the ridden vehicle."""
 
 NOT_ON_THE_ROAD = frozenset({"SIGN", "STOP_SIGN"})
-"""Boards on posts: which road they are for is not said, and they are in nobody's way."""
+"""Boards on posts: they obstruct nobody, and the road that they apply to is unknown."""

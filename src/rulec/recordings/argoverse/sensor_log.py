@@ -1,8 +1,8 @@
-"""Sensor logs of Argoverse 2: everybody around ego, sweep by sweep.
+"""Sensor logs of Argoverse 2: all participants around ego, sweep by sweep.
 
-By `av2.structures.cuboid` and `av2.utils.io`: annotations are boxes in ego's frame at the moment of
-a sweep; poses of that frame, whose origin is the middle of ego's rear axle, are in the city's
-frame, as the map is.
+According to `av2.structures.cuboid` and `av2.utils.io`, annotations are boxes in ego's frame at the
+time of a sweep; the poses of that frame, whose origin is the middle of ego's rear axle, are in the
+city's frame, as the map is.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ SENSOR = FileFormat(
 FORM = "Argoverse 2 sensor log"
 
 EGO = "AV"
-"""The id of ego where no annotation is of it, as motion forecasting has it."""
+"""The id of ego if it has no annotation, as in motion forecasting."""
 
 _EGO_CATEGORY = "EGO_VEHICLE"
 _QUATERNION, _PLACE = ("qw", "qx", "qy", "qz"), ("tx_m", "ty_m", "tz_m")
@@ -63,7 +63,7 @@ _REMARK = (
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Sweeps:
-    """The sweeps with annotations: their moments (s), time steps, and ego's poses."""
+    """The sweeps with annotations: their times (s), time steps, and ego's poses."""
 
     seconds: NDArray[float64]
     steps: NDArray[int64]
@@ -71,10 +71,10 @@ class _Sweeps:
 
 
 def read_sensor_log(path: Path, map_path: Path | None = None) -> Recording:
-    """Read a log from its annotations, or the folder they are in, on the map given or beside it.
+    """Read a log from its annotations or their folder, on the given map or the one next to it.
 
-    Raises RulecError R0610 for a file that is none or has no poses or map, R0701 if a file cannot
-    be opened, R0706 without pyarrow.
+    Raises RulecError R0610 for a file that is not a log or has no poses or map, R0701 if a file
+    cannot be opened, R0706 without pyarrow.
     """
     path = only_in(path, ANNOTATIONS, SENSOR)
     boxes = read_table(path, SENSOR, _BOXES)
@@ -115,7 +115,7 @@ def read_sensor_log(path: Path, map_path: Path | None = None) -> Recording:
 
 
 def _poses_at(table: ArrowTable, moments: NDArray[int64]) -> CityPoses:
-    """Ego's poses at moments of the annotations, which are among those of the poses."""
+    """Ego's poses at the times of annotations, each of which must have a pose."""
     known = table.whole["timestamp_ns"]
     order = np.argsort(known, kind="stable")
     rows = np.searchsorted(known, moments, sorter=order)

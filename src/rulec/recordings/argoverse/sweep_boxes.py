@@ -1,4 +1,4 @@
-"""Boxes that are annotated sweep by sweep, as the participants that they are around."""
+"""Boxes annotated sweep by sweep, combined into participants."""
 
 from __future__ import annotations
 
@@ -17,19 +17,22 @@ from rulec.recordings.track import Track, tracked
 
 _LARGEST_M = 200.0
 _RIDDEN_M = 1.0
-"""A rider's box is on what it rides if their middles are no farther apart."""
+"""A rider belongs to a vehicle if the middles of their boxes are at most this far apart (m)."""
 
 _UNEVEN_S = 0.01
-"""Sweeps are a tenth of a second apart to within a millisecond."""
+"""Tolerance (s): sweeps are 0.1 s apart to within a millisecond."""
 
 _UNSEEN_S, _STAYED_M = 1.0, 0.5
-"""Between two sweeps with points a box is where it is drawn, if they are no farther apart in time,
-or the box does not move from one to the other. Speeds are means over a second, too."""
+"""A box between two sweeps with lidar points counts as measured within these limits.
+
+The sweeps are at most this time apart (s), or the box moves by at most this far (m) between them.
+Speeds, too, are means over a second.
+"""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TrackBoxes:
-    """The boxes of a track: the sweep of each, their poses in the city, and its size (m)."""
+    """The boxes of a track: each box's sweep, its pose in the city, and the size (m)."""
 
     id: str
     category: str
@@ -38,7 +41,7 @@ class TrackBoxes:
     size: tuple[float, float]
 
     def kept(self, flags: NDArray[bool_]) -> TrackBoxes:
-        """Its boxes in some sweeps only."""
+        """The track, reduced to the boxes whose flag is set."""
         rows = np.flatnonzero(flags)
         return replace(self, sweeps=self.sweeps[rows], poses=self.poses.taken(rows))
 
@@ -64,7 +67,7 @@ class TrackBoxes:
 
 
 def check_sizes(table: ArrowTable, rows: NDArray[int64], sizes: NDArray[float64]) -> None:
-    """Refuse a box, of those in some rows of a table, that nobody is in."""
+    """Raise RulecError for a box of impossible size in the given rows of a table."""
     odd = ((sizes <= 0) | (sizes > _LARGEST_M)).any(axis=1)
     if odd.any():
         at = int(np.argmax(odd))
@@ -73,9 +76,9 @@ def check_sizes(table: ArrowTable, rows: NDArray[int64], sizes: NDArray[float64]
 
 
 def with_riders(boxes: Sequence[TrackBoxes], rides: Mapping[str, str]) -> list[TrackBoxes]:
-    """Boxes of which one stands for a rider and what it rides: as large as both, where it rides.
+    """The boxes, with rider and ridden vehicle merged into one box that covers both.
 
-    ``rides``: the category of riders -> that of what they ride.
+    ``rides``: category of a rider -> category of the ridden vehicle.
     """
     ridden = {x.id: np.zeros(len(x.sweeps), dtype=bool) for x in boxes}
     sizes = {x.id: x.size for x in boxes}

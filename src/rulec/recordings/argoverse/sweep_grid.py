@@ -1,4 +1,4 @@
-"""Moments that are nearly even, as those of sweeps are, on a grid of time steps."""
+"""Nearly even times, such as those of sweeps, put on a grid of time steps."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.recording import MOST_STEPS, SPARSEST
 
 NANOSECONDS = 1_000_000_000
-"""In a second."""
+"""Nanoseconds per second."""
 
 _UNIT_NS = 10_000_000
-"""Sweeps are a tenth of a second apart to within a millisecond; a step is whole hundredths."""
+"""Unit (ns) of time steps, 0.01 s: sweeps are 0.1 s apart to within a millisecond."""
 
 _LONGEST_NS = 10 * NANOSECONDS
 
 _MOST_OFF = 0.25
-"""How far a moment may lie off its step, as a part of it."""
+"""How far a time may be off its step, as a fraction of the step."""
 
 
 def on_grid(path: Path, form: FileFormat, moments: NDArray[int64]) -> tuple[NDArray[int64], float]:
-    """The time steps of ascending moments (ns), and how long (s) one takes.
+    """The time step of each of the ascending times (ns), and the length of a step (s).
 
-    Raises RulecError R0610 for moments that are on no grid, or too far apart.
+    Raises RulecError R0610 for times that fit no grid, or are too far apart.
     """
     if len(moments) < 2:
         return np.zeros(len(moments), dtype=int), 0.1
@@ -49,7 +49,7 @@ def on_grid(path: Path, form: FileFormat, moments: NDArray[int64]) -> tuple[NDAr
 
 
 def rates(values: NDArray[float64], seconds: NDArray[float64]) -> NDArray[float64]:
-    """The rates at which numbers change over time, by central differences; 0 of one alone."""
+    """The time derivatives of values, by central differences; 0 for a single value."""
     if len(values) < 2:
         return np.zeros(len(values))
     gradients: NDArray[float64] = np.gradient(values, seconds)

@@ -1,1 +1,1 @@
-"""Logs and maps of 123D, in Arrow files."""
+"""Logs and maps of 123D, stored in Arrow files."""

@@ -1,9 +1,9 @@
-"""The files of a log of 123D's, and what their metadata say.
+"""The files of a 123D log, and their metadata.
 
-By the API and the writer of py123d 0.7 (`autonomousvision/py123d`): a log is a folder with
-``sync.arrow`` and a file for each modality, ``logs/SPLIT/LOG`` in the data's folder; its map is
-``map.arrow`` there, or that of its place, ``maps/DATASET/DATASET_PLACE.arrow``. Metadata are
-MessagePack in the schema's own.
+According to the API and the writer of py123d 0.7 (`autonomousvision/py123d`), a log is a folder
+with ``sync.arrow`` and a file for each modality, ``logs/SPLIT/LOG`` in the data's folder; its map
+is ``map.arrow`` there, or that of its place, ``maps/DATASET/DATASET_PLACE.arrow``. Metadata are
+MessagePack within the schema's metadata.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ SYNC, BOXES, EGO = "sync.arrow", "box_detections_se3.arrow", "ego_state_se3.arro
 LIGHTS, MAP = "traffic_light_detections.arrow", "map.arrow"
 
 WAYMO = "wod"
-"""How the names of Waymo's data sets begin. Their maps have all stop signs."""
+"""The prefix of the names of Waymo's data sets, whose maps have all stop signs."""
 
 _PLACES: tuple[tuple[str, Side, str], ...] = (
     *((name, "right", "USA") for name in ("av2", WAYMO, "pandaset", "boston", "us-")),
@@ -38,18 +38,18 @@ _PLACES: tuple[tuple[str, Side, str], ...] = (
     ("singapore", "left", "SGP"),
     ("sg-", "left", "SGP"),
 )
-"""Beginnings of the names of data sets and of places, with where these are."""
+"""Prefixes of the names of data sets and places, with their side of traffic and country."""
 
 _DEEPEST = 16
-"""Values within values; what is read here has four levels."""
+"""Limit on the depth of nested values; the metadata read here have four levels."""
 
 
 class OddPackError(Exception):
-    """The bytes are no MessagePack, or hold what is not read."""
+    """The bytes are not MessagePack, or contain an unsupported type."""
 
 
 def unpacked(data: bytes) -> Any:
-    """The only value in the bytes. Raises OddPackError, also for times and other extensions."""
+    """The single value in the bytes. Raises OddPackError, also for times and other extensions."""
     try:
         value = msgspec.msgpack.decode(data)
     except (ValueError, RecursionError):  # msgspec's errors are the former, and Unicode's
@@ -74,7 +74,7 @@ def _check_plain(value: object, depth: int = 0) -> None:
 
 
 def said_in(table: ArrowTable) -> Mapping[Any, Any]:
-    """What the metadata of a file say. Raises RulecError R0610."""
+    """The metadata of a file. Raises RulecError R0610."""
     try:
         metadata = unpacked(table.metadata.get(b"metadata", b""))
     except OddPackError:
@@ -85,7 +85,7 @@ def said_in(table: ArrowTable) -> Mapping[Any, Any]:
 
 
 def word(metadata: Mapping[Any, Any], name: str) -> str:
-    """A text in metadata, empty if it is none, or no name."""
+    """A text in metadata; empty if it is not a text, or not a plain name."""
     text = metadata.get(name)
     if not isinstance(text, str) or len(text) > LONGEST_TEXT or not text.isprintable():
         return ""
@@ -93,7 +93,7 @@ def word(metadata: Mapping[Any, Any], name: str) -> str:
 
 
 def side_and_country(data_set: str, place: str) -> tuple[Side | None, str]:
-    """Where traffic keeps, and the country; None and empty where that is not known."""
+    """The side of traffic and the country; None and empty if unknown."""
     for name in (place.lower(), data_set.lower()):
         for begin, side, country in _PLACES:
             if name.startswith(begin):
@@ -102,7 +102,7 @@ def side_and_country(data_set: str, place: str) -> tuple[Side | None, str]:
 
 
 def map_of(path: Path, data_set: str, place: str) -> Path:
-    """The map of a log with this ``sync.arrow``. Raises RulecError R0614 if there is none."""
+    """The map of the log with this ``sync.arrow``. Raises RulecError R0614 if there is none."""
     own = path.with_name(MAP)
     folders = path.absolute().parents
     if own.is_file():

@@ -1,8 +1,8 @@
 """Logs of 123D as recordings.
 
-By the writers of py123d 0.7: boxes and ego's poses are in one frame, that of the map, metres;
-vectors are x, y, z and a quaternion (w, x, y, z), of boxes also length, width and height. Each
-modality has its own moments (µs).
+According to the writers of py123d 0.7, boxes and ego's poses are in the frame of the map (m);
+vectors are x, y, z and a quaternion (w, x, y, z), for boxes also length, width and height. Each
+modality has its own times (µs).
 """
 
 from __future__ import annotations
@@ -37,18 +37,18 @@ EGO = "ego"
 _MICROSECOND_NS = 1000
 _POSE, _BOX = 7, 10
 _FARTHEST_S = 0.5
-"""Ego's pose is known at moments that are no farther from those that it is said for."""
+"""Ego's pose is known at times at most this far (s) from a recorded pose."""
 
 _COLOURS = {0: "green", 1: "yellow", 2: "red", 3: "inactive"}
-"""What lights show, by number; it may be unknown."""
+"""States of lights by number; a light may also be unknown."""
 
 _SOURCES = (("av2", "Argoverse 2"), ("wod", "Waymo"))
-"""Data sets whose places are known better than others'."""
+"""Data sets with their own position errors: prefix of the name, and title."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Sweeps:
-    """The moments of boxes (ns): time steps, and seconds since the first."""
+    """The times of boxes (ns): time steps, and seconds since the first."""
 
     moments: NDArray[int64]
     steps: NDArray[int64]
@@ -61,10 +61,10 @@ class _Sweeps:
 
 
 def read_d123(path: Path, map_path: Path | None = None) -> Recording:
-    """Read a log from its ``sync.arrow``, or its folder, on the map given or its own.
+    """Read a log from its ``sync.arrow`` or its folder, on the given map or its own.
 
-    Raises RulecError R0610 for a file that is none, R0614 without a map, R0701 if a file cannot be
-    opened, R0706 without pyarrow, else as reading the map.
+    Raises RulecError R0610 for a file that is not a log, R0614 without a map, R0701 if a file
+    cannot be opened, R0706 without pyarrow, and as reading the map does.
     """
     path = path / files.SYNC if path.is_dir() else path
     about = files.said_in(read_table(path, LOG, Wanted(whole=("sync.timestamp_us",))))
@@ -175,7 +175,7 @@ def _tracks(table: ArrowTable, about: Mapping[Any, Any]) -> Iterator[TrackBoxes]
 
 
 def _ego(path: Path, sweeps: _Sweeps) -> TrackBoxes:
-    """Ego's body at the moments of boxes, on the line between its states there."""
+    """Ego's body at the times of boxes, interpolated between its recorded states."""
     table = _table(path, Nested(name="imu_se3", width=_POSE))
     key, about = _key(table), files.said_in(table)
     size = _number(table, about.get("length")), _number(table, about.get("width"))
@@ -211,7 +211,7 @@ def _number(table: ArrowTable, value: object, least: float = 0.0) -> float:
 
 
 def _lights(path: Path, sweeps: _Sweeps) -> dict[str, dict[int, str]]:
-    """Lane -> time step -> what its light shows, by the last that was said before or then."""
+    """Lane -> time step -> state of its light, from the last record up to that time."""
     if not path.is_file():
         return {}
     table = _table(path, Nested(name="lane_id", listed=True), Nested(name="status", listed=True))

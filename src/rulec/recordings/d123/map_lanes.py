@@ -1,8 +1,8 @@
 """Maps of 123D as lanelets.
 
-By the map writer and the map layers of py123d 0.7: a row for each object, with its layer, its id
-within that, its outline or line as well-known binary, and what else there is of it as MessagePack,
-in which arrays are maps of type, shape and bytes. Bounds lie in the direction of travel.
+According to the map writer and the map layers of py123d 0.7, there is a row for each object, with
+its layer, its id within that, its outline or line as well-known binary, and further attributes as
+MessagePack, in which arrays are maps of type, shape and bytes. Bounds have the direction of travel.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _LANE, _LANE_GROUP, _CROSSWALK, _STOP_ZONE, _ROAD_LINE = 0, 1, 3, 7, 9
 _LAYERS = frozenset({_LANE, _LANE_GROUP, _CROSSWALK, _STOP_ZONE, _ROAD_LINE})
 _CLOSEST_M = 0.001
 _ALONG_M = 0.2
-"""A line of the map is that of a bound if it lies no farther from all of it."""
+"""A line of the map marks a bound if all of the bound is at most this far (m) from it."""
 
 _TYPES: Mapping[int, tuple[str, ...]] = {
     0: (),
@@ -46,7 +46,7 @@ _TYPES: Mapping[int, tuple[str, ...]] = {
     3: ("bicycleLane",),
     4: ("busLane",),
 }
-"""Types of lanes by number: of most data sets those that are undefined are streets."""
+"""Types of lanes by number; in most data sets undefined ones are streets."""
 
 _MARKS: Mapping[int, LaneMark] = {
     0: "none",
@@ -54,7 +54,7 @@ _MARKS: Mapping[int, LaneMark] = {
     **dict.fromkeys((6, 7), "double_solid"),
     **dict.fromkeys((10, 11), "solid"),
 }
-"""Lines by number. Of two different ones side by side it is not said which is on which side."""
+"""Marks by line type. For two different lines side by side, their sides are unknown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ class _Layers:
 
 
 def read_d123_map(path: Path) -> RoadMap:
-    """Read a map. Raises RulecError R0610 if it is none, R0701 if it cannot be opened, R0706."""
+    """Read a map. Raises RulecError R0610 if it is not one, R0701 if it cannot be opened, R0706."""
     layers = _layers(path)
     about = files.said_in(layers.table)
     data_set = files.word(about, "dataset")
@@ -105,7 +105,7 @@ def read_d123_map(path: Path) -> RoadMap:
 def with_lights(
     lanelets: Mapping[str, Lanelet], lights: Mapping[str, Mapping[int, str]]
 ) -> Mapping[str, Lanelet]:
-    """The lanelets with what lights were seen to show for the way to each lane that has one."""
+    """The lanelets with the observed lights, one for the way to each lane that has a light."""
     seen = {name: ObservedLight(colours) for name, colours in lights.items() if name in lanelets}
     lit = dict(lanelets)
     for name, lanelet in lanelets.items():
@@ -197,7 +197,7 @@ def _ids(layers: _Layers, entry: _Entry, name: str) -> list[int]:
 
 
 def _beside(lane: _Entry, bounds: Mapping[int, tuple[Points, Points]], *, left: bool) -> str | None:
-    """The lane beside one if it leads the same way; data sets name others there, too."""
+    """The neighbour with the same direction; data sets also name other lanes as neighbours."""
     other = lane.features.get("left_lane_id" if left else "right_lane_id")
     return str(other) if leads_the_same_way(bounds, lane.id, other, left=left) else None
 
@@ -212,7 +212,7 @@ def _limit(layers: _Layers, lane: _Entry) -> float | None:
 
 
 def _line(layers: _Layers, entry: _Entry, name: str) -> Points:
-    """A line among the features of an object, without heights."""
+    """A line among an object's attributes, without heights."""
     points = _array(entry.features.get(name))
     if points is None or not len(points):
         raise layers.wrong(entry, f"`{name}` is no array of places")
@@ -225,7 +225,7 @@ def _line(layers: _Layers, entry: _Entry, name: str) -> Points:
 
 
 def _array(packed: object) -> NDArray[float64] | None:
-    """The places of an array as NumPy's bytes; None if it is none."""
+    """The points of an array stored as NumPy bytes; None if it is not such an array."""
     if not isinstance(packed, dict):
         return None
     kind, shape, data = (packed.get(key) for key in (b"dtype", b"shape", b"data"))
@@ -240,7 +240,7 @@ def _array(packed: object) -> NDArray[float64] | None:
 
 
 class _Paint:
-    """The lines of a map."""
+    """The painted lines of a map."""
 
     def __init__(self, layers: _Layers) -> None:
         entries = layers.of(_ROAD_LINE)
@@ -249,9 +249,9 @@ class _Paint:
         self._tree = shapely.STRtree(self._lines)
 
     def along(self, bound: Points) -> LaneMark | None:
-        """The mark of the lines that lie along all of a bound; None without any, or if they differ.
+        """The mark of the lines along a whole bound; None without lines, or if they differ.
 
-        Which of the two lanes beside it a line is said for the map does not tell.
+        The map does not contain which of the two adjacent lanes a line belongs to.
         """
         line, places = shapely.LineString(bound), shapely.points(bound)
         # Lines that are next to nothing long make GEOS divide by that
@@ -263,7 +263,7 @@ class _Paint:
 
 
 def _mark(line: _Entry) -> LaneMark | None:
-    """What kind of mark a line is; None for a kind that is not known."""
+    """A line's mark; None for an unknown type."""
     kind = line.features.get("road_line_type")
     return _MARKS.get(kind) if isinstance(kind, int) else None
 
@@ -283,7 +283,7 @@ def _shape(layers: _Layers, line: _Entry) -> shapely.LineString:
 
 
 def _stop_zones(layers: _Layers) -> Iterator[StopZone]:
-    """The zones of signs."""
+    """The zones that stand for signs."""
     for entry in layers.of(_STOP_ZONE):
         kind = entry.features.get("stop_zone_type")
         if isinstance(kind, int) and kind in SIGNS:

@@ -1,7 +1,7 @@
 """Object labels of 123D's data sets, by number.
 
-By the enumerations in `py123d.parser.registry` and `py123d.datatypes.detections` (0.7): each data
-set keeps its own labels; a file names the enumeration that it goes by.
+Sources: the enumerations in `py123d.parser.registry` and `py123d.datatypes.detections` (0.7). Each
+data set keeps its own labels; a file names its enumeration.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from types import MappingProxyType
 from rulec.recordings.argoverse.object_types import CATEGORIES
 
 LEFT_OUT = ""
-"""Boards, lights and doors: they are in nobody's way, or a part of somebody."""
+"""The type of boards, lights and doors, which obstruct nobody or are part of a participant."""
 
 
 def _numbered(words: str) -> dict[int, str]:
-    """Types by number; ``-`` for what is left out."""
+    """Types by number; ``-`` for labels that are left out."""
     return {number: word.replace("-", LEFT_OUT) for number, word in enumerate(words.split())}
 
 
@@ -62,12 +62,12 @@ LABELS: Mapping[str, Mapping[int, str]] = MappingProxyType(
         "GriffinBoxDetectionLabel": _numbered("pedestrian car truck bus motorcycle bicycle"),
     }
 )
-"""Enumeration -> number -> type of participants, or category of Argoverse 2's sensor logs.
+"""Enumeration -> number -> type of participant, or category of Argoverse 2's sensor logs.
 
-Trailers drive nobody, but are in the way.
+Trailers do not drive, but are obstacles.
 """
 
 
 def type_of(category: str) -> str:
-    """The type of participants for what a label says."""
+    """The type of participant for a label."""
     return CATEGORIES.get(category, category)

@@ -1,8 +1,8 @@
 """Stop zones of 123D's maps, as signs of the lanes that lead to them.
 
-They say which lanes they are for, but not whether the zone is where these begin or where they end:
-Waymo's are the lanes behind the line, as in its own files, and the parser of OpenDRIVE draws zones
-where its lanes begin. So where a zone lies says it.
+A zone names its lanes, but not whether it lies where these begin or where they end: Waymo's are the
+lanes after the line, as in its own files, and the parser of OpenDRIVE puts zones where its lanes
+begin. The position of the zone decides.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ import shapely
 from rulec.recordings.recording import Lanelet, Points
 
 SIGNS: Mapping[int, str] = {2: "STOP", 3: "YIELD"}
-"""Types of zones that are those of signs, by number."""
+"""Zone types that stand for signs, by number."""
 
 _NEAR_M = 2.0
 _BESIDE_M = 1.5
-"""The middle of a lane beside that of a zone is farther from it."""
+"""A lane whose centre line is farther (m) from a zone is a neighbour of the zone's lane."""
 
 _INTERSECTION = "intersection"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StopZone:
-    """A zone with a sign: its outline, and the lanes that it is for."""
+    """A zone that stands for a sign: its outline, and its lanes."""
 
     sign: str
     outline: Points
@@ -37,10 +37,10 @@ class StopZone:
 def with_signs(
     lanelets: Mapping[str, Lanelet], zones: Iterable[StopZone], *, all_behind: bool
 ) -> tuple[dict[str, Lanelet], int]:
-    """The lanelets with the signs of zones, and how many zones are not placed.
+    """The lanelets with the signs of zones, and the number of zones that could not be placed.
 
-    Of lanelets at these, and of those that they are for, it is not told whether the sign holds.
-    ``all_behind``: zones are for lanes behind their lines, whether these are in an intersection or
+    For lanelets at those zones, and for their lanes, it is unknown whether the sign applies.
+    ``all_behind``: zones name the lanes after their lines, whether these are in an intersection or
     not.
     """
     signs: dict[str, set[str]] = defaultdict(set)

@@ -1,1 +1,1 @@
-"""Roads given by the centres of their lanes, as lanelets; tracks of boxes."""
+"""Lanelets made from the centre lines of lanes; participants made from tracks of boxes."""

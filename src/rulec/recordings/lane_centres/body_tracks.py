@@ -13,9 +13,9 @@ from rulec.recordings.recording import Participant
 from rulec.recordings.track import Track, tracked
 
 BRIDGED_S = 0.55
-"""Who is lost from sight for no longer, half a second, is taken to move evenly meanwhile.
+"""The longest gap (s) in a track across which even motion is assumed: half a second.
 
-At 3 m/s² that is wrong by 0.1 m at most.
+At 3 m/s² the position is then wrong by at most 0.1 m.
 """
 
 _CAR_LENGTHS_M = 3.4, 6.0
@@ -23,7 +23,7 @@ _CAR_WIDTHS_M = 1.4, 2.5
 
 
 class BoxTrack(NamedTuple):
-    """A track of boxes, a row each: centre and velocity are x and y, sizes length and width."""
+    """A track of boxes, one row each: centre and velocity (x, y), size (length, width)."""
 
     steps: NDArray[int64]
     centres: NDArray[float64]
@@ -32,7 +32,7 @@ class BoxTrack(NamedTuple):
     sizes: NDArray[float64]
 
     def first(self) -> BoxTrack:
-        """Its first box alone."""
+        """The track reduced to its first box."""
         rows = self.centres[:1], self.headings[:1], self.velocities[:1], self.sizes[:1]
         return BoxTrack(self.steps[:1], *rows)
 
@@ -63,7 +63,7 @@ def bridged(boxes: BoxTrack, step_s: float) -> BoxTrack:
 
 
 def gaps_remark(bridged_states: int) -> tuple[str, ...]:
-    """What a recording says of the states that were bridged."""
+    """The remark of a recording on the states that were filled in."""
     if not bridged_states:
         return ()
     lost = "bodies that are lost for half a second or less are taken to move evenly meanwhile"
@@ -73,9 +73,9 @@ def gaps_remark(bridged_states: int) -> tuple[str, ...]:
 def participant(
     name: str, kind: str, boxes: BoxTrack, step_s: float, *, standing: bool = False
 ) -> Participant:
-    """A participant with a rigid body, whose size is the median of its boxes'.
+    """A participant with a rigid body, whose size is the median of its boxes' sizes.
 
-    A ``vehicle`` that is as large as a car is taken for one.
+    A ``vehicle`` of a car's size is read as a car.
     """
     length, width = np.median(boxes.sizes, axis=0).tolist()
     if (

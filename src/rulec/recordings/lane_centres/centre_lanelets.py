@@ -1,4 +1,4 @@
-"""Lanelets from lanes that are given by their centres, and from what is beside and on them."""
+"""Lanelets from lanes given by their centre lines, with the neighbours and signs of these."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ from rulec.recordings.recording import Lanelet, ObservedLight, Points
 from rulec.recordings.road_map import crosswalk_with_outline
 
 ALL_JUNCTIONS = frozenset({"junctions"})
-"""What such maps have: lanes elsewhere cross at other heights."""
+"""What such maps show completely: outside junctions, lanes cross only at other heights."""
 
 _CLOSEST_M = 0.01
 _STOP = frozenset({"STOP"})
 
 
 def centre_lanelets(features: RoadFeatures, *, has_lights: bool) -> dict[str, Lanelet]:
-    """The lanelets of a road, by id: its lanes, cut to pieces, and its crosswalks.
+    """The lanelets of a road, by id: its lanes, cut into pieces, and its crosswalks.
 
-    ``has_lights``: the file tells of lights that were seen, so that at other junctions there may be
-    some that nobody saw.
+    ``has_lights``: whether the file contains observed lights; other junctions may then have lights
+    that were not observed.
     """
     features = replace(features, lanes=_sound_lanes(features.lanes))
     features = replace(features, lanes=at_their_lines(features))
@@ -86,7 +86,7 @@ def _junction_type(piece: LanePiece, stretch: tuple[int, int] | None) -> frozens
 
 
 def _sound_lanes(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
-    """The lanes of some length, each point apart from the one before, led through the others."""
+    """The lanes with some length, without repeated points; removed lanes are bridged by links."""
     kept = {name: _kept(lane.centre) for name, lane in lanes.items()}
     there = {name for name, points in kept.items() if len(points) > 1}
 
@@ -159,11 +159,11 @@ def _regulated(
     *,
     has_lights: bool,
 ) -> Iterator[tuple[str, Lanelet]]:
-    """The lanelets that lead to lanes with lights or stop signs, with these.
+    """The lanelets that lead to lanes with lights or stop signs, with these attached.
 
-    The files have both at the lane behind the line; here they are at the one before it. Where there
-    is none before, it stays at its own. A light's stop point is no line: cars wait up to
-    2 m beyond it.
+    The files attach both to the lane after the line; here they belong to the one before it, or stay
+    where they are if there is none. A light's stop point is not a line: cars wait up to 2 m beyond
+    it.
     """
     behind: dict[str, list[str]] = defaultdict(list)
     for name, own in pieces.items():

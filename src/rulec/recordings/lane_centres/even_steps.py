@@ -1,4 +1,4 @@
-"""Times that a sensor has measured, on an even grid of time steps."""
+"""Times measured by a sensor, put on an even grid of time steps."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 from rulec.recordings.recording import MOST_STEPS, SPARSEST
 
 MOST_OFF = 0.25
-"""Times may be off their step by such a part of it."""
+"""How far a time may be off its step, as a fraction of the step."""
 
 _MILLISECONDS = 1000.0
 
 
 def even_steps(times_s: NDArray[float64]) -> tuple[float, NDArray[int64]]:
-    """The time step (s), in whole milliseconds, and the number of the step of each time.
+    """The time step (s), in whole milliseconds, and the step number of each time.
 
-    The step is the median of the times between; a single time has one of a tenth of a second.
-    Steps may be missing. Raises ValueError: with what is wrong with the times.
+    The step is the median interval between times; for a single time it is 0.1 s. Steps may be
+    missing. Raises ValueError with the reason if the times do not fit.
     """
     if not len(times_s):
         raise ValueError("there are no times")

@@ -1,4 +1,4 @@
-"""The lanes that lie in junctions, by where their centres cross."""
+"""The lanes that lie in junctions, found from where their centre lines cross."""
 
 from __future__ import annotations
 
@@ -16,27 +16,28 @@ from rulec.recordings.lane_centres.road_features import (
 from rulec.recordings.polylines import arc_lengths
 
 CROSSING_RAD = np.radians(30.0)
-"""Lanes that meet at a smaller angle join or part."""
+"""Lanes that meet at a smaller angle (rad) merge or diverge rather than cross."""
 
 APART_M = 2.5
-"""Lanes whose heights differ by more do not meet: no truck gets through below."""
+"""Lanes whose heights differ by more (m) do not meet: a truck fits through below."""
 
 
 LONGEST_M = 60.0
-"""A way through a junction is no longer; of longer lanes only a part is in one."""
+"""The longest way (m) through a junction; of a longer lane only a part lies in one."""
 
 AROUND_M = 15.0
-"""That part ends so far before and behind the places where the lane crosses others."""
+"""How far (m) that part extends before and after the crossings with other lanes."""
 
 Stretch = tuple[int, int]
-"""The part of a lane between two points of its centre, by number."""
+"""The part of a lane between two points of its centre line, by index."""
 
 
 def junction_stretches(features: RoadFeatures) -> dict[str, Stretch]:
-    """The lanes in junctions, with the parts of them that are.
+    """The lanes in junctions, with the parts of them that lie there.
 
-    Those whose centres cross others at their height, those with a light or a stop sign, which stand
-    where a junction begins, and those that begin at the same place as one of them.
+    These are lanes whose centre line crosses another at the same height, lanes with a light or a
+    stop sign, which stand where a junction begins, and lanes that begin at the same place as one of
+    these.
     """
     lanes, crossed = features.lanes, _crossed(features.lanes)
     begin = (features.stop_lanes | set(features.lights)) & set(lanes)
@@ -66,7 +67,7 @@ def _stretch(lane: CentreLane, places: list[float], *, from_start: bool) -> Stre
 
 
 def _crossed(lanes: Mapping[str, CentreLane]) -> dict[str, list[float]]:
-    """The lanes that others cross, and where along them (m)."""
+    """The lanes that others cross, with the positions of the crossings along them (m)."""
     cars = [lane for lane in lanes.values() if "bicycleLane" not in lane.types]
     lines = [shapely.LineString(lane.centre[:, :2]) for lane in cars]
     if not lines:
@@ -88,7 +89,7 @@ def _crossed(lanes: Mapping[str, CentreLane]) -> dict[str, list[float]]:
 
 
 def _at(centre: Places3d, place: shapely.Point) -> tuple[float, float]:
-    """The direction (rad) and the height (m) of a centre at its piece nearest a place."""
+    """The direction (rad) and the height (m) of a centre line at its segment nearest to a place."""
     away = np.hypot(*(centre[:-1, :2] + np.diff(centre[:, :2], axis=0) / 2 - (place.x, place.y)).T)
     piece = int(np.argmin(away))
     x, y = centre[piece + 1, :2] - centre[piece, :2]

@@ -1,4 +1,4 @@
-"""Lanes cut where what is beside them begins or ends, so that pieces are beside whole pieces."""
+"""Lanes cut where neighbours or markings begin or end, so that pieces are beside whole pieces."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from rulec.recordings.polylines import arc_lengths
 from rulec.recordings.recording import LaneMark
 
 SHORTEST_BESIDE_M = 8.0
-"""Lanes that are beside each other for less, as where ways part, are not cut for it."""
+"""Lanes that run side by side for less (m), as at forks, are not cut there."""
 
 SHORTEST_PIECE_M = 5.0
 WHOLE = 0.75
-"""Pieces that are beside each other for so much of both are neighbours."""
+"""Pieces that run side by side for at least this share of both are neighbours."""
 
 
 @dataclass(frozen=True, slots=True)
 class LanePiece:
-    """A part of a lane between two points of its centre."""
+    """A part of a lane between two points of its centre line."""
 
     id: str
     start: int
@@ -38,9 +38,9 @@ class LanePiece:
 def pieces_of_lanes(
     lanes: Mapping[str, CentreLane], stretches: Mapping[str, tuple[int, int]]
 ) -> dict[str, tuple[LanePiece, ...]]:
-    """The pieces of each lane, from its start on; a whole lane keeps its id.
+    """The pieces of each lane, from its start on; an uncut lane keeps its id.
 
-    ``stretches`` are parts of lanes that are pieces, too.
+    ``stretches``: parts of lanes that must be pieces, too.
     """
     reach = {name: arc_lengths(lane.centre[:, :2]) for name, lane in lanes.items()}
     cuts: dict[str, set[int]] = defaultdict(set)
@@ -58,7 +58,7 @@ def pieces_of_lanes(
 
 
 def _ends(lane: CentreLane, along: NDArray[float64]) -> Iterator[int]:
-    """Where lanes beside a lane, or kinds of marks, begin and end."""
+    """The indices where neighbours of a lane, or kinds of markings, begin and end."""
     for side in (lane.left, lane.right):
         for part in side.neighbours:
             if along[part.end] - along[part.start] >= SHORTEST_BESIDE_M:
@@ -75,7 +75,7 @@ def _beside(lane: CentreLane, index: int) -> Iterator[tuple[str, int]]:
 
 
 def _point_beside(part: NeighbourPart, index: int) -> int:
-    """The point of a neighbour's centre that is beside one of the lane's own."""
+    """The index on a neighbour's centre line that is beside the lane's point ``index``."""
     share = (index - part.start) / max(part.end - part.start, 1)
     return round(part.other_start + share * (part.other_end - part.other_start))
 
@@ -89,7 +89,7 @@ def _pieces(name: str, cuts: set[int], count: int) -> Iterator[LanePiece]:
 def neighbours_of_pieces(
     lanes: Mapping[str, CentreLane], pieces: Mapping[str, tuple[LanePiece, ...]]
 ) -> dict[str, str]:
-    """Piece -> the one left of it; each is left of one at most."""
+    """Piece -> the piece to its left; each is the left neighbour of at most one piece."""
     shares: dict[tuple[str, str], float] = {}
     for name, lane in lanes.items():
         for side, is_left in ((lane.left, True), (lane.right, False)):
@@ -124,7 +124,7 @@ def _shares(
 
 
 def mark_of(side: LaneSide, piece: LanePiece) -> LaneMark | None:
-    """The mark of a piece's side, None unless one kind is there for nearly all of it."""
+    """The mark of a piece's side; None unless one kind covers nearly all of it."""
     lengths: dict[LaneMark | None, int] = defaultdict(int)
     for part in side.boundaries:
         lengths[part.mark] += max(0, min(part.end, piece.end) - max(part.start, piece.start))

@@ -1,4 +1,4 @@
-"""Distances of lanes' bounds from their centres."""
+"""Distances of lane bounds from the centre lines."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from rulec.recordings.polylines import arc_lengths, parallel_line
 Widths = NDArray[float64]
 
 USUAL_HALF_M = 1.8
-"""Half of 12 ft, the usual width of lanes in the USA (AASHTO, A Policy on Geometric Design)."""
+"""Half of 12 ft (m), the usual lane width in the USA (AASHTO, A Policy on Geometric Design)."""
 
 NARROWEST_HALF_M, WIDEST_HALF_M = 0.6, 2.5
-"""What is nearer or farther is no bound of this lane: a kerb behind parked cars, for one."""
+"""A line nearer or farther (m) is not a bound of this lane, such as a kerb behind parked cars."""
 
 _WITHIN_M = 0.2
 
 
 class HalfWidths(NamedTuple):
-    """How far left and right of the points of its centre a lane's bounds are (m)."""
+    """The distances (m) of a lane's left and right bounds from the points of its centre line."""
 
     left: Widths
     right: Widths
@@ -40,9 +40,9 @@ class HalfWidths(NamedTuple):
 def half_widths(features: RoadFeatures) -> dict[str, HalfWidths]:
     """The half widths of all lanes.
 
-    By a lane's own outline, or its boundaries, else half-way to lanes beside it. Between places
-    where they are known they change evenly; where nothing is known of a side they go on from the
-    lane before to the one after, as through junctions, and are usual ones otherwise.
+    They come from a lane's own outline or boundaries, else from half the distance to neighbours.
+    Between places where they are known they are interpolated; if a side is unknown, they are
+    continued from the lanes before and after, as through junctions, or else have the usual value.
     """
     lines = {name: shapely.LineString(points) for name, points in features.lines.items()}
     centres = {
@@ -87,9 +87,10 @@ def _by_side(
 
 
 def at_their_lines(features: RoadFeatures) -> dict[str, CentreLane]:
-    """The lanes with those parts of their boundaries whose line is where the bound is.
+    """The lanes, with only those parts of their boundaries whose line lies where the bound is.
 
-    Where a line is farther away than a bound may be, as beside a slip road, its mark is not there.
+    Where a line is farther away than a bound may be, as beside a slip road, its mark does not
+    count.
     """
     lines = {name: shapely.LineString(points) for name, points in features.lines.items()}
 
@@ -121,9 +122,9 @@ def _near_its_line(
 
 
 def _by_area(lane: CentreLane) -> HalfWidths:
-    """By where straight lines across the lane leave its outline.
+    """Half widths from where lines straight across the lane leave its outline.
 
-    Those at its ends lie a little within it, for the ends are parts of the outline, too.
+    Those at the lane's ends are taken slightly inside, since the ends belong to the outline, too.
     """
     centre = lane.centre[:, :2].copy()
     for end, inner in ((0, 1), (-1, -2)):

@@ -1,6 +1,6 @@
-"""Roads as the data of motion forecasting have them: lanes as lines, and what is beside them.
+"""Roads as motion forecasting data give them: lanes as lines, with what lies beside them.
 
-After Waymo's map (https://waymo.com/open/data/motion/, ``map.proto``), which others follow.
+The model is Waymo's map (https://waymo.com/open/data/motion/, ``map.proto``), which others follow.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from rulec.recordings.recording import LaneMark, Points
 from rulec.value_display import short_repr
 
 Places3d = NDArray[float64]
-"""Places: one row each, x, y and z (m); z may be NaN."""
+"""Places, one row each: x, y and z (m); z may be NaN."""
 
 
 @dataclass(frozen=True, slots=True)
 class BoundaryPart:
-    """Between two points of a lane's centre, by number, a line or edge is its boundary."""
+    """A line or edge that bounds a lane between two points of its centre line, by index."""
 
     start: int
     end: int
@@ -29,7 +29,7 @@ class BoundaryPart:
 
 @dataclass(frozen=True, slots=True)
 class NeighbourPart:
-    """Between two points of a lane's centre another one is beside it, from where to where."""
+    """A neighbour between two points of a lane's centre line, with its own range of points."""
 
     lane: str
     start: int
@@ -48,10 +48,10 @@ class LaneSide:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class CentreLane:
-    """A lane by its centre.
+    """A lane given by its centre line.
 
     ``types`` are those of lanelets. ``follows`` and ``leads_to`` are the lanes before and after it.
-    ``area`` is its outline where the file has one.
+    ``area`` is its outline, if the file contains one.
     """
 
     __repr__ = short_repr
@@ -69,7 +69,7 @@ class CentreLane:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RoadFeatures:
-    """All of a road: lanes, lines and edges, and crosswalks by id; where lights and signs are."""
+    """A road: lanes, lines, edges and crosswalks by id, and the positions of lights and signs."""
 
     __repr__ = short_repr
 

@@ -1,1 +1,1 @@
-"""ScenarioNet's scenarios, read as recordings, without unpickling what might run."""
+"""ScenarioNet's scenarios, read as recordings, without unpickling code that could run."""

@@ -1,7 +1,7 @@
-"""The data sets that ScenarioNet brings into one form, and what is true of each.
+"""The data sets that ScenarioNet converts into one format, and the properties of each.
 
-By its converters (https://github.com/metadriverse/scenarionet, ``scenarionet/converter/``), and the
-descriptions of the data sets themselves.
+Sources: its converters (https://github.com/metadriverse/scenarionet, ``scenarionet/converter/``),
+and the descriptions of the data sets themselves.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from rulec.recordings.recording import Side
 
 @dataclass(frozen=True, slots=True)
 class DataSet:
-    """A data set: ``title`` is its name where how well it knows places is known by that.
+    """A data set; ``title`` is its name in the table of position errors, if it is listed there.
 
-    ``whole_map``: limits, kinds of lines, boundaries, stop signs and stop points are those of the
-    data set; else the conversion has made them up or left them out. ``has_lights``: it has what
-    lights were seen to show, ``has_crosswalks`` the crosswalks that there are. ``ego_ahead_m``: how
-    far the body's middle is ahead of ego's places.
+    ``whole_map``: whether limits, kinds of lines, boundaries, stop signs and stop points come from
+    the data set; otherwise the conversion invented or omitted them. ``has_lights``: whether it
+    contains observed lights. ``has_crosswalks``: whether it contains all crosswalks.
+    ``ego_ahead_m``: how far the body's middle is ahead of ego's positions.
     """
 
     title: str = ""
@@ -33,9 +33,10 @@ class DataSet:
 
 
 _ZOE_AHEAD_M = 4.084 / 2 - 0.657
-"""Ego's places are on its rear axle, which in a Renault Zoe is 0.657 m before its end.
+"""Distance (m) from ego's recorded position to its middle, in a Renault Zoe.
 
-It is 4.084 m long. Caesar et al., "nuScenes" (CVPR 2020), supplement, has the vehicle's frame.
+The position is on the rear axle, 0.657 m before the car's rear end; the car is 4.084 m long. Caesar
+et al., "nuScenes" (CVPR 2020), supplement, shows the vehicle's frame.
 """
 
 _DATA_SETS: Mapping[str, DataSet] = MappingProxyType(
@@ -55,16 +56,16 @@ _PLACES: tuple[tuple[str, Side, str], ...] = (
     ("boston", "right", "USA"),
     ("us-", "right", "USA"),
 )
-"""Beginnings of the names of maps, with where these are."""
+"""Prefixes of map names, with their side of traffic and country."""
 
 
 def data_set(name: str) -> DataSet:
-    """A data set by its name in the files; of an unknown one nothing is taken to be so."""
+    """A data set by its name in the files; an unknown one has none of the properties."""
     return _DATA_SETS.get(name.lower(), DataSet())
 
 
 def place_of(map_name: str) -> tuple[Side | None, str]:
-    """The side of traffic and the country of a map, None and empty if they are not known."""
+    """The side of traffic and the country of a map; None and empty if unknown."""
     for begin, side, country in _PLACES:
         if map_name.lower().startswith(begin):
             return side, country

@@ -1,8 +1,8 @@
 """Pickles of plain data and NumPy arrays, read without running anything that they name.
 
-By CPython's ``pickletools``, which documents the machine and its opcodes; protocols 2 to 5. While
-Python's own reader calls what a pickle names, this one knows a few names, makes itself what they
-stand for, and refuses all others.
+See CPython's ``pickletools``, which documents the machine and its opcodes; protocols 2 to 5.
+Python's own reader calls whatever a pickle names; this one knows a few names, builds their values
+itself, and refuses all others.
 """
 
 from __future__ import annotations
@@ -61,9 +61,8 @@ _DTYPE = re.compile(r"[<>|=]?(?:b1|[iu][1248]|f[248]|[US][0-9]{1,4})")
 def read_pickle(path: Path, form: BinaryFormat) -> Any:
     """The value in a pickle: ``None``, numbers, texts, bytes, lists, tuples, dicts, sets, arrays.
 
-    What lies in itself may be in itself; who goes through it has to bound that. Raises RulecError
-    R0610 for anything else, and for what is broken, with its byte, R0701 for a file that cannot be
-    read.
+    A container may contain itself, so callers must bound their traversal. Raises RulecError R0610
+    for any other or broken content, with its byte, R0701 for a file that cannot be read.
     """
     data = wire_file(path, form).data
     machine = PickleMachine(data, path, form)
@@ -73,7 +72,7 @@ def read_pickle(path: Path, form: BinaryFormat) -> Any:
 
 
 def _run(machine: PickleMachine) -> Any:
-    """The value of the whole pickle."""
+    """The value of a whole pickle."""
     for _ in range(MOST_OPCODES):
         machine.begin = machine.place
         opcode = machine.take(1)
@@ -87,7 +86,7 @@ def _run(machine: PickleMachine) -> Any:
 
 
 def _settled(value: Any) -> Any:
-    """A value as it goes into a container: arrays are complete by then."""
+    """A value to put into a container: an array must be complete by then."""
     return value.value if isinstance(value, PickledArray) and value.value is not None else value
 
 
@@ -140,7 +139,7 @@ def _appends(machine: PickleMachine) -> None:
 
 
 def _key(machine: PickleMachine, key: Any) -> Any:
-    """A key, of which nobody can choose many with one hash."""
+    """A dictionary key of a type for which a file cannot choose many keys with equal hashes."""
     if isinstance(key, str) or (isinstance(key, int | None) and abs(key or 0) < _LARGEST_KEY):
         return key
     raise machine.wrong(f"{called(key)} is a key; texts and whole numbers may be")
@@ -271,7 +270,7 @@ def _array(
     raw: bytes,
     is_fortran: bool,
 ) -> np.ndarray[Any, Any]:
-    """An array of the bytes of the file, for which nothing is allocated."""
+    """An array that uses the file's bytes, without allocating memory."""
     sizes = [size for size in shape if type(size) is int and 0 <= size <= len(machine.data)]
     if len(sizes) < len(shape) or len(shape) > MOST_AXES or not kind.itemsize:
         raise machine.wrong("an array has a shape that none has")
@@ -336,4 +335,4 @@ _ACTIONS: Mapping[bytes, Callable[[PickleMachine], None]] = MappingProxyType(
         b"b": _build,
     }
 )
-"""Opcode -> what it does. None makes an object of a class, or asks for what lies elsewhere."""
+"""Opcode -> its action. None: it would make an object of a class, or refer to external data."""

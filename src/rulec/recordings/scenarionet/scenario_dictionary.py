@@ -1,6 +1,6 @@
-"""Values of ScenarioNet's dictionaries, checked, with the way to each.
+"""Values in ScenarioNet's dictionaries, checked, with the path of keys to each.
 
-https://scenarionet.readthedocs.io/en/latest/description.html says what there is.
+https://scenarionet.readthedocs.io/en/latest/description.html describes the content.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from rulec.recordings.encodings.file_format import BinaryFormat
 from rulec.recordings.encodings.xml_element import LARGEST, short
 
 MOST_NUMBERS = 5_000_000
-"""In all arrays and lists of a scenario that are looked at; one of 20 s has some 100,000."""
+"""Limit on the numbers read from a scenario's arrays and lists; 20 s have some 100,000."""
 
 _TWO_AXES = 2
 _NUMBERS = frozenset({int, float, bool, np.float64, np.float32, np.int64, np.int32, np.bool_})
@@ -27,7 +27,7 @@ _NUMBERS = frozenset({int, float, bool, np.float64, np.float32, np.int64, np.int
 
 @dataclass(slots=True)
 class NumbersLeft:
-    """How many numbers may still be looked at: values may lie in many places at once."""
+    """How many more numbers may be read: the same value may occur in many places."""
 
     count: int = MOST_NUMBERS
 
@@ -43,26 +43,26 @@ class KeyedValue:
     left: NumbersLeft = field(default_factory=NumbersLeft)
 
     def wrong(self, why: str) -> RulecError:
-        """The error for a value."""
+        """The error about a value."""
         where = " / ".join(self.way)
         return self.form.refused(self.path, f"`{where}` {why}" if where else f"it {why}")
 
     def get(self, key: str) -> KeyedValue | None:
-        """What a key of a dictionary leads to, None if it is not there or there is None."""
+        """The value of a dictionary's key; None if it is missing or None."""
         if not isinstance(self.value, dict):
             raise self.wrong("is no dictionary")
         value = self.value.get(key)
         return None if value is None else self._below(key, value)
 
     def child(self, key: str) -> KeyedValue:
-        """What a key of a dictionary leads to."""
+        """The value of a dictionary's key."""
         keyed_value = self.get(key)
         if keyed_value is None:
             raise self.wrong(f"has no `{key}`")
         return keyed_value
 
     def items(self) -> list[tuple[str, KeyedValue]]:
-        """The keys, as texts, and what they lead to."""
+        """The keys of a dictionary, as texts, and their values."""
         if not isinstance(self.value, dict):
             raise self.wrong("is no dictionary")
         self._spend(len(self.value))
@@ -77,7 +77,7 @@ class KeyedValue:
         return [self._below(str(number), item) for number, item in enumerate(value)]
 
     def text(self) -> str:
-        """A text; whole numbers count as such."""
+        """A text; a whole number is converted to one."""
         if isinstance(self.value, str | int | np.integer | np.str_):
             return str(self.value)
         raise self.wrong("is no text")
@@ -103,7 +103,7 @@ class KeyedValue:
         return numbers
 
     def column(self) -> NDArray[float64]:
-        """Numbers in one row or one column."""
+        """Numbers in a single row or column."""
         numbers = self.numbers()
         if numbers.ndim == _TWO_AXES and numbers.shape[1] == 1:
             numbers = numbers[:, 0]
@@ -112,7 +112,7 @@ class KeyedValue:
         return numbers
 
     def places(self) -> NDArray[float64]:
-        """Points in rows: x, y and z, which is NaN where there is none."""
+        """Points in rows: x, y and z; z is NaN where it is missing."""
         numbers = self.numbers()
         if not numbers.size:
             return np.empty((0, 3))

@@ -23,11 +23,14 @@ from rulec.recordings.scenarionet.data_sets import DataSet
 from rulec.recordings.scenarionet.scenario_dictionary import KeyedValue
 
 JOINED_M = 0.1
-"""Lanes without successors in the file lead to those that begin so near their end."""
+"""Lanes without successors in the file lead to lanes that begin this close (m) to their end."""
 
 ASIDE_M = 1.5
-"""One that begins so far aside of a lane's end is another lane of the next road: whoever goes there
-changes lanes. MetaDrive's lanes lead to all lanes of the next road."""
+"""A successor that begins this far (m) aside of a lane's end is dropped.
+
+It is another lane of the next road, which one reaches by a lane change; MetaDrive's lanes lead to
+all lanes of the next road.
+"""
 
 _TURNED_RAD = np.radians(60.0)
 _FEWEST_CORNERS = 3
@@ -53,7 +56,7 @@ _COLOURS = {
 
 
 def road_features(scenario: KeyedValue, known: DataSet, steps: Iterable[int]) -> RoadFeatures:
-    """All of a scenario's road; ``steps`` are the time steps of its times."""
+    """A scenario's whole road; ``steps`` are the time steps of its times."""
     features = RoadFeatures()
     has_exits = False
     for name, entry in scenario.child("map_features").items():
@@ -142,7 +145,7 @@ def _boundaries(entry: KeyedValue | None, count: int, known: DataSet) -> tuple[B
 
 
 def _neighbours(entry: KeyedValue | None, count: int) -> tuple[NeighbourPart, ...]:
-    """Parts of lanes beside, as of Waymo's, or ids of lanes that are so all along."""
+    """Neighbours as parts of lanes, as Waymo has them, or as ids of lanes alongside throughout."""
     parts = []
     for part in () if entry is None else entry.elements():
         if not isinstance(part.value, dict):
@@ -161,7 +164,7 @@ def _range(part: KeyedValue, first: str, last: str, count: int) -> tuple[int, in
 
 
 def joined(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
-    """The lanes with those that they lead to, by where they begin and end."""
+    """The lanes with their successors, from where they begin and end."""
     there = [lane for lane in lanes.values() if len(lane.centre) > 1]
     if not there:
         return dict(lanes)
@@ -185,7 +188,7 @@ def joined(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
 
 
 def _in_line(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
-    """The lanes, leading only to those that do not begin aside of their end."""
+    """The lanes, without successors that begin aside of their end."""
 
     def aside(before: str, after: str) -> bool:
         ends = [lanes[name] for name in (before, after) if name in lanes]

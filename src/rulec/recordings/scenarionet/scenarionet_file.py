@@ -1,4 +1,4 @@
-"""ScenarioNet's scenarios: a pickle each, read as a recording."""
+"""ScenarioNet's scenarios: one pickle each, read as a recording."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _OWN_TYPES: tuple[tuple[str, str], ...] = (
     ("vehicle.motorcycle", "motorcycle"),
     ("vehicle.bicycle", "bicycle"),
 )
-"""Beginnings of nuScenes' own categories, which say more."""
+"""Prefixes of nuScenes' own categories, which are more specific."""
 
 
 def read_scenarionet(path: Path) -> Recording:
@@ -93,7 +93,7 @@ def read_scenarionet(path: Path) -> Recording:
 
 
 class _Remarks:
-    """What is found out of the tracks."""
+    """Remarks collected while the tracks are read."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
@@ -158,7 +158,7 @@ def _boxes(state: KeyedValue, steps: NDArray[int64]) -> BoxTrack:
 
 
 def _ego(boxes: BoxTrack, known: DataSet, remarks: _Remarks) -> BoxTrack:
-    """Ego with its length along it, and with its places in its middle."""
+    """Ego with its length along its heading, and with positions moved to its middle."""
     length, width = np.median(boxes.sizes, axis=0).tolist()
     if length < width:
         remarks.lines.append(

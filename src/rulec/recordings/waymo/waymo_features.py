@@ -20,7 +20,7 @@ _MOST_POINTS = 1 << 31
 
 
 def add_feature(features: RoadFeatures, message: CheckedMessage) -> None:
-    """Add a map feature, as far as anything is made of its kind. Raises RulecError R0610."""
+    """Add a map feature if its kind is used. Raises RulecError R0610."""
     name = str(message.whole("id"))
     if (lane := message.message("lane")) is not None:
         if name in features.lanes:
@@ -51,7 +51,7 @@ def add_feature(features: RoadFeatures, message: CheckedMessage) -> None:
 
 
 def add_lights(features: RoadFeatures, message: CheckedMessage, step: int) -> None:
-    """Add what lights were seen to show at a time step. Raises RulecError R0610."""
+    """Add the states of the lights observed at a time step. Raises RulecError R0610."""
     for state in message.messages("lane_states"):
         name = str(state.whole("lane"))
         colours = features.lights.setdefault(name, {})
@@ -68,7 +68,7 @@ def _line(message: CheckedMessage) -> Places3d:
 
 
 def _limit(lane: CheckedMessage) -> float | None:
-    """The speed limit (m/s); 0 mph is what Waymo writes for none."""
+    """The speed limit (m/s), or None; Waymo writes 0 mph where there is no limit."""
     mph = lane.number("speed_limit_mph") if "speed_limit_mph" in lane.values else 0.0
     return mph * MPH if mph > 0 else None
 
@@ -94,7 +94,7 @@ def _side(lane: CheckedMessage, side: str, count: int) -> LaneSide:
 
 
 def _range(part: CheckedMessage, first: str, last: str, count: int) -> tuple[int, int]:
-    """The numbers of two of so many points, in their order."""
+    """The indices of the first and the last of ``count`` points, in ascending order."""
     start, end = sorted(
         min(max(part.whole(name, 0), 0), max(count - 1, 0)) for name in (first, last)
     )

@@ -1,4 +1,4 @@
-"""Waymo's motion data: files of many scenarios, each read as a recording."""
+"""Waymo's motion data: files with many scenarios, each read as a recording."""
 
 from __future__ import annotations
 
@@ -31,19 +31,19 @@ WAYMO = BinaryFormat(
     100_000_000,
 )
 MOST_STATES = 2_000_000
-"""In a scenario; Waymo's have 200 times 200."""
+"""Limit on the states of a scenario; Waymo's have 200 times 200."""
 
 SIGNS_DRAWN = frozenset({"STOP"})
-"""Maps have all stop signs, and no other ones."""
+"""The signs that maps contain: all stop signs, and no others."""
 
 _STATE = ("center_x", "center_y", "heading", "velocity_x", "velocity_y", "length", "width")
 
 
 def read_waymo(path: Path, scenario_id: str | None = None) -> Iterator[Recording]:
-    """The scenarios in a file, or the one of an id.
+    """The scenarios in a file, or the one with the given id.
 
-    A record that is broken does not hide those after it. Raises RulecError R0610 after the last
-    good one if some cannot be read, R0701 if the file cannot be opened.
+    Records after a broken one are still read. Raises RulecError R0610 after the last good record if
+    some are broken, R0701 if the file cannot be opened.
     """
     broken: list[RulecError] = []
     for record in tfrecords(path, WAYMO):
@@ -59,7 +59,7 @@ def read_waymo(path: Path, scenario_id: str | None = None) -> Iterator[Recording
 def _read(
     record: TfRecord | RulecError, path: Path, scenario_id: str | None
 ) -> Recording | RulecError | None:
-    """The scenario in a record, None if it is not the one of an id, or what is wrong."""
+    """The scenario in a record, the error, or None if the scenario has another id."""
     if isinstance(record, RulecError):
         return record
     file = WireFile(record.content, path, WAYMO, record.place)
@@ -70,7 +70,7 @@ def _read(
 
 
 def waymo_ids(path: Path) -> Iterator[str]:
-    """The ids of the scenarios in a file, but for broken records. Raises RulecError R0701."""
+    """The ids of the scenarios in a file, without broken records. Raises RulecError R0701."""
     for record in tfrecords(path, WAYMO):
         if isinstance(record, TfRecord):
             with suppress(RulecError):
@@ -85,7 +85,7 @@ def _id(file: WireFile, record: TfRecord) -> str:
 
 @dataclass(slots=True)
 class _Body:
-    """A track before the times of its states are known, which are numbers of times."""
+    """A track whose states have indices of times; the times themselves are not known yet."""
 
     id: str
     type: str

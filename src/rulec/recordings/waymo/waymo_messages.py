@@ -17,21 +17,21 @@ _NAN = float("nan")
 
 @dataclass(frozen=True, slots=True)
 class CheckedMessage:
-    """A message with the byte that it begins at. Its methods raise RulecError R0610."""
+    """A message with the byte at which it begins. Its methods raise RulecError R0610."""
 
     values: dict[str, list[WireField]]
     place: int
     file: WireFile
 
     def number(self, name: str) -> float:
-        """A number, which must be there and not be huge."""
+        """A number, which must be present and not huge."""
         value = float(self._only(name))
         if not abs(value) < LARGEST:
             raise self.wrong(f"`{name}` is {value:g}", f"a number below {LARGEST:.0e}")
         return value
 
     def whole(self, name: str, default: int | None = None) -> int:
-        """A whole number, or its default; without one it must be there."""
+        """A whole number, or its default; without a default it must be present."""
         return default if default is not None and name not in self.values else int(self._only(name))
 
     def word(self, name: str, default: str = "unknown") -> str:
@@ -40,20 +40,20 @@ class CheckedMessage:
         return str(values[0].value) if values else default
 
     def is_true(self, name: str) -> bool:
-        """A flag, which is false if it is missing."""
+        """A flag; false if it is missing."""
         values = self.values.get(name)
         return bool(values and values[0].value)
 
     def wholes(self, name: str) -> list[int]:
-        """All whole numbers of a field."""
+        """All whole numbers in a field."""
         return [value for item in self.values.get(name, ()) if isinstance(value := item.value, int)]
 
     def message(self, name: str) -> CheckedMessage | None:
-        """The message in a field, if it is there."""
+        """The message in a field; None if it is missing."""
         return next(iter(self.messages(name)), None)
 
     def messages(self, name: str) -> list[CheckedMessage]:
-        """All messages of a field."""
+        """All messages in a field."""
         return [checked(item, self.file) for item in self.values.get(name, ())]
 
     def places(self, name: str) -> Places3d:
@@ -66,7 +66,7 @@ class CheckedMessage:
         return self.number("x"), self.number("y"), self.number("z") if "z" in self.values else _NAN
 
     def wrong(self, why: str, expected: str = "") -> RulecError:
-        """The error for where the message begins."""
+        """The error at the byte where the message begins."""
         return self.file.wrong(why, self.place, expected)
 
     def _only(self, name: str) -> float:
@@ -79,7 +79,7 @@ class CheckedMessage:
 
 
 def checked(item: WireField, file: WireFile) -> CheckedMessage:
-    """The message that a field holds, by the names of its fields."""
+    """The message in a field, with access by field name."""
     values: dict[str, list[WireField]] = {}
     if isinstance(item.value, Message):
         for field in item.value.fields:

@@ -1,6 +1,6 @@
 """The fields of Waymo's scenarios that are read, by their numbers.
 
-Those of ``scenario.proto`` and ``map.proto``, which are public:
+They are those of ``scenario.proto`` and ``map.proto``, which are public:
 https://github.com/waymo-research/waymo-open-dataset/tree/master/src/waymo_open_dataset/protos
 """
 
@@ -15,7 +15,7 @@ from rulec.recordings.recording import LaneMark
 POINT: Table = {1: Field("x", "double"), 2: Field("y", "double"), 3: Field("z", "double")}
 
 OBJECT_TYPES = Words({1: "vehicle", 2: "pedestrian", 3: "bicycle", 4: "unknown"}, other="unknown")
-"""Object types as participants' types: who is a cyclist is on a bicycle."""
+"""Object types as participants' types; a cyclist is a bicycle."""
 
 STATE: Table = {
     2: Field("center_x", "double"),
@@ -42,7 +42,7 @@ COLOURS = Words(
     },
     other="unknown",
 )
-"""Colours of lights and arrows; a flashing light is none of them, and so not known."""
+"""Colours of lights and arrows; a flashing light has none of them and is unknown."""
 
 LANE_STATE: Table = {
     1: Field("lane", "int"),
@@ -91,7 +91,7 @@ NEIGHBOUR: Table = {
 }
 
 LANE_TYPES = Words({1: "highway", 3: "bicycleLane"}, other="unknown")
-"""Lane types as lanelets': surface streets are all that is neither a freeway nor for cycles."""
+"""Lane types as lanelets' types; a surface street is any lane but a freeway or a cycle lane."""
 
 LANE: Table = {
     1: Field("speed_limit_mph", "double"),
@@ -105,7 +105,7 @@ LANE: Table = {
     14: Field("right_boundaries", BOUNDARY, many=True),
 }
 LINE: Table = {2: Field("polyline", POINT, many=True)}
-"""Road lines and road edges alike."""
+"""The fields shared by road lines and road edges."""
 
 STOP_SIGN: Table = {1: Field("lane", "int", many=True)}
 CROSSWALK: Table = {1: Field("polygon", POINT, many=True)}
@@ -127,4 +127,4 @@ SCENARIO: Table = {
     8: Field("map_features", MAP_FEATURE, many=True),
 }
 SCENARIO_ID: Table = {5: Field("scenario_id", "text")}
-"""What is looked at first of records that may not be wanted."""
+"""The field read first from a record that may not be wanted."""
