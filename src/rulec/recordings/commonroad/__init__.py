@@ -1,1 +1,1 @@
-"""CommonRoad scenarios, read as recordings without CommonRoad's library."""
+"""Reads CommonRoad scenarios as recordings, without CommonRoad's library."""

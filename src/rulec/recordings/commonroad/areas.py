@@ -1,6 +1,6 @@
-"""Rectangles, circles and polygons of a CommonRoad file, one or several together.
+"""Rectangles, circles and polygons in a CommonRoad file, single or in groups.
 
-They are areas of the road, or what an obstacle covers around its own place.
+They describe areas of the road, or the shape of an obstacle relative to its position.
 """
 
 from __future__ import annotations
@@ -20,18 +20,21 @@ from rulec.recordings.encodings.xml_tree import Way
 from rulec.recordings.recording import Points
 
 NOT_USUAL = "it takes a closer look"
-"""Said of what is then read anew with its lines, and by nobody else."""
+"""Reason of an internal error that makes the caller read the file again with line numbers.
+
+Never shown.
+"""
 
 _FEWEST_CORNERS = 3
 _SMALLEST_M = 1e-6
-"""Bodies are larger."""
+"""The smallest length, width or radius of an obstacle's shape."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rectangle:
-    """A rectangle around (x, y), its length turned by ``heading``.
+    """A rectangle around (x, y) whose long side points along ``heading`` (rad).
 
-    ``shift``: how far the place of an obstacle of this shape lies ahead of its middle.
+    ``shift``: how far (m) the position of an obstacle of this shape lies ahead of its middle.
     """
 
     length: float
@@ -53,7 +56,7 @@ class Circle:
 
 @dataclass(frozen=True, slots=True)
 class Polygon:
-    """A polygon with its corners clockwise."""
+    """A polygon; its corners are in clockwise order."""
 
     outline: shapely.Polygon
 
@@ -67,9 +70,9 @@ _SHAPES = ("rectangle", "circle", "polygon", "truckShape")
 
 
 def read_area(tree: Tree, *, body: bool = False) -> Area:
-    """The area of all shapes in an element, of which there must be one.
+    """The area of all shapes in an element; an element without a shape is an error.
 
-    Those of a ``body`` are larger than nothing.
+    Shapes of a ``body`` must have a positive size.
     """
     parts = []
     waiting = tree.children[::-1]
@@ -85,7 +88,7 @@ def read_area(tree: Tree, *, body: bool = False) -> Area:
 
 
 def is_area(tree: Tree) -> bool:
-    """True if an element has a shape in it."""
+    """Whether an element contains a shape."""
     return any(child.name in _GROUPS or child.name in _SHAPES for child in tree.children)
 
 
@@ -130,12 +133,12 @@ def _polygon(tree: Tree, body: bool) -> Polygon:
 
 
 def read_point(tree: Tree) -> tuple[float, float]:
-    """The place that a point names; heights are left out."""
+    """The x and y of a point; its height is ignored."""
     return tree.child("x").number(), tree.child("y").number()
 
 
 def read_points(tree: Tree) -> Points:
-    """The places of all points in an element."""
+    """The x and y of all points in an element, one row each."""
     if tree.alike is not None:
         if tree.first("point") is not None:
             raise tree.wrong(NOT_USUAL)
@@ -148,18 +151,18 @@ def read_points(tree: Tree) -> Points:
 
 
 def wanted_of_point(ways: Sequence[Way]) -> Sequence[int] | None:
-    """Which texts in a point are its place; None if they are not the first ones."""
+    """The indices of a point's x and y among its texts; None unless they come first."""
     return (0, 1) if tuple(ways[:2]) == (("x",), ("y",)) else None
 
 
 def usual_numbers(texts: Texts) -> list[float] | None:
-    """The numbers that texts spell, as ``Tree.number`` reads them; None if anything is wrong."""
+    """The numbers in texts, as ``Tree.number`` reads them; None if any text is invalid."""
     try:
-        # What is -0 becomes 0.
+        # Adding 0 turns -0 into 0.
         numbers = [float(text) + 0.0 for text in texts]
     except ValueError:
         return None
-    # A sum is not small where one of them is not, or is no number.
+    # The sum is large or NaN if one of the numbers is.
     is_usual = (
         sum(map(abs, numbers)) < LARGEST
         and min(filter(None, map(abs, numbers)), default=1.0) > SMALLEST
@@ -169,17 +172,17 @@ def usual_numbers(texts: Texts) -> list[float] | None:
 
 
 def turned_once(heading: float) -> float:
-    """An angle (rad) between two full turns either way."""
+    """An angle (rad), reduced by full turns to between -2π and 2π."""
     turns = ceil(abs(heading) / (2 * pi)) - 1
     return heading - copysign(2 * pi * turns, heading) if turns > 0 else heading
 
 
 def geometry(area: Area) -> shapely.Geometry:
-    """An area as a polygon, or as several."""
+    """An area as one polygon, or as several."""
     if len(area) == 1:
         return _geometry(area[0])
     parts = shapely.GeometryCollection([_geometry(part) for part in area])
-    # What overlaps becomes one, and what has no area vanishes
+    # This merges overlapping parts and drops those without an area
     together = parts.buffer(0)
     return parts if together.is_empty else together
 
@@ -202,7 +205,7 @@ def _placed(shape: shapely.Geometry, x: float, y: float, heading: float) -> shap
 
 
 def corners(shape: shapely.Geometry) -> Points:
-    """Corners and side middles of a polygon, or of what is around several."""
+    """The corners and the midpoints of the sides of a polygon; of several, those of their hull."""
     hull = shape if shape.geom_type == "Polygon" else shape.convex_hull
     if hull.geom_type != "Polygon":
         return np.array(hull.coords, dtype=float)
@@ -212,7 +215,7 @@ def corners(shape: shapely.Geometry) -> Points:
 
 
 def outline_at(body: Area, x: float, y: float, heading: float) -> Points:
-    """The corners of a body of any shape at a place."""
+    """The outline of a body of any shape at (x, y), turned by ``heading`` (rad)."""
     match body:
         case (Circle(radius, 0.0, 0.0),):
             return corners(geometry((Circle(radius, x, y),)))
@@ -220,11 +223,11 @@ def outline_at(body: Area, x: float, y: float, heading: float) -> Points:
 
 
 def outline_around(body: Area, place: Area, low: float, high: float) -> Points:
-    """The corners of a rectangle around all that a body may cover.
+    """The outline of a rectangle around everything that a body may cover.
 
-    Its place may be anywhere in an area, its heading anything from ``low`` to ``high``. By Althoff
-    and Dolan, *Online verification of automated road vehicles using reachability analysis* (2014),
-    section IV.C.
+    Its position may be anywhere in ``place``, its heading anything from ``low`` to ``high`` (rad).
+    After Althoff and Dolan, *Online verification of automated road vehicles using reachability
+    analysis* (2014), section IV.C.
     """
     length, width = _size_around_place(body)
     middle, either_way = low + 0.5 * (high - low), 0.5 * (high - low)
@@ -244,7 +247,7 @@ def _size_around_place(body: Area) -> tuple[float, float]:
             return length, width
         case (Circle(radius, 0.0, 0.0),):
             return 2.0 * radius, 2.0 * radius
-    # Its own place need not be in its middle
+    # The position of a body need not be in its middle
     west, south, east, north = geometry(body).bounds
     return 2 * max(abs(west), abs(east)), 2 * max(abs(south), abs(north))
 
@@ -265,7 +268,7 @@ def _centre(area: Area) -> shapely.Point:
 
 
 def _moved(part: Part, x: float, y: float, heading: float) -> Part:
-    """A part that is moved first, and then turned around the origin."""
+    """A part, moved by (x, y) and then turned by ``heading`` (rad) around the origin."""
 
     def move(shape: shapely.Geometry) -> shapely.Geometry:
         return affinity.rotate(affinity.translate(shape, x, y), heading, (0, 0), use_radians=True)

@@ -1,4 +1,4 @@
-"""A CommonRoad file, version 2018b or 2020a, read as a recording."""
+"""Reads a CommonRoad XML file, version 2018b or 2020a, as a recording."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def read_commonroad(path: Path) -> Recording:
         recording = _read_whole(path)
         if recording is not None:
             return recording
-    # What is wrong is found again, and said with its line.
+    # Reading again, element by element, finds the error with its line.
     content = Content()
     scan_trees(path, COMMONROAD, lambda tree: begin(content, tree), lambda tree: add(content, tree))
     return to_recording(content, path, COMMONROAD)
@@ -62,10 +62,10 @@ def _read_whole(path: Path) -> Recording | None:
 
 
 def read_commonroad_map(path: Path, step_s: float) -> RoadMap:
-    """The roads of a CommonRoad file; its lights count in its own steps.
+    """The roads in a CommonRoad file, as a map for a recording with time steps of ``step_s``.
 
-    Raises RulecError: as for ``read_commonroad``, and R0610 if lights have other steps, or without
-    any lanelet.
+    Raises RulecError as ``read_commonroad`` does, and R0610 if the file has no lanelet, or has
+    traffic lights and another time step.
     """
     whole = read_commonroad(path)
     if not whole.lanelets:
@@ -86,11 +86,11 @@ def read_commonroad_map(path: Path, step_s: float) -> RoadMap:
 
 
 def begin(content: Content, root: Tree) -> None:
-    """Read the root, which says version, country and time step."""
+    """Read the root element: the version, the country and the time step."""
     version = root.attributes.get("commonRoadVersion", "")
     if version not in VERSIONS:
         why = f"its `commonRoadVersion` is `{short(version)}`"
         raise root.wrong(why, " or ".join(VERSIONS))
-    # Signs have the ids of the country that the benchmark is in, whatever the file is called
+    # Signs have the ids of the benchmark's country, whatever the file's name is
     content.sign_country = country_in(root.attribute("benchmarkID"))
     add_step(content, root)

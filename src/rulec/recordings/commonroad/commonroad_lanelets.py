@@ -1,4 +1,4 @@
-"""Lanelets of a CommonRoad file, and what they refer to."""
+"""Lanelets of a CommonRoad file, with the signs and lights that they refer to."""
 
 from __future__ import annotations
 
@@ -26,7 +26,10 @@ _MARKS: Mapping[str, recording.LaneMark | None] = MappingProxyType(
         **dict.fromkeys(("solid_dashed", "dashed_solid", "curb", "lowered_curb", "unknown")),
     }
 )
-"""CommonRoad's words for marks; those of two kinds say no more than nothing, for want of a side."""
+"""CommonRoad's line markings as lane marks.
+
+None for unknown ones and kerbs, and for marks that mix solid and dashed, as the sides are unclear.
+"""
 
 _TYPES = """
 urban country highway driveWay mainCarriageWay accessRamp exitRamp shoulder busLane busStop
@@ -37,7 +40,7 @@ _FEWEST_POINTS = 2
 
 
 class LaneletEntry(NamedTuple):
-    """A lanelet without its signs, lights and junction, to which others refer."""
+    """A lanelet without its signs, lights and junction, and the ids of its signs and lights."""
 
     lanelet: recording.Lanelet
     signs: tuple[str, ...]
@@ -61,7 +64,7 @@ def read_lanelet(tree: Tree) -> LaneletEntry:
         left_of=_neighbour(tree.first("adjacentLeft")),
         right_of=_neighbour(tree.first("adjacentRight")),
         types=frozenset(_types(tree)),
-        # Version 2018b has limits without signs
+        # Version 2018b gives limits without signs
         signs=frozenset() if limit is None else frozenset({MAX_SPEED}),
         limit_mps=None if limit is None else speed_limit(limit),
         left_mark=_mark(tree.child("leftBound")),
@@ -93,7 +96,7 @@ def _bound(tree: Tree) -> recording.Points:
 
 
 def _neighbour(tree: Tree | None) -> str | None:
-    """The lanelet beside another one, if it leads the same way."""
+    """The id of the adjacent lanelet in a reference, if it has the same direction of travel."""
     if tree is None or tree.attributes.get("drivingDir") != "same":
         return None
     return tree.id("ref")
@@ -105,7 +108,7 @@ def _mark(bound: Tree) -> recording.LaneMark | None:
 
 
 def _stop_line(tree: Tree | None) -> recording.Points | None:
-    """The ends of a stop line that has a place."""
+    """The ends of a stop line; None if the file gives no points for it."""
     if tree is None:
         return None
     points = read_points(tree)
@@ -120,7 +123,7 @@ def complete(
     lights: Mapping[str, recording.Light],
     junction: str,
 ) -> recording.Lanelet:
-    """A lanelet with what it refers to, as far as the file has it."""
+    """A lanelet with its junction and those of its signs and lights that the file contains."""
     elements = [element for number in entry.signs for element in signs.get(number, ())]
     lanelet = entry.lanelet
     limiting = [element for element in elements if element.limit_mps is not None]

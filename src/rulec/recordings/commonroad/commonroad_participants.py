@@ -1,7 +1,7 @@
-"""Obstacles of a CommonRoad file, as a recording has them.
+"""Obstacles of a CommonRoad file as participants of a recording.
 
-Places and headings in a file may be areas and intervals. What an obstacle occupies then is all that
-it may occupy; where only one number can be used it is the middle.
+Positions in a file may be areas, and headings intervals. The outline of an obstacle then covers
+everything that it may occupy; where a single number is needed, it is the middle.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Outlines = dict[int, recorded.Points]
 
 
 def read_body(tree: Tree, extent: TimeExtent, *, standing: bool) -> recorded.Participant:
-    """An obstacle with a shape, whether it stands or moves."""
+    """The static (``standing``) or dynamic obstacle in an element."""
     kind = read_type(tree)
     body = read_area(tree.child("shape"), body=True)
     states = [read_state(tree.child("initialState"), initial=True)]
@@ -58,7 +58,10 @@ def read_body(tree: Tree, extent: TimeExtent, *, standing: bool) -> recorded.Par
 
 
 def _stated_error(states: Sequence[State]) -> recorded.StatedError | None:
-    """The median of what states say themselves; None if most of them are exact."""
+    """The median position error (m) and speed error (m/s) given by the states.
+
+    None if both are 0.
+    """
     if not any(state.area or state.speed_error for state in states):
         return None
     places = [shapely.minimum_bounding_radius(geometry(x.area)) if x.area else 0 for x in states]
@@ -67,13 +70,13 @@ def _stated_error(states: Sequence[State]) -> recorded.StatedError | None:
 
 
 def read_environment_obstacle(tree: Tree) -> recorded.Participant:
-    """Something that covers an area for ever: an ``environmentObstacle``."""
+    """An ``environmentObstacle``: an object that always covers the same area."""
     outlines = {0: corners(geometry(read_area(tree.child("shape"))))}
     return recorded.Participant(tree.id(), read_type(tree), True, {}, outlines)
 
 
 def read_phantom(tree: Tree, extent: TimeExtent) -> recorded.Participant:
-    """Something that may be there, of which nothing is known but where."""
+    """A ``phantomObstacle``: a possible participant of which only the occupied areas are known."""
     return recorded.Participant(tree.id(), "unknown", False, {}, _predicted(tree, extent))
 
 
@@ -116,13 +119,16 @@ def _outline(body: Area, state: State) -> recorded.Points:
 
 
 def track_state(state: State, outline: recorded.Points) -> recorded.TrackState:
-    """A state whose place, if it is an area, is the middle of an outline."""
+    """The recorded state.
+
+    If its position is an area, it is placed at the mean of the outline's points.
+    """
     x, y = outline.mean(axis=0).tolist() if state.area else (state.x, state.y)
     return recorded.TrackState(x, y, state.heading.middle, state.speed, state.acceleration)
 
 
 def _predicted(tree: Tree, extent: TimeExtent) -> Outlines:
-    """What an obstacle occupies by time step; an interval of time has the same throughout."""
+    """Time step -> outline of the occupied area; it is constant throughout an interval of time."""
     outlines: Outlines = {}
     occupied = tree.first("occupancySet")
     for occupancy in () if occupied is None else occupied.all("occupancy"):
@@ -148,13 +154,13 @@ _LIT: Mapping[str, bool] = {"true": True, "1": True, "false": False, "0": False}
 def _lamps(
     tree: Tree, extent: TimeExtent
 ) -> tuple[dict[int, frozenset[recorded.Lamp]], frozenset[recorded.Lamp]]:
-    """The lamps that are lit by time step, and all that the signal states speak of."""
+    """Time step -> lit lamps, and the lamps that every signal state mentions."""
     states = tree.all("initialSignalState")[:1]
     if (series := tree.first("signalSeries")) is not None:
         states += series.all("signalState")
     lamps: dict[int, frozenset[recorded.Lamp]] = {}
     shows: frozenset[recorded.Lamp] | None = None
-    # One that is empty stands for none
+    # An empty signal state means that there is none
     for state in filter(lambda state: state.children, states):
         known = {_SIGNALS[child.name]: child for child in state.children if child.name in _SIGNALS}
         lit = frozenset(lamp for lamp, child in known.items() if _LIT[child.one_of(_LIT)])
@@ -165,15 +171,16 @@ def _lamps(
 
 _INDICATORS: tuple[recorded.Lamp, ...] = ("left_indicator", "right_indicator")
 _FEWEST = 3
-"""So many vehicles never all indicate to one side all the time."""
+"""At least as many vehicles never all indicate to the same side all the time."""
 
 
 def without_constant_indicators(
     bodies: Sequence[recorded.Participant],
 ) -> tuple[tuple[recorded.Participant, ...], tuple[str, ...]]:
-    """Participants without indicators that are lit in all states of all, and remarks on these.
+    """Participants without indicators that are always lit on every vehicle, and remarks on these.
 
-    Such an indicator is a constant of the file, as of one that was converted, and no lamp.
+    Such an indicator does not show a lamp: it is a constant in the file, written for instance by a
+    converter.
     """
     constant = []
     for lamp in _INDICATORS:

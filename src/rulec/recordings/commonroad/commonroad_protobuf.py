@@ -1,6 +1,6 @@
-"""CommonRoad scenarios in Protocol Buffers, in one file or in parts, read as recordings.
+"""Reads CommonRoad scenarios in Protocol Buffers, in one file or in parts, as recordings.
 
-Messages become the elements that the XML has instead, which then mean the same.
+Messages are turned into the XML elements of the same meaning, and then read as these are.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ PROTOBUF = BinaryFormat(
 )
 _PROBLEMS = "-SC.pb"
 _MOST_LANELETS = 4
-"""To which a bound belongs on average, from ``FEW_POINTS`` of all lanelets' on."""
+"""The most lanelets that a bound may belong to on average, in maps of more than ``FEW_POINTS``."""
 FEW_POINTS = 1_000_000
 
 
 def read_protobuf(path: Path) -> Recording:
     """Read the recording in a CommonRoad file in Protocol Buffers.
 
-    Of a scenario in parts that is the dynamic one, or the one with the planning problems; the
-    others lie beside it.
+    For a scenario in parts, the path is that of the part with the traffic or of the one with the
+    planning problems; the other parts are expected in the same folder.
 
-    Raises RulecError R0610 for a file that cannot be read as CommonRoad, or a part that is missing,
-    R0701 if it cannot be opened.
+    Raises RulecError R0610 for a file that cannot be read as CommonRoad or a missing part, R0701 if
+    it cannot be opened.
     """
     file = wire_file(path, PROTOBUF)
     kind = _kind(file)
@@ -64,7 +64,7 @@ def read_protobuf(path: Path) -> Recording:
 
 
 def _kind(file: WireFile) -> Table:
-    """Which kind of file it is, by what the first message in its first one begins with."""
+    """The kind of a file, found from the first bytes of the first message in its first message."""
     head = b""
     has_second = False
     for item in file.fields(tables.BEGIN):
@@ -83,9 +83,9 @@ def _kind(file: WireFile) -> Table:
 
 
 def _part(path: Path, stem: str, kind: Table) -> WireFile:
-    """Another part of the scenario, which lies beside a file."""
+    """Another part of the scenario, in the same folder as ``path``."""
     name = f"{stem}.pb"
-    # The name is the file's, which may say anything
+    # The name comes from the file and may be any text
     if "/" in name or "\\" in name or not name.isprintable():
         raise PROTOBUF.refused(path, f"the name of another part of it is `{short(name)}`")
     beside = path.with_name(name)
@@ -99,7 +99,7 @@ def _part(path: Path, stem: str, kind: Table) -> WireFile:
 
 
 def _scan(file: WireFile, table: Table, child: Callable[[Tree], None]) -> Tree:
-    """The root with its attributes; the callback gets one of its children after the other."""
+    """The root element with its attributes; each of its children is passed to the callback."""
     root = Tree("commonRoad", {}, 0, file.path, file.form)
     for item in file.fields(table):
         _grow(root, item)
@@ -109,11 +109,11 @@ def _scan(file: WireFile, table: Table, child: Callable[[Tree], None]) -> Tree:
 
 
 def _ignore(_: Tree) -> None:
-    """Take nothing but the attributes of the root."""
+    """Skip a child: only the attributes of the root are wanted."""
 
 
 def _add_map(content: Content, file: WireFile) -> None:
-    """Read the road, whose lanelets refer to their bounds."""
+    """Read the map, and give its lanelets the points of the bounds and stop lines they refer to."""
     bounds: dict[tuple[str, str], Tree] = {}
 
     def note(tree: Tree) -> None:
@@ -144,7 +144,7 @@ _REFERENCES = {"leftBound": "bound", "rightBound": "bound", "stopLine": "stopLin
 
 
 def _grow(tree: Tree, item: WireField) -> None:
-    """Give a tree what a field of its message means there."""
+    """Add a field of a message to a tree, as the element or attribute that it corresponds to."""
     outer, name, attribute = _steps(item.field.name)
     for step in outer:
         tree = tree.first(step) or _branch(tree, step, item.place)
@@ -172,7 +172,7 @@ def _branch(tree: Tree, name: str, place: int) -> Tree:
 
 @cache
 def _steps(name: str) -> tuple[tuple[str, ...], str, str]:
-    """The elements around one, its name, and its attribute."""
+    """The outer elements, the innermost element and the attribute in a field's name."""
     elements, _, attribute = name.partition("@")
     *outer, last = elements.split("/")
     return tuple(outer), last, attribute

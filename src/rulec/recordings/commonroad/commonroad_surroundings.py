@@ -1,4 +1,4 @@
-"""Lights, intersections and the weather of a CommonRoad file, as a recording has them."""
+"""Traffic lights, intersections and the weather of a CommonRoad file."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ _WAYS = tuple(
 
 
 class Intersection(NamedTuple):
-    """An intersection, and the lanelets that ways through it begin with."""
+    """An intersection, and the lanelets with which the ways through it begin."""
 
     id: str
     starts: tuple[str, ...]
 
 
 def read_light(tree: Tree) -> recording.Light | None:
-    """The programme of a traffic light; None if it has none, or is out of order."""
+    """The programme of a traffic light; None if it has none or is out of order."""
     active, cycle = tree.first("active"), tree.first("cycle")
     if cycle is None or (active is not None and active.word in ("false", "0")):
         return None
@@ -59,11 +59,12 @@ def read_intersection(tree: Tree) -> Intersection:
 def junctions(
     intersections: Iterable[Intersection], lanelets: Mapping[str, recording.Lanelet]
 ) -> dict[str, str]:
-    """Lanelet -> the intersection that it lies in, by the file's own intersections.
+    """Lanelet -> the intersection of the file that it lies in.
 
-    Ways through an intersection may be of several lanelets, of which it names the first: those that
-    nobody crosses, before others that are crossed, only lead to it, unless their type says that
-    they lie in it, as where one waits for oncoming traffic before one turns across its way.
+    A way through an intersection may consist of several lanelets, and the file names only the
+    first. Lanelets that no other lanelet crosses, ahead of crossed ones, only lead to the
+    intersection. They lie in it if their type says so, as where vehicles wait for oncoming traffic
+    before turning.
     """
     waiting = list(intersections)
     crossed = _crossed(list(lanelets.values())) if waiting else set()
@@ -81,7 +82,7 @@ def junctions(
 def _crossed_after(
     start: str, lanelets: Mapping[str, recording.Lanelet], crossed: Set[str]
 ) -> set[str]:
-    """The lanelets that are crossed and follow one end to end, itself included."""
+    """The crossed lanelets that follow ``start`` without a gap, with ``start`` if it is crossed."""
     following = {start} & crossed
     waiting = [start]
     while waiting:
@@ -93,7 +94,7 @@ def _crossed_after(
 
 
 def _crossed(lanelets: Sequence[recording.Lanelet]) -> set[str]:
-    """The lanelets whose middles others cross at more than an acute angle."""
+    """The lanelets whose centre lines cross that of another one at 30° or more."""
     lines = [shapely.LineString(lanelet.centre) for lanelet in lanelets]
     pairs = shapely.STRtree(lines).query(lines, predicate="crosses").T.tolist()
     crossed: set[str] = set()
@@ -112,7 +113,10 @@ def _direction(line: shapely.LineString, place: shapely.Point) -> float:
 
 
 def read_weather(location: Tree) -> recording.Weather:
-    """The weather at a location; dry weather leaves only what lies on the road."""
+    """The weather at a location.
+
+    In dry weather, only the ground decides whether the road is wet.
+    """
     environment = location.first("environment")
     if environment is None:
         return recording.Weather()

@@ -1,4 +1,4 @@
-"""On which side the countries of CommonRoad's names drive."""
+"""The side of traffic in the countries that names of CommonRoad scenarios begin with."""
 
 from __future__ import annotations
 
@@ -14,22 +14,23 @@ ALB ARG ARM AUT AZE BEL BGR BIH BLR BRA CAN CHE CHL CHN COL CZE DEU DNK EGY ESP
 EST FIN FRA GEO GRC HRV HUN ISL ISR ITA KAZ KOR LTU LUX LVA MAR MDA MEX MNE NLD
 NOR PER PHL POL PRT ROU RUS SAU SRB SVK SVN SWE TUN TUR TWN UKR URY USA VNM
 """
-"""The codes of countries (ISO 3166) by the side of traffic; names of scenarios begin with them."""
+"""The codes (ISO 3166) of countries with left-hand and with right-hand traffic."""
 
 
 def country_in(name: str) -> str:
-    """The code of ``DEU_Ulm-1_1_T-1``, and of ``C-DEU_Ulm-1_1_S-1``, which is cooperative.
+    """The country code in a scenario's name, such as DEU in ``DEU_Ulm-1_1_T-1``.
 
-    It is empty for names that begin with none, such as ``following``.
+    Names of cooperative scenarios have ``C-`` before it. It is empty if the name begins with no
+    code, as in ``following``.
     """
     code, parted, _ = name.removeprefix("C-").partition("_")
     return code.upper() if parted and len(code) == 3 and code.isalpha() else ""
 
 
 def side_in(country: str) -> Side | None:
-    """The side of traffic in a country; None for unknown and for made-up ones.
+    """The side of traffic in a country; None for unknown and fictitious ones.
 
-    CommonRoad's own ``ZAM`` is the made-up country Zamunda, not Zambia.
+    CommonRoad's ``ZAM`` is the fictitious country Zamunda, not Zambia.
     """
     if country in LEFT_HAND.split():
         return "left"

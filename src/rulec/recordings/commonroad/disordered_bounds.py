@@ -1,4 +1,4 @@
-"""Bounds whose points are out of order, as some converters of maps write them."""
+"""Puts points of bounds in order, which some map converters write out of order."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import numpy as np
 from rulec.recordings.recording import Lanelet, Points
 
 _BACK_M = 2.0
-"""A bound that goes back on itself by less is drawn carelessly, and hardly longer for it."""
+"""Shorter steps back along a bound are careless drawing, and make it hardly longer."""
 
 _SHARP = -0.5
-"""The cosine of the turn from which on a bound goes back; no lane bends so at one point."""
+"""The cosine of the angle beyond which a bound turns back; no lane turns as much at one point."""
 
 _HAIR_M = 1e-6
 _MOST_POINTS, _MOST_PASSES = 100, 10
-"""Whoever writes more is no such converter, and each pass takes the square of their number."""
+"""Converters that disorder points do not write more; the time of a pass grows with their square."""
 
 
 def with_ordered_bounds(
@@ -39,11 +39,11 @@ def with_ordered_bounds(
 
 
 def in_order(points: Points) -> Points:
-    """The points so that the line through them is short; the first and the last one stay.
+    """The points in an order that makes the line through them short; the first and last one stay.
 
-    Each inner point goes to where the line is shortest (the move *or-opt* of Or, 1976, for one
-    point), for as long as it gets shorter. A line that nowhere goes back stays as it is, and so
-    does one of very many points.
+    Each inner point is moved to where the line becomes shortest (the *or-opt* move of Or, 1976, for
+    one point), until it gets no shorter. A line that nowhere turns back is left as it is, and so is
+    one of more than ``_MOST_POINTS``.
     """
     if len(points) > _MOST_POINTS or not _going_back([points]):
         return points
@@ -66,7 +66,7 @@ def in_order(points: Points) -> Points:
 
 
 def _going_back(bounds: Iterable[Points]) -> list[int]:
-    """The numbers of the bounds that go back on themselves, each once for each point there."""
+    """The indices of the bounds that turn back on themselves, once for each point where they do."""
     bounds = list(bounds)
     if not bounds:
         return []

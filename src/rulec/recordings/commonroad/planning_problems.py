@@ -1,4 +1,4 @@
-"""Planning problems of a CommonRoad file: where ego starts, and where it shall go."""
+"""Planning problems of a CommonRoad file: where ego starts, and where it should go."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rulec.recordings.encodings.tree import Tree
 
 
 class ProblemEntry(NamedTuple):
-    """A planning problem whose goals may be lanelets of the file."""
+    """A planning problem; its goals may refer to lanelets of the file."""
 
     id: str
     start: State
@@ -33,7 +33,7 @@ def read_problem(tree: Tree) -> ProblemEntry:
 def planning_problem(
     entry: ProblemEntry, lanelets: Mapping[str, recording.Lanelet]
 ) -> recording.PlanningProblem:
-    """A planning problem with the middles of its goals, and those of goal lanelets."""
+    """A planning problem with the centres of its goals, and the middle points of goal lanelets."""
     start = entry.start
     outline = corners(geometry(start.area)) if start.area else np.zeros((1, 2))
     goals = [point for goal in entry.goals for point in _middle(goal, lanelets)]
@@ -53,7 +53,7 @@ def _middle(goal: Tree, lanelets: Mapping[str, recording.Lanelet]) -> Iterator[t
     if (point := goal.first("point")) is not None:
         yield read_point(point)
         return
-    # Protocol Buffers have the outlines of goal lanelets, too
+    # Files in Protocol Buffers also contain the outlines of goal lanelets
     if is_area(goal) and not goal.first("lanelet"):
         centre = geometry(read_area(goal)).centroid
     else:

@@ -1,8 +1,8 @@
-"""The fields of CommonRoad's messages in Protocol Buffers, with the names of the XML's elements.
+"""The fields of CommonRoad's messages in Protocol Buffers, with the names of the XML elements.
 
-By the schemas in `commonroad-io`: 2023.4 has the one of single files, 2026.1 that of scenarios in
-three parts. A field's name leads from its message to what the XML has instead: ``a/b`` is an
-element in another, ``a@b`` an attribute, and what has no name but that lies in the message itself.
+From the schemas in `commonroad-io`: 2023.4 has the one for single files, 2026.1 that for scenarios
+in three parts. A field's name is the path from its message to the XML counterpart: ``a/b`` is an
+element in another one, ``a@b`` an attribute; a field with an empty name belongs to its message.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _STEPS: Table = {
 
 
 def _words(text: str) -> Words:
-    """The words for 0, 1 and so on."""
+    """The words for the values 0, 1 and so on."""
     return Words(dict(enumerate(text.split())))
 
 
@@ -42,7 +42,7 @@ _MARKS_2020 = _words(
     "dashed solid unknown unknown unknown unknown curb lowered_curb "
     "broad_dashed broad_solid unknown no_marking"
 )
-"""2 to 5 are other marks to `commonroad-io` until 2023.3, and no file says whose it is."""
+"""`commonroad-io` up to 2023.3 gives 2 to 5 other meanings, and files do not name their version."""
 
 _LANELETS = (
     "urban country highway driveWay mainCarriageWay accessRamp exitRamp shoulder busLane busStop "
@@ -81,7 +81,7 @@ _TRUCK: Table = {
 _BODY: Table = {**_PLAIN, 4: Field("truckShape", _TRUCK), 5: Field("semiTrailerTruckShape", {})}
 _GROUP: dict[int, Field] = {}
 _AREA: Table = {**_PLAIN, 4: Field("shapeGroup", _GROUP)}
-# Groups may lie in groups
+# Groups may contain groups
 _GROUP[1] = Field("shape", _AREA, many=True)
 
 _STATE: Table = {
@@ -151,7 +151,7 @@ _LIGHT: Table = {
     4: Field("cycle/timeOffset", "uint"),
     6: Field("active", "bool"),
 }
-"""Of single files; in three parts that of a light's cycle has the same numbers."""
+"""The traffic light in single files; its cycle has the same numbers in scenarios in three parts."""
 
 
 def _sign(elements: Table) -> Table:
@@ -168,7 +168,7 @@ _SIGN = _sign(
         2: Field("additionalValue", "text", many=True),
     }
 )
-# Each country's signs have a field of their own; there is none of the number 6
+# The signs of each country have a field of their own; number 6 is unused
 _COUNTRIES = "DEU,ZAM,USA,CHN,ESP,,RUS,ARG,BEL,FRA,GRC,HRV,ITA,PRI"
 _SIGN_2020 = _sign(
     {
@@ -250,7 +250,7 @@ _META: Table = {
     3: Field("@timeStepSize", "double"),
 }
 MAP_OF_DYNAMIC: Table = {1: Field("", _META)}
-"""What names the map of a part with traffic, and its time step."""
+"""The fields of the part with the traffic that give its map and time step."""
 
 DYNAMIC: Table = {
     2: Field("location/environment", _ENVIRONMENT),
@@ -263,7 +263,7 @@ DYNAMIC: Table = {
 """The part with the traffic."""
 
 DYNAMIC_OF_SCENARIO: Table = {4: Field("@dynamic", "text")}
-"""What names the traffic of a part with planning problems."""
+"""The field of the part with the planning problems that names the part with the traffic."""
 
 SCENARIO: Table = {5: Field("planningProblem", _PROBLEM, many=True)}
 """The part with the planning problems."""
@@ -288,7 +288,7 @@ BOUNDS: Table = {
         many=True,
     ),
 }
-"""What lanelets of a map refer to by its id."""
+"""The stop lines and bounds of a map, to which its lanelets refer by id."""
 
 MAP: Table = {
     3: Field(
@@ -314,7 +314,7 @@ MAP: Table = {
     9: Field("intersection", _intersection(_INCOMING), many=True),
     10: Field("environmentObstacle", _environment_obstacle(_THINGS), many=True),
 }
-"""The part with the road; what lights show is in the traffic's."""
+"""The part with the roads; the part with the traffic contains what traffic lights show."""
 
 BEGIN: Table = {1: Field("", {1: Field("", "bytes")}), 2: Field("", "bytes", many=True)}
-"""What tells the kinds of files from each other."""
+"""The first fields of a file, which differ between the kinds of files."""

@@ -1,4 +1,4 @@
-"""Contents of a CommonRoad scenario, and the recording made of it."""
+"""The content of a CommonRoad scenario, and the recording made from it."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ _T = TypeVar("_T")
 
 @dataclass(slots=True)
 class Content:
-    """What has been read of a file so far, by id; participants first by kind.
+    """What has been read of a file so far, by id; participants by kind, then by id.
 
-    ``remarks`` are those on what has been read, as in a recording.
+    ``remarks`` are those that the recording will have.
     """
 
     step_s: float = 0.0
@@ -62,7 +62,7 @@ class Content:
 
 
 def to_recording(content: Content, path: Path, form: FileFormat) -> recording.Recording:
-    """The recording of a scenario, which has its file's name.
+    """The recording of a scenario, named after its file.
 
     Raises RulecError R0610 for time steps that are too far apart.
     """
@@ -71,7 +71,7 @@ def to_recording(content: Content, path: Path, form: FileFormat) -> recording.Re
     participants, remarks = without_constant_indicators(bodies)
     lanelets = _lanelets(content)
     name = Path(path.name.removesuffix(".gz")).stem
-    # A copy may have any name; what the file says of itself goes before.
+    # The country in the file takes precedence: a copy may have any name.
     country = content.sign_country if side_in(content.sign_country) else country_in(name)
     problems = sorted(content.problems.values(), key=lambda problem: int(problem.id))
     return with_neighbours(
@@ -90,7 +90,7 @@ def to_recording(content: Content, path: Path, form: FileFormat) -> recording.Re
 
 
 def add_step(content: Content, root: Tree) -> None:
-    """Note how long a time step is, which the root says."""
+    """Read the length of a time step from the root element."""
     content.step_s = root.number("timeStepSize")
     if content.step_s < SHORTEST_STEP_S:
         raise root.wrong(f"a time step of {content.step_s:g} s is none")
@@ -104,7 +104,7 @@ def add(content: Content, tree: Tree) -> None:
         case "trafficSign":
             _enter(content.signs, tree, lambda sign: read_sign(sign, content.sign_country))
         case "trafficSignValue":
-            # The part with the traffic says what a sign shows then
+            # The part with the traffic gives what a sign shows at that time
             content.signs[tree.id()] = read_sign(tree, content.sign_country)
         case "trafficLight":
             _enter(content.lights, tree, read_light)
@@ -138,7 +138,10 @@ def _add_participant(content: Content, tree: Tree, kind: str) -> None:
 
 
 def _add_intersection(content: Content, intersection: Intersection) -> None:
-    """Add an intersection; of several with one id, as published maps have them, each for itself."""
+    """Add an intersection.
+
+    Published maps reuse ids, and each such intersection gets an id of its own.
+    """
     number = intersection.id
     if number in content.intersections:
         remark = f"there are several intersections `{number}`: each is taken for one of its own"
@@ -178,9 +181,10 @@ def _lanelets(content: Content) -> dict[str, recording.Lanelet]:
 def _with_untold_signs(
     content: Content, lanelets: dict[str, recording.Lanelet]
 ) -> dict[str, recording.Lanelet]:
-    """The lanelets; nobody knows for which signs hold that a map has beside the carriageway.
+    """The lanelets, with the priority signs found beside the carriageway as ``untold_signs``.
 
-    Published maps have signs to give way at sidewalks where these are nearer than the lane.
+    Published maps attach give-way signs to a sidewalk where it is nearer than the lane, so that the
+    lanelets for which such signs hold are unknown.
     """
     beside = {n: lanelet for n, lanelet in lanelets.items() if recording.NO_LANES & lanelet.types}
     signs = (

@@ -1,6 +1,6 @@
-"""States of a CommonRoad file: when, where, and how it moves there.
+"""States in a CommonRoad file: time step, position and motion.
 
-Places may be areas, and numbers intervals.
+Positions may be areas, and numbers intervals.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ class Bounds(NamedTuple):
 
     @property
     def middle(self) -> float:
-        """The number in its middle."""
+        """The middle of the interval."""
         return (self.low + self.high) / 2
 
 
 class State(NamedTuple):
-    """A state of an obstacle or of ego; an ``area`` stands for all the places in it."""
+    """A state of an obstacle or of ego; an ``area``, if not empty, replaces the position (x, y)."""
 
     step: int
     x: float
@@ -51,15 +51,15 @@ class State(NamedTuple):
 
     @property
     def is_exact(self) -> bool:
-        """True if place and heading are known exactly."""
+        """Whether position and heading are known exactly."""
         return not self.area and self.heading.low == self.heading.high
 
 
 def read_state(tree: Tree, *, initial: bool = False) -> State:
     """The state in an element.
 
-    An ``initial`` one that does not say where it is, and when, is at 0; speed and acceleration are
-    0 where they are left out.
+    Time, position and heading of an ``initial`` state are 0 if missing; in other states they are
+    required. Speed and acceleration are 0 if missing.
     """
     fields = {child.name: child for child in reversed(tree.children)}
     for name in ("time", "position", "orientation"):
@@ -97,14 +97,17 @@ _TEXTS = (
     ("velocity", "exact"),
     ("acceleration", "exact"),
 )
-"""Where a state's numbers stand; the last may be left out, and is 0 then."""
+"""The paths of a state's numbers; the acceleration may be missing and is then 0."""
 
 
 _HEIGHT = ("position", "point", "z")
 
 
 def wanted_of_state(ways: Sequence[Way]) -> Sequence[int] | None:
-    """Which texts in a state are its numbers; None if not all are exact, or said once."""
+    """The indices of a state's numbers among its texts.
+
+    None unless each is exact and given once.
+    """
     by_field: dict[str, list[Way]] = {}
     for way in ways:
         by_field.setdefault(way[0], []).append(way)
@@ -119,7 +122,7 @@ def wanted_of_state(ways: Sequence[Way]) -> Sequence[int] | None:
 
 
 def _usual_states(trajectory: Tree, states: AlikeElements) -> list[State]:
-    """The states that spell all numbers exactly."""
+    """The states of a trajectory whose numbers are all exact."""
     steps, *texts = states.columns
     columns = [usual_numbers(column) for column in texts]
     if None in columns or not all(map(_STEP.fullmatch, steps)):
@@ -134,7 +137,7 @@ def _usual_states(trajectory: Tree, states: AlikeElements) -> list[State]:
 
 
 def read_step(tree: Tree) -> int:
-    """The time step that an element says exactly."""
+    """The time step in an element with an exact value."""
     return tree.child("exact").whole()
 
 

@@ -1,4 +1,4 @@
-"""Limits on the spread of a file's time steps, which bounds memory."""
+"""Limits on the spread of a file's time steps, to bound memory."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rulec.recordings.encodings.tree import Tree
 from rulec.recordings.recording import MOST_STEPS, SPARSEST
 
 SPARSEST_STATES = 200
-"""One in so many pairs of an obstacle and a time step has a state in the file, at least."""
+"""At least one in this many pairs of an obstacle and a time step must have a state in the file."""
 
 _NEVER_TOO_MANY = 2_000_000
 _WAY_OUT = "look for a time that is wrong, or take a part"
@@ -19,9 +19,9 @@ _WAY_OUT = "look for a time that is wrong, or take a part"
 
 @dataclass(slots=True)
 class TimeExtent:
-    """The time steps of the obstacles of a file, noted as they are read.
+    """The time steps of the obstacles in a file, collected while it is read.
 
-    ``repeated``: how many steps there are in intervals of time beyond the first ones.
+    ``repeated``: the number of steps in intervals of time, not counting the first one of each.
     """
 
     moments: set[int] = field(default_factory=set)
@@ -29,13 +29,13 @@ class TimeExtent:
     repeated: int = 0
 
     def add(self, steps: Iterable[int]) -> None:
-        """Note the steps of states."""
+        """Note the time steps of states."""
         known = tuple(steps)
         self.moments.update(known)
         self.states += len(known)
 
     def check(self, path: Path, form: FileFormat, obstacles: int) -> None:
-        """Raises RulecError R0610 for steps that are too far apart for so few states."""
+        """Raise RulecError R0610 if the time steps are too far apart for the number of states."""
         first, last = min(self.moments, default=0), max(self.moments, default=0)
         spread = last - first
         most = max(_NEVER_TOO_MANY, SPARSEST_STATES * self.states)
@@ -49,7 +49,7 @@ class TimeExtent:
 
 
 def read_steps(tree: Tree, extent: TimeExtent) -> range:
-    """The time steps that an element says: one, or those from one to another.
+    """The time steps in an element: an exact one, or an interval.
 
     Raises RulecError R0610 for intervals that are longer than any recording.
     """

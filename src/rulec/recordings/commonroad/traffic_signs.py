@@ -1,7 +1,7 @@
-"""Traffic signs of CommonRoad files: the ids that countries give them, and their names.
+"""Traffic signs of CommonRoad files: their ids in each country, and their names.
 
-The names are those of `commonroad-io`, the ids those of each country's catalogue of signs. Signs
-about driving are in the tables; all others are called ``UNKNOWN``.
+The names are those of `commonroad-io`, the ids those of each country's catalogue of signs. The
+tables contain signs about driving; all others are called ``UNKNOWN``.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ MAX_SPEED = "MAX_SPEED"
 MIN_SPEED = "MIN_SPEED"
 UNKNOWN = "UNKNOWN"
 _GERMAN_MAX_SPEED = "274"
-"""Files of all countries have it."""
+"""Germany's id for a speed limit, which files of all countries use."""
 
 
 def _signs(text: str) -> dict[str, str]:
-    """Names by id, from pairs with commas in between."""
+    """Names by id, from pairs separated by commas."""
     words = text.replace(",", " ").split()
     return dict(zip(words[::2], words[1::2], strict=True))
 
@@ -57,7 +57,7 @@ _GERMANY = _signs("""
 330.1 INTERSTATE_START, 330.2 INTERSTATE_END, 331.1 HIGHWAY_START, 331.2 HIGHWAY_END,
 350 PEDESTRIANS_CROSSING, 720 GREEN_ARROW
 """)
-"""Also for countries that are not in the table, Zamunda among them."""
+"""Germany's signs; also used for countries without a table, among them Zamunda."""
 
 _COUNTRIES: Mapping[str, Mapping[str, str]] = MappingProxyType(
     {
@@ -117,9 +117,9 @@ B1 YIELD, B2 STOP, B4 PRIORITY, C27 NO_OVERTAKING_START, C31 MAX_SPEED, D3 ROUND
         "USA": _signs("R1-2 YIELD, R4-1 NO_OVERTAKING_START"),
     }
 )
-"""Signs that countries' own catalogues have, in capitals, and `commonroad-io` has not.
+"""Signs of countries' catalogues that `commonroad-io` does not have, with ids in capitals.
 
-Seen in Belgium's royal decree of 1 December 1975, articles 67 and 69 (B1, B5, B9, B15, D5), the
+Taken from Belgium's royal decree of 1 December 1975, articles 67 and 69 (B1, B5, B9, B15, D5), the
 Swiss Signalisationsverordnung, articles 22, 24, 26 and 36, France's instruction on signs, annex B
 (B3) and parts on priority (AB3a, AB4, AB6), the British regulations of 2002, schedule 1 (601.1,
 602) and Traffic Signs Manual, chapter 3, appendix B (670), Japan's order on signs (330, 330-2), the
@@ -129,7 +129,7 @@ D-1), lists of Swedish signs (B1, B2, B4, C31, D3), the MUTCD (R1-2, R4-1), and 
 """
 
 CATALOGUED = frozenset({*_COUNTRIES, *_MORE} - {"CHN", "ITA"})
-"""The countries of whose catalogues something is known here, besides Germany."""
+"""The countries, besides Germany, of whose catalogues at least one sign is known here."""
 
 _PLATES = _signs("""
 1020-30 ADDITION_RESIDENTS_PERMITTED, 1022-10 ADDITION_BICYCLES_PERMITTED,
@@ -141,7 +141,7 @@ _PLATES = _signs("""
 1053-34 ADDITION_VALID_ON_SHOULDER, 1053-35 ADDITION_VALID_WHEN_WET
 """)
 _FIRST_PLATE = 226
-"""Plates below signs that say for whom or when these hold, and the number of the first one."""
+"""The number of the first plate; a plate says to whom or when the signs above it apply."""
 
 _LATER_IN_USA = ("STOP", "STOP_4_WAY", "NO_TURN_ON_RED", "ONEWAY")
 
@@ -152,27 +152,27 @@ def signs_by_number(country: str) -> dict[int, str]:
         later = _LATER_IN_USA if country == "USA" else ()
         names = [name for name in _COUNTRIES[country].values() if name not in later]
         return dict(enumerate(names or [MAX_SPEED]))
-    # Signs that are not about driving are left out between the last ones
+    # The numbers skip signs that are not about driving, between the last ones
     *first, crossing, arrow = _GERMANY.values()
     plates = dict(enumerate(_PLATES.values(), _FIRST_PLATE))
     return {**dict(enumerate(first)), 92: crossing, 170: arrow, **plates}
 
 
 _WITH_UNIT = re.compile(r"(\d{1,3}(?:\.\d{1,3})?) ?(kmh|km/h|mph|m/s)", re.ASCII)
-"""Limits as maps of the INTERACTION dataset have them, ``80kmh`` for one."""
+"""A speed limit as written in maps of the INTERACTION dataset, for instance ``80kmh``."""
 
 
 class Sign(NamedTuple):
-    """A sign's name, and the speed limit (m/s) that it says, or least speed, if any."""
+    """A sign's name, and the speed limit or minimum speed (m/s) on it, if any."""
 
     name: str
     limit_mps: float | None = None
 
 
 def read_sign(tree: Tree, country: str) -> tuple[Sign, ...]:
-    """The signs on a post, by the ids of a country (ISO 3166).
+    """The signs on a post, by a country's ids (ISO 3166).
 
-    Of those above a plate that says for whom or when they hold nothing is known.
+    All are ``UNKNOWN`` if a plate says to whom or when they apply.
     """
     signs = tuple([_element(child, country) for child in tree.all("trafficSignElement")])
     if not any(sign.name in _PLATES.values() for sign in signs):
@@ -190,7 +190,10 @@ def _element(tree: Tree, country: str) -> Sign:
 
 
 def sign_name(number: str, country: str) -> str:
-    """The name of a sign by the id of a country (ISO 3166), ``UNKNOWN`` if it has none here."""
+    """The name of the sign with this id in a country (ISO 3166).
+
+    ``UNKNOWN`` if it is not listed.
+    """
     names = _COUNTRIES.get(country, _GERMANY)
     if number == _GERMAN_MAX_SPEED:
         return MAX_SPEED
@@ -198,7 +201,7 @@ def sign_name(number: str, country: str) -> str:
 
 
 def national_sign(number: str, country: str) -> str:
-    """The name of a sign in a country's own catalogue, in Germany's if no country is given."""
+    """The name of a sign in a country's own catalogue; Germany's if ``country`` is empty."""
     own = not country or country == "DEU" or country in _COUNTRIES
     return sign_name(number, country) if own else _more(number, country)
 
@@ -208,7 +211,7 @@ def _more(number: str, country: str) -> str:
 
 
 def speed_limit(tree: Tree) -> float:
-    """A speed limit (m/s, or in the unit that it names); infinity means that there is none."""
+    """A speed limit (m/s, or in the unit given); infinity if it says that there is none."""
     if tree.word.lower() in ("inf", "infinity"):
         return inf
     with_unit = _WITH_UNIT.fullmatch(tree.word.lower())
