@@ -1,1 +1,1 @@
-"""SUMO's floating-car data with their net, read as a recording, without SUMO."""
+"""Reads SUMO's floating-car data and their net as a recording, without SUMO."""

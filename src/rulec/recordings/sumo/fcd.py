@@ -1,7 +1,8 @@
-"""SUMO's floating-car data: who was where at which moment, and the files beside them.
+"""Reads SUMO's floating-car data (positions over time), and finds the files beside them.
 
-A vehicle's ``x`` and ``y`` are the middle of its front bumper; its ``angle`` is a compass's:
-degrees clockwise from the y axis. Who rides in a vehicle is a part of it, and left out.
+A vehicle's ``x`` and ``y`` are the middle of its front bumper; its ``angle`` is in degrees
+clockwise from the y axis, as on a compass. Passengers count as part of their vehicle and are left
+out.
 """
 
 from __future__ import annotations
@@ -31,12 +32,15 @@ _place_of = itemgetter(*PLACE)
 
 
 def read_fcd(path: Path) -> FloatingCarData:
-    """The file's content. Raises RulecError R0610 if it is none, R0701 if it cannot be read."""
+    """The content of a file.
+
+    Raises RulecError R0610 for another kind, R0701 if it cannot be read.
+    """
     return read_plain_fcd(path) or read_fcd_as_xml(path)
 
 
 def read_fcd_as_xml(path: Path) -> FloatingCarData:
-    """The content of a file that may be written in any way that XML allows. Raises as above."""
+    """The content of a file in any form that XML allows. Raises as ``read_fcd`` does."""
     data = FloatingCarData()
     carriers = 0
 
@@ -76,7 +80,7 @@ def _add(data: FloatingCarData, element: XmlElement) -> None:
         raise _wrong(element) from None
     if x == y == NOWHERE:
         return
-    # NaN is not between anything
+    # Comparisons with NaN are false
     if not (
         -LARGEST < x < LARGEST
         and -LARGEST < y < LARGEST
@@ -86,7 +90,7 @@ def _add(data: FloatingCarData, element: XmlElement) -> None:
         raise _wrong(element)
     track = data.tracks.get(key)
     if track is not None and track.element != name:
-        # SUMO lets a person be called like a vehicle; here ids are one for all
+        # SUMO lets a person and a vehicle have the same id; here ids are unique
         key = f"{name} {key}"
         track = data.tracks.get(key)
     moment = len(data.moments) - 1
@@ -116,7 +120,10 @@ def _wrong(element: XmlElement) -> RulecError:
 
 
 def net_beside(path: Path, head: FcdHead) -> Path:
-    """The net of floating-car data. Raises RulecError R0614 if it is not clear which that is."""
+    """The net that belongs to floating-car data.
+
+    Raises RulecError R0614 if it is missing or unclear.
+    """
     written = named_beside(path, head.net) if head.net else None
     if written is not None:
         return written
@@ -146,8 +153,8 @@ def demand_beside(path: Path, head: FcdHead) -> tuple[Path, ...]:
 
 
 def named_beside(path: Path, written: str) -> Path | None:
-    """The file beside floating-car data that a file names, if it is there."""
-    # Only the name counts: what a file says shall not lead anywhere else
+    """The file beside floating-car data that has the name in ``written``; None if it is missing."""
+    # Only the file's name is used, so that no other folder can be read
     candidate = path.parent / _name(written)
     return candidate if candidate.is_file() else None
 

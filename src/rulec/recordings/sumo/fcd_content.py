@@ -1,4 +1,4 @@
-"""Contents of floating-car data: head, times, and a track per participant."""
+"""The content of floating-car data: head, moments, and a track per participant."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ FCD = XmlFormat(
 BODIES = frozenset({"vehicle", "person", "container"})
 LONGEST_ID = 200
 MICROSECONDS = 1_000_000
-"""In a second: moments are whole numbers of them."""
+"""Microseconds in a second; moments are whole numbers of microseconds."""
 
 PLACE = ("x", "y", "angle", "speed")
-"""What is said of everybody."""
+"""The attributes that every participant has at every moment."""
 
 NOWHERE = -(2.0**30)
-"""What SUMO writes for x and y of who is in no place, as while it is moved elsewhere."""
+"""SUMO's x and y for participants without a position, for instance while teleporting."""
 
 _OPTION = re.compile(r'<(net-file|route-files|additional-files|fcd-output\.geo)\s+value="([^"]*)"')
 
@@ -31,14 +31,14 @@ _LEAVES_OUT = re.compile(
     r"<(fcd-output\.filter-[a-z.-]+|(?:person-)?device\.fcd\.(?:probability|explicit|radius)"
     r"|person-fcd-output)\s+value="
 )
-"""Options with which floating-car data have a part of the traffic only."""
+"""Options that make floating-car data contain only a part of the traffic."""
 
 
 @dataclass(frozen=True, slots=True)
 class FcdHead:
-    """SUMO's configuration, a comment at the head of its output.
+    """SUMO's configuration, from a comment at the head of its output.
 
-    ``leaves_out``: the options by which some of the traffic is not in the data.
+    ``leaves_out``: the options that keep some of the traffic out of the data.
     """
 
     net: str = ""
@@ -51,14 +51,14 @@ class FcdHead:
 def _unescaped(text: str) -> str:
     if "&" not in text:
         return text
-    # The names of all characters of HTML, 3 ms: few paths have one.
+    # Imported late: it loads all HTML entities (3 ms), and few paths contain one.
     from html import unescape
 
     return unescape(text)
 
 
 def fcd_head(comment: str) -> FcdHead:
-    """The configuration in a comment, as far as it matters here."""
+    """The part of the configuration in a comment that is used here."""
     options = {name: _unescaped(value) for name, value in _OPTION.findall(comment)}
     routes, additional = (
         tuple(filter(None, map(str.strip, options.get(key, "").split(","))))
@@ -75,9 +75,9 @@ def fcd_head(comment: str) -> FcdHead:
 
 @dataclass(slots=True)
 class FcdTrack:
-    """The track of a participant in rows of floating-car data: x, y, angle and speed.
+    """The track of a participant; rows are x, y (m), angle (degrees) and speed (m/s).
 
-    ``moments`` are indices into those of the file.
+    ``moments`` are indices into the moments of the file.
     """
 
     element: str
@@ -92,7 +92,8 @@ class FcdTrack:
 class FloatingCarData:
     """The content of a floating-car data file.
 
-    ``moments`` are times in microseconds, ``on`` the lanes and edges that are named.
+    ``moments`` are times in microseconds; ``on`` maps each lane or edge that is named to which of
+    the two it is, and the line of its first use.
     """
 
     head: FcdHead = field(default_factory=FcdHead)

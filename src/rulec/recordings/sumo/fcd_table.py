@@ -1,7 +1,7 @@
-"""SUMO's floating-car data as a table: what SUMO writes into .csv and .parquet, or xml2csv.py.
+"""Reads SUMO's floating-car data from tables: .csv and .parquet from SUMO, or from xml2csv.py.
 
-The table has no head that names the net. SUMO writes people on foot into the same columns as
-vehicles: they are those who are on an edge and on no lane.
+A table has no head that names the net. SUMO writes pedestrians into the same columns as vehicles:
+rows with an edge and no lane are pedestrians.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _TEXTS = ("id", "type", "lane", "edge", "vehicle")
 
 
 def read_fcd_table(path: Path) -> FloatingCarData:
-    """The table's content. Raises RulecError R0610 if it is none, R0701, R0706."""
+    """The content of a table. Raises RulecError R0610 for another kind of file, R0701, R0706."""
     table = open_table(path, FCD)
     kinds = [kind for kind in sorted(BODIES) if f"{kind}_id" in table.names]
     needed = [f"{kind}_{name}" for kind in kinds for name in PLACE]
@@ -74,7 +74,7 @@ def _add(
         raise columns.wrong(int(rows[0]), f"an id is longer than {LONGEST_ID} characters")
     carrier = columns.texts.get(f"{kind}_vehicle")
     if carrier is not None:
-        # Who rides in a vehicle is a part of it
+        # Passengers count as part of their vehicle
         rows = rows[~np.array([bool(carrier.names[code]) for code in carrier.codes[rows]])]
     place = np.stack([columns.numbers[f"{kind}_{name}"][rows] for name in PLACE], axis=-1)
     is_there = ~(place[:, :2] == NOWHERE).all(axis=1)

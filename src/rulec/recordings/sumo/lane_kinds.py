@@ -1,11 +1,11 @@
 """Kinds of lanes of a SUMO net: continuing, joining, leaving.
 
-A lane goes on where each lane of its road leads to one of the next road, for the next kilometre or
-up to the net's end: signs and arrows that send lanes to places of their own stand no earlier. A
-road of one lane needs none. Of a motorway lanes may come beside them, and leave or end there, which
-send those that go on to no place of their own. Lanes join and leave where links do (``_link`` in
-the road's type); and a lane that comes from another road than those beside it, and ends, is there
-to join, whatever the types are.
+A lane continues if every lane of its road leads to one lane of the next road, for the next
+kilometre or up to the end of the net: signs and arrows that assign lanes to destinations stand no
+earlier. A road of one lane always continues. On a motorway, other lanes may join, leave or end
+beside lanes that continue, without assigning these to a destination. Lanes join from links and
+leave to links (``_link`` in the road's type). A lane that comes from another road than the lanes
+beside it, and ends, is a joining lane whatever the types are.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ _Lanes = Mapping[str, list[str]]
 
 
 def lane_kinds(net: SumoNet, drivable: Set[str]) -> dict[str, str]:
-    """Lane -> CommonRoad's word for what it is for, of those of which the net tells it.
+    """Lane -> CommonRoad's word for its purpose, for lanes whose purpose the net shows.
 
     ``drivable``: the lanes on which vehicles drive.
     """
-    # To turn round is no way on
+    # Connections for U-turns do not count
     onward: dict[str, list[str]] = defaultdict(list)
     before: dict[str, set[str]] = defaultdict(set)
     back: dict[str, list[str]] = defaultdict(list)
@@ -67,7 +67,10 @@ def lane_kinds(net: SumoNet, drivable: Set[str]) -> dict[str, str]:
 
 
 def _from_joining(net: SumoNet, lane: str, edges: _Lanes, back: _Lanes) -> list[str]:
-    """A lane and those before it, from where it came onto its road; none if it did not join it."""
+    """A joining lane and its predecessors back to where it joined its road.
+
+    Empty for other lanes.
+    """
     way: list[str] = []
     while lane not in way:
         way.append(lane)
@@ -83,9 +86,9 @@ def _from_joining(net: SumoNet, lane: str, edges: _Lanes, back: _Lanes) -> list[
 
 
 def _that_stay(net: SumoNet, lanes: list[str], onward: _Lanes) -> list[str]:
-    """Those of these lanes that lead on beside each other, wherever others join, leave or end.
+    """The lanes that continue beside each other, wherever other lanes join, leave or end.
 
-    None where they lead to several roads.
+    Empty if they lead to several roads.
     """
     way, seen = 0.0, set[str]()
     now = {lane: lane for lane in lanes}
@@ -105,7 +108,10 @@ def _that_stay(net: SumoNet, lanes: list[str], onward: _Lanes) -> list[str]:
 
 
 def _beside_each_other(net: SumoNet, lanes: list[str], onward: _Lanes) -> dict[str, str]:
-    """The lanes to which these lead, one each, the farthest from the kerb; none if one has none."""
+    """Lane -> its own next lane, as far from the kerb as possible.
+
+    Empty if one has no next lane.
+    """
     target_of: dict[str, str] = {}
     for lane in sorted(lanes, key=lambda name: -net.lanes[name].index):
         after = [end for end in onward.get(lane, []) if end not in target_of.values()]
@@ -116,7 +122,7 @@ def _beside_each_other(net: SumoNet, lanes: list[str], onward: _Lanes) -> dict[s
 
 
 def _goes_on(net: SumoNet, edge: str, edges: _Lanes, onward: _Lanes) -> bool:
-    """True if all lanes of an edge lead on beside each other."""
+    """Whether all lanes of an edge continue beside each other."""
     way, seen = 0.0, {edge}
     while way < _AHEAD_M and any(onward.get(lane) for lane in edges[edge]):
         each = [onward.get(lane, []) for lane in edges[edge]]

@@ -1,7 +1,7 @@
 """The lanes of a SUMO net as lanelets.
 
-A lane's border lies half its width beside its middle. Within a junction the limit of the road that
-leads there goes on, unless the net allows more there: less is how fast one gets around the bend.
+A lane's borders lie half its width from its centre line. Within a junction, the limit of the road
+before it still applies, unless the net allows more: a lower one is the speed of driving the bend.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _WALKERS = {"pedestrian", "wheelchair"}
 _RIDERS = {"bicycle", "scooter"}
 _BUSES = {"bus", "coach", "taxi"}
 _SERVICES = {"emergency", "authority", "army"}
-"""Who may drive where others only stop in need."""
+"""The classes for which a lane is only a shoulder; other vehicles stop there in an emergency."""
 _ALL = frozenset(
     {"passenger", "private", "truck", "trailer", "delivery", "motorcycle", "moped", "hov"}
     | {"evehicle", "emergency", "authority", "army", "vip", "custom1", "custom2"}
@@ -46,7 +46,7 @@ _ALL = frozenset(
 _RAILS = {name for name in _ALL if name.startswith("rail")} | {"tram", "subway", "ship"}
 _KMH = 3.6
 _ROUNDED_KMH = 0.02
-"""Nets have limits in m/s with two decimals, which is so far from a whole number of km/h."""
+"""Nets give limits in m/s with two decimals; these are at most this far from whole km/h."""
 
 _GIVES_WAY, _STRAIGHT = "m", "s"
 _ARMS = 3
@@ -54,7 +54,7 @@ _CLOSEST_M = 0.01
 
 
 def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
-    """Lane id -> lanelet, of all lanes that are longer than nothing."""
+    """Lane id -> lanelet, for all lanes of a length above 0."""
     shapes = {lane.id: without_repeats(lane.shape, _CLOSEST_M) for lane in net.lanes.values()}
     there = {key for key, shape in shapes.items() if len(shape) > 1}
     after = _successors(net.connections, there, set(net.lanes))
@@ -71,7 +71,7 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
     junctions = _junctions(net)
     lights, ways = net.lane_lights(step_s), net.way_lights(step_s)
     rights, signs = rights_of_ways(net), signs_of_lanes(net)
-    # Not the later ones of the ways through a junction that consist of several lanes
+    # Leaves out the later lanes of ways through a junction that have several lanes
     entering = [x for x in net.connections if not x.start.startswith(":")]
     straight = {x.via for x in entering if x.direction == _STRAIGHT}
     links: dict[str, list[NetConnection]] = defaultdict(list)
@@ -125,7 +125,7 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
 
 def _lines(lane: NetLane, shape: Points) -> tuple[Points, Points, Points]:
     if lane.edge.function == "walkingarea" and len(shape) > 3:
-        # The shape is an outline: one half of it is one side, the other half the other
+        # The shape is an outline: its first half is one side, its second half the other
         half = len(shape) // 2
         right, left = shape[:half], shape[half:][::-1]
         count = max(len(right), len(left))
@@ -142,7 +142,7 @@ def _resampled(points: Points, count: int) -> Points:
 def _successors(
     connections: list[NetConnection], there: set[str], known: set[str]
 ) -> dict[str, list[str]]:
-    """Lane -> next lanes, without those of no length."""
+    """Lane -> next lanes, skipping those of length 0."""
     direct: dict[str, list[str]] = defaultdict(list)
     for connection in connections:
         direct[connection.start].append(
@@ -167,7 +167,7 @@ def _neighbour(lane: NetLane, step: int, there: set[str]) -> str | None:
 
 
 def _origins(net: SumoNet, before: Mapping[str, list[str]]) -> dict[str, NetLane]:
-    """Lane -> the lane of the road that leads there, for those on which vehicles drive."""
+    """Lane -> the lane of the road that leads to it, for lanes on which vehicles drive."""
     origins = {}
     for lane in net.lanes.values():
         origin, seen = lane, {lane.id}
@@ -190,7 +190,7 @@ def _unrounded(limit_mps: float) -> float:
 
 
 def _mark(lane: NetLane, step: int, there: set[str]) -> LaneMark | None:
-    """The line between two lanes of an edge: solid where it is forbidden to change across it."""
+    """The mark between two lanes of an edge: solid where changing across it is forbidden."""
     if lane.edge.function or _neighbour(lane, step, there) is None:
         return None
     # ``marks`` are to the left and right as SUMO has them, by rising and falling index
@@ -203,7 +203,10 @@ def junction_of(lane: NetLane) -> str:
 
 
 def _junctions(net: SumoNet) -> set[str]:
-    """The nodes at which roads meet: nets part edges anywhere, as where a lane begins to leave."""
+    """The nodes at which roads meet.
+
+    Nets also split edges elsewhere, as where an exit lane begins.
+    """
     arms: dict[str, set[str]] = defaultdict(set)
     for lane in net.lanes.values():
         if lane.edge.function == "" and not _permitted(lane) <= _WALKERS:
@@ -225,10 +228,13 @@ def _types(
     entries: list[NetConnection],
     onward: Iterable[Set[str]],
 ) -> Iterator[str]:
-    """What a lane is for, and where. ``onward``: who may use the lanes behind a way in a node."""
+    """The types of a lane by its purpose and place.
+
+    ``onward``: for a lane within a node, the classes permitted on each lane behind it.
+    """
     permitted = _permitted(lane)
     if lane.edge.function == "crossing":
-        # Where walkers have to give way there is no crossing that gives them priority
+        # A crossing at which pedestrians give way is no crosswalk
         waits = entries and all(entry.state == _GIVES_WAY and not entry.light for entry in entries)
         yield "sidewalk" if waits else "crosswalk"
         if entries and any(entry.light for entry in entries):
@@ -261,12 +267,12 @@ def _types(
 
 _URBAN = ("residential", "living_street", "pedestrian")
 _ORDINARY = (*_URBAN, "tertiary", "secondary", "unclassified", "service")
-"""Others, such as trunk roads, may be expressways."""
+"""Roads of other types, such as trunk roads, may be expressways."""
 _FAST_KMH = 80.0
 
 
 def _place_types(road: NetEdge, net: SumoNet, lane: NetLane) -> Iterator[str]:
-    """Types that say where a lane of a road is, as far as the road's type and limit tell."""
+    """Types for the surroundings of a lane, as far as its road's type and limit show them."""
     if lane.edge.id in net.roundabouts:
         yield "roundabout"
     if "motorway" in road.type:

@@ -1,6 +1,6 @@
-"""SUMO's traffic lights beside the data: what they showed, and programmes of additional files.
+"""SUMO's traffic lights in files beside the data: recorded states, and additional programmes.
 
-States at every moment are those of its output ``SaveTLSStates``.
+Recorded states are SUMO's output ``SaveTLSStates``.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _A_DAY_S = 86_400.0
 
 
 def light_states_beside(path: Path, head: FcdHead) -> tuple[Path, ...]:
-    """The recorded states of lights: what additional files name, else the only ``*.tls.xml``."""
+    """The files of recorded states: those named in additional files, or the only ``*.tls.xml``."""
     names: list[str] = []
 
     def begin(element: XmlElement) -> None:
@@ -44,10 +44,10 @@ def light_states_beside(path: Path, head: FcdHead) -> tuple[Path, ...]:
 
 
 def programmes_beside(path: Path, head: FcdHead) -> Mapping[str, SignalProgramme | None] | None:
-    """The lights whose programme an additional file replaces; None if such a file is not there.
+    """Light -> the programme that an additional file gives it; None if such a file is missing.
 
-    SUMO loads these files after the net, and what it loads last runs. A file that changes between
-    programmes leaves its lights unknown.
+    SUMO loads these files after the net, and runs the programme loaded last. The programme of a
+    light is unknown (None) if a file switches between several.
     """
     replaced: dict[str, SignalProgramme | None] = {}
     for name in head.additional:
@@ -71,10 +71,10 @@ def programmes_beside(path: Path, head: FcdHead) -> Mapping[str, SignalProgramme
 
 
 def read_light_states(path: Path) -> Mapping[str, SignalProgramme]:
-    """Read what each light showed, as a programme that runs once.
+    """Light -> its recorded states, as a programme that runs once.
 
-    The first state holds from time 0 on, the last one for a day: SUMO writes both outputs for the
-    same time. Raises RulecError R0610 for a file that is none, R0701 if it cannot be read.
+    The first state holds from time 0, the last one for a day: SUMO writes this output and the data
+    for the same time. Raises RulecError R0610 for another kind of file, R0701 if it cannot be read.
     """
     changes: dict[str, list[tuple[float, str]]] = {}
 

@@ -17,7 +17,7 @@ from rulec.recordings.recording import LONGEST_M, Light, Points, Side
 NET = XmlFormat("a SUMO net", "SUMO's program `netconvert` makes such files", root="net")
 
 LANE_WIDTH_M = 3.2
-"""SUMO's, where a net says nothing else."""
+"""SUMO's default, used where a net gives no width."""
 
 WIDEST_M = 100.0
 
@@ -32,12 +32,12 @@ COLOURS: Mapping[str, str] = {
     "o": "inactive",
     "O": "inactive",
 }
-"""SUMO's letters, and CommonRoad's words; ``s`` is red with an arrow that lets turn right."""
+"""SUMO's letters -> CommonRoad's words; ``s`` is red with an arrow that permits turning right."""
 
 
 @dataclass(frozen=True, slots=True)
 class NetEdge:
-    """An edge: ``function`` is empty for a road, ``type`` is what the map's source calls it."""
+    """An edge; ``function`` is empty for a road, ``type`` is the name in the map's source."""
 
     id: str
     function: str
@@ -49,9 +49,9 @@ class NetEdge:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NetLane:
-    """A lane of an edge: ``index`` counts from the kerb on.
+    """A lane of an edge; ``index`` counts from the kerb.
 
-    ``shape`` is its middle, of a walking area the outline.
+    ``shape`` is the centre line, or the outline of a walking area.
     """
 
     id: str
@@ -63,14 +63,15 @@ class NetLane:
     allow: str | None
     disallow: str | None
     marks: tuple[bool, bool] = (False, False)
-    """Is it forbidden to change lanes to the left, to the right?"""
+    """Whether changing lanes is forbidden to the left, and to the right."""
 
 
 @dataclass(frozen=True, slots=True)
 class NetJunction:
-    """A junction: its type, and for each way through it a lane, whom it waits for, and its foes.
+    """A junction: its type, the first lane of each way through it, and the priorities of the ways.
 
-    ``first`` and ``foes`` are bits, one for each way, the last one first.
+    For each way, ``first`` (ways it waits for) and ``foes`` (ways in conflict with it) hold a
+    string of bits, one bit per way, that of the first way last.
     """
 
     id: str
@@ -84,7 +85,7 @@ class NetJunction:
 class NetConnection:
     """A connection from a lane to the next one, over ``via`` within a junction.
 
-    ``direction`` is SUMO's letter for where it leads, ``link`` its number at its ``light``.
+    ``direction`` is SUMO's letter for the turn, ``link`` the connection's number at its ``light``.
     """
 
     start: str
@@ -98,17 +99,17 @@ class NetConnection:
 
 @dataclass(frozen=True, slots=True)
 class SignalProgramme:
-    """A traffic light's programme: phases of a duration (s) and a letter for each link."""
+    """A traffic light's programme: phases with a duration (s) and a letter for each link."""
 
     begin: float
     phases: tuple[tuple[float, str], ...]
 
     def has_arrow(self, link: int) -> bool:
-        """True if a link may turn at red after a stop."""
+        """Whether a link may turn at red after a stop."""
         return any(0 <= link < len(letters) and letters[link] == "s" for _, letters in self.phases)
 
     def light(self, link: int, step_s: float) -> Light | None:
-        """The light of a link in time steps, if the programme has any."""
+        """The light of a link in time steps; None if the programme has no phase for it."""
         phases: list[tuple[str, int]] = []
         ends, done = 0.0, 0
         for duration, letters in self.phases:
@@ -127,7 +128,7 @@ class SignalProgramme:
 
 @dataclass(slots=True)
 class SumoNet:
-    """The content of a SUMO net; a light that reacts to traffic has None as programme."""
+    """The content of a SUMO net; the programme of a light that reacts to traffic is None."""
 
     side: Side = "right"
     edges: dict[str, NetEdge] = field(default_factory=dict)
@@ -138,9 +139,10 @@ class SumoNet:
     programmes: dict[str, list[SignalProgramme | None]] = field(default_factory=dict)
 
     def lane_lights(self, step_s: float) -> dict[str, list[Light]]:
-        """Lane -> the lights at its end, one for each way on that has its own.
+        """Lane -> the different lights at its end, over all ways on.
 
-        A light that reacts to traffic, or has several programmes, has none that one could tell.
+        Lights that react to traffic or have several programmes are left out: their state is
+        unknown.
         """
         lights: dict[str, list[Light]] = defaultdict(list)
         for connection, light in self._lights(step_s):
@@ -149,7 +151,7 @@ class SumoNet:
         return lights
 
     def way_lights(self, step_s: float) -> dict[str, dict[str, Light]]:
-        """Lane -> the lane that follows -> the light for that way."""
+        """Lane -> next lane -> the light for that way."""
         lights: dict[str, dict[str, Light]] = defaultdict(dict)
         for connection, light in self._lights(step_s):
             lights[connection.start][connection.via or connection.end] = light
@@ -164,12 +166,12 @@ class SumoNet:
                     yield connection, light
 
     def unknown_lights(self) -> list[str]:
-        """The lights whose programme is not known."""
+        """The lights whose programme is unknown."""
         return [name for name, known in self.programmes.items() if len(known) > 1 or None in known]
 
 
 class ProgrammeReader:
-    """Reads programmes of lights, `tlLogic` with its phases, one element after another."""
+    """Reads the programmes of lights, `tlLogic` with its phases, element by element."""
 
     def __init__(self) -> None:
         self.programmes: dict[str, list[SignalProgramme | None]] = {}
@@ -177,7 +179,7 @@ class ProgrammeReader:
         self._phases: list[tuple[float, str]] = []
 
     def begin(self, element: XmlElement) -> None:
-        """An element begins, of whatever name."""
+        """Handle the beginning of any element."""
         if element.name == "phase":
             if self._light is not None:
                 self._phases.append((element.positive("duration"), element.text("state")))
@@ -188,7 +190,7 @@ class ProgrammeReader:
             self._light = element.text("id"), element.number("offset", 0.0), fixed
 
     def finish(self) -> None:
-        """The file ends, or what was read last does."""
+        """Store the programme read last; to be called at the end of the file."""
         if self._light is not None:
             name, offset, fixed = self._light
             programme = SignalProgramme(offset, tuple(self._phases))
@@ -199,7 +201,7 @@ class ProgrammeReader:
 
 
 def read_net(path: Path) -> SumoNet:
-    """The net in a file. Raises RulecError R0610 if it is none, R0701 if it cannot be read."""
+    """The net in a file. Raises RulecError R0610 for another kind, R0701 if it cannot be read."""
     lights = ProgrammeReader()
     net = SumoNet(programmes=lights.programmes)
     edge: NetEdge | None = None
@@ -273,7 +275,7 @@ def _lane(element: XmlElement, edge: NetEdge) -> NetLane:
 
 
 def _forbids(changing: str | None) -> bool:
-    """True if what may change lanes there does not include passenger cars."""
+    """Whether the classes that may change lanes exclude passenger cars."""
     return changing is not None and not {"all", "passenger"} & set(changing.split())
 
 

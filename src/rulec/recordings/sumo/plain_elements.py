@@ -1,7 +1,7 @@
-"""Elements of floating-car data that are written alike, taken from their bytes as columns.
+"""Reads uniformly written elements of floating-car data as columns, directly from their bytes.
 
-What stands between the values of one line stands in all of its kind, so that a parser has to look
-at the first of them only. Lines are compared with it, and texts become numbers, many at once.
+Lines of one kind have the same text between their values, so only the first line of each kind goes
+through an XML parser. Other lines are compared with it, and their values are converted together.
 """
 
 from __future__ import annotations
@@ -27,31 +27,32 @@ from rulec.trace.formats.byte_words import (
 )
 
 PADDING = 1 << 10
-"""So many bytes have to stand behind the last line; longer names, and parts of lines, are odd."""
+"""Bytes needed behind the last line; longer names or pieces of lines are left to the XML parser."""
 
 N_NUMBERS = 5
 _NUMBERS = ("x", "y", "angle", "speed", "acceleration")
 _EVERY = frozenset({"id", *_NUMBERS[:-1]})
-"""What each element has."""
+"""The attributes that each element has."""
 
 _MOST_KINDS = 1 << 6
 _MINUS = ord("-")
 _ODD = np.uint64(0x9E3779B97F4A7C15)
-"""Of the golden ratio's digits."""
+"""A multiplier for hashing, from the digits of the golden ratio."""
 
 _MASKS = np.array([(1 << 8 * n) - 1 for n in range(BYTES + 1)], dtype=np.uint64)
-"""Words of which so many bytes are set."""
+"""Masks for the first n bytes of a word, by n."""
 
 
 class NotPlainError(Exception):
-    """Something has to be read as XML is."""
+    """The file has to be read by an XML parser."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Kind:
-    """Elements of one ``name`` with the same text ``between`` attributes, which are ``at`` places.
+    """Elements with the same ``name``, and the same text ``between`` their attributes' values.
 
-    ``on`` is the attribute that says where they are: the lane, or the edge.
+    ``at`` has the position of each attribute; ``on``, lane or edge, is the one that gives the
+    place.
     """
 
     name: str
@@ -61,34 +62,34 @@ class _Kind:
 
 
 KnownKinds = dict[int, list[_Kind]]
-"""The kinds of elements of a file that have been met, by how many quotation marks they have."""
+"""The kinds of elements found so far in a file, by their number of quotation marks."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TextPlaces:
-    """Where texts begin and end in some bytes, behind which there is padding."""
+    """Where texts begin and end in a byte array, which is padded at its end."""
 
     text: Bytes
     begins: Places
     ends: Places
 
     def __getitem__(self, number: int) -> str:
-        """One of them."""
+        """A text by its number."""
         return self.text[self.begins[number] : self.ends[number]].tobytes().decode("ascii")
 
     def part(self, members: NDArray[intp]) -> TextPlaces:
-        """Some of them."""
+        """The texts with these numbers."""
         return TextPlaces(self.text, self.begins[members], self.ends[members])
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Elements:
-    """Elements in columns.
+    """The elements of several lines, in columns.
 
-    ``named`` has their places among ``names``, ``owners`` those among ``keys``, which are in the
-    order in which they come first, as are ``types``, those of the first element of each. ``rows``
-    are the numbers, NaN for a missing acceleration. ``on`` has for each lane and edge
-    which of them it is, and the first element there; ``lamps`` are by element.
+    ``named`` are indices into ``names``, and ``owners`` into ``keys``. Keys are in the order of
+    their first element, whose type is in ``types``. ``rows`` are the numbers, NaN for a missing
+    acceleration. ``on`` maps each lane or edge to which of the two it is, and its first element;
+    ``lamps`` maps elements to bits.
     """
 
     names: Sequence[str]
@@ -102,9 +103,9 @@ class Elements:
 
 
 def read_elements(lines: TextPlaces, quotes: Places, bounds: Places, kinds: KnownKinds) -> Elements:
-    """Read lines whose own quotation marks are those between their ``bounds``, which differ.
+    """Read lines; ``bounds`` delimit the quotation marks of each line, whose number may differ.
 
-    Raises NotPlainError, or what expat does, or ValueError.
+    Raises NotPlainError, ValueError, or expat's errors.
     """
     count = len(lines.begins)
     columns = {key: (np.zeros(count, intp), np.zeros(count, intp)) for key in ("id", "type", "on")}
@@ -122,7 +123,7 @@ def read_elements(lines: TextPlaces, quotes: Places, bounds: Places, kinds: Know
             if key in kind.at:
                 place = 2 * kind.at[key]
                 values = _numbers(TextPlaces(lines.text, marks[place] + 1, marks[place + 1]))
-                is_number = np.abs(values) < LARGEST  # NaN is not
+                is_number = np.abs(values) < LARGEST  # False for NaN
                 if key == "acceleration":
                     values[~is_number] = np.nan
                 elif not is_number.all():
@@ -146,7 +147,7 @@ def read_elements(lines: TextPlaces, quotes: Places, bounds: Places, kinds: Know
 def _by_kind(
     lines: TextPlaces, quotes: Places, bounds: Places, kinds: KnownKinds
 ) -> Iterator[tuple[_Kind, NDArray[intp], Places]]:
-    """The members of each kind, with the places of their quotation marks (first axis)."""
+    """For each kind, its members and the positions of their quotation marks (first axis)."""
     counts = np.diff(bounds)
     for count in np.flatnonzero(np.bincount(counts)).tolist():
         members = np.flatnonzero(counts == count)
@@ -166,7 +167,7 @@ def _by_kind(
 
 
 def _fit(kind: _Kind, lines: TextPlaces, marks: Places) -> NDArray[np.bool_]:
-    """Flags of the lines of a kind."""
+    """Mask of the lines that are of a kind."""
     fit = np.ones(len(lines.begins), dtype=bool)
     begins = [lines.begins, *(marks[1::2] + 1)]
     for part, begin, end in zip(kind.between, begins, [*marks[::2], lines.ends], strict=True):
@@ -176,7 +177,7 @@ def _fit(kind: _Kind, lines: TextPlaces, marks: Places) -> NDArray[np.bool_]:
 
 
 def _kind(line: str) -> _Kind:
-    """The kind of an element's line, as a parser understands it."""
+    """The kind of an element's line, as an XML parser reads it."""
     elements: list[tuple[str, list[str]]] = []
     parser = ParserCreate()
     parser.ordered_attributes = True
@@ -196,7 +197,7 @@ def _kind(line: str) -> _Kind:
 
 
 def _numbers(texts: TextPlaces) -> NDArray[float64]:
-    """The numbers that texts are. Raises ValueError if one is none."""
+    """The numbers in texts. Raises ValueError for a text that is not a number."""
     is_minus = texts.text[texts.begins] == _MINUS
     begins = texts.begins + is_minus
     lengths = texts.ends - begins
@@ -210,9 +211,9 @@ def _numbers(texts: TextPlaces) -> NDArray[float64]:
 
 
 def _distinct_texts(texts: TextPlaces) -> tuple[NDArray[intp], NDArray[intp]]:
-    """The first of each of those that are the same, in order, and the place of each text's there.
+    """The first occurrence of each distinct text, in order, and the index of each text's in these.
 
-    They are told apart by sums of words with weights, and compared then.
+    Equal texts are found by a hash of their words, and then compared.
     """
     lengths = texts.ends - texts.begins
     longest = int(lengths.max())
@@ -234,7 +235,7 @@ def _distinct_texts(texts: TextPlaces) -> tuple[NDArray[intp], NDArray[intp]]:
     like[order] = np.cumsum(is_new) - 1
     same = firsts[like]
     if (lengths != lengths[same]).any() or (words != words[same]).any():
-        raise NotPlainError  # equal sums of different texts
+        raise NotPlainError  # different texts with the same hash
     by_place = np.argsort(firsts)
     ranks = np.empty(len(firsts), dtype=intp)
     ranks[by_place] = np.arange(len(firsts))

@@ -1,7 +1,7 @@
-"""Floating-car data as SUMO writes them: an element a line, which need no parser of XML.
+"""Reads floating-car data as SUMO writes them, one element per line, without an XML parser.
 
-Lines are parted at their quotation marks, all at once. Whatever is not so plain is left to who
-reads all XML, and says what is wrong with it.
+All lines are split at their quotation marks at once. Files written otherwise, or with errors, are
+left to the reader of general XML, which reports the errors.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ _PRINTABLE = bytes(range(0x20, 0x7F))
 
 _STEP, _STEP_ENDS = "<timestep time=", "</timestep>"
 _MOST_OF_STEPS = 2
-"""Lines with more quotation marks are elements."""
+"""The most quotation marks in a line that begins or ends a time step; others are elements."""
 
 
 def read_plain_fcd(path: Path) -> FloatingCarData | None:
-    """The file's content; None if it is not plain, or cannot be read."""
+    """The file's content; None if it is not in this plain form or cannot be read."""
     if not path.is_file():
-        return None  # what comes through a pipe can be read only once
+        return None  # a pipe can be read only once
     blocks = _blocks(path)
     try:
         head, rest = _parted(next(blocks, b""))
@@ -63,7 +63,7 @@ def read_plain_fcd(path: Path) -> FloatingCarData | None:
 
 
 def _blocks(path: Path) -> Generator[bytes, None, None]:
-    """The bytes of a file, unpacked, in blocks of whole lines."""
+    """The unpacked bytes of a file in blocks of whole lines."""
     rest, size = b"", 0
     with opened(path) as stream:
         while block := stream.read(_BLOCK):
@@ -78,7 +78,7 @@ def _blocks(path: Path) -> Generator[bytes, None, None]:
 
 
 def _parted(block: bytes) -> tuple[bytes, bytes]:
-    """What stands before the first moment, and the rest."""
+    """The text before the first moment, and the rest."""
     at = block.find(b"<timestep")
     at = block.rfind(b"\n", 0, at) + 1 if at > 0 else 0
     if not at:
@@ -87,7 +87,7 @@ def _parted(block: bytes) -> tuple[bytes, bytes]:
 
 
 def _read_head(head: bytes, data: FloatingCarData) -> None:
-    """Read the comments in a file's head. Raises what expat does if it is not well-formed."""
+    """Read the comments in a file's head. Raises expat's error if it is not well-formed."""
     names: list[str] = []
 
     def comment(text: str) -> None:
@@ -107,7 +107,7 @@ def _read_head(head: bytes, data: FloatingCarData) -> None:
 
 
 class _Lines:
-    """What is known of a file after some of its lines, of which so many came before."""
+    """The state of reading a file line by line, after ``n_lines`` lines of its head."""
 
     def __init__(self, data: FloatingCarData, n_lines: int) -> None:
         self.data = data
@@ -117,14 +117,14 @@ class _Lines:
         self._kinds: KnownKinds = {}
 
     def read(self, block: bytes) -> None:
-        """Read whole lines. Raises NotPlainError, or ValueError, or what expat does."""
+        """Read whole lines. Raises NotPlainError, ValueError, or expat's errors."""
         if not block:
             return
         if b"&" in block or block.translate(None, _PRINTABLE).strip(b"\n"):
             raise NotPlainError
         text = np.frombuffer(block + bytes(PADDING), np.uint8)
         ends = np.flatnonzero(text == ord("\n"))
-        # One in each line is a tag's: none is in a value
+        # Each line has one `<`, that of its tag, so that none is in a value
         if block.count(b"<") != len(ends):
             raise NotPlainError
         lines = TextPlaces(text, np.append(0, ends[:-1] + 1), ends)
@@ -142,7 +142,7 @@ class _Lines:
             behind = np.searchsorted(borders, others)
             if not np.take(is_in_step, behind).all():
                 raise NotPlainError
-            # Lines without elements have few quotation marks: leave these out, too
+            # Leaves out the few quotation marks of lines without elements, too
             own = np.repeat(counts > _MOST_OF_STEPS, counts)
             elements = read_elements(
                 lines.part(others),
@@ -157,7 +157,7 @@ class _Lines:
         self._n_lines += len(ends)
 
     def _pass(self, line: str) -> None:
-        """Go on behind a line where a moment, or all of it, begins or ends."""
+        """Handle a line that begins or ends a time step, or ends the file."""
         if self.has_ended:
             raise NotPlainError
         pieces = line.split('"')
@@ -179,7 +179,7 @@ class _Lines:
 
 
 def _add(data: FloatingCarData, new: Elements, moments: NDArray[intp]) -> None:
-    """Add elements to tracks. Raises NotPlainError."""
+    """Add elements to their tracks. Raises NotPlainError."""
     order = np.argsort(new.owners.astype(np.uint32), kind="stable")
     at, rows, named = moments[order], new.rows[order], new.named[order]
     bounds = np.searchsorted(new.owners[order], np.arange(len(new.keys) + 1)).tolist()

@@ -1,7 +1,7 @@
 """Priority at the junctions of a SUMO net, and its signs.
 
-A junction of a net has for each way through it the bits of its ``request``: those of the other ways
-whose traffic it waits for, and those whose traffic is in its way.
+For each way through a junction, a net's ``request`` holds bits for the other ways: those whose
+traffic it waits for, and those in conflict with it.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ _Ways = frozenset[str]
 
 @dataclass(frozen=True, slots=True)
 class WayRights:
-    """The ways in a way's way, and those of them that go first, by their lanes."""
+    """The lanes of the ways that conflict with a way, and those of the ways that have priority."""
 
     foes: _Ways
     first: _Ways
 
 
 def rights_of_ways(net: SumoNet) -> dict[str, WayRights]:
-    """Lane within a junction -> who is in the way of its traffic, and who goes first."""
+    """Lane within a junction -> the ways in conflict with its own, and those with priority."""
     onward = {
         connection.start: connection.via
         for connection in net.connections
@@ -50,10 +50,9 @@ def rights_of_ways(net: SumoNet) -> dict[str, WayRights]:
 
 
 def nodes_where_ways_meet(net: SumoNet) -> set[str]:
-    """The nodes at which ways of different roads cross or join, and those whose ways nobody knows.
+    """The nodes at which ways of different roads cross or join, or whose ways are unknown.
 
-    Ways of one road that part, or that become fewer, meet no other traffic, and who walks across is
-    at a crossing.
+    Ways of one road that split or merge meet no other traffic, and pedestrians cross at crossings.
     """
     roads = {
         connection.via: net.lanes[connection.start].edge.id
@@ -74,7 +73,7 @@ def nodes_where_ways_meet(net: SumoNet) -> set[str]:
 
 
 def _lanes_of(way: str, onward: Mapping[str, str], backward: Mapping[str, str]) -> tuple[str, ...]:
-    """The lanes of a way through a junction, which may be parted where one waits in it."""
+    """All lanes of a way through a junction; a waiting position within it splits the way."""
     lanes = [way]
     while (before := backward.get(lanes[0])) is not None and before not in lanes:
         lanes.insert(0, before)
@@ -84,17 +83,17 @@ def _lanes_of(way: str, onward: Mapping[str, str], backward: Mapping[str, str]) 
 
 
 def _named(bits: str, ways: list[tuple[str, ...]]) -> _Ways:
-    # The bit of the first way is the last one
+    # The last bit belongs to the first way
     return frozenset(
         lane for bit, way in zip(reversed(bits), ways, strict=False) if bit == "1" for lane in way
     )
 
 
 def signs_of_lanes(net: SumoNet) -> dict[str, frozenset[str]]:
-    """Lane -> the signs at its end that its links obey, where no light is.
+    """Lane -> the signs at its end that its links obey, where there is no light.
 
-    A road gives way at a junction by sign if none of its links goes first there: links that only
-    turn across what comes towards them wait for that without a sign.
+    A road gives way by sign if none of its links has priority: links that only wait for oncoming
+    traffic before turning across it do so without a sign.
     """
     by_edge: dict[str, list[NetConnection]] = defaultdict(list)
     for connection in net.connections:

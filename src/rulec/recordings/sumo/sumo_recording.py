@@ -1,4 +1,4 @@
-"""SUMO's floating-car data and their companion files as one recording."""
+"""Reads SUMO's floating-car data and their companion files as one recording."""
 
 from __future__ import annotations
 
@@ -42,17 +42,18 @@ from rulec.recordings.track import Track, tracked
 
 ON_NETS = frozenset({"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout"})
 ON_NETS |= {"lanes", "junctions"}
-"""A net has every lane, junction, sign, light and track."""
+"""A net contains every lane, junction, sign, light and rail track."""
 
 COMPLETE = ON_NETS | {"officer", "arrivals"}
-"""There is no officer at all in SUMO.
+"""What data and net contain completely: SUMO has no police officers at all.
 
-Who is in the data no longer has arrived where it was going."""
+A participant who disappears from the data has arrived at its destination.
+"""
 
 _TRAFFIC = frozenset({"arrivals"})
 
 NEAR_M = 1000.0
-"""Nobody in the data is farther from the net than this."""
+"""No participant in the data is farther than this from the net."""
 
 _NAMED = 5
 
@@ -64,14 +65,14 @@ _LAMPS: tuple[tuple[int, frozenset[Lamp]], ...] = (
     (512 | 1024, frozenset({"doors"})),
     (2048 | 4096, frozenset({"blue_light"})),
 )
-"""The bits of SUMO's ``signals`` that others can see and that rules are about."""
+"""Bits of SUMO's ``signals`` -> lamps; only those that others can see and that rules use."""
 
 
 def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
-    """Read floating-car data on the roads of a net: the one given, or the one beside them.
+    """Read floating-car data with a net: the one given, or the one beside the data.
 
-    Raises RulecError R0610 for a file that cannot be read as what it should be, R0614 if there is
-    no net, R0615 for another road's net, R0701 if a file cannot be opened.
+    Raises RulecError R0610 for a file of another kind than expected, R0614 if there is no net,
+    R0615 for the net of another road, R0701 if a file cannot be opened.
     """
     data = _content(path)
     if data.head.geographic:
@@ -85,10 +86,10 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     step_s = time_step(path, data.moments)
     types = read_vehicle_types(demand_beside(path, data.head))
     unknown: set[str] = set()
-    rounding = _rounding(data)  # while it has tracks
+    rounding = _rounding(data)  # before ``_participants`` frees the tracks
     participants = tuple(_participants(data, types, step_s, unknown))
     replaced = programmes_beside(path, data.head)
-    # What is not there may have programmes for each of them
+    # A missing file may replace the programme of any light
     replaced = dict.fromkeys(net.programmes) if replaced is None else replaced
     net.programmes.update({name: [programme] for name, programme in replaced.items()})
     for file in light_states_beside(path, data.head):
@@ -112,14 +113,14 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
 def _content(path: Path) -> FloatingCarData:
     if not is_fcd_head(head_of(Glance(path))):
         return read_fcd(path)
-    # What unpacks and reads tables: few of these files are any.
+    # Imported late: few files are tables.
     from rulec.recordings.sumo.fcd_table import read_fcd_table
 
     return read_fcd_table(path)
 
 
 def read_sumo_map(path: Path, step_s: float) -> RoadMap:
-    """The roads of a net, for recordings of others than SUMO. Raises RulecError R0610, R0701."""
+    """The roads of a net, for recordings not made by SUMO. Raises RulecError R0610, R0701."""
     net = read_net(path)
     return RoadMap(
         form="SUMO net",
@@ -133,11 +134,11 @@ def read_sumo_map(path: Path, step_s: float) -> RoadMap:
 _MOST_DECIMALS = 6
 _HAIR = 1e-3
 _MANY = 100
-"""In so few numbers it may be chance that none has a second decimal, which SUMO writes."""
+"""With fewer numbers, it may be chance that none has a second decimal, which SUMO writes."""
 
 
 def _rounding(data: FloatingCarData) -> Rounding:
-    """The rounding of places and speeds, by the decimals that all of them have."""
+    """The rounding of positions and speeds: the fewest decimals that hold all of them."""
     tracks = [np.frombuffer(track.rows).reshape(-1, 4) for track in data.tracks.values()]
     return Rounding(_unit([rows[:, :2] for rows in tracks]), _unit([rows[:, 3] for rows in tracks]))
 
@@ -157,7 +158,7 @@ def _are_whole(numbers: NDArray[float64]) -> bool:
 def _participants(
     data: FloatingCarData, types: dict[str, VehicleType], step_s: float, unknown: set[str]
 ) -> Iterator[Participant]:
-    """All participants; what is made into one is held no longer."""
+    """All participants; each track is freed once its participants are made."""
     step = round(step_s * MICROSECONDS)
     steps = [moment // step for moment in data.moments]
     for key in list(data.tracks):
@@ -219,9 +220,9 @@ def _check_near(
 def time_step(path: Path, moments: list[int]) -> float:
     """The time step (s): the shortest time between two moments of the file.
 
-    Moments may be missing, as when nobody was there; what lies between two steps may not be. With
-    one moment only it is a second, or the part of one that goes into its time. Raises RulecError
-    R0610 for moments that are not all on one grid from time 0 on, or too far apart.
+    Moments may be missing, as when there is no traffic, but none may lie between two steps. For a
+    single moment it is the longest step, up to a second, that its time is a multiple of. Raises
+    RulecError R0610 for moments that are too far apart, or not all multiples of the step.
     """
     if len(moments) < 2:
         return gcd(MICROSECONDS, *moments) / MICROSECONDS
@@ -247,7 +248,7 @@ def time_step(path: Path, moments: list[int]) -> float:
 def fcd_participants(
     key: str, track_rows: FcdTrack, kind: VehicleType, steps: Sequence[int], step_s: float
 ) -> Iterator[Participant]:
-    """The participants of a track: who vanishes and comes back is another one then.
+    """The participants of a track; one that disappears and returns becomes another participant.
 
     ``steps``: the time step of every moment of the file.
     """
@@ -264,7 +265,7 @@ def fcd_participants(
         else _centres(rows, kind.length)
     )
     rows = np.column_stack((rows, _accelerations(track_rows, rows[:, 3], own, step_s)))
-    # All tracks share the numbers of steps
+    # All tracks share these step objects, to save memory
     lamps = {steps[moment]: _lit(bits) for moment, bits in track_rows.lamps.items()}
     for number, (start, end) in enumerate(zip(starts, [*starts[1:], len(own)], strict=True), 1):
         track = Track(own[start:end], rows[start:end], kind.length, kind.width)
@@ -280,10 +281,10 @@ def fcd_participants(
 
 
 def _steered(rows: NDArray[float64], starts: NDArray[intp]) -> NDArray[float64]:
-    """The angles of a vehicle, which keeps the one that it had while it stands.
+    """The angles (degrees) of a vehicle; while it stands, it keeps its last one.
 
-    SUMO turns who has to stop on its way to another lane, and slides it there. ``starts`` are the
-    rows in which it comes into sight.
+    SUMO turns a vehicle that has to stop while changing lanes, and moves it sideways. ``starts``
+    are the rows at which the vehicle appears.
     """
     moves = rows[:, 3] != 0.0
     moves[starts] = True
@@ -295,12 +296,13 @@ def _steered(rows: NDArray[float64], starts: NDArray[intp]) -> NDArray[float64]:
 def _centres_along_way(
     rows: NDArray[float64], starts: NDArray[intp], length: float, step_s: float
 ) -> NDArray[float64]:
-    """The rows of one in parts, by its middle: there its front was half its length ago.
+    """The rows of an articulated vehicle: x, y of its middle, heading (rad), and speed.
 
-    Its angle in the data is that of its first part. It is turned as its rear lies to its front,
-    which comes where that has been, as far back as it is long on its way; that begins with a
-    straight piece. What moves across its heading more than along it, and farther than it drives,
-    jumps to another lane in a step, or is slid there, with all its parts.
+    The angle in the data is that of the first part. Here the middle and the rear are where the
+    front was half a length and a length earlier on its way, and the heading points from the rear to
+    the front. A straight way leads to the first position. A movement more across the heading than
+    along it that is longer than the speed permits is a lane change by a jump, or sliding: it moves
+    all parts.
     """
     centred: NDArray[float64] = rows.copy()
     for start, end in zip(starts, [*starts[1:], len(rows)], strict=True):
@@ -310,7 +312,7 @@ def _centres_along_way(
         ways = np.stack((np.diff(x), np.diff(y)), axis=1)
         cos, sin = np.cos(heading[1:]), np.sin(heading[1:])
         along, across = ways[:, 0] * cos + ways[:, 1] * sin, ways[:, 1] * cos - ways[:, 0] * sin
-        # Its first part turns late where it turns round at the end of a road
+        # The first part turns late where the vehicle turns round at the end of a road
         ways[(np.abs(across) > np.abs(along)) & (np.hypot(along, across) > drives)] = 0.0
         behind = 2 * length * np.array([[np.cos(heading[0]), np.sin(heading[0])]])
         ways = np.concatenate((behind, ways))
@@ -343,7 +345,7 @@ def _accelerations(
 
 
 _JUMPS = 1.25
-"""Who moves by so many times as much as its speed says is put there."""
+"""A vehicle that moves farther than this multiple of its speed's distance was placed there."""
 
 _SHOWN = frozenset(lamp for _, lamps in _LAMPS for lamp in lamps)
 

@@ -1,4 +1,4 @@
-"""SUMO's vehicle types and sizes, from a file or by default."""
+"""SUMO's vehicle types and their sizes, from files or by default."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ROOTS = ("routes", "additional")
 
 @dataclass(frozen=True, slots=True)
 class VehicleType:
-    """A kind of road user, its CommonRoad type, its size, and has it parts that turn?"""
+    """A type of participant: CommonRoad's type, size (m), and whether it has parts that turn."""
 
     kind: str
     length: float
@@ -59,11 +59,11 @@ CLASSES: Mapping[str, VehicleType] = MappingProxyType(
         "container": VehicleType("unknown", 6.1, 2.59),
     }
 )
-"""SUMO's vehicle classes, with the sizes that it gives their vehicles unless a type says other."""
+"""SUMO's vehicle classes, with the default sizes that SUMO gives their vehicles."""
 
 _ARTICULATED = frozenset({"bus/flexible", "truck/semitrailer", "truck/trailer"})
 _RAIL_SHAPE = "rail"
-"""How shapes begin, and which others are, that SUMO draws in parts, each turned as its own way."""
+"""SUMO draws vehicles in parts, each turned along the way, for these shapes and this prefix."""
 
 _BUILT_IN = {
     "DEFAULT_VEHTYPE": "passenger",
@@ -79,7 +79,7 @@ _USUAL = {"vehicle": "passenger", "person": "pedestrian", "container": "containe
 
 
 def read_vehicle_types(files: Iterable[Path]) -> dict[str, VehicleType]:
-    """Read the vehicle types that files describe, if any.
+    """The vehicle types described in files, by id.
 
     Raises RulecError R0610 if a file is broken.
     """
@@ -107,11 +107,11 @@ def read_vehicle_types(files: Iterable[Path]) -> dict[str, VehicleType]:
 def vehicle_type(
     name: str, element: str, known: Mapping[str, VehicleType]
 ) -> tuple[VehicleType, bool]:
-    """The type of a participant, with a flag for a known one; else it is assumed.
+    """The type of a participant, and whether it is known; otherwise it is assumed.
 
     ``element`` is the name of the participant's element: ``vehicle``, ``person``, ``container``.
-    Where SUMO changes a type for one vehicle alone, as it does near blue lights, it calls the copy
-    ``type@vehicle``.
+    SUMO changes a type for a single vehicle by a copy called ``type@vehicle``, for instance near
+    blue lights.
     """
     if name not in known and _COPY in name:
         name = name[: name.index(_COPY)] or name
