@@ -1,1 +1,1 @@
-"""Lanelet2 maps, read as lanelets of a recording."""
+"""Reads Lanelet2 maps as lanelets of a recording."""

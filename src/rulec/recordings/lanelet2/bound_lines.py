@@ -1,4 +1,4 @@
-"""The bounds of lanelets as Lanelet2 lays them: which way a line leads, and the middle of both."""
+"""The bounds of lanelets by Lanelet2's rules: their direction, and the centre line between them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _FEWEST_POINTS = 2
 
 
 class Aligned(NamedTuple):
-    """Bounds in the direction of travel, and whether each is a line of the file turned round."""
+    """Bounds in the direction of travel, and whether each is reversed compared with the file."""
 
     left: Points
     right: Points
@@ -27,8 +27,8 @@ class Aligned(NamedTuple):
 def aligned(left: Points, right: Points) -> Aligned:
     """Two lines as the bounds of a lanelet, by Lanelet2's rule (``geometry::align``).
 
-    The left one leads the way on which the middle of the right one is right of it; then the right
-    one so that the middle of the left one is left of it.
+    The left bound gets the direction in which the middle of the right one lies to its right; then
+    the right bound gets the direction in which the middle of the left one lies to its left.
     """
     left_turned = bool(_left_of(left, _middle(right)) >= 0)
     left = left[::-1] if left_turned else left
@@ -42,9 +42,9 @@ def _middle(line: Points) -> NDArray[float64]:
 
 
 def _left_of(line: Points, place: NDArray[float64]) -> float:
-    """How far left of a line a place is: above 0 on its left.
+    """The signed distance of a place from a line, positive on its left.
 
-    Where a corner is nearest, both its sides count alike.
+    Where a corner is nearest, both segments at the corner count equally.
     """
     steps = np.diff(line, axis=0)
     squared = np.maximum((steps**2).sum(axis=1), _CLOSEST_M**2)
@@ -61,7 +61,7 @@ def _left_of(line: Points, place: NDArray[float64]) -> float:
 
 
 def distinct(line: Points) -> Points | None:
-    """A line without points that repeat; None if that leaves no line."""
+    """A line without repeated points; None if fewer than two points remain."""
     if len(line) < _FEWEST_POINTS:
         return None
     kept = line[np.append(True, np.hypot(*np.diff(line, axis=0).T) > _CLOSEST_M)]
@@ -69,7 +69,10 @@ def distinct(line: Points) -> Points | None:
 
 
 def middle_line(left: Points, right: Points) -> Points:
-    """The line between two bounds: at the same part of either's length, at each point of both."""
+    """The line halfway between two bounds, with a point for each point of either bound.
+
+    Points of both bounds at the same fraction of their lengths are paired.
+    """
     parts = [shares_along(line) for line in (left, right)]
     every = np.unique(np.concatenate(parts))
     shortest = min(line_length(left), line_length(right))
@@ -78,5 +81,5 @@ def middle_line(left: Points, right: Points) -> Points:
     kept[-1] = 1.0
     both = [interpolated(kept, *own) for own in zip(parts, (left, right), strict=True)]
     line = distinct((both[0] + both[1]) / 2)
-    # Bounds that lead to each other's beginning have no middle
+    # Bounds in opposite directions with the same ends have no centre line
     return left if line is None else line

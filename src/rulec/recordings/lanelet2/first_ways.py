@@ -1,7 +1,7 @@
-"""Priority at junctions, by regulatory elements ``right_of_way``.
+"""Priority at junctions, from regulatory elements ``right_of_way``.
 
-They name lanelets before a junction, or those in it. Where lights say who waits they hold only when
-these are out of order.
+They name lanelets before a junction or within it. At traffic lights, they apply only while the
+lights are out of order.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ _MOST_MET = 1_000_000
 
 
 def first_ways(survey: Surveyed, rules: Mapping[str, LaneRules]) -> dict[str, frozenset[str]]:
-    """Lanelet in a junction -> those whose traffic goes before its own.
+    """Lanelet in a junction -> the lanelets whose traffic has priority over its own.
 
-    Only where it is told of all who come towards it there whether they or it go first.
+    Contains only lanelets for which the priority over all oncoming traffic is known.
     """
     prior: dict[str, frozenset[str]] = defaultdict(frozenset)
     named: set[str] = set()
@@ -46,7 +46,7 @@ def first_ways(survey: Surveyed, rules: Mapping[str, LaneRules]) -> dict[str, fr
 
 
 def _ways(survey: Surveyed, names: Iterator[str]) -> frozenset[str]:
-    """The lanelets in the junction that some lead into, or are."""
+    """The named lanelets that lie in the junction, and the successors of the others."""
     ways: set[str] = set()
     for name in names:
         entry = survey.entries.get(name)
@@ -57,7 +57,7 @@ def _ways(survey: Surveyed, names: Iterator[str]) -> frozenset[str]:
 
 
 def _is_inside(survey: Surveyed, entry: MapLanelet) -> bool:
-    """True if a lanelet without a word of turns is one of several that begin at one place."""
+    """Whether a lanelet without turn information is one of several with a common predecessor."""
     before = survey.topology.predecessors[entry.id]
     return any(len(survey.topology.successors[name]) > 1 for name in before)
 
@@ -67,7 +67,7 @@ def _before(survey: Surveyed, names: frozenset[str]) -> Iterator[str]:
 
 
 def _come_towards(survey: Surveyed, names: list[str]) -> dict[str, set[str]]:
-    """Lanelet -> those that cross or join it, and begin in the opposite direction."""
+    """Lanelet -> those that cross or join it and begin in roughly the opposite direction."""
     towards: dict[str, set[str]] = {name: set() for name in names}
     all_lanes = list(lanes(survey.entries))
     tree = shapely.STRtree([shapely.LineString(entry.centre) for entry in all_lanes])

@@ -1,6 +1,6 @@
 """Tags of Lanelet2's lanelets and bounds, in the words of recordings.
 
-By LaneletAndAreaTagging and LinestringTagging in the folder lanelet2_core/doc of
+After LaneletAndAreaTagging and LinestringTagging in the folder lanelet2_core/doc of
 https://github.com/fzi-forschungszentrum-informatik/Lanelet2; `road_shoulder` and `pedestrian_lane`
 are Autoware's.
 """
@@ -29,20 +29,20 @@ _SUBTYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "rail": ("restricted_area", "rail"),
     }
 )
-"""Of a lanelet -> its types; all others are plain lanes."""
+"""Subtype of a lanelet -> its types; lanelets of all other subtypes are plain lanes."""
 
 _BY_SUBTYPE = frozenset({"crosswalk", "rail", "emergency_lane", "road_shoulder"})
-"""What these are does not depend on who may use them."""
+"""Subtypes whose types do not depend on the permitted participants."""
 
 _PLACES = {"urban": "urban", "city": "urban", "nonurban": "rural"}
-"""``city`` is INTERACTION's word."""
+"""Location -> type; ``city`` is INTERACTION's word."""
 
 _BUSES = {"vehicle:bus", "vehicle:taxi", "vehicle:emergency"}
 _TRUE, _FALSE = ("yes", "true", "1"), ("no", "false", "0")
 
 
 def lane_types(tags: _Tags) -> frozenset[str]:
-    """The types of a lanelet; those that it says to be in a junction by its turn, too."""
+    """The types of a lanelet; a tag for turns or a junction puts it in a junction."""
     subtype = tags.get("subtype", "")
     types = set(_SUBTYPES.get(subtype, ()))
     allowed = _participants(tags)
@@ -55,7 +55,7 @@ def lane_types(tags: _Tags) -> frozenset[str]:
 
 
 def _participants(tags: _Tags) -> set[str] | None:
-    """Who may use a lanelet, None if its subtype says it; if any are named, nobody else may."""
+    """The permitted participants; None if no tag names any and the subtype decides."""
     prefix = "participant:"
     named = {key.removeprefix(prefix): word for key, word in tags.items() if prefix in key}
     return {user for user, word in named.items() if word in _TRUE} if named else None
@@ -78,7 +78,7 @@ def _types_for(allowed: set[str]) -> Iterator[str]:
 
 
 def leads_both_ways(tags: _Tags) -> bool:
-    """True if vehicles, or whoever uses a lanelet, may go either way on it."""
+    """Whether a lanelet may be used in both directions by its vehicles or cyclists."""
     keys: tuple[str, ...] = ("one_way:vehicle:car", "one_way:vehicle", "one_way")
     if "bicycle_lane" in tags.get("subtype", ""):
         keys = ("one_way:bicycle", "one_way")
@@ -89,7 +89,7 @@ _UNITS = {**SPEED_UNITS, "": KMH}
 
 
 def speed_limit(tags: _Tags) -> float | None:
-    """The limit (m/s) that a lanelet's own tags say for cars; None for none, or what is advised."""
+    """The limit (m/s) for cars in a lanelet's own tags; None for no limit or an advisory one."""
     keys = ("speed_limit:vehicle:car", "speed_limit:vehicle", "speed_limit")
     if tags.get("speed_limit_mandatory", "yes") in _FALSE:
         return None
@@ -97,7 +97,7 @@ def speed_limit(tags: _Tags) -> float | None:
 
 
 def velocity(text: str) -> float | None:
-    """A speed (m/s) with its unit, km/h if it has none; None if it is none."""
+    """A speed (m/s), by default given in km/h; None if the text is not a speed."""
     number = text.rstrip("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ/ ")
     unit = _UNITS.get(text[len(number) :].strip().lower())
     try:
@@ -118,15 +118,16 @@ _MARKS: Mapping[str, tuple[LaneMark, LaneMark]] = MappingProxyType(
         "solid_dashed": ("solid", "broken"),
     }
 )
-"""Of a line -> its part on the left and on the right: who is left of `dashed_solid` may cross."""
+"""Subtype of a line -> its mark on the left and on the right; a broken side may be crossed."""
 
 
 def mark(tags: _Tags, *, turned: bool, on_left: bool) -> LaneMark | None:
-    """The mark at a bound's left or right, in the direction of travel; None if it is not told.
+    """The mark on a bound's left or right in the direction of travel; None if it is unknown.
 
-    ``turned``: the bound is the line of the file turned round. Kerbs and borders are no marks. Tags
-    that say another thing of changing lanes than the line does leave it open, those of a line
-    without a kind say it, as of SUMO's lanes: solid is what may not be crossed.
+    ``turned``: the bound is reversed compared with the file. Kerbs and borders are not marks. If a
+    line's subtype and its tags on changing lanes contradict each other, the mark is unknown. Lines
+    without a subtype, as from SUMO, get it from these tags: a line that may not be crossed is
+    solid.
     """
     if tags.get("type") == "virtual":
         return "none"
@@ -145,7 +146,7 @@ def mark(tags: _Tags, *, turned: bool, on_left: bool) -> LaneMark | None:
 
 
 def _may_cross(tags: _Tags, *, from_left: bool) -> bool | None:
-    """May a line be crossed from one of its sides? None if no tag says so."""
+    """Whether a line may be crossed from one of its sides; None if no tag says so."""
     own = "lane_change:right" if from_left else "lane_change:left"
     for key in ("lane_change", own):
         if tags.get(key) in (*_TRUE, *_FALSE):

@@ -1,4 +1,4 @@
-"""A Lanelet2 map, read as the roads of a recording."""
+"""Reads a Lanelet2 map as the roads of a recording."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def _lanelet(
 
 
 def _single(lights: Mapping[str, list[ObservedLight]]) -> dict[str, ObservedLight]:
-    """The lights for a way on, where each has one; several are all for it."""
+    """The light for each way on that has exactly one; several lights all apply to the way."""
     return {onward: own[0] for onward, own in lights.items() if len(own) == 1}
 
 

@@ -1,12 +1,12 @@
-"""The frame of a map's places: metres that the file has, or a projection of its degrees.
+"""The coordinate frame of a map: metres given in the file, or a projection of its degrees.
 
-In this order:
+The first of these that applies:
 
-1. ``map_projector_info.yaml`` beside the map says it, as for Autoware;
-2. nodes have ``local_x`` and ``local_y``, as Autoware's maps do;
-3. all lies within a degree of latitude 0, longitude 0, in the open sea: the origin is there, and
-   places are Lanelet2's ``UtmProjector(Origin(0, 0))``, as in INTERACTION;
-4. else they are UTM's easting and northing, in the zone of the file's first node.
+1. ``map_projector_info.yaml`` beside the map gives it, as for Autoware;
+2. nodes have ``local_x`` and ``local_y``, as in Autoware's maps;
+3. all nodes lie within a degree of latitude 0, longitude 0, in the open sea: the origin is there,
+   with Lanelet2's ``UtmProjector(Origin(0, 0))``, as in INTERACTION;
+4. otherwise, UTM's easting and northing in the zone of the file's first node.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ PROJECTOR_INFO = "map_projector_info.yaml"
 _LARGEST_BYTES = 50_000
 _AT_SEA_DEG = 1.0
 _FAR_DEG = 10.0
-"""Nodes so far from the middle of the frame are slips."""
+"""Nodes farther than this from the central meridian of the frame are errors."""
 
 _SQUARE_M = 100_000.0
 
@@ -39,7 +39,7 @@ _Project = Callable[[NDArray[float64], NDArray[float64]], Points]
 
 
 class ProjectorInfo(NamedTuple):
-    """What a projector's file says; NaN where it says nothing."""
+    """The content of a projector's file; NaN for missing numbers."""
 
     kind: str = ""
     lat: float = nan
@@ -48,14 +48,17 @@ class ProjectorInfo(NamedTuple):
 
 
 class MapPlaces(NamedTuple):
-    """The places of all nodes (m), and a remark on their frame, empty if nothing is left open."""
+    """The positions of all nodes (m), and a remark on their frame, or empty."""
 
     points: Points
     remark: str
 
 
 def places_of(file: OsmFile) -> MapPlaces:
-    """The places of a file's nodes. Raises RulecError R0610 if some have none, or are far away."""
+    """The positions of a file's nodes.
+
+    Raises RulecError R0610 if one is missing or too far away.
+    """
     info = read_projector_info(file.path.with_name(PROJECTOR_INFO))
     columns = [(node.local_x, node.local_y, node.lat, node.lon) for node in file.nodes]
     values = np.array(columns, dtype=float64).reshape(-1, 4)
@@ -81,7 +84,7 @@ def places_of(file: OsmFile) -> MapPlaces:
 def _projection(
     info: ProjectorInfo, lat: float, lon: float, degrees: NDArray[float64]
 ) -> tuple[_Project, float, str]:
-    """How to project, the meridian in the middle, and a remark; by the first node's place."""
+    """The projection, its central meridian, and a remark; the first node may decide the zone."""
     if info.kind in ("localcartesian", "transversemercator"):
         origin = info.lat, info.lon
         if info.kind == "localcartesian":
@@ -133,11 +136,11 @@ _WITH_ORIGIN = _KINDS[2:]
 
 
 def read_projector_info(path: Path) -> ProjectorInfo:
-    """What Autoware's file about a map's projection says; nothing if there is no such file.
+    """The content of Autoware's file on a map's projection; empty if there is no such file.
 
     Its form is described at https://autowarefoundation.github.io/autoware_core/main/map/
-    autoware_map_projection_loader: keys and values, those of the origin below ``map_origin``.
-    Raises RulecError R0610 for another kind of projector, or a missing origin.
+    autoware_map_projection_loader: keys and values, with the origin below ``map_origin``. Raises
+    RulecError R0610 for another kind of projector, or a missing origin.
     """
     if not path.is_file():
         return ProjectorInfo()

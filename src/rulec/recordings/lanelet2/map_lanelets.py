@@ -1,4 +1,4 @@
-"""The lanelets of a file as they lie: bounds in the direction of travel, what their tags say."""
+"""The lanelets of a file: bounds in the direction of travel, and the meaning of their tags."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from rulec.recordings.lanelet2.osm_file import OsmFile, OsmRelation, OsmWay
 from rulec.recordings.recording import LONGEST_M, NO_LANES, LaneMark, Points
 
 MOST_POINTS = 5_000_000
-"""Of all bounds together; lanelets may share lines."""
+"""The most points of all bounds together, counting lines once for each lanelet that uses them."""
 
 REVERSED = "_reversed"
-"""What the id of a lanelet that leads both ways gets for the way against its bounds."""
+"""The ending of the id of the opposite lanelet, where a lanelet may be used in both directions."""
 
 Ends = tuple[int, int]
 """The nodes at which the left and the right bound of a lanelet begin, or end."""
@@ -24,9 +24,10 @@ Ends = tuple[int, int]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapLanelet:
-    """A lanelet without what is around it.
+    """A lanelet without its surroundings.
 
-    A bound is its way's id and whether it is turned round; ``rules`` are the regulatory elements.
+    A bound is the id of its way and whether it is reversed; ``rules`` are ids of regulatory
+    elements.
     """
 
     id: str
@@ -48,15 +49,15 @@ class MapLanelet:
 
     @property
     def is_lane(self) -> bool:
-        """True if it is a part of the carriageway."""
+        """Whether it is part of the carriageway."""
         return not self.types & NO_LANES
 
 
 def map_lanelets(file: OsmFile, points: Points, left_out: list[str]) -> dict[str, MapLanelet]:
-    """The lanelets of a file by id; ids of those without two bounds go to ``left_out``.
+    """The lanelets of a file by id; ids of those without two bounds are added to ``left_out``.
 
-    A lane on which vehicles go both ways is two lanelets. Raises RulecError R0610 for a bound that
-    is too long, or too many points.
+    A lane used by vehicles in both directions becomes two lanelets. Raises RulecError R0610 for a
+    bound that is too long, or too many points.
     """
     entries: dict[str, MapLanelet] = {}
     count = 0
@@ -129,7 +130,7 @@ def _ends(left: OsmWay, right: OsmWay, laid: Aligned) -> tuple[Ends, Ends]:
 
 
 def _reversed(entry: MapLanelet) -> MapLanelet:
-    """The lanelet for the other way on the same ground."""
+    """The lanelet in the opposite direction on the same ground."""
     (left, left_turned), (right, right_turned) = entry.left_bound, entry.right_bound
     return replace(
         entry,
@@ -143,11 +144,11 @@ def _reversed(entry: MapLanelet) -> MapLanelet:
         right_bound=(left, not left_turned),
         start=entry.end[::-1],
         end=entry.start[::-1],
-        # Rules of a lane are for those who go along its bounds
+        # Rules of a lane only apply in the direction of its bounds
         rules=(),
     )
 
 
 def lanes(entries: dict[str, MapLanelet]) -> Iterator[MapLanelet]:
-    """Those that are a part of the carriageway."""
+    """The lanelets that are part of the carriageway."""
     return (entry for entry in entries.values() if entry.is_lane)

@@ -1,4 +1,4 @@
-"""An OpenStreetMap file as Lanelet2 uses it: nodes, ways, relations, and the tags that count."""
+"""An OpenStreetMap file as used by Lanelet2: nodes, ways, relations, and the tags used here."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ LANELET2 = XmlFormat(
 
 MOST_NODES = 1_000_000
 MOST_WAYS = 500_000
-"""And as many relations."""
+"""The most ways, and the most relations."""
 
 MOST_REFERENCES = 5_000_000
-"""Of ways to nodes, and of relations to their members; all together some 500 MB of memory."""
+"""The most references to nodes and to members of relations; all take some 500 MB of memory."""
 
 _MOST_TAGS = 50
 _LONGEST_TAG = 200
@@ -48,9 +48,12 @@ class Member(NamedTuple):
 
 @dataclass(slots=True)
 class OsmWay:
-    """A line through nodes (their numbers in the file's order), and the line that it begins in."""
+    """A line through nodes (indices in the file's order).
 
-    # Not frozen: its nodes and tags come one after the other
+    ``place`` is its first line in the file.
+    """
+
+    # Not frozen: nodes and tags are added one by one
     id: str
     place: int
     refs: list[str] = field(default_factory=list)
@@ -60,24 +63,24 @@ class OsmWay:
 
 @dataclass(slots=True)
 class OsmRelation:
-    """A lanelet or a rule with what it refers to, and the line that it begins in."""
+    """A lanelet or rule with its members; ``place`` is its first line in the file."""
 
-    # As above
+    # Not frozen, as above
     id: str
     place: int
     members: list[Member] = field(default_factory=list)
     tags: dict[str, str] = field(default_factory=dict)
 
     def refs(self, role: str, kind: str) -> Iterator[str]:
-        """The ids of the members of a kind in a role."""
+        """The ids of the members with this role and kind."""
         return (x.id for x in self.members if x.role == role and x.kind == kind)
 
 
 @dataclass(slots=True)
 class OsmNode:
-    """A place: degrees, and metres where the file has those; NaN where it has none."""
+    """A position in degrees, and in metres if the file gives them; NaN where it is missing."""
 
-    # As above
+    # Not frozen, as above
     place: int
     lat: float
     lon: float
@@ -87,7 +90,7 @@ class OsmNode:
 
 @dataclass(slots=True)
 class OsmFile:
-    """What a file holds, by id; nodes also in its order."""
+    """The content of a file by id; nodes are in the file's order."""
 
     path: Path
     numbers: dict[str, int] = field(default_factory=dict)
@@ -103,7 +106,7 @@ class OsmFile:
 
 @dataclass(slots=True)
 class _Scan:
-    """The state of a scan: how deep in the file it is, and which element is open."""
+    """The state of a scan: the depth of nested elements, and the element that is open."""
 
     file: OsmFile
     depth: int = 0
@@ -121,7 +124,7 @@ class _Scan:
         self.depth -= 1
 
     def _opened(self, element: XmlElement) -> OsmNode | OsmWay | OsmRelation | None:
-        # Editors keep what has been deleted until it is uploaded
+        # Editors keep deleted elements in the file until the upload
         if element.get("action") == "delete" or element.get("visible") == "false":
             return None
         place, file = element.parser.CurrentLineNumber, self.file
@@ -143,7 +146,7 @@ class _Scan:
         return None
 
     def _add(self, element: XmlElement, owner: OsmNode | OsmWay | OsmRelation) -> None:
-        # A large map has a million of these
+        # Kept fast: a large map has a million of these elements
         name = element.name
         if name == "nd" and isinstance(owner, OsmWay):
             self._count(element)
@@ -169,9 +172,9 @@ class _Scan:
 
 
 def read_osm(path: Path) -> OsmFile:
-    """Read a file; ways refer to nodes by number, those that refer to a missing one to none at all.
+    """Read a file; a way that refers to a missing node is left without any nodes.
 
-    Raises RulecError R0610 for a file that is none, R0701 for one that cannot be read.
+    Raises RulecError R0610 for another kind of file, R0701 if it cannot be read.
     """
     file = OsmFile(path)
     state = _Scan(file)
@@ -184,7 +187,7 @@ def read_osm(path: Path) -> OsmFile:
 
 
 def _id(element: XmlElement, key: str) -> str:
-    """A whole number, which may be negative: editors number new elements so."""
+    """An id: a whole number, which editors make negative for new elements."""
     text = element.text(key)
     digits = text.removeprefix("-")
     if not (digits.isascii() and digits.isdigit() and len(text) <= _LONGEST_ID):
@@ -193,7 +196,7 @@ def _id(element: XmlElement, key: str) -> str:
 
 
 def _degrees(element: XmlElement, key: str, most: float) -> float:
-    # Maps that have only metres leave them empty
+    # Maps in metres leave the degrees empty
     if not element.get(key):
         return nan
     value = element.number(key)

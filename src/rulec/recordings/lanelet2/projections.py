@@ -1,4 +1,4 @@
-"""Degrees of latitude and longitude on WGS84 as metres: UTM, transverse Mercator, local tangents.
+"""Projections of WGS84 degrees to metres: UTM, transverse Mercator, local tangent plane.
 
 The series are those of C. F. F. Karney, Transverse Mercator with an accuracy of a few nanometers,
 Journal of Geodesy 85, 2011, equations 7 to 11 and 35, as in GeographicLib and thereby Lanelet2.
@@ -16,10 +16,10 @@ from rulec.recordings.recording import Points
 
 UTM_SCALE = 0.9996
 UTM_EAST_M, UTM_SOUTH_M = 500_000.0, 10_000_000.0
-"""What UTM adds to the east, and on the southern hemisphere to the north."""
+"""What UTM adds to the easting, and to the northing in the southern hemisphere."""
 
 MOST_NORTH_DEG, MOST_SOUTH_DEG = 84.0, -80.0
-"""UTM covers what lies between."""
+"""The latitudes between which UTM is defined."""
 
 _AXIS_M, _FLATTENING = 6_378_137.0, 1 / 298.257223563
 _N = _FLATTENING / (2 - _FLATTENING)
@@ -39,7 +39,7 @@ _Degrees = NDArray[float64]
 
 
 def transverse_mercator(lat: _Degrees, lon: _Degrees, meridian: float, scale: float) -> Points:
-    """Metres east of a meridian, and north of the equator."""
+    """Metres east of a meridian and north of the equator."""
     eccentricity = np.sqrt(_SQUARED)
     east = np.radians(lon - meridian)
     tau = np.tan(np.radians(lat))
@@ -57,7 +57,7 @@ def transverse_mercator(lat: _Degrees, lon: _Degrees, meridian: float, scale: fl
 
 
 def utm_zone(lat: float, lon: float) -> int:
-    """The number of a place's UTM zone, with the wider ones of Norway and Svalbard."""
+    """The number of a place's UTM zone, with the wider zones of Norway and Svalbard."""
     east = (lon + 180.0) % 360.0 - 180.0
     zone = floor((east + 180.0) / 6.0) % 60 + 1
     if 56.0 <= lat < 64.0 and 3.0 <= east < 12.0:
@@ -68,19 +68,19 @@ def utm_zone(lat: float, lon: float) -> int:
 
 
 def utm_meridian(zone: int) -> float:
-    """The middle (degrees) of a UTM zone."""
+    """The central meridian (degrees) of a UTM zone."""
     return 6.0 * zone - 183.0
 
 
 def utm(lat: _Degrees, lon: _Degrees, zone: int, *, south: bool) -> Points:
-    """Easting and northing (m) in a zone, counted as on the southern hemisphere or the northern."""
+    """Easting and northing (m) in a zone, with the offset for the southern or northern half."""
     places = transverse_mercator(lat, lon, utm_meridian(zone), UTM_SCALE)
     shifted: Points = places + np.array([UTM_EAST_M, UTM_SOUTH_M if south else 0.0])
     return shifted
 
 
 def local_tangent(lat: _Degrees, lon: _Degrees, origin: tuple[float, float]) -> Points:
-    """Metres east and north of an origin, on the plane that touches the ellipsoid there."""
+    """Metres east and north of an origin, on the plane tangent to the ellipsoid there."""
     whole = _geocentric(np.append(lat, origin[0]), np.append(lon, origin[1]))
     phi, lam = np.radians(origin)
     axes = np.array(

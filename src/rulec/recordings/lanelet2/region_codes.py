@@ -1,4 +1,4 @@
-"""The countries of Lanelet2's tag `region`, and of the traffic signs that it names."""
+"""The countries in Lanelet2's tag `region` and in names of traffic signs."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ _LONG = dict(zip(_WORDS[::2], _WORDS[1::2], strict=True))
 
 
 def country_of(region: str) -> str:
-    """The code of three letters (ISO 3166) for one of two, as in `de` or `us-ca`; else empty."""
+    """The three-letter code (ISO 3166) of a region such as `de` or `us-ca`; empty if unknown."""
     return _LONG.get(region[:2].lower(), "") if len(region) == 2 or region[2:3] == "-" else ""
 
 
 def sign_parts(kind: str) -> tuple[str, str]:
-    """The country and number of a sign that is called as `de206`; empty where it is not."""
+    """The country and number in a sign's name such as `de206`; empty for other names."""
     number = kind[2:].lstrip("_-: ")
     country = _LONG.get(kind[:2].lower(), "")
     return (country, number) if country and number else ("", "")

@@ -1,7 +1,7 @@
 """Regulatory elements of lanelets: lights, signs, limits, stop lines.
 
-Lanelet2 lets the lanelet before a line refer to a light or sign, Autoware the one behind it. Here
-they are for the lanelets that end at the line, as in all recordings.
+In Lanelet2, the lanelet before a line refers to its light or sign; in Autoware, the one behind it
+does. Here they belong to the lanelets that end at the line, as in all recordings.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from rulec.recordings.lanelet2.topology import Topology
 from rulec.recordings.recording import ObservedLight, Points
 
 MOST_MEMBERS = 1_000
-"""Of one regulatory element."""
+"""The most members of one regulatory element."""
 
 _MOST_CROSSED = 1_000_000
 _AT_END_M = 1.0
 _ON_LINE_M = 0.5
 _SHORTEST_M = 0.5
-"""Lines that cover less of a lane are for it as they are."""
+"""A line that covers less than this of a lane is used as it is."""
 
 _GIVES_WAY = frozenset({"YIELD", "STOP", "STOP_4_WAY"})
 _GOES_FIRST = frozenset({"PRIORITY", "RIGHT_OF_WAY"})
@@ -36,9 +36,9 @@ _YES = ("yes", "true", "1")
 
 @dataclass(slots=True)
 class LaneRules:
-    """What holds for a lanelet. Lights are in the order of the file."""
+    """The rules that apply to a lanelet; lights are in the order of the file."""
 
-    # Not frozen: rules come one after the other
+    # Not frozen: rules are added one by one
     signs: set[str] = field(default_factory=set)
     limits: list[float] = field(default_factory=list)
     lights: list[ObservedLight] = field(default_factory=list)
@@ -47,7 +47,7 @@ class LaneRules:
     directed: bool = False
 
     def add_light(self, light: ObservedLight, onward: str) -> None:
-        """Add a light, which may be only for those who go on to a lanelet."""
+        """Add a light; if ``onward`` is not empty, it is only for the way to that lanelet."""
         if not any(light is known for known in self.lights):
             self.lights.append(light)
         if onward:
@@ -56,7 +56,7 @@ class LaneRules:
 
 @dataclass(frozen=True, slots=True)
 class Surveyed:
-    """A file's lanelets, and how they lie; ``points`` are the places of its nodes."""
+    """A file's lanelets and their topology; ``points`` are the positions of its nodes."""
 
     file: OsmFile
     points: Points
@@ -64,13 +64,13 @@ class Surveyed:
     topology: Topology
 
     def line(self, way: str) -> Points | None:
-        """The ends of a line of the file, None if it has none."""
+        """The ends of a line of the file; None if there is no such line."""
         nodes = self.file.ways[way].nodes if way in self.file.ways else ()
         return self.points[[nodes[0], nodes[-1]]] if len(set(nodes)) > 1 else None
 
 
 def regulations(survey: Surveyed) -> dict[str, LaneRules]:
-    """Lanelet -> its rules. Raises RulecError R0610 for an element of too many members."""
+    """Lanelet -> its rules. Raises RulecError R0610 for an element with too many members."""
     rules = {name: LaneRules() for name in survey.entries}
     for element in regulatory_elements(survey.file):
         if element.tags.get("subtype") == "all_way_stop":
@@ -88,7 +88,7 @@ def regulations(survey: Surveyed) -> dict[str, LaneRules]:
 
 
 def regulatory_elements(file: OsmFile) -> Iterator[OsmRelation]:
-    """Those of a file. Raises RulecError R0610 for one of too many members."""
+    """The regulatory elements of a file. Raises RulecError R0610 for too many members."""
     for relation in file.relations.values():
         if relation.tags.get("type") == "regulatory_element":
             if len(relation.members) > MOST_MEMBERS:
@@ -98,7 +98,7 @@ def regulatory_elements(file: OsmFile) -> Iterator[OsmRelation]:
 
 
 class _Element:
-    """A regulatory element that lanelets refer to; its light is one, whoever refers to it."""
+    """A regulatory element to which lanelets refer; they all share its one light."""
 
     def __init__(self, survey: Surveyed, element: OsmRelation) -> None:
         self.survey = survey
@@ -108,7 +108,7 @@ class _Element:
         self.signs = _signs(survey.file, element)
 
     def apply(self, entry: MapLanelet, rules: Mapping[str, LaneRules]) -> None:
-        """Note the rule for the lanelets that it holds for."""
+        """Add the rule to the lanelets to which it applies."""
         match self.element.tags.get("subtype", ""):
             case "traffic_light" if not entry.is_lane:
                 rules[entry.id].directed = True
@@ -138,7 +138,7 @@ def _signs(file: OsmFile, element: OsmRelation) -> tuple[Sign, ...]:
     kinds += [way.tags.get("subtype", "") for way in ways if way.tags.get("type") == "traffic_sign"]
     signs = [sign_of(kind) for kind in dict.fromkeys(kinds) if kind]
     if element.tags.get("subtype") == "speed_limit":
-        # Velocities of signs that are called so, as Lanelet2 reads them, too
+        # Reads names of signs that are speeds, as Lanelet2 does
         signs = [
             Sign(sign.name, velocity(kind)) if sign.limit_mps is None else sign
             for sign, kind in zip(signs, dict.fromkeys(filter(None, kinds)), strict=True)
@@ -152,19 +152,19 @@ def _draw(entry: MapLanelet, rules: LaneRules, line: Points | None) -> None:
 
 
 def _own_part(entry: MapLanelet, line: Points) -> Points:
-    """The part of a line, which may be for several lanes, between a lanelet's bounds."""
+    """The part of a line between a lanelet's bounds; the line may cross several lanes."""
     whole = shapely.LineString(line)
     bounds = [shapely.LineString(bound) for bound in (entry.left, entry.right)]
-    # Lines that are next to nothing long make GEOS divide by that
+    # GEOS divides by the length of a line, which may be almost 0
     with np.errstate(all="ignore"):
         ends: Points = shapely.get_coordinates(shapely.shortest_line(bounds, whole))[1::2]
-    # And it then may find no place on one of them
+    # Without a usable length, GEOS may find no point on one of the bounds
     both_met = len(ends) == len(bounds) and np.hypot(*(ends[1] - ends[0])) > _SHORTEST_M
     return ends if both_met else line
 
 
 def nearest_line(entry: MapLanelet, lines: list[Points]) -> Points | None:
-    """The line that is nearest to a lanelet's middle, of those that a rule names."""
+    """The rule's line nearest to a lanelet's centre line; None if the rule has no line."""
     if len(lines) < 2:
         return lines[0] if lines else None
     middle = shapely.LineString(entry.centre)
@@ -174,10 +174,10 @@ def nearest_line(entry: MapLanelet, lines: list[Points]) -> Points | None:
 def approaches(
     survey: Surveyed, entry: MapLanelet, line: Points | None
 ) -> Iterator[tuple[str, str]]:
-    """The lanelets that end at a rule's line, and where it is for one way on, the one behind it.
+    """The lanelets that end at a rule's line; with the next lanelet if it is only for that way.
 
-    That is the lanelet itself, which the rule names, or those before it where the line lies where
-    it begins, or nearer to that within a junction.
+    This is the lanelet ``entry`` that refers to the rule. It is its predecessors if the line lies
+    at its beginning or, within a junction, in its first half.
     """
     before = [x for x in survey.topology.predecessors[entry.id] if survey.entries[x].is_lane]
     if before and _begins_behind(entry, line):
@@ -196,7 +196,10 @@ def _begins_behind(entry: MapLanelet, line: Points | None) -> bool:
 
 
 def _all_way_stop(survey: Surveyed, element: OsmRelation, rules: Mapping[str, LaneRules]) -> None:
-    """Everybody stops, each at the line of its own in the same order, or where its lanelet ends."""
+    """Add an all-way stop.
+
+    Without exactly one line per lanelet, vehicles stop at a lanelet's end.
+    """
     names = list(element.refs("yield", "relation"))
     lines = [survey.line(way) for way in element.refs("ref_line", "way")]
     if len(lines) != len(names):
@@ -211,9 +214,9 @@ def _all_way_stop(survey: Surveyed, element: OsmRelation, rules: Mapping[str, La
 def _right_of_way_signs(
     survey: Surveyed, element: OsmRelation, rules: Mapping[str, LaneRules]
 ) -> None:
-    """Signs that a right of way names stand where one gives way, or goes first.
+    """Add the signs of a right of way to the lanelets that give way or have priority.
 
-    Where there are lights it holds only when these are out of order.
+    At traffic lights, a right of way applies only while the lights are out of order.
     """
     signs = {sign.name for sign in _signs(survey.file, element)}
     lines = [x for x in map(survey.line, element.refs("ref_line", "way")) if x is not None]
@@ -230,7 +233,7 @@ def _right_of_way_signs(
 
 
 def _drawn_stop_lines(survey: Surveyed, rules: Mapping[str, LaneRules]) -> None:
-    """Lines of the map that no rule names are for the lanelets that they cross."""
+    """Give stop lines of the map that no rule refers to to the lanelets that they cross."""
     drawn = (way.id for way in survey.file.ways.values() if way.tags.get("type") == "stop_line")
     lines = [line for line in map(survey.line, drawn) if line is not None]
     open_lanes = [x for x in lanes(survey.entries) if rules[x.id].stop_line is None]
@@ -255,7 +258,7 @@ def _drawn_stop_lines(survey: Surveyed, rules: Mapping[str, LaneRules]) -> None:
 
 
 def _crosses(middle: shapely.LineString, along: float, line: Points) -> bool:
-    """True if a line lies across a lanelet, rather than along it."""
+    """Whether a line lies across a lanelet rather than along it."""
     ends = [middle.interpolate(max(along + way, 0.0)) for way in (-0.5, 0.5)]
     ahead = np.array([ends[1].x - ends[0].x, ends[1].y - ends[0].y])
     across = line[1] - line[0]
@@ -263,7 +266,7 @@ def _crosses(middle: shapely.LineString, along: float, line: Points) -> bool:
 
 
 def remarks_on(rules: Iterable[LaneRules]) -> Iterator[str]:
-    """What the map leaves open of its lights."""
+    """Remarks on what the map does not contain about its lights."""
     lights = {id(light) for own in rules for light in own.lights}
     if lights:
         yield f"what its {len(lights)} traffic lights show is not in the map"

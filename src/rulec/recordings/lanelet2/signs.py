@@ -1,4 +1,4 @@
-"""Traffic signs of Lanelet2 maps by the names that recordings have."""
+"""Traffic signs of Lanelet2 maps, with the names used in recordings."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from rulec.recordings.lanelet2.lane_tags import velocity
 from rulec.recordings.lanelet2.region_codes import sign_parts
 
 AUTOWARE_SIGNS = {"stop_sign": "STOP", "yield_sign": "YIELD"}
-"""Subtypes without a country."""
+"""Names of signs that do not depend on a country."""
 
 _GERMAN_LIMIT = re.compile(r"de[ _:-]?274[-_](\d{1,3})$", re.IGNORECASE)
 
 
 def sign_of(kind: str) -> Sign:
-    """The sign that a subtype or ``sign_type`` calls; those about other things are ``UNKNOWN``.
+    """The sign named by a subtype or ``sign_type``; ``UNKNOWN`` for signs not about driving.
 
-    `de274-50` is the limit of 50 km/h; `50 km/h` in the place of a sign is one, too.
+    `de274-50` is the limit of 50 km/h, and so is `50 km/h` in place of a sign's name.
     """
     if kind in AUTOWARE_SIGNS:
         return Sign(AUTOWARE_SIGNS[kind])

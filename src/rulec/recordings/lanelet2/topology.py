@@ -1,6 +1,6 @@
 """Topology of lanelets: successors by shared ends, neighbours by shared bounds.
 
-As of Lanelet2's routing graph, by nodes and ways, whatever else lies in the same place.
+As in Lanelet2's routing graph, only shared nodes and ways count, not positions.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from rulec.recordings.lanelet2.region_codes import country_of
 from rulec.recordings.recording import Side
 
 MOST_AT_ONE_PLACE = 100
-"""Lanelets that begin or end at the same two nodes."""
+"""The most lanelets that begin, or end, at the same two nodes."""
 
 _NOT_FOR_CARS = frozenset({"bicycleLane"})
 
 
 @dataclass(frozen=True, slots=True)
 class Topology:
-    """By lanelet: those that follow, those before it, and the one beside it on either side."""
+    """For each lanelet: its successors, its predecessors, and its neighbour on each side."""
 
     successors: Mapping[str, tuple[str, ...]]
     predecessors: Mapping[str, tuple[str, ...]]
@@ -32,7 +32,7 @@ class Topology:
 
 
 def topology(file: OsmFile, entries: Mapping[str, MapLanelet]) -> Topology:
-    """How lanelets lie to each other. Raises RulecError R0610 if too many meet at one place."""
+    """The topology of lanelets. Raises RulecError R0610 if too many meet at one place."""
     begin: dict[tuple[int, int], list[str]] = defaultdict(list)
     end: dict[tuple[int, int], list[str]] = defaultdict(list)
     for entry in entries.values():
@@ -42,7 +42,7 @@ def topology(file: OsmFile, entries: Mapping[str, MapLanelet]) -> Topology:
         if len(group) > MOST_AT_ONE_PLACE:
             why = f"more than {MOST_AT_ONE_PLACE} lanelets begin or end at the same nodes"
             raise file.refused(f"{why}, `{group[0]}` among them")
-    # A lane of no length would follow itself
+    # Leaves out a lane of length 0, which would be its own successor
     follow = {x.id: _others(x.id, begin.get(x.end, ())) for x in entries.values()}
     before = {x.id: _others(x.id, end.get(x.start, ())) for x in entries.values()}
     by_right: dict[tuple[str, bool], str] = {}
@@ -62,17 +62,17 @@ def _others(own: str, names: Iterable[str]) -> tuple[str, ...]:
 
 
 def country_in(entries: Iterable[MapLanelet]) -> str:
-    """The country that lanelets say they are in, empty if they do not, or say several."""
+    """The country given by the lanelets; empty if they give none, or several."""
     regions = {entry.region for entry in entries if entry.region}
     countries = {country_of(region) for region in regions}
     return countries.pop() if len(countries) == 1 else ""
 
 
 def side_of(entries: Mapping[str, MapLanelet], country: str) -> Side | None:
-    """The side of traffic: the country's, or else that on which lanes lie that share a bound.
+    """The side of traffic: that of the country, or else as shown by lanes that share a bound.
 
-    Two lanes that lead opposite ways share their left bounds where traffic keeps right, their right
-    ones where it keeps left. None where there are no such lanes, or both kinds.
+    Two lanes in opposite directions share their left bounds in right-hand traffic, and their right
+    bounds in left-hand traffic. None if there are no such lanes, or both kinds.
     """
     of_country = side_in(country)
     if of_country is not None:
