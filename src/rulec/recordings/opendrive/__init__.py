@@ -1,1 +1,1 @@
-"""ASAM OpenDRIVE maps, versions 1.4 to 1.8."""
+"""Reads ASAM OpenDRIVE maps, versions 1.4 to 1.8."""

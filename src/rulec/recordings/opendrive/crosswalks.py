@@ -1,4 +1,4 @@
-"""Pedestrian crossings of an OpenDRIVE file: objects, and the standard's mark 1000003."""
+"""Pedestrian crossings of an OpenDRIVE file: objects, and the standard's signal 1000003."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from rulec.recordings.recording import LONGEST_M, Lanelet, Points
 from rulec.recordings.road_map import crosswalk
 
 _LIGHT_AT_M = 10.0
-"""Lights for people on foot stand so near to their crossing."""
+"""Pedestrian lights stand at most this far from their crossing."""
 
 _USUAL_M = 4.0
-"""The depth of a crossing that the file does not say."""
+"""The depth of a crossing for which the file gives none."""
 
 _SIDES = 4
 _SMALLEST_M2 = 0.1
@@ -29,7 +29,7 @@ _SMALLEST_M2 = 0.1
 def crosswalks(
     road: MapRoad, pieces: Sequence[RoadPiece], posted: Sequence[Posted]
 ) -> Iterator[Lanelet]:
-    """The crossings on a road as lanelets, which lead across it."""
+    """The crossings on a road as lanelets that lead across it."""
     lights = [x.s for x in posted if x.signal.dynamic and x.signal.type in WALKERS_LIGHTS]
     for number, thing in enumerate(road.objects):
         if is_crosswalk(thing):
@@ -49,12 +49,12 @@ def crosswalks(
 
 
 def is_crosswalk(thing: RoadObject) -> bool:
-    """True for objects that are pedestrian crossings, before 1.8 by their type."""
+    """Whether an object is a pedestrian crossing; before version 1.8, its type says so."""
     return "crosswalk" in (thing.type, thing.subtype) or thing.subtype == "pedestrianCrossing"
 
 
 def _carriageway(piece: RoadPiece, s: float) -> tuple[float, float] | None:
-    """From which ``t`` to which the lanes to drive on reach, None if there is none."""
+    """The lowest and the highest ``t`` of the carriageway's lanes at ``s``; None without any."""
     spans = [span_at(piece, key.lane, s) for key in drivable(piece)]
     if not spans:
         return None
@@ -80,7 +80,7 @@ def _heading(road: MapRoad, s: float) -> float:
 def _crosswalk(
     name: str, corners: Points, road: MapRoad, s: float, lights: Sequence[float]
 ) -> Iterator[Lanelet]:
-    """The lanelet of a crossing, if its outline has an area."""
+    """The lanelet of a crossing; nothing if its outline has no area or is too large."""
     ring = corners[:-1] if len(corners) > 1 and np.allclose(corners[0], corners[-1]) else corners
     if len(ring) != _SIDES:
         whole = shapely.MultiPoint(ring).minimum_rotated_rectangle
@@ -92,7 +92,7 @@ def _crosswalk(
         return
     if not outline.exterior.is_ccw:
         ring = ring[::-1]
-    # Counter-clockwise; the first and the third side are to be those across the road
+    # Counter-clockwise; the first and third sides must be those across the road
     along = np.array([np.cos(_heading(road, s)), np.sin(_heading(road, s))])
     sides = np.roll(ring, -1, axis=0) - ring
     parts = np.abs(sides @ along) / np.maximum(np.hypot(*sides.T), 1e-9)

@@ -1,7 +1,7 @@
 """Crossroads and priority at the junctions of an OpenDRIVE map.
 
-The standard has a junction wherever roads part or join, also where ramps leave a motorway. For
-traffic law it is one where three roads or more meet, and traffic comes from unlike directions.
+The standard has a junction wherever roads split or merge, also where ramps leave a motorway. For
+traffic law, only junctions of three or more roads with traffic from different directions count.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from rulec.recordings.polylines import wrapped
 
 _ARMS = 3
 _LIKE = np.radians(30.0)
-"""Ways that come in at smaller angles run into each other, as where a ramp joins."""
+"""Ways that enter a junction at smaller angles to each other merge, as where a ramp joins."""
 
 
 @dataclass(frozen=True, slots=True)
 class Crossroads:
-    """Road -> the crossroads that it leads through; road -> roads that go first there."""
+    """Road -> the crossroads that it leads through; road -> roads with priority over it there."""
 
     roads: Mapping[str, str]
     yields_to: Mapping[str, frozenset[str]] = field(default_factory=dict)
@@ -75,7 +75,7 @@ def _heading(pieces: Mapping[str, Sequence[RoadPiece]], key: LaneKey) -> float:
 
 
 def _differ(headings: Sequence[float]) -> bool:
-    """True if two of some directions differ by more than what joins at an acute angle."""
+    """Whether two of the headings (rad) differ by more than merging ways do."""
     if not headings:
         return False
     turned = wrapped(np.array(headings) - headings[0])
@@ -83,9 +83,9 @@ def _differ(headings: Sequence[float]) -> bool:
 
 
 def _rights(junction: RoadJunction, roads: Sequence[str]) -> Iterator[tuple[str, frozenset[str]]]:
-    """The roads through a junction that its priorities name, and those that go before each.
+    """The roads through a junction that its priorities name, and the roads with priority over each.
 
-    A road that leads to the junction stands for all ways that begin there.
+    A road that leads to the junction stands for all ways that begin at it.
     """
     starting: dict[str, set[str]] = defaultdict(set)
     for connection in junction.connections:

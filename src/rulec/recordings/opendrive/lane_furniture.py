@@ -1,8 +1,8 @@
 """Signals as they apply to lanes: lights, signs, limits, stop lines.
 
-A light, a sign to stop or to give way, and a stop line belong to the lane before the junction that
-they stand at, also where the file has them on the roads within it, whose ways then begin there.
-Others hold from where they stand to the end of their road.
+Lights, stop and give-way signs and stop lines belong to the lane before their junction, also where
+the file puts them on the roads within the junction, at the beginning of its ways. Other signs apply
+from their position to the end of their road.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ from rulec.recordings.opendrive.signal_catalogues import (
 from rulec.recordings.recording import NO_LANES
 
 AT_JUNCTION_M = 40.0
-"""What stands no farther before the end of a road stands at what follows there."""
+"""A signal at most this far before the end of a road belongs to the junction or road after it."""
 
 _HAIR_M = 1e-6
 
 
 class Posted(NamedTuple):
-    """A signal at a place on a road where it holds: its own, or one of a reference."""
+    """A road's own signal or a referenced one, and the place and lanes where it applies."""
 
     signal: RoadSignal
     s: float
@@ -48,12 +48,12 @@ class Posted(NamedTuple):
 
 @dataclass(slots=True)
 class LaneFurniture:
-    """What stands along a lane; ``lit_to`` are the ways on that a light is for, if it says.
+    """Signals along a lane; ``lit_to`` are the ways on that a light is for, if the file says so.
 
-    ``stop_line_s`` is the road and the place on it where the line lies, with the lane there.
+    ``stop_line`` is the lane in which the line lies, and its ``s``.
     """
 
-    # Not frozen: signals come one after the other
+    # Not frozen: signals are added one by one
     signs: set[str] = field(default_factory=set)
     limit_mps: float | None = None
     lit: bool = False
@@ -69,12 +69,12 @@ class _Street:
     by_lane: dict[LaneKey, LaneFurniture] = field(default_factory=dict)
 
     def at(self, key: LaneKey) -> LaneFurniture:
-        """What stands along a lane."""
+        """The signals along a lane."""
         return self.by_lane.setdefault(key, LaneFurniture())
 
 
 def posted_on(content: OpenDrive) -> dict[str, list[Posted]]:
-    """Road -> the signals that hold on it."""
+    """Road -> the signals that apply on it."""
     by_id = {x.id: x for road in content.roads.values() for x in road.signals}
     return {
         road.id: [
@@ -90,7 +90,7 @@ def posted_on(content: OpenDrive) -> dict[str, list[Posted]]:
 
 
 def sign_places(road: MapRoad, posted: Iterable[Posted]) -> list[float]:
-    """Where on a road something begins or ends that signals say, which it is cut at."""
+    """The values of ``s`` at which signals make something begin or end, where the road is cut."""
     return [x.s for x in posted if _parts(road, x)]
 
 
@@ -110,7 +110,7 @@ def lane_furniture(
     pieces: Mapping[str, Sequence[RoadPiece]],
     links: LaneLinks,
 ) -> Mapping[LaneKey, LaneFurniture]:
-    """What stands along each lane, as far as there is anything."""
+    """The signals along each lane that has any."""
     street = _Street(content, pieces, links)
     controlled = {signal for signals in content.controllers.values() for signal in signals}
     for road in content.roads.values():
@@ -149,7 +149,7 @@ def _place_signal(
 
 
 def _hold_on(street: _Street, road: MapRoad, posted: Posted, *, forward: bool) -> None:
-    """What a sign says from its place on, to lanes that are driven along or against the road."""
+    """Apply a sign from its place onward, to lanes driven in the given direction of the road."""
     sign = sign_of(posted.signal)
     if sign is None or sign.name not in HOLDS_ON:
         return
@@ -157,7 +157,7 @@ def _hold_on(street: _Street, road: MapRoad, posted: Posted, *, forward: bool) -
     for key in _posted_lanes(street, road, posted):
         for onward in _onward(street, key, posted.s) if key.forward == forward else ():
             own = street.at(onward)
-            # The end of what another sign began
+            # This sign ends the effect of another one
             own.signs -= begun
             if "MAX_SPEED" in begun or sign.name == "MAX_SPEED":
                 own.limit_mps = sign.limit_mps
@@ -173,9 +173,9 @@ def _posted_lanes(street: _Street, road: MapRoad, posted: Posted) -> list[LaneKe
 def _lanes_at(
     piece: RoadPiece, orientation: Orientation, lanes: Sequence[tuple[int, int]] | None
 ) -> list[LaneKey]:
-    """The lanes that a thing is for: those that it names, else those of its direction.
+    """The lanes that a signal is for: those that it names, or else those of its direction.
 
-    Where the lanes that it names are driven the other way, what it names counts.
+    If all the lanes that it names are driven in the other direction, the names count.
     """
     keys = [
         key
@@ -187,7 +187,7 @@ def _lanes_at(
 
 
 def drivable(piece: RoadPiece) -> Iterator[LaneKey]:
-    """The lanes of a piece that are part of the carriageway."""
+    """The lanes of a piece that belong to the carriageway."""
     for lane in piece.section.lanes.values():
         types = lane_types(piece.section, lane, piece.middle)
         if lane.id != 0 and lane.type not in NO_LANE and not NO_LANES.intersection(types):
@@ -196,13 +196,13 @@ def drivable(piece: RoadPiece) -> Iterator[LaneKey]:
 
 
 def piece_at(pieces: Sequence[RoadPiece], s: float) -> RoadPiece:
-    """The piece of a road at a place, the nearest one beyond its ends."""
+    """The piece of a road at ``s``; beyond the ends of the road, the nearest one."""
     long = [piece for piece in pieces if not piece.is_short] or list(pieces)
     return min(long, key=lambda piece: max(piece.start - s, s - piece.end, 0.0))
 
 
 def _onward(street: _Street, key: LaneKey, s: float) -> list[LaneKey]:
-    """A lane from a place to the end of its road, as long as it goes on alone."""
+    """The lanes from ``s`` on to the end of the road, as long as each has only one successor."""
     chain = _chain(street, key)
     pieces = street.pieces[key.road]
     middles = [pieces[x.piece].middle for x in chain]
@@ -214,7 +214,7 @@ def _onward(street: _Street, key: LaneKey, s: float) -> list[LaneKey]:
 
 
 def _chain(street: _Street, key: LaneKey, *, back: bool = False) -> list[LaneKey]:
-    """The lanes of one road that follow each other from a lane on, or before it."""
+    """The lanes of one road that follow a lane, or precede it if ``back``, without a branch."""
     links = street.links.before if back else street.links.after
     chain, seen = [key], {key}
     while True:
@@ -228,7 +228,7 @@ def _chain(street: _Street, key: LaneKey, *, back: bool = False) -> list[LaneKey
 def _entries(
     street: _Street, road: MapRoad, key: LaneKey, s: float
 ) -> Iterator[tuple[LaneKey, LaneKey | None]]:
-    """The lanes at whose ends what stands at a place holds, and the way on that it is for."""
+    """The lanes at whose ends a signal at ``s`` applies, and the way on that it is for, if any."""
     if road.junction:
         first = _chain(street, key, back=True)[-1]
         for entry in street.links.before.get(first, ()):
@@ -238,7 +238,7 @@ def _entries(
     last, pieces = chain[-1], street.pieces[road.id]
     end = pieces[last.piece].end if key.forward else pieces[last.piece].start
     if abs(end - s) > AT_JUNCTION_M:
-        # It stands on the open road, which is cut there
+        # It stands away from junctions, where the road is cut
         passed = [
             x
             for x in (*reversed(_chain(street, key, back=True)), *chain[1:])
@@ -250,7 +250,7 @@ def _entries(
 
 
 def _before_junction(street: _Street, last: LaneKey) -> LaneKey:
-    """The lane before the junction that a road leads to, over short roads in between."""
+    """The last lane before the junction that a road leads to, past short roads in between."""
     key, way = last, 0.0
     while True:
         following = street.links.after.get(key, ())
@@ -265,7 +265,7 @@ def _before_junction(street: _Street, last: LaneKey) -> LaneKey:
 
 
 def is_stop_line_object(thing: RoadObject) -> bool:
-    """True if an object is a stop line, by its type, subtype or name."""
+    """Whether an object is a stop line by its type, subtype or name."""
     words = (thing.type, thing.subtype, thing.name)
     plain = {"".join(c for c in word.lower() if c.isalpha()) for word in words}
     return "stopline" in plain

@@ -1,7 +1,7 @@
-"""Borders of lanes as lines through places, within a centimetre of the standard's curves.
+"""Borders of lanes as lines of points, within a centimetre of the standard's curves.
 
-Places of all lanes of a piece are at the same ``s``, so that lines beside each other have as many
-points. Heights and superelevation are left out: lines are those seen from above on a level road.
+The points of all borders of a piece have the same values of ``s``, so that neighbouring lines have
+the same number of points. Heights and superelevation are ignored: lines are those of a level road.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ _SHORTEST_M = 0.02
 _QUARTERS = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 _BEFORE_M = 1e-7
 MOST_PLACES = 1_000_000
-"""Of all lines of a piece together."""
+"""The most points of all lines of a piece together."""
 
 _LARGEST = 1e8
 _NARROWEST_M = -1000.0
 
 Lines = NDArray[float64]
-"""Lines beside each other: their number, places along them, x and y."""
+"""Lines beside each other, in an array of the shape (lines, points, 2)."""
 
 
 def lane_borders(piece: RoadPiece) -> Mapping[int, Lines]:
-    """Lane -> its border at smaller ``t`` and that at greater ``t``, both in the road's direction.
+    """Lane -> its borders at smaller and at greater ``t``, both in the road's direction.
 
-    Raises ValueError: the road winds so much that it has too many places, or leads too far, or a
-    lane's width is far below 0.
+    Raises ValueError if the road winds so much that it needs too many points, if it leads too far
+    away, or if a lane's width is far below 0.
     """
     road, section = piece.road, piece.section
     numbers = _in_order(section)
@@ -55,7 +55,10 @@ def lane_borders(piece: RoadPiece) -> Mapping[int, Lines]:
 
 
 def _check_widths(section: LaneSection, s: Numbers) -> None:
-    """Raise ValueError where a width is no lane's that ends; such a one is a little below 0."""
+    """Raise ValueError for a width too far below 0.
+
+    Where a lane ends, it may be slightly below 0.
+    """
     for number, lane in section.lanes.items():
         least = cubics_at(lane.widths, s - section.start).min()
         if not least > _NARROWEST_M:
@@ -63,12 +66,12 @@ def _check_widths(section: LaneSection, s: Numbers) -> None:
 
 
 def _in_order(section: LaneSection) -> list[int]:
-    """The lanes from the right to the left; a lane that is left out has no width."""
+    """The lanes from right to left; a lane that is left out has no width."""
     return sorted(section.lanes)
 
 
 def _fine_enough(piece: RoadPiece, s: Numbers) -> Numbers:
-    """Places along the road between which no line is farther from its curve than allowed."""
+    """Values of ``s`` close enough that no line is farther from its curve than allowed."""
     parts = [
         np.linspace(low, high, max(1, int(np.ceil((high - low) / _LONGEST_M))), endpoint=False)
         for low, high in itertools.pairwise(s)
@@ -100,7 +103,7 @@ def _fine_enough(piece: RoadPiece, s: Numbers) -> Numbers:
 
 
 def _lines(piece: RoadPiece, s: Numbers) -> Lines:
-    """All borders of a piece from the right to the left, at places that ascend."""
+    """All borders of a piece from right to left, at ascending values of ``s``."""
     inside = np.minimum(s, piece.end - _BEFORE_M) if piece.end > piece.start else s
     t = border_offsets(piece.road, piece.section, inside)
     with np.errstate(all="ignore"):
@@ -112,7 +115,7 @@ def _lines(piece: RoadPiece, s: Numbers) -> Lines:
 
 
 def span_at(piece: RoadPiece, lane: int, s: float) -> tuple[float, float]:
-    """From which ``t`` to which a lane reaches at a place."""
+    """The ``t`` of a lane's right and left border at ``s``."""
     row = [number for number in _in_order(piece.section) if number != 0].index(lane)
     inside = np.clip(s, piece.start, max(piece.end - _BEFORE_M, piece.start))
     offsets = border_offsets(piece.road, piece.section, np.array([inside]))[:, 0]
@@ -120,7 +123,7 @@ def span_at(piece: RoadPiece, lane: int, s: float) -> tuple[float, float]:
 
 
 def places_beside(road: MapRoad, places: Sequence[tuple[float, float]]) -> Points:
-    """Places that are given by ``s`` and ``t``, in their order."""
+    """The points with these pairs of ``s`` and ``t``, in their order."""
     s, t = np.array(places, dtype=float).reshape(-1, 2).T
     s = np.clip(s, 0.0, road.length)
     order = np.argsort(s, kind="stable")
@@ -133,7 +136,7 @@ def places_beside(road: MapRoad, places: Sequence[tuple[float, float]]) -> Point
 
 
 def border_offsets(road: MapRoad, section: LaneSection, s: Numbers) -> Lines:
-    """The ``t`` of all borders of a lane section from the right to the left, a row each."""
+    """The ``t`` of all borders of a lane section from right to left, one row each."""
     centre = cubics_at(road.offsets, s)
     way = s - section.start
     sides: list[list[Numbers]] = []
@@ -145,7 +148,7 @@ def border_offsets(road: MapRoad, section: LaneSection, s: Numbers) -> Lines:
             if lane.widths or not lane.borders:
                 inner = inner + side * np.maximum(cubics_at(lane.widths, way), 0.0)
             else:
-                # Tools differ in the sign that borders right of the centre have
+                # Tools differ in the sign of borders right of the centre
                 inner = centre + side * np.abs(cubics_at(lane.borders, way))
             borders.append(inner)
         sides.append(borders)

@@ -1,6 +1,6 @@
 """Successors of lanes within roads, between roads, and through junctions.
 
-The file links ends of lanes; which of both leads to the other follows from where they are driven.
+The file links ends of lanes; which lane is the successor follows from their driving directions.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from rulec.recordings.opendrive.plan_view import places_on
 
 
 class LaneKey(NamedTuple):
-    """A lane of a piece of a road, in one of the directions in which it is driven."""
+    """A lane of a piece of a road, in one of its driving directions."""
 
     road: str
     piece: int
@@ -42,7 +42,7 @@ class _LaneEnd(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class LaneLinks:
-    """For each lane those that follow, and those before it."""
+    """The successors and the predecessors of each lane."""
 
     after: Mapping[LaneKey, tuple[LaneKey, ...]]
     before: Mapping[LaneKey, tuple[LaneKey, ...]]
@@ -55,7 +55,7 @@ class _Links:
     joints: dict[tuple[_LaneEnd, _LaneEnd], None] = field(default_factory=dict)
 
     def join(self, first: _LaneEnd, other: _LaneEnd) -> None:
-        """Link ends of lanes, if both lanes are there."""
+        """Link two ends of lanes, if both lanes exist."""
         both = (first, other)
         if all(end.lane in self.pieces[end.road][end.piece].section.lanes for end in both):
             self.joints[first, other] = None
@@ -67,7 +67,7 @@ class _Links:
 
 
 def lane_links(content: OpenDrive, pieces: Mapping[str, Sequence[RoadPiece]]) -> LaneLinks:
-    """The links of all lanes; those of pieces without a length are passed over."""
+    """The links of all lanes; they skip pieces without a length."""
     links = _Links(content, pieces)
     for road in content.roads.values():
         _within(links, road)
@@ -89,7 +89,7 @@ def lane_links(content: OpenDrive, pieces: Mapping[str, Sequence[RoadPiece]]) ->
 
 
 def _ways(links: _Links, first: _LaneEnd, second: _LaneEnd) -> Iterator[tuple[LaneKey, LaneKey]]:
-    """From a lane that is driven to its end to one that is driven away from its own."""
+    """Pairs of a lane driven towards the first end, and a lane driven away from the second."""
     for there in _directions(links, first):
         for onward in _directions(links, second):
             if there == first.at_end and onward != second.at_end:
@@ -166,10 +166,10 @@ def _through(links: _Links, junction: RoadJunction, connection: Connection) -> N
 def _end_at_junction(
     junction: RoadJunction, connection: Connection, incoming: MapRoad, road: MapRoad
 ) -> ContactPoint | None:
-    """The end of the incoming road that a connection begins at, None if there is none.
+    """The end of the incoming road at which a connection begins; None if it has no such end.
 
-    What the connecting road is linked with says so; else it is the end that leads to the junction,
-    the nearer one if both do.
+    It is the end that the connecting road is linked with, or else the end that leads to the
+    junction; if both ends do, the nearer one.
     """
     link = road.end_at(connection.contact)
     if link is not None and link.element == "road" and link.id == incoming.id and link.contact:

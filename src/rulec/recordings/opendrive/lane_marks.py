@@ -1,6 +1,6 @@
-"""Marks between lanes, as each of the two lanes sees them.
+"""Marks between lanes, as seen from each of the two lanes.
 
-A lane's mark is that of its outer border; the centre lane's is the one between both sides.
+A lane's mark is on its outer border; the centre lane's mark lies between both sides of the road.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ _MARKS: Mapping[str, tuple[LaneMark, LaneMark]] = MappingProxyType(
         "broken solid": ("broken", "solid"),
     }
 )
-"""Types of marks, as seen from the inner lane (of the centre lane's: from the left) and the other.
+"""Types of marks as seen from the inner lane (for the centre lane, from its left), and the other.
 
-Kerbs, grass, Botts' dots and the like say nothing of the line.
+Kerbs, grass, Botts' dots and the like are missing: they do not show a kind of line.
 """
 
 _CHANGES: Mapping[str, tuple[LaneMark, LaneMark]] = MappingProxyType(
@@ -37,9 +37,9 @@ Marks = tuple["LaneMark | None", "LaneMark | None"]
 
 
 def marks_of(mark: MarkRecord | None) -> Marks:
-    """A mark as seen from the inner lane, or from the left, and from the other one.
+    """A mark as seen from the inner lane (for the centre lane, from its left), and from the other.
 
-    Of lines of another kind it counts whether lanes may be changed across them.
+    For Botts' dots and custom lines, it follows from whether lanes may be changed across them.
     """
     if mark is None:
         return _UNKNOWN
@@ -49,17 +49,17 @@ def marks_of(mark: MarkRecord | None) -> Marks:
 
 
 def mark_at(section: LaneSection, lane: int, s: float) -> MarkRecord | None:
-    """The mark of a lane at a place on the road."""
+    """The mark of a lane at ``s``."""
     own = section.lanes.get(lane)
     return None if own is None else record_at(own.marks, s, section.start)
 
 
 def mark_beside(section: LaneSection, lane: int, s: float, *, left: bool) -> LaneMark | None:
-    """The mark at a lane's border towards greater ``t`` (``left``) or smaller, as it sees it."""
+    """The mark on a lane's border at greater ``t`` (``left``) or smaller, as seen from the lane."""
     away = left == (lane > 0)
     if away:
         return marks_of(mark_at(section, lane, s))[0]
     inner = lane - 1 if lane > 0 else lane + 1
     marks = marks_of(mark_at(section, inner, s))
-    # The centre lane's are from the left to the right
+    # The centre lane's marks are ordered from left to right
     return marks[0] if inner == 0 and lane > 0 else marks[1]

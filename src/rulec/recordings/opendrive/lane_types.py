@@ -1,4 +1,4 @@
-"""Lane and road types, in the words of lanelets."""
+"""Types of lanes and roads, in the words of lanelets."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LANE_TYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         **dict.fromkeys(("bus", "taxi"), ("busLane",)),
         "biking": ("bicycleLane",),
         **dict.fromkeys(("sidewalk", "walking"), ("sidewalk",)),
-        # The standard's shoulder is soft; its hard one, for stopping, is `stop`
+        # The standard's `shoulder` is a soft one; a hard shoulder is `stop`
         "stop": ("shoulder",),
         **dict.fromkeys(("shoulder", "border", "curb", "median"), ("border",)),
         "parking": ("parking",),
@@ -26,7 +26,7 @@ LANE_TYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
         **dict.fromkeys(("rail", "tram"), ("restricted_area", "rail")),
     }
 )
-"""The standard's types of lanes -> those of lanelets. ``none`` is no lane."""
+"""The standard's types of lanes -> those of lanelets; ``none`` does not count as a lane."""
 
 NO_LANE = frozenset({"none", ""})
 RAMPS = frozenset({"entry", "exit", "mwyEntry", "mwyExit", "onRamp", "offRamp"})
@@ -50,7 +50,7 @@ _WALKERS = frozenset({"pedestrian"})
 
 
 def lane_types(section: LaneSection, lane: Lane, s: float) -> tuple[str, ...]:
-    """What a lane is for at a place on its road; nobody is to drive on one of no known type."""
+    """The types of a lane at ``s``; lanes of unknown types count as beside the carriageway."""
     types = LANE_TYPES.get(lane.type, ("border",))
     allowed = frozenset[str]().union(
         *(x.users for x in lane.access if x.allow and section.start + x.start <= s)
@@ -66,12 +66,12 @@ def lane_types(section: LaneSection, lane: Lane, s: float) -> tuple[str, ...]:
 
 
 def road_types(road: MapRoad, s: float) -> tuple[str, ...]:
-    """What a road is at a place, in the words of lanelets."""
+    """The types of a road at ``s``, in the words of lanelets."""
     kind = record_at(road.types, s)
     return () if kind is None else _ROAD_TYPES.get(kind.type, ())
 
 
 def limit_at(section: LaneSection, lane: Lane, s: float) -> float | None:
-    """The limit (m/s) that the lane itself has at a place, None if it has none of its own."""
+    """The limit (m/s) of the lane itself at ``s``; None if it has none of its own."""
     speed = record_at(lane.speeds, s, section.start)
     return None if speed is None else speed.limit_mps

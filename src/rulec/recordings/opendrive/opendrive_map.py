@@ -1,4 +1,4 @@
-"""An OpenDRIVE file as a map: a lanelet for each lane of each piece of a road."""
+"""Turns an OpenDRIVE file into a map with a lanelet for each lane of each piece of a road."""
 
 from __future__ import annotations
 
@@ -39,23 +39,23 @@ from rulec.recordings.recording import LONGEST_M, Lanelet, ObservedLight, Points
 from rulec.recordings.road_map import RoadMap
 
 MOST_PLACES = 2_000_000
-"""Of all borders of a map together: some seconds, and 100 MB of memory."""
+"""The most points of all borders of a map: some seconds, and 100 MB of memory."""
 
 NARROWEST_M = 0.05
-"""Lanes that are nowhere wider are none."""
+"""Lanes that are nowhere wider than this are left out."""
 
 _SAME_M = 0.3
-"""Ends of borders that are no farther apart are the same."""
+"""Ends of borders at most this far apart count as the same."""
 
 UNSEEN = ObservedLight({})
-"""A light of which a map does not say what it shows."""
+"""A traffic light whose states the map does not contain."""
 
 _NAMED = 5
 
 
 @dataclass(frozen=True, slots=True)
 class _Whole:
-    """What has been found out of a file's lanes; ``borders`` are those of lanes that are there."""
+    """What is known of all lanes of a file; ``borders`` has only lanes that become lanelets."""
 
     pieces: Mapping[str, Sequence[RoadPiece]]
     borders: Mapping[tuple[str, int, int], Lines]
@@ -65,14 +65,14 @@ class _Whole:
     has_ramps: bool
 
     def is_there(self, key: LaneKey) -> bool:
-        """True if a lane has a lanelet."""
+        """Whether a lane has a lanelet."""
         piece = self.pieces[key.road][key.piece]
         lane = piece.section.lanes.get(key.lane)
         there = (key.road, key.piece, key.lane) in self.borders
         return there and lane is not None and key.forward in directions(piece.road, lane)
 
     def id_of(self, key: LaneKey) -> str:
-        """The id of a lane's lanelet: road, piece and lane, and ``r`` for its other direction."""
+        """The id of a lane's lanelet: road, piece and lane, with ``.r`` for its other direction."""
         piece = self.pieces[key.road][key.piece]
         usual, *_ = directions(piece.road, piece.section.lanes[key.lane])
         return f"{key.road}.{key.piece}.{key.lane}" + ("" if key.forward == usual else ".r")
@@ -88,7 +88,7 @@ class _Whole:
 def read_opendrive_map(path: Path) -> RoadMap:
     """Read the roads of an OpenDRIVE file.
 
-    Raises RulecError R0610 for a file that is none, R0701 if it cannot be opened.
+    Raises RulecError R0610 for another kind of file, R0701 if it cannot be opened.
     """
     content = read_file(path)
     posted = posted_on(content)
@@ -208,7 +208,7 @@ def _named(whole: _Whole, keys: Sequence[LaneKey]) -> tuple[str, ...]:
 
 
 def _beside(whole: _Whole, key: LaneKey, *, left: bool) -> str | None:
-    """The lane beside one, if it is driven the same way."""
+    """The lanelet beside a lane, if it has the same direction."""
     other = key._replace(lane=neighbour(key.lane, left=left == key.forward))
     return whole.id_of(other) if whole.is_there(other) else None
 
@@ -227,7 +227,7 @@ def _types(whole: _Whole, piece: RoadPiece, lane: Lane) -> Iterator[str]:
 
 
 def _limit(piece: RoadPiece, lane: Lane, own: LaneFurniture) -> float | None:
-    """The limit of a lane: its own, else that of a sign, else that of the road's type."""
+    """The limit of a lane: its own, or else that of a sign, or else that of the road's type."""
     limit = limit_at(piece.section, lane, piece.middle)
     if limit is None:
         limit = own.limit_mps
@@ -246,10 +246,10 @@ def _stop_line(whole: _Whole, own: LaneFurniture) -> Points | None:
 
 
 def _side(content: OpenDrive, lanelets: Mapping[str, Lanelet]) -> Side | None:
-    """The side of traffic, None if roads differ.
+    """The side of traffic; None if it differs between roads or is unknown.
 
-    It is the right one where a file does not say, unless all lanes show that it is not; before
-    version 1.5 no file could say it, so that it is not known if no lanes show it.
+    Without a `rule` in the file it is the right side, unless all lanes show the left one. Before
+    version 1.5, no file could have a `rule`, and the side is unknown unless lanes show it.
     """
     rules = {road.left_hand for road in content.roads.values()}
     if len(rules) > 1:
@@ -263,14 +263,17 @@ def _side(content: OpenDrive, lanelets: Mapping[str, Lanelet]) -> Side | None:
 
 
 def _leads_both_ways(content: OpenDrive) -> bool:
-    """True if some road has lanes to drive on at both of its sides: those on the right lead on."""
+    """Whether some road has lanes of the type `driving` on both sides.
+
+    The right ones lead forward.
+    """
     sections = (section for road in content.roads.values() for section in road.sections)
     driven = ([x.id for x in section.lanes.values() if x.type == "driving"] for section in sections)
     return any(min(ids, default=0) < 0 < max(ids, default=0) for ids in driven)
 
 
 def _sides_shown(lanelets: Mapping[str, Lanelet]) -> set[Side]:
-    """The sides on which those keep who meet on lanes with one border, of different roads, too."""
+    """The sides on which oncoming lanes that share a border keep, within and across roads."""
     lanes = [x for x in lanelets.values() if is_lane(x) and not x.junction]
     borders: dict[Side, list[Points]] = {
         "right": [x.left for x in lanes],
@@ -290,7 +293,7 @@ def _sides_shown(lanelets: Mapping[str, Lanelet]) -> set[Side]:
 
 
 def _country(content: OpenDrive) -> str:
-    """The country that all signals and roads name, empty if they name none, or several."""
+    """The country that all signals and roads name; empty if they name none, or several."""
     named = {country_of(x.country) for road in content.roads.values() for x in road.signals}
     named |= {country_of(x.country) for road in content.roads.values() for x in road.types}
     codes = {x for x in named if len(x) == 3 and x.isascii() and x.isalpha()}

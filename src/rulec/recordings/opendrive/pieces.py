@@ -1,7 +1,7 @@
 """Roads cut into pieces, on each of which a lane is one lanelet.
 
-A lanelet has one limit, one mark at each of its sides and one kind of surroundings, so lane
-sections are cut where these change, and where a sign stands that holds from there on.
+A lanelet has one limit, one mark on each side and one kind of surroundings. Lane sections are
+therefore cut where these change, and at signs that apply from there on.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from rulec.recordings.opendrive.lane_marks import marks_of
 from rulec.recordings.opendrive.lane_types import BOTH_WAYS
 
 SHORTEST_M = 1.0
-"""What changes so near before or behind another change, changes with that one."""
+"""Changes closer than this to another cut or an end of the section get no cut of their own."""
 
 NO_LENGTH_M = 0.01
-"""Lane sections that are shorter have no lanelets; their lanes lead on to the next ones."""
+"""Shorter lane sections have no lanelets; their lanes lead on to the next ones."""
 
 LONGEST_PIECE_M = 5_000.0
 """Longer lane sections are cut."""
@@ -28,7 +28,10 @@ LONGEST_PIECE_M = 5_000.0
 
 @dataclass(frozen=True, slots=True)
 class RoadPiece:
-    """A part of a lane section of a road, from ``start`` to ``end``; roads count theirs."""
+    """A part of a lane section from ``start`` to ``end``.
+
+    ``number`` counts the pieces of its road.
+    """
 
     road: MapRoad
     number: int
@@ -38,17 +41,17 @@ class RoadPiece:
 
     @property
     def middle(self) -> float:
-        """Its middle, which what is said of the piece holds at."""
+        """The middle of the piece; properties of the piece are taken from there."""
         return (self.start + self.end) / 2
 
     @property
     def is_short(self) -> bool:
-        """True if it is too short for lanelets."""
+        """Whether the piece is too short for lanelets."""
         return self.end - self.start < NO_LENGTH_M
 
 
 def pieces_of(road: MapRoad, signs: Iterable[float]) -> list[RoadPiece]:
-    """The pieces of a road; ``signs`` are places where something that signs say begins."""
+    """The pieces of a road; ``signs`` are the places of signals at which it is cut."""
     pieces: list[RoadPiece] = []
     wanted = [x for ends in road.tunnels for x in (ends.start, ends.end)]
     wanted += [kind.start for kind in road.types] + list(signs)
@@ -78,7 +81,7 @@ def _changes(section: LaneSection) -> Iterator[float]:
 
 
 def directions(road: MapRoad, lane: Lane) -> tuple[bool, ...]:
-    """The directions in which a lane is driven: True along the road, False against it."""
+    """The driving directions of a lane: True along the road, False against it."""
     usual = (lane.id < 0) != road.left_hand
     if lane.direction == "both" or lane.type == BOTH_WAYS:
         return usual, not usual

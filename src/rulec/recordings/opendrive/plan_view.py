@@ -1,8 +1,8 @@
-"""Places on a road's reference line, by the standard's formulas.
+"""Points on a road's reference line, by the standard's formulas.
 
-Of a spiral curvature is linear along it: with the heading's quadratic polynomial the place is
-a Fresnel integral, here by Gauss and Legendre's quadrature, 8 nodes in each piece that turns by no
-more than half a radian, so good to far less than a millimetre.
+The curvature of a spiral is linear in its length. Its heading is therefore a quadratic polynomial,
+and its points are Fresnel integrals. These are computed by Gauss-Legendre quadrature, with 8 nodes
+for each part that turns by at most half a radian, far more precisely than a millimetre.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _ROUNDS = 3
 
 
 class Places(NamedTuple):
-    """Places (m) with the direction (rad) of the line there."""
+    """Points (m) with the direction (rad) of the line at each of them."""
 
     x: Numbers
     y: Numbers
@@ -34,9 +34,9 @@ class Places(NamedTuple):
 
 
 def places_on(geometries: Sequence[Geometry], s: Numbers) -> Places:
-    """The places of a reference line at ``s``, which ascend.
+    """The points of a reference line at ascending values of ``s``.
 
-    Each piece leads to where the next one begins, which its own formula says, too.
+    Each piece is used up to the start of the next one, which the file gives as well.
     """
     starts = np.array([piece.s for piece in geometries])
     of_piece = np.clip(np.searchsorted(starts, s, side="right") - 1, 0, len(starts) - 1)
@@ -53,7 +53,7 @@ def places_on(geometries: Sequence[Geometry], s: Numbers) -> Places:
 
 
 def _in_own_frame(piece: Geometry, way: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """Places and directions a way (m) into a piece that begins at 0, 0 along the first axis."""
+    """Points and directions at ``way`` (m) in a piece that starts at 0, 0 along the first axis."""
     match piece.shape:
         case "line":
             return way, np.zeros(len(way)), np.zeros(len(way))
@@ -66,14 +66,14 @@ def _in_own_frame(piece: Geometry, way: Numbers) -> tuple[Numbers, Numbers, Numb
             return _parametric(np.array([0.0, 1.0, 0.0, 0.0]), np.array(piece.numbers), u)
         case "paramPoly3":
             first, second = np.array(piece.numbers[:4]), np.array(piece.numbers[4:])
-            # Where p is no length it goes along with that of the curve
+            # A normalized p grows in proportion to the length of the curve
             p = _at_way(first, second, way, piece.length) if piece.normalized else way
             return _parametric(first, second, p)
 
 
 def _arc(curvature: float, way: Numbers) -> tuple[Numbers, Numbers, Numbers]:
     half = curvature * way / 2
-    # The chord, which leads in the direction of the arc's middle; np.sinc has pi in it
+    # The chord has the direction of the arc's middle; np.sinc multiplies by pi
     chord = way * np.sinc(half / np.pi)
     return chord * np.cos(half), chord * np.sin(half), 2 * half
 
@@ -87,7 +87,7 @@ def _spiral(piece: Geometry, way: Numbers) -> tuple[Numbers, Numbers, Numbers]:
     most = float(reached.max()) / _MOST_PIECES
     if most > longest:
         longest = most
-    # From each place to the next one in pieces that turn little
+    # Split the way between points into parts that turn little
     ends = np.unique(np.concatenate((reached, _grid(float(reached.max()), longest))))
     width = np.diff(ends) / 2
     at = ends[:-1, None] + width[:, None] * (1 + _NODES)
@@ -110,10 +110,10 @@ def _parametric(first: Numbers, second: Numbers, p: Numbers) -> tuple[Numbers, N
 
 
 def _at_way(first: Numbers, second: Numbers, way: Numbers, whole: float | None) -> Numbers:
-    """The parameter of a curve after a way along it.
+    """The parameter of a curve at a distance ``way`` along it.
 
-    ``whole``: the length of the way that its parameter goes from 0 to 1 on; else it is its first
-    coordinate, which is no longer than the way.
+    ``whole``: the length of the curve whose parameter goes from 0 to 1; if None, the parameter is
+    the first coordinate, which is at most the distance.
     """
     longest = float(way.max(initial=0.0))
     most = longest if whole is None else 1.0
@@ -126,7 +126,7 @@ def _at_way(first: Numbers, second: Numbers, way: Numbers, whole: float | None) 
     reached = np.append(0.0, np.cumsum(width * (speed @ _WEIGHTS)))
     scale = 1.0
     if whole is not None:
-        # What its own length is off goes evenly into all of it
+        # An error in the stated length is spread evenly over the curve
         scale = reached[-1] / whole if whole else 0.0
         beyond = way > whole
     else:
@@ -134,7 +134,7 @@ def _at_way(first: Numbers, second: Numbers, way: Numbers, whole: float | None) 
     wanted = np.minimum(way * scale, reached[-1])
     parameter = np.interp(wanted, reached, p)
     for _ in range(_ROUNDS):
-        # Newton's method, from where the piece that holds it begins
+        # Newton's method, with lengths from the start of the part that contains the parameter
         row = np.clip(np.searchsorted(reached, wanted, side="right") - 1, 0, count - 1)
         half = (parameter - p[row]) / 2
         inside = p[row][:, None] + half[:, None] * (1 + _NODES)
@@ -159,7 +159,7 @@ def _slope(numbers: Numbers, p: Numbers) -> Numbers:
 
 
 def cubics_at(cubics: Sequence[Cubic], s: Numbers) -> Numbers:
-    """The values of polynomials, each from its start on; 0 where there is none yet."""
+    """The values of polynomials, each used from its start; 0 before the first start."""
     if not cubics:
         return np.zeros(len(s))
     starts = np.array([cubic.start for cubic in cubics])

@@ -1,7 +1,7 @@
 """Catalogues of signals, by country and type number.
 
-The standard's own (country ``OpenDRIVE``) has traffic lights and marks on the road; what else a
-signal is called is the number of a country's catalogue, Germany's where none is named.
+The standard's catalogue (country ``OpenDRIVE``) has traffic lights and marks on the road. Other
+numbers are those of a country's catalogue, by default Germany's.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from rulec.recordings.encodings.speed_units import KMH, SPEED_UNITS
 from rulec.recordings.opendrive.content.elements import RoadSignal
 
 _LIGHTS = frozenset({"1000001", *(f"10000{number:02}" for number in (8, 9, 10, 11, 12))})
-"""Lights for vehicles; others of the catalogue are for people on foot, cyclists, trams."""
+"""Lights for vehicles; others in the catalogue are for pedestrians, cyclists or trams."""
 
 _OTHER_LIGHTS = frozenset(f"10000{number:02}" for number in (2, 7, 13, 14, 15, 16, 17, 18))
 WALKERS_LIGHTS = frozenset({"1000002", "1000007"})
@@ -45,7 +45,7 @@ _CODES: Mapping[str, str] = MappingProxyType(
         "GERMANY": "DEU",
     }
 )
-"""The codes of countries of two letters, which the standard has since 1.6, and of three."""
+"""Countries' codes of two letters, which the standard uses since 1.6 -> those of three letters."""
 
 _GERMAN = frozenset({"", "DEU", "OPENDRIVE", "OPEN_DRIVE"})
 
@@ -58,30 +58,30 @@ HOLDS_ON: Mapping[str, frozenset[str]] = MappingProxyType(
         "ALL_MAX_SPEED_AND_OVERTAKING_END": frozenset({"MAX_SPEED", "NO_OVERTAKING_START"}),
     }
 )
-"""Signs that hold from where they stand on -> those that end there."""
+"""Signs that apply from their position onward -> the signs whose effect they end."""
 
 PRIORITY_SIGNS = frozenset({"PRIORITY"})
 
 
 def country_of(code: str) -> str:
-    """The code of a country (ISO 3166, three letters), as far as it is known here."""
+    """The code of a country (ISO 3166, three letters); unknown codes are only put in capitals."""
     return _CODES.get(code.upper(), code.upper())
 
 
 def is_light(signal: RoadSignal, controlled: Collection[str]) -> bool:
-    """True for traffic lights for vehicles: of the standard's catalogue, or that are controlled."""
+    """Whether a signal is a light for vehicles, by the standard's catalogue or a controller."""
     if not signal.dynamic or signal.type in _OTHER_LIGHTS:
         return False
     return signal.type in _LIGHTS or (signal.id in controlled and sign_of(signal) is None)
 
 
 def is_stop_line(signal: RoadSignal) -> bool:
-    """True for the German sign 294, a stop line."""
+    """Whether a signal is the German sign 294, a stop line."""
     return signal.type == _STOP_LINE and country_of(signal.country) in _GERMAN
 
 
 def sign_of(signal: RoadSignal) -> Sign | None:
-    """The sign that a signal is, None if it is none that is known, or shows what it likes."""
+    """The sign that a signal shows; None for unknown and for variable ones."""
     country = country_of(signal.country)
     if signal.dynamic or not signal.type or signal.type in ("-1", "none"):
         return None
@@ -97,10 +97,10 @@ def sign_of(signal: RoadSignal) -> Sign | None:
 
 
 def _limit(signal: RoadSignal, country: str) -> float | None:
-    """The limit (m/s) on a sign: its value, or what Germany's catalogue has for its subtype.
+    """The limit (m/s) on a sign: its value, or that of its subtype in Germany's catalogue.
 
-    Until 2017 numbers counted tens from 51 on, since then they are the limit; those that are both
-    say nothing.
+    Until 2017, subtypes counted tens from 51 on; since then they are the limit itself. Subtypes
+    that could be either give no limit.
     """
     if signal.value is not None:
         unit = signal.unit or ("mph" if country in ("USA", "GBR") else "km/h")

@@ -1,7 +1,6 @@
-"""Limits within junctions that nobody has posted: the speeds at which ways there are driven.
+"""Recognises limits within junctions that are only turning speeds, not posted limits.
 
-SUMO's netconvert writes how fast a bend within a junction is driven as if that were the limit
-there.
+SUMO's netconvert writes the speed for driving a bend within a junction as its limit.
 """
 
 from __future__ import annotations
@@ -15,10 +14,10 @@ from rulec.recordings.recording import Lanelet
 def without_turning_speeds(
     lanelets: Mapping[str, Lanelet], inside: Set[str]
 ) -> tuple[dict[str, Lanelet], int]:
-    """The lanelets, and how many of those ``inside`` junctions have the limit of the road before.
+    """The lanelets, and how many of them ``inside`` junctions got the limit of the road before.
 
-    No sign holds within a junction alone. So a way through it whose limit is below those of all
-    roads before and after it has that of the road that leads there.
+    No sign applies only within a junction. A way through a junction whose limit is below those of
+    all roads before and after it therefore gets the lowest limit of the roads before it.
     """
     changed = dict(lanelets)
     count = 0
@@ -43,7 +42,7 @@ def _limits(
     inside: Set[str],
     onward: Callable[[Lanelet], tuple[str, ...]],
 ) -> set[float | None]:
-    """The limits of the roads at one end of a way through a junction, which may be of pieces."""
+    """The limits of the roads at one end of a way through a junction of one or several lanelets."""
     limits: set[float | None] = set()
     seen, waiting = {name}, [name]
     while waiting:

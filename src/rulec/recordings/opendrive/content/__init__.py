@@ -1,1 +1,1 @@
-"""An OpenDRIVE file as data, before it is a map."""
+"""The content of an OpenDRIVE file as data, before it is turned into a map."""

@@ -1,7 +1,8 @@
 """Elements of an OpenDRIVE file: roads, lanes, signals, objects, junctions.
 
-Names are the standard's (ASAM OpenDRIVE 1.8). ``s`` (m) is along a road's reference line, ``t`` (m)
-to its left; lanes left of it have ids above 0, those right of it below 0, numbered outward.
+Names are the standard's (ASAM OpenDRIVE 1.8). ``s`` (m) is measured along a road's reference line,
+``t`` (m) to the left of it. Lanes left of the line have ids above 0, lanes right of it ids below 0,
+numbered outward.
 """
 
 from __future__ import annotations
@@ -17,10 +18,11 @@ Shape = Literal["line", "arc", "spiral", "poly3", "paramPoly3"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Geometry:
-    """A piece of a reference line, from its start at ``x``, ``y`` (m), ``heading`` (rad).
+    """A piece of a reference line that starts at ``x``, ``y`` (m) with ``heading`` (rad).
 
-    ``numbers``: of an arc its curvature (1/m), of a spiral those of its start and end, of ``poly3``
-    a to d, of ``paramPoly3`` those of u and then of v. ``normalized``: these go from 0 to 1.
+    ``numbers``: the curvature (1/m) of an arc; the curvatures at the start and end of a spiral; a
+    to d of ``poly3``; a to d of u and then of v of ``paramPoly3``, whose parameter goes from 0 to 1
+    if ``normalized``.
     """
 
     s: float
@@ -35,7 +37,7 @@ class Geometry:
 
 @dataclass(frozen=True, slots=True)
 class Cubic:
-    """A polynomial that holds from ``start`` (m) on: a + b x + c x² + d x³, x from there."""
+    """A polynomial a + b x + c x² + d x³ that applies from ``start`` (m), where x is 0."""
 
     start: float
     a: float
@@ -46,7 +48,7 @@ class Cubic:
 
 @dataclass(frozen=True, slots=True)
 class MarkRecord:
-    """A mark from a place in the lane section on, in the standard's words."""
+    """A road mark from ``start`` (m in the lane section), in the standard's words."""
 
     start: float
     type: str
@@ -55,7 +57,7 @@ class MarkRecord:
 
 @dataclass(frozen=True, slots=True)
 class Speed:
-    """A limit (m/s) from a place on, infinity for none, None where it is undefined."""
+    """A speed limit (m/s) from ``start`` (m); infinity for no limit, None where it is undefined."""
 
     start: float
     limit_mps: float | None
@@ -63,7 +65,7 @@ class Speed:
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """Who may use a lane from a place on: only some (``allow``), or all but some."""
+    """Users who alone may use a lane from ``start`` (m) on if ``allow``, or else may not use it."""
 
     start: float
     allow: bool
@@ -72,10 +74,10 @@ class Access:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Lane:
-    """A lane of a lane section; places of its parts are counted from where that begins.
+    """A lane of a lane section; the starts of its parts are relative to the start of the section.
 
-    ``borders`` instead of ``widths`` say where its outer border is. ``direction`` is the standard's
-    attribute of 1.8, ``predecessors`` and ``successors`` the lanes that it is linked with.
+    ``borders`` give the position of the outer border where there are no ``widths``. ``direction``
+    is the attribute of version 1.8; ``predecessors`` and ``successors`` are the linked lanes.
     """
 
     id: int
@@ -101,7 +103,7 @@ class LaneSection:
 
 @dataclass(frozen=True, slots=True)
 class RoadType:
-    """What a road is from a place on, in the standard's words, and its limit."""
+    """The type of a road from ``start`` (m), in the standard's words, and its speed limit."""
 
     start: float
     type: str
@@ -113,7 +115,7 @@ _Record = TypeVar("_Record", MarkRecord, RoadType, Speed)
 
 
 def record_at(records: Iterable[_Record], s: float, origin: float = 0.0) -> _Record | None:
-    """What holds at a place of records in their order, whose starts count from ``origin``."""
+    """The record that applies at ``s``, of sorted records whose starts count from ``origin``."""
     latest: _Record | None = None
     for record in records:
         if origin + record.start <= s:
@@ -132,10 +134,10 @@ class RoadLink:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RoadSignal:
-    """A signal on a road, or a reference to one.
+    """A signal on a road.
 
-    ``lanes``: ranges of the lanes that it holds for, None if the file does not say; ``limit_mps``
-    its value as a speed, ``value`` as it is written.
+    ``lanes``: ranges of the lanes that it applies to, None if the file gives none; ``value`` is the
+    number as written, in ``unit``.
     """
 
     id: str
@@ -152,7 +154,7 @@ class RoadSignal:
 
 @dataclass(frozen=True, slots=True)
 class SignalReference:
-    """A signal of another road that holds on this one, too."""
+    """A reference to a signal of another road that also applies to this road."""
 
     id: str
     s: float
@@ -162,9 +164,9 @@ class SignalReference:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RoadObject:
-    """A thing on a road, its place, and its outline.
+    """An object on a road, with its position and outline.
 
-    ``corners``: u and v (m) from its place in its own direction, or s and t if ``on_road``.
+    ``corners``: u and v (m) relative to its position and heading, or s and t if ``on_road``.
     """
 
     id: str
@@ -183,7 +185,7 @@ class RoadObject:
 
 @dataclass(frozen=True, slots=True)
 class RoadStretch:
-    """From where to where (``s``) something is."""
+    """The part of a road between two values of ``s`` (m)."""
 
     start: float
     end: float
@@ -191,9 +193,9 @@ class RoadStretch:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapRoad:
-    """A road; ``junction`` is the one that it leads through, or empty.
+    """A road; ``junction`` is the junction that it leads through, or empty.
 
-    ``has_rule``: does the file say on which side traffic keeps there?
+    ``has_rule``: whether the file gives the side of traffic for it.
     """
 
     id: str
@@ -214,15 +216,16 @@ class MapRoad:
     tunnels: tuple[RoadStretch, ...]
 
     def end_at(self, contact: ContactPoint) -> RoadLink | None:
-        """What it is linked with at an end."""
+        """The link at the start or the end of the road."""
         return self.predecessor if contact == "start" else self.successor
 
 
 @dataclass(frozen=True, slots=True)
 class Connection:
-    """A way between roads in a junction, with pairs of lanes.
+    """A way between roads in a junction, with pairs of linked lanes.
 
-    ``incoming`` has the first of each pair; the second is one of ``road``, at its end ``contact``.
+    The first lane of each pair is one of ``incoming``, the second one of ``road`` at its end
+    ``contact``.
     """
 
     incoming: str
@@ -233,7 +236,7 @@ class Connection:
 
 @dataclass(frozen=True, slots=True)
 class RoadJunction:
-    """A junction; ``priorities`` are pairs of roads, the first of which goes first."""
+    """A junction; of each pair of roads in ``priorities``, the first has priority."""
 
     id: str
     connections: tuple[Connection, ...]
@@ -242,9 +245,9 @@ class RoadJunction:
 
 @dataclass(slots=True)
 class OpenDrive:
-    """The content of a file; ``controllers`` have the ids of the signals that they control.
+    """The content of a file; ``controllers`` map to the ids of the signals that they control.
 
-    ``may_have_rules``: roads of its version may say on which side traffic keeps.
+    ``may_have_rules``: whether roads in the file's version may give the side of traffic.
     """
 
     # Not frozen: it is filled as the file is read

@@ -1,4 +1,4 @@
-"""An OpenDRIVE file, read as its elements."""
+"""Reads an OpenDRIVE file into its elements."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ OPENDRIVE = XmlFormat(
 
 
 def read_file(path: Path) -> OpenDrive:
-    """The content of a file. Raises RulecError R0610 if it is none, R0701 if it is unreadable."""
+    """The content of a file.
+
+    Raises RulecError R0610 for another kind, R0701 if it is unreadable.
+    """
     content = OpenDrive({}, {}, {})
     scan_trees(path, OPENDRIVE, lambda _: None, lambda tree: _add(content, tree))
     if not content.roads:
@@ -30,7 +33,7 @@ def _add(content: OpenDrive, tree: Tree) -> None:
     match tree.name:
         case "header":
             version, minor = text(tree, "revMajor"), text(tree, "revMinor")
-            # Version 1.4 has no `rule` of roads
+            # Roads have no `rule` up to version 1.4
             content.may_have_rules = minor not in ("0", "1", "2", "3", "4")
             if version not in ("", "1"):
                 why = f"its version is {short(version)}.{short(minor)}"
@@ -57,9 +60,9 @@ def _junction(tree: Tree) -> RoadJunction:
 
 
 def _connection(tree: Tree) -> Connection | None:
-    """A connection; None for one without roads, as those of virtual junctions may be."""
+    """A connection; None if it lacks a road, as in virtual junctions."""
     incoming = text(tree, "incomingRoad")
-    # Junctions of the type ``direct`` have no roads of their own
+    # Junctions of the type ``direct`` have no connecting roads
     road = text(tree, "connectingRoad") or text(tree, "linkedRoad")
     if not incoming or not road:
         return None

@@ -1,4 +1,4 @@
-"""Signals and objects on a road of an OpenDRIVE file, from their elements."""
+"""Reads signals and objects on a road from the elements of an OpenDRIVE file."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MOST_CORNERS = 10_000
 
 
 def read_signals(road: Tree) -> tuple[tuple[RoadSignal, ...], tuple[SignalReference, ...]]:
-    """The signals on a road, and those of other roads that it refers to."""
+    """The signals on a road, and its references to signals of other roads."""
     signals, references = [], []
     for group in road.all("signals"):
         signals += [_signal(tree) for tree in group.all("signal")]
@@ -26,7 +26,7 @@ def read_signals(road: Tree) -> tuple[tuple[RoadSignal, ...], tuple[SignalRefere
 
 
 def _signal(tree: Tree) -> RoadSignal:
-    # Some tools write a value that is no number for none
+    # Some tools write a text where there is no value
     try:
         value = float(text(tree, "value"))
     except ValueError:
@@ -50,12 +50,12 @@ def _reference(tree: Tree) -> SignalReference:
 
 
 def read_objects(road: Tree) -> tuple[RoadObject, ...]:
-    """The crosswalks, stop lines and other things on a road."""
+    """The crosswalks, stop lines and other objects on a road."""
     return tuple([_object(x) for group in road.all("objects") for x in group.all("object")])
 
 
 def _object(tree: Tree) -> RoadObject:
-    # Since 1.5 there may be several outlines, of which the first is the whole
+    # Since 1.5 there may be several outlines; the first is that of the whole object
     group = tree.first("outlines")
     outline = tree.first("outline") if group is None else group.first("outline")
     corners: list[tuple[float, float]] = []

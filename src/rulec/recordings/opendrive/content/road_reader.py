@@ -1,4 +1,4 @@
-"""A road of an OpenDRIVE file, from its element."""
+"""Reads a road from its element in an OpenDRIVE file."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from rulec.recordings.opendrive.content.tree_values import (
 
 LONGEST_ROAD_M = 1_000_000.0
 _MOST_TURNED = 200 * pi
-"""A piece of a reference line turns less, helical ramps included."""
+"""The most that a piece of a reference line turns (rad), helical ramps included."""
 
 _HAIR_M = 0.01
 
@@ -75,7 +75,7 @@ def read_road(tree: Tree) -> MapRoad:
 
 
 def _link(tree: Tree) -> RoadLink | None:
-    # What the file leaves out is not linked, as with an id of -1
+    # A missing link means none, as does an id of -1
     kind, other = text(tree, "elementType"), text(tree, "elementId")
     if kind not in ("road", "junction") or not other:
         return None
@@ -99,7 +99,7 @@ def _cubics(tree: Tree, kind: str, key: str) -> tuple[Cubic, ...]:
 
 def _geometries(tree: Tree) -> tuple[Geometry, ...]:
     geometries = sorted(map(_geometry, tree.all("geometry")), key=lambda piece: piece.s)
-    # Of two that begin at one place the first has no length
+    # Of two that start at the same s, the first has no length
     kept = [a for a, b in pairwise(geometries) if b.s > a.s] + geometries[-1:]
     if not kept:
         raise tree.wrong("a road has no `geometry`")
@@ -126,7 +126,7 @@ def _geometry(tree: Tree) -> Geometry:
         curved = max(map(abs, numbers), default=0.0) if shape in ("arc", "spiral") else 0.0
         if curved * whole > _MOST_TURNED:
             raise child.wrong(f"a road turns round {curved * whole / 2 / pi:,.0f} times")
-        # Normalized is what the standard takes for granted where a file does not say
+        # The standard's default is normalized
         normalized = shape == "paramPoly3" and text(child, "pRange") != "arcLength"
         return Geometry(
             s=s,
@@ -163,7 +163,7 @@ def _lanes(section: Tree) -> dict[int, Lane]:
     for side in ("left", "center", "right"):
         for tree in [lane for part in section.all(side) for lane in part.all("lane")]:
             lane = _lane(tree)
-            # SUMO's netconvert writes lanes -1 among those of `left` where traffic keeps left
+            # With left-hand traffic, SUMO's netconvert puts lanes -1 among those of `left`
             if (lane.id == 0) != (side == "center"):
                 raise tree.wrong(f"a lane {lane.id} is among those of `{side}`")
             if lane.id in lanes:
@@ -173,7 +173,7 @@ def _lanes(section: Tree) -> dict[int, Lane]:
 
 
 def _carry_over(before: dict[int, Lane], row: dict[int, Lane], way: float) -> None:
-    """Lanes of a side that a section says nothing about go on through it."""
+    """Continue the lanes of ``before`` on each side for which the next section gives no lane."""
     for side in (1, -1):
         if any(lane * side > 0 for lane in row):
             continue
@@ -217,7 +217,7 @@ def _mark(tree: Tree) -> MarkRecord:
 
 
 def _access(tree: Tree) -> Access:
-    """Who may use a lane; before 1.8 in one attribute, since then in an element for each."""
+    """The permissions in an element: one attribute before version 1.8, child elements since."""
     users = {text(tree, "restriction"), *(text(x, "type") for x in tree.all("restriction"))}
     allows = text(tree, "rule") == "allow"
     return Access(length(tree, "sOffset", 0.0), allows, frozenset(users - {""}))

@@ -1,4 +1,4 @@
-"""Attributes of OpenDRIVE's elements, checked."""
+"""Checked values of attributes in OpenDRIVE's elements."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rulec.recordings.opendrive.content.elements import ContactPoint, Cubic, Ori
 
 LONGEST_NAME = 200
 _UNITS = {**SPEED_UNITS, "": 1.0}
-"""The unit of a speed is m/s where none is given."""
+"""Units of speed; m/s where the file gives none."""
 
 _MOST_LANES = 1_000
 _STEEPEST = 1e30
@@ -39,7 +39,7 @@ def number(tree: Tree, key: str, default: float) -> float:
 
 
 def length(tree: Tree, key: str, default: float | None = None) -> float:
-    """A number not below 0; by a hair it may be, from rounding."""
+    """A number not below 0; slightly negative ones, from rounding, become 0."""
     value = tree.number(key) if default is None else number(tree, key, default)
     if value < -1e-3:
         raise tree.wrong(f"`{key}` of a `{tree.name}` is {value:g}", "a number not below 0")
@@ -57,16 +57,16 @@ def lane_number(tree: Tree, key: str = "id") -> int:
 
 
 def cubic(tree: Tree, key: str) -> Cubic:
-    """The polynomial in an element, which holds from an attribute on.
+    """The polynomial in an element; the attribute ``key`` gives its start.
 
-    Where it holds for a micrometre, as tools write it, coefficients are huge and its values not.
+    Tools write pieces a micrometre long, with huge coefficients but ordinary values.
     """
     b, c, d = (_coefficient(tree, name_) for name_ in "bcd")
     return Cubic(length(tree, key), number(tree, "a", 0.0), b, c, d)
 
 
 def _coefficient(tree: Tree, key: str) -> float:
-    """A number that is finite, or 0 if it is missing or empty."""
+    """A finite number, or 0 if it is missing or empty."""
     written = text(tree, key)
     try:
         value = float(written or 0.0)
@@ -76,17 +76,17 @@ def _coefficient(tree: Tree, key: str) -> float:
 
 
 def contact_point(tree: Tree) -> ContactPoint | None:
-    """The end of a road that something is linked with, None if it is not said."""
+    """The end of a road in a link; None if the file does not give it."""
     return _ENDS.get(text(tree, "contactPoint"))
 
 
 def orientation(tree: Tree) -> Orientation:
-    """The direction of the road in which something holds."""
+    """The direction along the road in which an element applies."""
     return _DIRECTIONS.get(text(tree, "orientation"), "none")
 
 
 def validity(tree: Tree) -> tuple[tuple[int, int], ...] | None:
-    """The lanes that an element holds for, from which to which; None for all."""
+    """The ranges of lanes that an element applies to; None for all lanes."""
     ranges = []
     for child in tree.all("validity"):
         ends = lane_number(child, "fromLane"), lane_number(child, "toLane")
@@ -95,7 +95,7 @@ def validity(tree: Tree) -> tuple[tuple[int, int], ...] | None:
 
 
 def speed(tree: Tree, key: str | None) -> Speed:
-    """The limit in an element; lanes' have a place that they hold from."""
+    """The speed limit in an element; for a lane, the attribute ``key`` gives its start."""
     start = 0.0 if key is None else length(tree, key, 0.0)
     match tree.attribute("max").strip().lower():
         case "no limit":
@@ -105,7 +105,7 @@ def speed(tree: Tree, key: str | None) -> Speed:
     most = tree.number("max")
     if most < 0:
         raise tree.wrong(f"`max` of a `speed` is {most:g}", "a number not below 0")
-    # Some tools write 0 for none that they know
+    # Some tools write 0 for an unknown limit
     return Speed(start, most * unit_mps(tree) if most else None)
 
 
