@@ -217,7 +217,7 @@ def _junctions(net: SumoNet) -> set[str]:
 
 
 def _is_for_buses(permitted: Set[str]) -> bool:
-    """True if these may use a lane, and with it buses, but not all."""
+    """Whether a lane permits buses, coaches or taxis, but no cars or trucks."""
     return bool(permitted & _BUSES) and not permitted & {"passenger", "private", "truck"}
 
 

@@ -338,7 +338,7 @@ def _centres(rows: NDArray[float64], length: float) -> NDArray[float64]:
 def _accelerations(
     track_rows: FcdTrack, speeds: NDArray[float64], steps: NDArray[int64], step_s: float
 ) -> NDArray[float64]:
-    """The accelerations, as stated or else from the difference of speed since the step before."""
+    """The accelerations (m/s²): those in the data, or else from the speed at the last step."""
     stated = np.array(track_rows.accelerations, dtype=float)
     changes = np.diff(speeds, prepend=speeds[0]) / (np.diff(steps, prepend=steps[0] - 1) * step_s)
     return np.where(np.isnan(stated), changes, stated)
