@@ -46,7 +46,7 @@ def test_what_the_file_leaves_open_is_said(files, capfd):
     file, net = files
     words = ["maneuvers", file, "-r", "esterle2019", "--map", net, "--ego", "f.0"]
     assert main(words) == 0
-    said = "note        types that no file describes are taken to be as usual: `small` (car, 5 m)"
+    said = "note        types that no file describes get default values: `small` (car, 5 m)"
     assert said in capfd.readouterr().out
     assert main([*words, "--json"]) == 0
     scene = json.loads(capfd.readouterr().out)["scene"]

@@ -138,7 +138,7 @@ def three_cars(*lit):
 def test_an_indicator_that_is_on_all_the_time_of_all_is_none(read):
     found = read(three_cars((1, 1), (1, 1), (1, 1)))
     (remark,) = found.remarks
-    assert remark == "the right indicator of every vehicle is on all the time, so it tells nothing"
+    assert remark == "the right indicator of every vehicle is on all the time, so it is ignored"
     cars = [body for body in found.participants if body.lamps]
     assert len(cars) == 3
     for car in cars:
@@ -357,7 +357,7 @@ def test_intersections_that_share_an_id_are_several(read):
     twice = "".join(f"{begin}{of_each}</incoming></intersection>" for of_each in (way, "", ""))
     found = read(("  <obstacle", f"{twice}<obstacle"))
     remarks = [remark for remark in found.remarks if "intersections" in remark]
-    assert remarks == ["there are several intersections `70`: each is taken for one of its own"]
+    assert remarks == ["there are several intersections `70`: each is treated as a separate one"]
     assert found.lanelets["1"].junction == "70"
 
 

@@ -130,7 +130,7 @@ def test_other_xml(written):
 
 def test_a_file_without_roads_is_no_map(written):
     roads = ROAD_XML[ROAD_XML.index("  <lanelet ") : ROAD_XML.index("  <obstacle ")]
-    with pytest.raises(RulecError, match="there is no lanelet in it"):
+    with pytest.raises(RulecError, match="it has no lanelet"):
         read_map(written(ROAD_XML.replace(roads, "")), 0.1)
 
 

@@ -55,7 +55,7 @@ def test_few_states_of_many_for_a_long_time(tmp_path):
     ("time", "says"),
     [
         (INTERVAL.format(5, 3), "an interval of time begins at step 5 and ends at 3"),
-        (INTERVAL.format(0, 99_000_000), "more than 1,000,000 steps together"),
+        (INTERVAL.format(0, 99_000_000), "more than 1,000,000 steps in total"),
         (f"<exact>{10**300}</exact>", "`exact` is `1000"),
         (f"<exact>{'9' * 5000}</exact>", "`exact` is `9999"),
         ("<exact>1.5</exact>", "`exact` is `1.5`"),

@@ -115,7 +115,7 @@ def test_a_missing_part_is_named(tmp_path, there, missing):
 
 def test_a_map_alone_is_no_recording():
     found = refused(MAP)
-    assert "it is the map of a scenario in parts, on which nobody drives" in found.message
+    assert "it is the map of a scenario in parts, without traffic" in found.message
     assert "give the part with the traffic" in found.help
 
 
@@ -123,7 +123,7 @@ def test_another_file_with_the_name_of_a_part(tmp_path):
     file = copied(tmp_path, TRAFFIC)
     shutil.copy(SINGLE, tmp_path / MAP.name)
     found = refused(file, beside=tmp_path / MAP.name)
-    assert f"it is not the part that `{TRAFFIC.name}` looks for" in found.message
+    assert f"it is not the part that `{TRAFFIC.name}` refers to" in found.message
 
 
 @pytest.mark.parametrize(
@@ -242,7 +242,9 @@ def test_a_bound_that_the_map_has_not(tmp_path):
     lanelet = counted(3, whole(1, 7), whole(2, 4711), whole(3, 4711))
     (tmp_path / MAP.name).write_bytes(data + lanelet)
     found = refused(file, beside=tmp_path / MAP.name)
-    assert f"at byte {len(data) + 5:,}, `leftBound` is 4711, which the map has not" in found.message
+    assert (
+        f"at byte {len(data) + 5:,}, `leftBound` is 4711, which is not in the map" in found.message
+    )
 
 
 def test_bounds_of_too_many_lanelets(tmp_path, monkeypatch):

@@ -8,7 +8,7 @@ from rulec.recordings.lanelet2.signs import sign_of
 from rulec.recordings.map_files import read_map
 from support.builders.lanelet2_files import SAMPLES, MapFile
 
-NO_LIGHT = "what its {} traffic lights show is not in the map"
+NO_LIGHT = "the map does not contain what its {} traffic lights show"
 
 
 def bounds(file, start, end, width=3.0):

@@ -59,7 +59,7 @@ def test_the_good_one(tmp_path):
         ('<left><lane id="1"', '<left><lane id="0"', "a lane 0 is among those of `left`"),
         ('id="-2" type="sidewalk"', 'id="-1" type="sidewalk"', "there are two lanes -1"),
         ('id="-2" type="sidewalk"', 'id="-2000" type="sidewalk"', "`id` of a `lane` is `-2000`"),
-        ('laneSection s="50"', 'laneSection s="500"', "begins at 500 m, behind the road's end"),
+        ('laneSection s="50"', 'laneSection s="500"', "begins at 500 m, beyond the road's end"),
         ('unit="km/h"', 'unit="knots"', "`unit` of a `speed` is `knots`"),
         ('max="50"', 'max="-50"', "`max` of a `speed` is -50"),
         ('junction="-1"', 'junction="-1" rule="both"', "`rule` of a `road` is `both`"),

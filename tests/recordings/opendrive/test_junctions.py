@@ -325,4 +325,4 @@ def test_no_limit_holds_within_a_junction_alone(tmp_path, within, after, holds):
         text = re.sub(head, rf"\g<1>{kind}", text, count=1, flags=re.DOTALL)
     found = read_map(written(tmp_path, text), 0.1)
     assert found.lanelets["4.0.-1"].limit_mps == holds
-    assert any("speeds of turning" in remark for remark in found.remarks) == (within != holds)
+    assert any("turning speeds" in remark for remark in found.remarks) == (within != holds)

@@ -104,7 +104,7 @@ def test_unknown_kinds_are_said(tmp_path):
     found = read_map(written(tmp_path, document(road(1, lanes))), 0.1)
     assert found.lanelets.keys() == {"1.0.-1", "1.0.-2"}
     assert found.lanelets["1.0.-2"].types == {"border"}
-    assert found.remarks == ("lanes of these types are taken to be beside the carriageway: `moat`",)
+    assert found.remarks == ("lanes of these types are treated as beside the carriageway: `moat`",)
 
 
 def test_a_lane_for_buses_by_access(tmp_path):
@@ -288,7 +288,7 @@ def test_the_side_of_a_version_in_which_no_road_can_tell_it(tmp_path, minor, lan
     text = text.replace('revMinor="6"', f'revMinor="{minor}"')
     found = read_map(written(tmp_path, text), 0.1)
     assert found.side == side
-    assert any("does not tell the side" in x for x in found.remarks) == (side is None)
+    assert any("does not give the side" in x for x in found.remarks) == (side is None)
 
 
 def test_a_lane_is_on_the_side_that_its_number_says(tmp_path):

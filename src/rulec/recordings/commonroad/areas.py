@@ -96,7 +96,7 @@ def _part(tree: Tree, body: bool) -> Part:
     if tree.name == "polygon":
         return _polygon(tree, body)
     if tree.name not in _SHAPES:
-        why = f"the element `{tree.name}` is no shape that is known here"
+        why = f"the element `{tree.name}` is not a known shape"
         raise tree.wrong(why, f"one of {', '.join(_SHAPES)}")
     centre = tree.first("center")
     x, y = (0.0, 0.0) if centre is None else read_point(centre)
@@ -111,7 +111,7 @@ def _part(tree: Tree, body: bool) -> Part:
         for child in map(tree.first, ("orientation", "originXShift"))
     )
     if abs(shift) > length / 2:
-        raise tree.wrong(f"the place of an obstacle is {shift:g} m ahead of its middle, outside it")
+        raise tree.wrong(f"an obstacle's position is {shift:g} m ahead of its middle, outside it")
     return Rectangle(length, width, x, y, heading=turned_once(heading), shift=shift)
 
 

@@ -69,11 +69,11 @@ def read_commonroad_map(path: Path, step_s: float) -> RoadMap:
     """
     whole = read_commonroad(path)
     if not whole.lanelets:
-        raise COMMONROAD.refused(path, "there is no lanelet in it, so that it is no map")
+        raise COMMONROAD.refused(path, "it has no lanelet, so it is not a map")
     lit = any(lanelet.lights or lanelet.lights_to for lanelet in whole.lanelets.values())
     if lit and abs(whole.step_s - step_s) > _SAME_STEP_S:
-        own = f"its traffic lights count in steps of {whole.step_s:g} s"
-        why = f"{own}, the recording in {step_s:g} s"
+        own = f"its traffic lights use time steps of {whole.step_s:g} s"
+        why = f"{own}, the recording uses {step_s:g} s"
         raise COMMONROAD.refused(path, why)
     return RoadMap(
         form=whole.form,

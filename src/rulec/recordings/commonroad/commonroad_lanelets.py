@@ -52,7 +52,7 @@ def read_lanelet(tree: Tree) -> LaneletEntry:
     left, right = (_bound(tree.child(name)) for name in ("leftBound", "rightBound"))
     if len(left) != len(right):
         why = f"a lanelet has {len(left)} points on its left, and {len(right)} on its right"
-        raise tree.wrong(why, "as many on one side as on the other")
+        raise tree.wrong(why, "the same number on both sides")
     limit = tree.first("speedLimit")
     lanelet = recording.Lanelet(
         id=tree.id(),

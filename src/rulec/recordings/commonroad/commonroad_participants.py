@@ -192,7 +192,7 @@ def without_constant_indicators(
     if not constant:
         return tuple(bodies), ()
     remarks = [
-        f"the {lamp.replace('_', ' ')} of every vehicle is on all the time, so it tells nothing"
+        f"the {lamp.replace('_', ' ')} of every vehicle is on all the time, so it is ignored"
         for lamp in constant
     ]
     return tuple([_without(body, frozenset(constant)) for body in bodies]), tuple(remarks)

@@ -44,8 +44,8 @@ def read_protobuf(path: Path) -> Recording:
         begin(content, _scan(file, kind, lambda tree: add(content, tree)))
         return to_recording(content, path, PROTOBUF)
     if kind is tables.MAP:
-        why = "it is the map of a scenario in parts, on which nobody drives"
-        way_out = "give the part with the traffic; the map is found if it lies beside it"
+        why = "it is the map of a scenario in parts, without traffic"
+        way_out = "give the part with the traffic; the map is found in the same folder"
         raise PROTOBUF.refused(path, why, help_text=way_out)
     problems = file if kind is tables.SCENARIO else None
     if problems is not None:
@@ -79,7 +79,7 @@ def _kind(file: WireFile) -> Table:
             return tables.MAP
         case b"\b":
             return tables.DYNAMIC if has_second else tables.SCENARIO
-    raise PROTOBUF.refused(file.path, "it does not begin with what is known of the scenario")
+    raise PROTOBUF.refused(file.path, "it does not begin like a scenario or a part of one")
 
 
 def _part(path: Path, stem: str, kind: Table) -> WireFile:
@@ -94,7 +94,7 @@ def _part(path: Path, stem: str, kind: Table) -> WireFile:
         raise PROTOBUF.refused(path, why, help_text="put the parts into one folder")
     file = wire_file(beside, PROTOBUF)
     if _kind(file) is not kind:
-        raise PROTOBUF.refused(beside, f"it is not the part that `{short(path.name)}` looks for")
+        raise PROTOBUF.refused(beside, f"it is not the part that `{short(path.name)}` refers to")
     return file
 
 
@@ -129,7 +129,7 @@ def _add_map(content: Content, file: WireFile) -> None:
             if (kind := _REFERENCES.get(child.name)) is not None:
                 bound = bounds.get((kind, child.text))
                 if bound is None:
-                    raise child.wrong(f"`{child.name}` is {child.text}, which the map has not")
+                    raise child.wrong(f"`{child.name}` is {child.text}, which is not in the map")
                 is_reverse = child.attributes.get("reverse") == "true"
                 child.children = bound.children[::-1] if is_reverse else bound.children
                 left -= len(bound.children)

@@ -41,7 +41,7 @@ def read_light(tree: Tree) -> recording.Light | None:
     for element in cycle.all("cycleElement"):
         steps = element.child("duration").whole()
         if steps <= 0:
-            raise element.wrong("a traffic light has a phase that does not last")
+            raise element.wrong("a traffic light has a phase of no duration")
         phases.append((element.child("color").one_of(_COLOURS), steps))
     offset = cycle.first("timeOffset")
     begin = 0 if offset is None else offset.whole()

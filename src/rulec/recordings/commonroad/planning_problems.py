@@ -71,6 +71,6 @@ def _middle(goal: Tree, lanelets: Mapping[str, recording.Lanelet]) -> Iterator[t
 def _outline(goal: Tree, number: str, lanelets: Mapping[str, recording.Lanelet]) -> shapely.Polygon:
     lanelet = lanelets.get(number)
     if lanelet is None:
-        raise goal.wrong(f"the goal is lanelet {number}, which the file has not")
+        raise goal.wrong(f"the goal is lanelet {number}, which is not in the file")
     around = shapely.Polygon(np.concatenate((lanelet.right, lanelet.left[::-1])))
     return shapely.geometry.polygon.orient(around, sign=-1.0)

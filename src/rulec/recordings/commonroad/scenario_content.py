@@ -93,7 +93,7 @@ def add_step(content: Content, root: Tree) -> None:
     """Read the length of a time step from the root element."""
     content.step_s = root.number("timeStepSize")
     if content.step_s < SHORTEST_STEP_S:
-        raise root.wrong(f"a time step of {content.step_s:g} s is none")
+        raise root.wrong(f"a time step of {content.step_s:g} s is too short")
 
 
 def add(content: Content, tree: Tree) -> None:
@@ -144,7 +144,7 @@ def _add_intersection(content: Content, intersection: Intersection) -> None:
     """
     number = intersection.id
     if number in content.intersections:
-        remark = f"there are several intersections `{number}`: each is taken for one of its own"
+        remark = f"there are several intersections `{number}`: each is treated as a separate one"
         if remark not in content.remarks:
             content.remarks.append(remark)
         number = f"{number}#{len(content.intersections) + 1}"
@@ -164,7 +164,7 @@ def _lanelets(content: Content) -> dict[str, recording.Lanelet]:
     )
     if disordered:
         content.remarks.append(
-            "bounds go back on themselves, so that their points were put in order: "
+            "bounds turn back on themselves, so their points were put in order: "
             f"those of the lanelets {named(disordered)}"
         )
     inside = junctions(content.intersections.values(), plain)
@@ -193,8 +193,8 @@ def _with_untold_signs(
     if not signs:
         return lanelets
     content.remarks.append(
-        "signs of who goes first are at lanelets beside the carriageway: "
-        "where on it they hold is not told"
+        "priority signs are at lanelets beside the carriageway: "
+        "the lanes for which they hold are unknown"
     )
     return {
         number: lanelet

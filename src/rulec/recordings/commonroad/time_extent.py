@@ -42,7 +42,7 @@ class TimeExtent:
         too_far = spread > min(MOST_STEPS, SPARSEST * len(self.moments))
         if too_far or (spread + 1) * obstacles > most:
             why = (
-                f"the time steps {first} to {last} are too far apart for what is in it "
+                f"the time steps {first} to {last} are too far apart for its content "
                 f"(obstacles: {obstacles:,}, states: {self.states:,})"
             )
             raise form.refused(path, why, help_text=_WAY_OUT)
@@ -62,6 +62,6 @@ def read_steps(tree: Tree, extent: TimeExtent) -> range:
     extent.add((first, last))
     extent.repeated += last - first
     if extent.repeated > MOST_STEPS:
-        why = f"its intervals of time have more than {MOST_STEPS:,} steps together"
+        why = f"its intervals of time have more than {MOST_STEPS:,} steps in total"
         raise tree.form.refused(tree.path, why, tree.place, help_text=_WAY_OUT)
     return range(first, last + 1)

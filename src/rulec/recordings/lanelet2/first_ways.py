@@ -77,7 +77,7 @@ def _come_towards(survey: Surveyed, names: list[str]) -> dict[str, set[str]]:
         met = tree.query(shapely.LineString(entry.centre), predicate="intersects").tolist()
         count += len(met)
         if count > _MOST_MET:
-            raise survey.file.refused("too many of its lanelets lie on each other")
+            raise survey.file.refused("too many of its lanelets overlap")
         for number in met:
             other = all_lanes[number]
             itself = other.id.removesuffix(REVERSED) == name.removesuffix(REVERSED)

@@ -42,7 +42,7 @@ def read_lanelet2(path: Path) -> RoadMap:
     side = side_of(entries, country)
     remarks = [places.remark, *_left_out(left_out), *remarks_on(rules.values())]
     if side is None:
-        remarks.append("the map does not tell the side on which traffic keeps")
+        remarks.append("the map does not give the side of traffic")
     return RoadMap(
         form="Lanelet2 map",
         lanelets={

@@ -112,7 +112,7 @@ def _projection(
         offset = first
     else:
         half = "south" if south else "north"
-        remark = f"the map has no origin: places are UTM's, zone {zone} {half}"
+        remark = f"the map has no origin: positions are in UTM zone {zone} {half}"
 
     def easting_northing(x: NDArray[float64], y: NDArray[float64]) -> Points:
         places: Points = projections.utm(x, y, zone, south=south) - offset
@@ -166,5 +166,5 @@ def _number(path: Path, info: dict[str, str], key: str, default: float) -> float
     except ValueError:
         value = nan
     if not (isfinite(value) and abs(value) < LARGEST):
-        raise LANELET2.refused(path, f"its `{key}` is `{short(info[key])}`, which is no number")
+        raise LANELET2.refused(path, f"its `{key}` is `{short(info[key])}`, which is not a number")
     return value

@@ -246,7 +246,7 @@ def _drawn_stop_lines(survey: Surveyed, rules: Mapping[str, LaneRules]) -> None:
         crossed = tree.query(shapely.LineString(line), predicate="dwithin", distance=_ON_LINE_M)
         count += len(crossed)
         if count > _MOST_CROSSED:
-            raise survey.file.refused("too many of its lanelets lie on each other")
+            raise survey.file.refused("too many of its lanelets overlap")
         for number in crossed.tolist():
             entry, middle = open_lanes[number], middles[number]
             along = middle.project(shapely.Point(line.mean(axis=0)))
@@ -269,4 +269,4 @@ def remarks_on(rules: Iterable[LaneRules]) -> Iterator[str]:
     """Remarks on what the map does not contain about its lights."""
     lights = {id(light) for own in rules for light in own.lights}
     if lights:
-        yield f"what its {len(lights)} traffic lights show is not in the map"
+        yield f"the map does not contain what its {len(lights)} traffic lights show"

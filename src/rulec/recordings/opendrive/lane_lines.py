@@ -83,7 +83,7 @@ def _fine_enough(piece: RoadPiece, s: Numbers) -> Numbers:
     while len(ends):
         count += len(ends) * len(piece.section.lanes)
         if count > MOST_PLACES:
-            raise ValueError(f"its lanes wind so much that they have over {MOST_PLACES:,} places")
+            raise ValueError(f"its lanes wind so much that they need over {MOST_PLACES:,} points")
         done.append(ends.ravel())
         at = ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * _QUARTERS
         flat = at.ravel()
@@ -110,7 +110,7 @@ def _lines(piece: RoadPiece, s: Numbers) -> Lines:
         line = places_on(piece.road.geometries, s)
         x, y = line.x - t * np.sin(line.heading), line.y + t * np.cos(line.heading)
     if not max(np.abs(x).max(), np.abs(y).max()) < _LARGEST:
-        raise ValueError("it leads to places farther away than the earth is large")
+        raise ValueError("it leads farther away than the earth is large")
     return np.stack((x, y), axis=-1)
 
 

@@ -153,7 +153,7 @@ def _borders(
                     raise OPENDRIVE.refused(path, why, piece.road.line)
                 borders[piece.road.id, piece.number, lane] = lines
             if count > MOST_PLACES:
-                why = f"its lanes wind so much that they have over {MOST_PLACES:,} places"
+                why = f"its lanes wind so much that they need over {MOST_PLACES:,} points"
                 raise OPENDRIVE.refused(path, why, piece.road.line)
     return borders
 
@@ -310,15 +310,15 @@ def _remarks(content: OpenDrive, side: Side | None, slow_turns: int) -> Iterator
     if strange:
         names, more = list(strange)[:_NAMED], len(strange) - _NAMED
         some = ", ".join(names + ([f"{more} more"] if more > 0 else []))
-        yield f"lanes of these types are taken to be beside the carriageway: {some}"
+        yield f"lanes of these types are treated as beside the carriageway: {some}"
     if len({road.left_hand for road in content.roads.values()}) > 1:
         yield "traffic keeps to the left on some roads of the map, and to the right on others"
     elif side is None:
-        yield "the map does not tell the side on which traffic keeps"
+        yield "the map does not give the side of traffic"
     if side == "left" and not any(road.has_rule for road in content.roads.values()):
         yield "traffic keeps to the left, as its lanes show: no road has a `rule`"
     if slow_turns:
         yield (
             f"limits of {slow_turns} lanes within junctions are below those before and after: they "
-            "are taken for speeds of turning, and those before hold"
+            "are treated as turning speeds, and those before apply"
         )

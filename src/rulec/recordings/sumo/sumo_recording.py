@@ -76,7 +76,7 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     """
     data = _content(path)
     if data.head.geographic:
-        why = "its places are geographic, degrees of longitude and latitude"
+        why = "its positions are geographic, in degrees of longitude and latitude"
         raise FCD.refused(path, why, help_text="have SUMO write them without --fcd-output.geo")
     if not data.tracks:
         raise FCD.refused(path, "nobody is in it")
@@ -172,16 +172,16 @@ def _participants(
 def _remarks(unknown: Iterable[str], net: SumoNet) -> Iterator[str]:
     guessed = sorted(unknown)
     if guessed:
-        yield f"types that no file describes are taken to be as usual: {_list(guessed)}"
+        yield f"types that no file describes get default values: {_list(guessed)}"
     lights = [f"`{short(name)}`" for name in net.unknown_lights()]
     if lights:
-        yield f"the programmes of these traffic lights are not known: {_list(lights)}"
+        yield f"the programmes of these traffic lights are unknown: {_list(lights)}"
 
 
 def _left_out(data: FloatingCarData) -> Iterator[str]:
     if data.head.leaves_out:
         options = _list([f"--{name}" for name in data.head.leaves_out])
-        yield f"only a part of the traffic is in the data, by {options}: who else drives is unknown"
+        yield f"{options} left traffic out of the data: that traffic is unknown"
 
 
 def _list(names: list[str]) -> str:
@@ -194,8 +194,8 @@ def _check_places(path: Path, data: FloatingCarData, net_path: Path, net: SumoNe
         if name not in (net.lanes if kind == "lane" else net.edges):
             raise OTHER_NET.error(
                 SourceLocation(str(path), line),
-                f"somebody is on {kind} `{short(name)}`, which the net {net_path.name} has not",
-                help="name with --map the net that the data were made with",
+                f"a participant is on {kind} `{short(name)}`, which the net {net_path.name} lacks",
+                help="use --map to give the net that the data were made with",
             )
 
 
@@ -212,7 +212,7 @@ def _check_near(
                 SourceLocation(str(path)),
                 f"`{short(participant.id)}` is at x = {state.x:g}, y = {state.y:g}, far from all "
                 "roads of the net",
-                help="have SUMO write places in the net's own metres, without "
+                help="have SUMO write positions in the net's own metres, without "
                 "--fcd-output.geo and --fcd-output.utm",
             )
 
@@ -233,7 +233,7 @@ def time_step(path: Path, moments: list[int]) -> float:
             f"its times are uneven: {off / MICROSECONDS:g} s is no multiple of "
             f"{step / MICROSECONDS:g} s, the shortest time from one to the next"
         )
-        way_out = "have SUMO write every step, or one in so many (--device.fcd.period)"
+        way_out = "have SUMO write every step, or every n-th one (--device.fcd.period)"
         raise FCD.refused(path, why, help_text=way_out)
     spread = (moments[-1] - moments[0]) // step
     if spread > min(MOST_STEPS, SPARSEST * len(moments)):

@@ -138,7 +138,7 @@ def _geometry(tree: Tree) -> Geometry:
             numbers=numbers,
             normalized=normalized,
         )
-    raise tree.wrong("a `geometry` has no shape that is known here", f"one of {', '.join(_SHAPES)}")
+    raise tree.wrong("a `geometry` has no known shape", f"one of {', '.join(_SHAPES)}")
 
 
 def _sections(lanes: Tree, road_length: float) -> Iterator[LaneSection]:
@@ -147,7 +147,7 @@ def _sections(lanes: Tree, road_length: float) -> Iterator[LaneSection]:
         raise lanes.wrong("a road has no `laneSection`")
     starts = [length(tree, "s") for tree in trees]
     if starts[-1] > road_length + _HAIR_M:
-        raise trees[-1].wrong(f"a lane section begins at {starts[-1]:g} m, behind the road's end")
+        raise trees[-1].wrong(f"a lane section begins at {starts[-1]:g} m, beyond the road's end")
     rows: list[dict[int, Lane]] = []
     for number_, tree in enumerate(trees):
         row = _lanes(tree)
