@@ -22,7 +22,7 @@ _MOST_MET = 1_000_000
 def first_ways(survey: Surveyed, rules: Mapping[str, LaneRules]) -> dict[str, frozenset[str]]:
     """Lanelet in a junction -> the lanelets whose traffic has priority over its own.
 
-    Contains only lanelets for which the priority over all oncoming traffic is known.
+    Contains only lanelets whose priority relative to all oncoming traffic is known.
     """
     prior: dict[str, frozenset[str]] = defaultdict(frozenset)
     named: set[str] = set()

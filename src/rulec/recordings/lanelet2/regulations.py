@@ -177,7 +177,7 @@ def approaches(
     """The lanelets that end at a rule's line; with the next lanelet if it is only for that way.
 
     This is the lanelet ``entry`` that refers to the rule. It is its predecessors if the line lies
-    at its beginning or, within a junction, in its first half.
+    at its beginning or, within a junction, in its first half or is missing.
     """
     before = [x for x in survey.topology.predecessors[entry.id] if survey.entries[x].is_lane]
     if before and _begins_behind(entry, line):
@@ -196,9 +196,9 @@ def _begins_behind(entry: MapLanelet, line: Points | None) -> bool:
 
 
 def _all_way_stop(survey: Surveyed, element: OsmRelation, rules: Mapping[str, LaneRules]) -> None:
-    """Add an all-way stop.
+    """Add an all-way stop to its lanelets.
 
-    Without exactly one line per lanelet, vehicles stop at a lanelet's end.
+    The lines are in the order of the lanelets; if their numbers differ, no lanelet gets a line.
     """
     names = list(element.refs("yield", "relation"))
     lines = [survey.line(way) for way in element.refs("ref_line", "way")]
