@@ -39,10 +39,10 @@ def test_files_are_rewritten_in_place(folder, capsys):
     assert fmt(capsys, "good.rules", "ugly.rules") == (
         0,
         "",
-        "1 file changed, 1 file in form already\n",
+        "1 file changed, 1 file already formatted\n",
     )
     assert (folder / "ugly.rules").read_text() == GOOD
-    assert fmt(capsys, "ugly.rules", "./ugly.rules") == (0, "", "1 file in form already\n")
+    assert fmt(capsys, "ugly.rules", "./ugly.rules") == (0, "", "1 file already formatted\n")
 
 
 def test_without_paths_it_is_the_working_folder(folder, capsys):
@@ -50,7 +50,7 @@ def test_without_paths_it_is_the_working_folder(folder, capsys):
     (folder / "inner" / "another.rules").write_text(UGLY)
     (folder / ".hidden").mkdir()
     (folder / ".hidden" / "third.rules").write_text(UGLY)
-    assert fmt(capsys) == (0, "", "2 files changed, 1 file in form already\n")
+    assert fmt(capsys) == (0, "", "2 files changed, 1 file already formatted\n")
     assert (folder / "inner" / "another.rules").read_text() == GOOD
     assert (folder / ".hidden" / "third.rules").read_text() == UGLY
 
@@ -66,15 +66,15 @@ def test_check_names_files_and_writes_nothing(folder, capsys):
     assert fmt(capsys, "--check") == (
         1,
         "would change ugly.rules\n",
-        "1 file would change, 1 file in form already\n",
+        "1 file would change, 1 file already formatted\n",
     )
     assert (folder / "ugly.rules").read_text() == UGLY
-    assert fmt(capsys, "--check", "good.rules") == (0, "", "1 file in form already\n")
+    assert fmt(capsys, "--check", "good.rules") == (0, "", "1 file already formatted\n")
 
 
 def test_diff_can_be_applied(folder, capsys):
     status, out, err = fmt(capsys, "--diff")
-    assert (status, err) == (1, "1 file would change, 1 file in form already\n")
+    assert (status, err) == (1, "1 file would change, 1 file already formatted\n")
     assert out == (
         "--- ugly.rules\n"
         "+++ ugly.rules\n"
@@ -136,7 +136,7 @@ def test_mistakes_leave_a_file_alone_and_others_go_on(folder, capsys):
     assert (status, out) == (2, "")
     assert "error[R0104]" in err
     assert "--> a_wrong.rules:3:25" in err
-    assert err.endswith("1 file changed, 1 file in form already\n")
+    assert err.endswith("1 file changed, 1 file already formatted\n")
     assert (folder / "a_wrong.rules").read_text() == WRONG
     assert (folder / "ugly.rules").read_text() == GOOD
     assert fmt(capsys, "--check")[0] == 2
@@ -215,7 +215,7 @@ def test_a_file_that_may_not_be_written_is_named(folder, capsys, monkeypatch):
     status, _, err = fmt(capsys)
     assert status == 2
     assert "error[R0702]: the file cannot be written: permission denied" in err
-    assert err.endswith("\n1 file changed, 1 file in form already\n")
+    assert err.endswith("\n1 file changed, 1 file already formatted\n")
     assert (folder / "ugly.rules").read_text() == UGLY
     assert (folder / "z.rules").read_text() == GOOD
 

@@ -102,7 +102,7 @@ def test_what_is_known_to_be_in_form_is_not_parsed_again(project, capsys, monkey
     monkeypatch.setattr(
         batch_format, "formatted", lambda *given: parsed.append(given[0]) or format_it(*given)
     )
-    assert run(capsys, "fmt", "--check", "laws") == (0, "", "4 files in form already\n")
+    assert run(capsys, "fmt", "--check", "laws") == (0, "", "4 files already formatted\n")
     assert parsed == []
     Path("laws/one.rules").write_text(BOOK.format("one").replace(" {", "{"))
     assert run(capsys, "fmt", "--check", "laws")[0] == 1

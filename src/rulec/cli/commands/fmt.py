@@ -74,7 +74,7 @@ def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -
     if changed:
         parts.append(f"{counted(len(changed), 'file')} {'changed' if writes else 'would change'}")
     if in_form:
-        parts.append(f"{counted(in_form, 'file')} in form already")
+        parts.append(f"{counted(in_form, 'file')} already formatted")
     if parts:
         print_remark(", ".join(parts))
     print_left_alone(done.left_alone, verbose=verbose)
