@@ -211,9 +211,9 @@ def test_what_is_wrong_in_an_element_has_a_place(tmp_path, elements, why):
     ("begin", "why"),
     [
         (BEGIN.replace(b"2020a", b"2031z"), "its `commonRoadVersion` is `2031z`"),
-        (BEGIN.replace(b"2020a", b"hello"), "it does not begin with what is known"),
+        (BEGIN.replace(b"2020a", b"hello"), "it does not begin like a scenario"),
         (counted(1, counted(1, b"2020a")), "has no `benchmarkID`"),
-        (field(9, 5, b"\0\0\0\0"), "it does not begin with what is known"),
+        (field(9, 5, b"\0\0\0\0"), "it does not begin like a scenario"),
     ],
 )
 def test_what_a_file_begins_with(tmp_path, begin, why):
