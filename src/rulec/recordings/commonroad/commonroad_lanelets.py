@@ -26,9 +26,9 @@ _MARKS: Mapping[str, recording.LaneMark | None] = MappingProxyType(
         **dict.fromkeys(("solid_dashed", "dashed_solid", "curb", "lowered_curb", "unknown")),
     }
 )
-"""CommonRoad's line markings as lane marks.
+"""CommonRoad's line markings as lane marks; None for kerbs, unknown ones and mixed lines.
 
-None for unknown ones and kerbs, and for marks that mix solid and dashed, as the sides are unclear.
+The sides of a line that is solid and dashed are unclear.
 """
 
 _TYPES = """

@@ -58,10 +58,7 @@ def read_body(tree: Tree, extent: TimeExtent, *, standing: bool) -> recorded.Par
 
 
 def _stated_error(states: Sequence[State]) -> recorded.StatedError | None:
-    """The median position error (m) and speed error (m/s) given by the states.
-
-    None if both are 0.
-    """
+    """The median position and speed errors (m, m/s) given by the states; None if both are 0."""
     if not any(state.area or state.speed_error for state in states):
         return None
     places = [shapely.minimum_bounding_radius(geometry(x.area)) if x.area else 0 for x in states]
@@ -121,7 +118,7 @@ def _outline(body: Area, state: State) -> recorded.Points:
 def track_state(state: State, outline: recorded.Points) -> recorded.TrackState:
     """The recorded state.
 
-    If its position is an area, it is placed at the mean of the outline's points.
+    An area as its position is replaced by the mean of the outline's points.
     """
     x, y = outline.mean(axis=0).tolist() if state.area else (state.x, state.y)
     return recorded.TrackState(x, y, state.heading.middle, state.speed, state.acceleration)
@@ -171,7 +168,7 @@ def _lamps(
 
 _INDICATORS: tuple[recorded.Lamp, ...] = ("left_indicator", "right_indicator")
 _FEWEST = 3
-"""At least as many vehicles never all indicate to the same side all the time."""
+"""This many vehicles or more never all indicate to the same side all the time."""
 
 
 def without_constant_indicators(

@@ -62,8 +62,8 @@ def junctions(
     """Lanelet -> the intersection of the file that it lies in.
 
     A way through an intersection may consist of several lanelets, and the file names only the
-    first. Lanelets that no other lanelet crosses, ahead of crossed ones, only lead to the
-    intersection. They lie in it if their type says so, as where vehicles wait for oncoming traffic
+    first. A lanelet that no other one crosses, ahead of crossed ones, only leads to the
+    intersection. It lies in it if its type says so, as where vehicles wait for oncoming traffic
     before turning.
     """
     waiting = list(intersections)
@@ -115,7 +115,7 @@ def _direction(line: shapely.LineString, place: shapely.Point) -> float:
 def read_weather(location: Tree) -> recording.Weather:
     """The weather at a location.
 
-    In dry weather, only the ground decides whether the road is wet.
+    When it is dry, only the ground decides whether the road is wet.
     """
     environment = location.first("environment")
     if environment is None:

@@ -138,10 +138,7 @@ def _add_participant(content: Content, tree: Tree, kind: str) -> None:
 
 
 def _add_intersection(content: Content, intersection: Intersection) -> None:
-    """Add an intersection.
-
-    Published maps reuse ids, and each such intersection gets an id of its own.
-    """
+    """Add an intersection; where published maps reuse an id, each one gets an id of its own."""
     number = intersection.id
     if number in content.intersections:
         remark = f"there are several intersections `{number}`: each is treated as a separate one"

@@ -104,10 +104,7 @@ _HEIGHT = ("position", "point", "z")
 
 
 def wanted_of_state(ways: Sequence[Way]) -> Sequence[int] | None:
-    """The indices of a state's numbers among its texts.
-
-    None unless each is exact and given once.
-    """
+    """The indices of a state's numbers among its texts; None if one is not exact or is repeated."""
     by_field: dict[str, list[Way]] = {}
     for way in ways:
         by_field.setdefault(way[0], []).append(way)

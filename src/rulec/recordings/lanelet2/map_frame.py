@@ -55,10 +55,7 @@ class MapPlaces(NamedTuple):
 
 
 def places_of(file: OsmFile) -> MapPlaces:
-    """The positions of a file's nodes.
-
-    Raises RulecError R0610 if one is missing or too far away.
-    """
+    """The positions of a file's nodes. Raises RulecError R0610 if one is missing or far away."""
     info = read_projector_info(file.path.with_name(PROJECTOR_INFO))
     columns = [(node.local_x, node.local_y, node.lat, node.lon) for node in file.nodes]
     values = np.array(columns, dtype=float64).reshape(-1, 4)

@@ -55,10 +55,7 @@ def lane_borders(piece: RoadPiece) -> Mapping[int, Lines]:
 
 
 def _check_widths(section: LaneSection, s: Numbers) -> None:
-    """Raise ValueError for a width too far below 0.
-
-    Where a lane ends, it may be slightly below 0.
-    """
+    """Raise ValueError for a width far below 0; slightly negative widths occur where lanes end."""
     for number, lane in section.lanes.items():
         least = cubics_at(lane.widths, s - section.start).min()
         if not least > _NARROWEST_M:

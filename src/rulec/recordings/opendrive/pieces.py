@@ -28,10 +28,7 @@ LONGEST_PIECE_M = 5_000.0
 
 @dataclass(frozen=True, slots=True)
 class RoadPiece:
-    """A part of a lane section from ``start`` to ``end``.
-
-    ``number`` counts the pieces of its road.
-    """
+    """A part of a lane section from ``start`` to ``end``, with its number on the road."""
 
     road: MapRoad
     number: int

@@ -32,10 +32,7 @@ _place_of = itemgetter(*PLACE)
 
 
 def read_fcd(path: Path) -> FloatingCarData:
-    """The content of a file.
-
-    Raises RulecError R0610 for another kind, R0701 if it cannot be read.
-    """
+    """The content of a file. Raises RulecError R0610 for another kind, R0701 if unreadable."""
     return read_plain_fcd(path) or read_fcd_as_xml(path)
 
 
@@ -120,10 +117,7 @@ def _wrong(element: XmlElement) -> RulecError:
 
 
 def net_beside(path: Path, head: FcdHead) -> Path:
-    """The net that belongs to floating-car data.
-
-    Raises RulecError R0614 if it is missing or unclear.
-    """
+    """The net of floating-car data. Raises RulecError R0614 if it is missing or unclear."""
     written = named_beside(path, head.net) if head.net else None
     if written is not None:
         return written

@@ -108,10 +108,7 @@ def _that_stay(net: SumoNet, lanes: list[str], onward: _Lanes) -> list[str]:
 
 
 def _beside_each_other(net: SumoNet, lanes: list[str], onward: _Lanes) -> dict[str, str]:
-    """Lane -> its own next lane, as far from the kerb as possible.
-
-    Empty if one has no next lane.
-    """
+    """Lane -> its own next lane, the farthest from the kerb; empty if one of them has none."""
     target_of: dict[str, str] = {}
     for lane in sorted(lanes, key=lambda name: -net.lanes[name].index):
         after = [end for end in onward.get(lane, []) if end not in target_of.values()]

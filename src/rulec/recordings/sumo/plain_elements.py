@@ -103,7 +103,7 @@ class Elements:
 
 
 def read_elements(lines: TextPlaces, quotes: Places, bounds: Places, kinds: KnownKinds) -> Elements:
-    """Read lines; ``bounds`` delimit the quotation marks of each line, whose number may differ.
+    """Read lines; the quotation marks of each lie between its ``bounds``, and may differ in number.
 
     Raises NotPlainError, ValueError, or expat's errors.
     """

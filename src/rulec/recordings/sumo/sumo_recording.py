@@ -221,7 +221,7 @@ def time_step(path: Path, moments: list[int]) -> float:
     """The time step (s): the shortest time between two moments of the file.
 
     Moments may be missing, as when there is no traffic, but none may lie between two steps. For a
-    single moment it is the longest step, up to a second, that its time is a multiple of. Raises
+    single moment it is the longest step of which both a second and its time are multiples. Raises
     RulecError R0610 for moments that are too far apart, or not all multiples of the step.
     """
     if len(moments) < 2:

@@ -18,10 +18,7 @@ OPENDRIVE = XmlFormat(
 
 
 def read_file(path: Path) -> OpenDrive:
-    """The content of a file.
-
-    Raises RulecError R0610 for another kind, R0701 if it is unreadable.
-    """
+    """The content of a file. Raises RulecError R0610 for another kind, R0701 if unreadable."""
     content = OpenDrive({}, {}, {})
     scan_trees(path, OPENDRIVE, lambda _: None, lambda tree: _add(content, tree))
     if not content.roads:
