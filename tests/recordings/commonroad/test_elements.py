@@ -296,7 +296,7 @@ def test_tiny_numbers_are_none(read):
     ("before", "after", "says"),
     [
         (BOX, "", "the element `shape` has no shape in it"),
-        (BOX, "<semiTrailerTruckShape/>", "`semiTrailerTruckShape` is no shape that is known"),
+        (BOX, "<semiTrailerTruckShape/>", "`semiTrailerTruckShape` is not a known shape"),
         (BOX, BOX.replace(">4<", ">0<"), "`length` is 0"),
         (BOX, BOX.replace("<width>", "<originXShift>3</originXShift><width>"), "outside it"),
         (BOX, "<polygon><point><x>0</x><y>0</y></point></polygon>", "fewer than 3 points"),
@@ -314,7 +314,11 @@ def test_tiny_numbers_are_none(read):
         (RIGHT, f"<lineMarking/>{RIGHT}", "`lineMarking` is empty"),
         (RIGHT, f'{RIGHT}<successor ref="two"/>', "`ref` of a `successor` is `two`"),
         (RIGHT, f"{RIGHT}<successor/>", "the element `successor` has no `ref`"),
-        (GOAL, f'{GOAL}<position><lanelet ref="8"/></position>', "lanelet 8, which the file has"),
+        (
+            GOAL,
+            f'{GOAL}<position><lanelet ref="8"/></position>',
+            "lanelet 8, which is not in the file",
+        ),
         ('<planningProblem id="2">', '<planningProblem id="-2">', "`id` of a `planningProblem`"),
         ('"0.1"', '"1e-9"', "a time step of 1e-09 s"),
     ],

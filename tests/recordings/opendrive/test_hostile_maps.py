@@ -117,5 +117,5 @@ def test_lanes_that_wind_without_end(tmp_path):
 def test_lanes_of_all_roads_together_that_wind_without_end(tmp_path, monkeypatch):
     monkeypatch.setattr(opendrive_map, "MOST_PLACES", 100)
     found = problem_with(tmp_path, GOOD)
-    assert "over 100 places" in found.message
+    assert "over 100 points" in found.message
     assert found.place.line > 1

@@ -263,10 +263,7 @@ def _side(content: OpenDrive, lanelets: Mapping[str, Lanelet]) -> Side | None:
 
 
 def _leads_both_ways(content: OpenDrive) -> bool:
-    """Whether some road has lanes of the type `driving` on both sides.
-
-    The right ones lead forward.
-    """
+    """Whether some road has `driving` lanes on both sides; those on the right then lead forward."""
     sections = (section for road in content.roads.values() for section in road.sections)
     driven = ([x.id for x in section.lanes.values() if x.type == "driving"] for section in sections)
     return any(min(ids, default=0) < 0 < max(ids, default=0) for ids in driven)

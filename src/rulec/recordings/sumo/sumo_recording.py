@@ -181,7 +181,7 @@ def _remarks(unknown: Iterable[str], net: SumoNet) -> Iterator[str]:
 def _left_out(data: FloatingCarData) -> Iterator[str]:
     if data.head.leaves_out:
         options = _list([f"--{name}" for name in data.head.leaves_out])
-        yield f"{options} left traffic out of the data: that traffic is unknown"
+        yield f"only part of the traffic is recorded, because of {options}: the rest is unknown"
 
 
 def _list(names: list[str]) -> str:
