@@ -69,9 +69,9 @@ def distinct(line: Points) -> Points | None:
 
 
 def middle_line(left: Points, right: Points) -> Points:
-    """The line halfway between two bounds, with a point for each point of either bound.
+    """The line halfway between two bounds.
 
-    Points of both bounds at the same fraction of their lengths are paired.
+    It has a point at each fraction of the length at which either bound has one.
     """
     parts = [shares_along(line) for line in (left, right)]
     every = np.unique(np.concatenate(parts))
