@@ -4,7 +4,6 @@ import contextlib
 import io
 import os
 import re
-import resource
 import shutil
 import signal
 import sys
@@ -54,14 +53,24 @@ def tried(target, folder, seeds, seconds=None):
     trial = FuzzTrial(target)
     shutil.copytree(_filled().name, folder, dirs_exist_ok=True)
     place = Workplace(folder)
+    before = _peak_mib(begin=True)
     started = time.monotonic()
     for seed in seeds:
         if seconds is not None and time.monotonic() >= started + seconds:
             break
         _try_one(trial, place, seed)
-    trial.peak_mib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> 10
+    trial.peak_mib = _peak_mib() - before
     assert trial.peak_mib < MOST_MIB, f"{target}: {trial.peak_mib} MiB"
     return trial
+
+
+def _peak_mib(*, begin=False):
+    """The most memory that this process has had since a beginning, which other tests preceded."""
+    if begin:
+        with contextlib.suppress(OSError):  # then the peak before is subtracted instead
+            Path("/proc/self/clear_refs").write_text("5")
+    status = Path("/proc/self/status").read_text()
+    return int(re.search(r"^VmHWM:\s+(\d+) kB$", status, re.MULTILINE)[1]) >> 10
 
 
 @cache
