@@ -47,7 +47,7 @@ def poses_in(
 
 
 def rotations(quaternions: _Floats) -> _Floats:
-    """The matrices of quaternions (w, x, y, z) of any length but 0."""
+    """The rotation matrices of quaternions (w, x, y, z) of any length except 0."""
     w, x, y, z = (quaternions / np.linalg.norm(quaternions, axis=1)[:, None]).T
     rows = (
         (x * x - y * y - z * z + w * w, 2 * (x * y - z * w), 2 * (x * z + y * w)),

@@ -98,7 +98,7 @@ def _lanes(path: Path, archive: _MapArchive) -> Iterator[Lanelet]:
         called = f"lane segment {segment.id}"
         lines = segment.left_lane_boundary, segment.right_lane_boundary
         own = _bounds(path, called, lines)
-        # In a part of a city that is cut out, what lies at its edge may have been cut to a point
+        # At the edge of a map section, objects may have been cut to a point
         if own is not None:
             bounds[segment.id] = own
     segments = [x for x in archive.lane_segments.values() if x.id in bounds]

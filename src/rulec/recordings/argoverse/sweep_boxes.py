@@ -46,10 +46,7 @@ class TrackBoxes:
         return replace(self, sweeps=self.sweeps[rows], poses=self.poses.taken(rows))
 
     def measured(self, points: NDArray[int64], seconds: NDArray[float64]) -> TrackBoxes:
-        """Without the boxes that were only guessed: no point is in them, and they move.
-
-        ``points`` are how many are in each of its boxes, ``seconds`` the moments of all sweeps.
-        """
+        """The track without guessed boxes: those of a moving object that contain no lidar point."""
         seen = np.flatnonzero(points > 0)
         if len(seen) in (0, len(points)):
             return self if len(seen) else self.kept(points > 0)

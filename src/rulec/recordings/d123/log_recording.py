@@ -43,7 +43,7 @@ _COLOURS = {0: "green", 1: "yellow", 2: "red", 3: "inactive"}
 """States of lights by number; a light may also be unknown."""
 
 _SOURCES = (("av2", "Argoverse 2"), ("wod", "Waymo"))
-"""Data sets with their own position errors: prefix of the name, and title."""
+"""Name prefix and title of the data sets whose position errors are known better than others'."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -183,7 +183,7 @@ def _ego(path: Path, sweeps: _Sweeps) -> TrackBoxes:
     if not isinstance(middle, list) or len(middle) != _POSE:
         raise LOG.refused(path, "it does not say where ego's middle is (`center_to_imu_se3`)")
     ahead = np.array([[_number(table, value, least=-LARGEST) for value in middle]])
-    # Poses that are less than a microsecond apart have the same moment
+    # Poses less than a microsecond apart have the same time
     moments, rows = np.unique(table.whole[f"{key}.timestamp_us"], return_index=True)
     if not len(moments):
         raise LOG.refused(path, "there is no pose in it")

@@ -145,7 +145,7 @@ def _lanes(layers: _Layers) -> Iterator[Lanelet]:
     bounds = {}
     for name, entry in entries.items():
         lines = [_line(layers, entry, f"{side}_boundary") for side in ("left", "right")]
-        # At the edge of a part that has been cut out a lane may be a point
+        # At the edge of a map section a lane may be cut to a point
         if min(map(len, lines)) > 1:
             bounds[name] = lines[0], lines[1]
     inside = {
@@ -254,7 +254,7 @@ class _Paint:
         The map does not contain which of the two adjacent lanes a line belongs to.
         """
         line, places = shapely.LineString(bound), shapely.points(bound)
-        # Lines that are next to nothing long make GEOS divide by that
+        # GEOS would divide by the tiny length of such lines
         with np.errstate(all="ignore"):
             near = self._tree.query(line, predicate="dwithin", distance=_ALONG_M).tolist()
             away = [shapely.distance(self._lines[k], places).max() for k in near]
@@ -271,7 +271,7 @@ def _mark(line: _Entry) -> LaneMark | None:
 def _shape(layers: _Layers, line: _Entry) -> shapely.LineString:
     """A line of the map without heights."""
     try:
-        # Of places that are no numbers there is more to say than a warning
+        # Coordinates that are not numbers get an error instead of a warning
         with np.errstate(all="ignore"):
             shape = shapely.force_2d(shapely.from_wkb(line.shape))
     except shapely.errors.ShapelyError:

@@ -20,7 +20,7 @@ SIGNS: Mapping[int, str] = {2: "STOP", 3: "YIELD"}
 
 _NEAR_M = 2.0
 _BESIDE_M = 1.5
-"""A lane whose centre line is farther (m) from a zone is a neighbour of the zone's lane."""
+"""Lanelets whose centre line is this near (m) to a zone belong to it; a neighbour's is farther."""
 
 _INTERSECTION = "intersection"
 

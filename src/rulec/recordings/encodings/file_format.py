@@ -69,7 +69,7 @@ class BinaryFormat(FileFormat):
     ) -> RulecError:
         """The error (R0610) for a file that is not of this format, with the byte if known."""
         where = "" if place is None else f"at byte {place:,}, "
-        # The class's own: a dataclass with slots is made anew, so that ``super()`` is another one.
+        # Not ``super()``: a dataclass with slots is a new class, which ``super()`` does not know.
         return FileFormat.refused(
             self, path, f"{where}{why}", expected=expected, help_text=help_text
         )

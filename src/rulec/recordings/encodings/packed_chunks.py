@@ -11,13 +11,13 @@ def unpacked(packed: bytes, method: str, size: int) -> bytes:
     if not method:
         content = packed
     elif method in ("lz4", "zstd"):
-        # Few files are packed so
+        # Few files use this packing
         import cramjam
 
         buffer = bytearray(size)
         library = cramjam.lz4 if method == "lz4" else cramjam.zstd
         try:
-            # It writes no further than the buffer, whatever the chunk says of itself
+            # It never writes beyond the buffer, whatever size the chunk states
             count = library.decompress_into(packed, buffer)
         except cramjam.DecompressionError:
             raise ValueError(f"it is packed ({method}), and damaged or not of its size") from None

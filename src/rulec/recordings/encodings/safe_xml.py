@@ -121,7 +121,7 @@ def _scan(
             why = "it ends before all that has begun in it ends; it has been cut short"
         raise form.refused(path, why, problem.lineno) from None
     finally:
-        # Parser and handlers hold each other, and all that has been read
+        # Parser and handlers refer to each other, and so keep all content in memory
         parser.StartElementHandler = parser.EndElementHandler = None
         parser.CommentHandler = parser.CharacterDataHandler = None
 

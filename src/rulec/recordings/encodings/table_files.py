@@ -279,7 +279,7 @@ def table_of(columns: Mapping[str, Any], words: str) -> ColumnTable:
         kind = type(given).__name__
         way_out = "`rulec.read_recording(path, map_path)` reads a file" if kind == "str" else ""
         raise refused(f"they are of type `{kind}`", expected=_EXPECTED, help_text=way_out)
-    # Frames of polars and tables of Arrow list their names so; a mapping does by itself
+    # polars frames and Arrow tables list their names here; a mapping yields them itself
     listed = getattr(columns, "columns", columns)
     listed = getattr(columns, "column_names", listed)
     try:

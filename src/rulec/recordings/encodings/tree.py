@@ -45,7 +45,7 @@ class Tree:
     that have no trees of their own because they are very many.
     """
 
-    # Not frozen: a recording has millions, whose text and children come later
+    # Not frozen: a recording has millions, whose text and children are added later
     name: str
     attributes: dict[str, str]
     place: int

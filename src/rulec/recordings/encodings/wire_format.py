@@ -142,7 +142,7 @@ class WireFile:
     ) -> Iterator[WireField]:
         begin, holds = place, field.holds
         packed = wire_type != _wire_type(holds)
-        # What is packed may be nothing
+        # A packed value may be empty
         while not packed or place < stop:
             self._n_values += 1
             if self._n_values > MOST_VALUES:

@@ -49,7 +49,7 @@ def scan_trees(
 
     Raises RulecError R0610 if it is not such a file, R0701 if it cannot be read.
     """
-    # The elements that have begun
+    # The open elements
     open_trees: list[Tree] = []
     count = 0
 
@@ -121,7 +121,7 @@ def whole_tree(path: Path, form: XmlFormat, alike: Sequence[Alike]) -> Tree | No
         return None
     rest, runs = without_alike(bytes(data), alike)
     try:
-        # The prolog, in which alone entities can be defined, has been looked at.
+        # The prolog has been checked; entities cannot be defined anywhere else.
         return _tree(ElementTree.fromstring(rest), path, form, runs)
     except (ElementTree.ParseError, LookupError, ValueError):
         return None
@@ -140,7 +140,7 @@ def without_alike(data: bytes, alike: Sequence[Alike]) -> tuple[bytes, list[Alik
     for begin, first, last, elements in sorted(
         (cut for shape in alike for cut in _cuts(data, shape)), key=itemgetter(0)
     ):
-        # Nothing is taken out of what has been taken out
+        # Removed runs are not searched again
         if begin > at:
             parts += (data[at : begin - 1], b' %s"%d">' % (_MARK, len(runs)), data[begin:first])
             runs.append(elements)

@@ -38,7 +38,7 @@ class BoxTrack(NamedTuple):
 
 
 def bridged(boxes: BoxTrack, step_s: float) -> BoxTrack:
-    """A track without gaps of up to ``BRIDGED_S``: places, headings and speeds change evenly."""
+    """A track with gaps up to ``BRIDGED_S`` filled: position, heading and speed change evenly."""
     steps = boxes.steps
     short = (np.diff(steps) > 1) & ((np.diff(steps) - 1) * step_s <= BRIDGED_S)
     if not short.any():
@@ -51,7 +51,7 @@ def bridged(boxes: BoxTrack, step_s: float) -> BoxTrack:
     def filled(values: NDArray[float64]) -> NDArray[float64]:
         columns = [np.interp(every, steps, column) for column in values.T]
         table: NDArray[float64] = np.column_stack(columns)
-        # What is measured stays as it is, to the last bit
+        # Measured values are kept exactly
         table[measured] = values
         return table
 

@@ -30,7 +30,7 @@ from rulec.recordings.recording import Lanelet, ObservedLight, Points
 from rulec.recordings.road_map import crosswalk_with_outline
 
 ALL_JUNCTIONS = frozenset({"junctions"})
-"""What such maps show completely: outside junctions, lanes cross only at other heights."""
+"""Such maps contain all junctions; elsewhere, lanes cross only at different heights."""
 
 _CLOSEST_M = 0.01
 _STOP = frozenset({"STOP"})
@@ -86,7 +86,7 @@ def _junction_type(piece: LanePiece, stretch: tuple[int, int] | None) -> frozens
 
 
 def _sound_lanes(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
-    """The lanes with some length, without repeated points; removed lanes are bridged by links."""
+    """The lanes with some length, without repeated points; links lead past the lanes left out."""
     kept = {name: _kept(lane.centre) for name, lane in lanes.items()}
     there = {name for name, points in kept.items() if len(points) > 1}
 

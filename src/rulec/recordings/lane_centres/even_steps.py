@@ -32,7 +32,7 @@ def even_steps(times_s: NDArray[float64]) -> tuple[float, NDArray[int64]]:
     step_s = round(float(np.median(between)) * _MILLISECONDS) / _MILLISECONDS
     if step_s <= 0:
         raise ValueError("its times are less than half a millisecond apart")
-    # By the times between, as a clock that is slow or fast loses a step in a long recording
+    # From the intervals: with a slow or fast clock, times since the start would be a step off
     counts = np.round(between / step_s)
     off = np.abs(between / step_s - counts)
     if off.max() > MOST_OFF or counts.min() < 1:

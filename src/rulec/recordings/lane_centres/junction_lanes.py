@@ -80,7 +80,7 @@ def _crossed(lanes: Mapping[str, CentreLane]) -> dict[str, list[float]]:
             (turn, z), (other_turn, other_z) = (
                 _at(cars[index].centre, place) for index in (first, second)
             )
-            # Heights that are not known do not part lanes
+            # Unknown heights do not separate lanes
             meets = not abs(z - other_z) > APART_M
             if meets and abs(np.arctan(np.tan(turn - other_turn))) > CROSSING_RAD:
                 for index in (first, second):

@@ -110,7 +110,7 @@ def neighbours_of_pieces(
 def _shares(
     piece: LanePiece, part: NeighbourPart, others: tuple[LanePiece, ...]
 ) -> Iterator[tuple[LanePiece, float]]:
-    """The pieces of a neighbour along a piece, and for how much of either they are beside it."""
+    """The pieces of a neighbour beside a piece, with the lesser share of both that is shared."""
     start, end = max(piece.start, part.start), min(piece.end, part.end)
     own = (end - start) / (piece.end - piece.start)
     if own < WHOLE:

@@ -115,7 +115,7 @@ def _lane(key: str, fields: Fields, file: WireFile) -> TraceLane:
         kind=fields.get("type", "unknown"),
         subtype=fields.get("subtype", "unknown"),
         centre=centre,
-        # Senders of version 3 of Protocol Buffers leave out what is false
+        # Protocol Buffers 3 senders omit false values
         forward=fields.get("centerline_is_driving_direction", False if len(centre) > 1 else None),
         left_bounds=ids_of(fields, "left_lane_boundary_id"),
         right_bounds=ids_of(fields, "right_lane_boundary_id"),

@@ -59,7 +59,7 @@ class _Line:
         away = points - self.points[piece]
         ahead = self._ahead[piece]
         left = ahead[:, 0] * away[:, 1] - ahead[:, 1] * away[:, 0]
-        # Beyond its ends the line goes on straight
+        # Beyond its ends the line is extended straight
         beyond = (along <= 0) | (along >= self.reached[-1])
         along = np.where(beyond, self.reached[piece] + (ahead * away).sum(axis=1), along)
         order = np.argsort(along, kind="stable")
@@ -70,7 +70,7 @@ class _Line:
         x, y = (np.interp(along, self.reached, axis) for axis in self.points.T)
         piece = self._piece(along)
         ahead = self._ahead[piece].copy()
-        # At a corner both pieces' parallels meet on the line that halves it
+        # At a corner, the parallels of both segments meet on its bisector
         corner = (np.abs(along - self.reached[piece]) < _CLOSEST_M / 2) & (piece > 0)
         before = self._ahead[piece[corner] - 1]
         both = 1.0 + (before * ahead[corner]).sum(axis=1)
@@ -135,7 +135,7 @@ def _widths(
     if left is not None and right is not None:
         return (0.0, 0.0), False
     if len(lane.centre) < 2:
-        # All that it has is the boundary of one side
+        # Only one side has a boundary
         width = USUAL_WIDTH_M
         return (width, width), True
     halves = [

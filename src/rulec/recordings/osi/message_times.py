@@ -44,7 +44,7 @@ def time_grid(path: Path, times: Sequence[int]) -> TimeGrid:
     if len(times) == 1:
         return TimeGrid(0.1, since, 0.0)
     usual = float(np.median(np.diff(since)))
-    # Of many steps the mean is known better than each
+    # The mean of many steps is more precise than each of them
     usual = float(since[-1]) / max(round(float(since[-1]) / usual), 1)
     spread = float(since[-1]) / usual
     if spread > min(MOST_STEPS, SPARSEST * len(times)):

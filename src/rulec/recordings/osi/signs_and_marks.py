@@ -145,7 +145,7 @@ def _ground_outline(base: Fields, file: WireFile) -> Points | None:
     corners = (signs * half) @ (about_z @ about_y @ about_x).T
     ground = corners[:, :2] + places([part(base, "position")], file)
     with np.errstate(all="ignore"):
-        # What has no area has no box, and is left out
+        # An object without area has no box and is left out
         box = shapely.minimum_rotated_rectangle(shapely.multipoints(ground))
     if not isinstance(box, shapely.Polygon) or shapely.minimum_clearance(box) < _NARROWEST_M:
         return None

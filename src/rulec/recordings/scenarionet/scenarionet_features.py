@@ -89,7 +89,7 @@ def _points(entry: KeyedValue, key: str) -> np.ndarray[tuple[int, ...], np.dtype
 
 
 def _lane(name: str, kind: str, entry: KeyedValue, known: DataSet) -> CentreLane:
-    # Points of nuScenes' have their direction for a height
+    # nuScenes' points have their direction in place of a height
     centre = _points(entry, "polyline")
     heights = centre[:, 2] if known.whole_map else np.full(len(centre), np.nan)
     centre = np.column_stack((centre[:, :2], heights))

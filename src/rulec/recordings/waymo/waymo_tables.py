@@ -56,9 +56,9 @@ MARKS: Mapping[str, LaneMark | None] = MappingProxyType(
         **dict.fromkeys(("broken_white", "broken_yellow", "broken_double_yellow"), "broken"),
         **dict.fromkeys(("solid_white", "solid_yellow"), "solid"),
         **dict.fromkeys(("solid_double_white", "solid_double_yellow"), "double_solid"),
-        # Broken on one side: for want of a side it says no more than nothing
+        # Broken on one side: since the side is unknown, it provides no information
         "passing_double_yellow": None,
-        # Also of edges
+        # Road edges have it, too
         "unknown": None,
     }
 )

@@ -65,7 +65,7 @@ def _buffer_sizes(metadata: bytes, batch: int, body: memoryview, *, packed: bool
             raise OddMessageError
         if packed and length:
             (size,) = struct.unpack_from("<q", body, offset)
-            # -1: this one is as it is
+            # -1: this buffer is not packed
             yield length if size == -1 else size
             if size < -1:
                 raise OddMessageError

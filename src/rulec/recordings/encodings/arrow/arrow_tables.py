@@ -170,7 +170,7 @@ def _parquet(arrow: Any, data: bytes, path: Path, form: FileFormat, wanted: Want
     texts = [name for name in wanted.texts if name in columns]
     source = arrow.parquet.ParquetFile(arrow.BufferReader(data), read_dictionary=texts)
     about = source.metadata
-    # Not those of single columns: what is wrong with their statistics would end the process
+    # Not the metadata of single columns: broken statistics there would crash the process
     groups = range(about.num_row_groups)
     unpacked = sum(abs(about.row_group(number).total_byte_size) for number in groups)
     is_fit = 0 <= about.num_rows <= MOST_ROWS and about.num_rows * len(columns) <= MOST_CELLS
