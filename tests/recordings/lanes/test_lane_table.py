@@ -52,7 +52,7 @@ def test_lanes_whose_ends_meet_follow_each_other(tmp_path):
     roads = lanes(tmp_path, "lane,x,y", *points)
     assert roads.lanelets["a"].successors == ("b",)
     assert roads.lanelets["b"].predecessors == ("a",)
-    assert "lanes whose ends meet are taken to follow each other" in roads.remarks
+    assert "lanes whose ends meet are assumed to be connected" in roads.remarks
 
 
 @pytest.mark.parametrize(

@@ -119,7 +119,7 @@ def test_a_lane_without_a_middle_has_that_of_its_boundaries(read):
     # Across the longer one, of which the other's ends are 4 cm and 6 cm off
     ends = found.lanelets["1"].centre[[0, -1]]
     np.testing.assert_allclose(ends, [(0, 0), (100, 1)], atol=0.1)
-    assert "traffic is taken to run as the points of lanes do" in found.remarks[0]
+    assert "traffic is assumed to follow the points of lanes" in found.remarks[0]
 
 
 def test_lanes_without_boundaries_reach_half_way_to_those_beside_them(read):
@@ -131,7 +131,7 @@ def test_lanes_without_boundaries_reach_half_way_to_those_beside_them(read):
     for name, half in (("1", 1.5), ("2", 1.5), ("3", 1.75)):
         lanelet = found.lanelets[name]
         assert (lanelet.left - lanelet.right)[:, 1] == pytest.approx([2 * half] * 2)
-    assert found.remarks == ("lanes without boundaries are taken to be as wide as is usual: 3",)
+    assert found.remarks == ("lanes without boundaries are assumed to have the usual width: 3",)
 
 
 def test_lanes_follow_each_other_where_they_meet(read):
@@ -147,9 +147,7 @@ def test_lanes_follow_each_other_where_they_meet(read):
     after = {name: lanelet.successors for name, lanelet in found.lanelets.items()}
     assert after == {"1": ("2",), "2": ("5",), "3": ("4",), "4": (), "5": ()}
     assert found.lanelets["5"].predecessors == ("2",)
-    assert found.remarks[-1] == (
-        "lanes that are said to follow each other and do not meet: 5 and 1"
-    )
+    assert found.remarks[-1] == ("lanes that are declared connected but do not meet: 5 and 1")
 
 
 def test_types(read):

@@ -200,7 +200,7 @@ def test_what_most_messages_say_of_a_body_counts(tmp_path):
 def test_a_size_that_is_not_said_is_usual(tmp_path):
     found = read(tmp_path, osi.trace(moved(size=None, vehicle=12)))
     assert np.ptp(found.participants[0].outlines[0], axis=0) == pytest.approx((12, 2.5))
-    assert found.remarks == ("sizes that are not said are taken to be usual: of 7",)
+    assert found.remarks == ("missing sizes are assumed to be usual: of 7",)
 
 
 @pytest.mark.parametrize(

@@ -169,7 +169,7 @@ def test_who_is_lost_for_half_a_second_has_moved_evenly(tmp_path):
     body = read(tmp_path, w.crossing(tracks=[(70, w.VEHICLE, gone(*range(10, 15)))]))
     assert body.participants[0].states[12].x == pytest.approx(-28.0)
     (remark,) = body.remarks
-    assert remark.endswith("are taken to move evenly meanwhile: 5 states")
+    assert remark.endswith("are assumed to move evenly meanwhile: 5 states")
     longer = read(tmp_path, w.crossing(tracks=[(70, w.VEHICLE, gone(*range(10, 16)))]))
     assert sorted(set(range(81)) - set(longer.participants[0].states)) == list(range(10, 16))
     assert longer.remarks == ()

@@ -66,7 +66,7 @@ def gaps_remark(bridged_states: int) -> tuple[str, ...]:
     """The remark of a recording on the states that were filled in."""
     if not bridged_states:
         return ()
-    lost = "bodies that are lost for half a second or less are taken to move evenly meanwhile"
+    lost = "bodies that are lost for half a second or less are assumed to move evenly meanwhile"
     return (f"{lost}: {bridged_states:,} states",)
 
 

@@ -129,7 +129,7 @@ class _LaneTable:
         else:
             lanelets = with_ends_that_meet(lanelets)
             if any(lanelet.successors for lanelet in lanelets.values()):
-                remarks.append("lanes whose ends meet are taken to follow each other")
+                remarks.append("lanes whose ends meet are assumed to be connected")
         side = self._one_of("side", np.arange(len(self.lane.codes)), get_args(Side))
         return RoadMap(
             form="lanes as a table",

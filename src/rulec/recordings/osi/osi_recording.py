@@ -131,7 +131,7 @@ def _remarks(content: TraceContent, grid: TimeGrid) -> Iterator[str]:
         yield f"{content.skipped:,} messages have the time of the one before and are left out"
     sizes = [key for key, body in content.objects.items() if body.size is None]
     if sizes:
-        yield f"sizes that are not said are taken to be usual: of {_list(sizes)}"
+        yield f"missing sizes are assumed to be usual: of {_list(sizes)}"
     lost = [bulb.id for bulb in content.bulbs.values() if not bulb.lanes]
     if lost:
         yield f"traffic lights are assigned to no lane, and left out: {_list(lost)}"
@@ -142,23 +142,23 @@ def _remarks(content: TraceContent, grid: TimeGrid) -> Iterator[str]:
 def _network_remarks(network: LaneNetwork) -> Iterator[str]:
     if network.assumed:
         yield (
-            "lanes without boundaries are taken to be as wide as is usual: "
+            "lanes without boundaries are assumed to have the usual width: "
             + _list(network.assumed)
         )
     if network.undirected:
         yield (
-            "traffic is taken to run as the points of lanes do where that is not said: "
+            "traffic is assumed to follow the points of lanes without a direction: "
             + _list(network.undirected)
         )
     if network.across:
         yield (
-            "ways across areas of intersections are taken to be curves from lane to lane: "
+            "ways across areas of intersections are assumed to be curves between lanes: "
             + _list(network.across)
         )
     if network.shapeless:
         yield f"lanes with neither a middle nor boundaries are left out: {_list(network.shapeless)}"
     if network.apart:
-        yield f"lanes that are said to follow each other and do not meet: {_list(network.apart)}"
+        yield f"lanes that are declared connected but do not meet: {_list(network.apart)}"
 
 
 def _list(names: list[str]) -> str:

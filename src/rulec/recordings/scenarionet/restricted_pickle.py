@@ -181,7 +181,7 @@ def _get(form: str) -> Callable[[PickleMachine], None]:
     def action(machine: PickleMachine) -> None:
         number = machine.number(form)
         if number not in machine.memo:
-            raise machine.wrong(f"it refers to its value {number}, which has not been")
+            raise machine.wrong(f"it refers to its value {number}, which does not exist yet")
         machine.push(machine.memo[number])
 
     return action
