@@ -127,5 +127,5 @@ def test_a_lane_without_any_length():
     point = replace(point, centre=point.centre[[0, 0]])
     (answer,) = Drives(recording([point], [along((10, 0), (10.2, 0))]), "right").of("7")
     assert answer == NoDrive(
-        "7", "its road makes no sense, all points of its lane's centre line are in one place"
+        "7", "its road is invalid: all points of its lane's centre line are in one place"
     )

@@ -169,7 +169,7 @@ GOOD = whole(1, 300)
         (double(7, 5), 3, "field 7 has the wire type 1"),
         (whole(1000, 5), 3, "field 1000 has the wire type 0"),
         (counted(4, b"\1"), 3, "field 4 has the wire type 2"),
-        (whole(9, 1), 4, "`colour` has the value 1, which is none of it"),
+        (whole(9, 1), 4, "`colour` has the unknown value 1"),
         (counted(7, b"ab\xff"), 7, "the text of `name` is not UTF-8"),
         (counted(5, b"\0" * 12), 13, "a value begins that has more bytes than are left"),
         (counted(1000, b"\x09"), 6, "a value begins that has more bytes than are left"),

@@ -92,7 +92,7 @@ class LaidOutMap:
             try:
                 self._roads[route] = self._driven_roads.along(route)
             except ValueError as reason:
-                self._roads[route] = f"its road makes no sense, {reason}"
+                self._roads[route] = f"its road is invalid: {reason}"
         return self._roads[route]
 
 

@@ -206,7 +206,7 @@ def with_neighbours(recording: Recording) -> Recording:
         return recording
     more = f", and {len(joined) - _NAMED} more" if len(joined) > _NAMED else ""
     remark = (
-        "lanelets side by side are taken to be neighbours, which the file does not say: "
+        "lanelets side by side are taken to be neighbours, although the file does not say so: "
         + ", ".join(joined[:_NAMED])
         + more
     )

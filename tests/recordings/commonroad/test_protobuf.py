@@ -194,7 +194,10 @@ def test_marks_that_two_releases_number_otherwise_are_unknown(tmp_path, number, 
     ("elements", "why"),
     [
         ([LEFT], "the element `lanelet` has no `rightBound`"),
-        ([LEFT, RIGHT, whole(11, 99)], "`laneletType` has the value 99, which is none of it"),
+        (
+            [LEFT, RIGHT, whole(11, 99)],
+            "`laneletType` has the unknown value 99",
+        ),
         ([LEFT, counted(3, point(1, 0, 0), point(1, 5e9, 0))], "`x` is `5000000000.0`"),
         ([LEFT, counted(3, point(1, 0, 0), point(1, float("nan"), 0))], "`x` is `nan`"),
         ([LEFT, counted(3, point(1, 0, 0))], "has fewer than 2 points"),

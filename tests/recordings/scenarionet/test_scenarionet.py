@@ -212,14 +212,14 @@ def _set(*keys_and_value):
 @pytest.mark.parametrize(
     ("change", "why"),
     [
-        (_set("tracks", {}), "`tracks` has nobody in it"),
+        (_set("tracks", {}), "`tracks` contains no road users"),
         (_set("tracks", []), "`tracks` is no dictionary"),
         (_set("tracks", "70", "state", "valid", np.ones(90)), "has 90 states for 81 times"),
         (_set("tracks", "70", "state", "heading", np.ones(3)), "`tracks / 70 / state / heading`"),
         (_set("tracks", "70", "state", "position", np.ones((81, 1))), "not that of points"),
         (
             _set("tracks", "70", "state", "position", np.full((81, 3), np.nan)),
-            "number that is none",
+            "a number that is not below",
         ),
         (_set("tracks", "70", "state", "length", np.zeros(81)), "no length or width"),
         (
@@ -235,7 +235,7 @@ def _set(*keys_and_value):
         (_set("map_features", "1", "polyline", [["a", "b"]]), "other things than numbers"),
         (_set("map_features", "1", "polyline", [[0.0, 0.0], [3e4, 0.0]]), "longer than 20 km"),
         (_set("map_features", "1", "polyline", [[[0.0]]]), "other things than numbers"),
-        (_set("map_features", "1", "polyline", [[10**18, 0]]), "number that is none"),
+        (_set("map_features", "1", "polyline", [[10**18, 0]]), "a number that is not below"),
         (_set("map_features", "1", "polyline", [[10**400, 0]]), "a whole number of 167 bytes"),
         (_set("map_features", "1", "exit_lanes", [[1]]), "is no text"),
         (_set("map_features", "1", "left_boundaries", [{"lane_start_index": "x"}]), "no whole"),

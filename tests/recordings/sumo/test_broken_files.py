@@ -27,8 +27,8 @@ def problem_with(file, net=None):
     ("before", "after", "says"),
     [
         ("<fcd-export>", "<!DOCTYPE a><fcd-export>", "it has a `DOCTYPE`"),
-        (GOOD, "<fcd-export/>", "nobody is in it"),
-        (GOOD, data(moment(0), moment(1)), "nobody is in it"),
+        (GOOD, "<fcd-export/>", "it contains no road users"),
+        (GOOD, data(moment(0), moment(1)), "it contains no road users"),
         ("</fcd-export>", "", "it has been cut short"),
         ('time="0.10"', "", "a `timestep` has no `time`"),
         ('time="0.10"', 'time="soon"', "`time` of a `timestep` is `soon`"),
@@ -62,7 +62,7 @@ def test_uneven_times(tmp_path):
     found = problem_with(
         written(tmp_path, data(*(moment(time, body()) for time in (0, 0.1, 0.25, 0.4))))
     )
-    assert "0.25 s is no multiple of 0.1 s" in found.message
+    assert "0.25 s is not a multiple of 0.1 s" in found.message
 
 
 def test_a_time_that_is_a_slip(tmp_path):

@@ -22,7 +22,7 @@ def test_borders_within_half_a_metre_are_one(y, beside):
 
 def test_the_remark_names_them():
     _, (remark,) = neighbours(straight(1, 0, 100), straight(2, 0, 100, y=4))
-    assert remark.endswith("neighbours, which the file does not say: 1 and 2")
+    assert remark.endswith("neighbours, although the file does not say so: 1 and 2")
     lanes = [straight(k, 0, 100, y=4 * k) for k in range(6)]
     assert neighbours(*lanes)[1][0].endswith("0 and 1, 1 and 2, 2 and 3, and 2 more")
 

@@ -61,7 +61,7 @@ def read_motion(path: Path, map_path: Path | None = None) -> Recording:
     path = only_in(path, SCENARIO, MOTION)
     table = read_table(path, MOTION, _WANTED)
     if not table.rows:
-        raise MOTION.refused(path, "nobody is in it")
+        raise MOTION.refused(path, "it contains no road users")
     road = read_map_archive(map_path or map_beside(path, MOTION))
     participants = tuple(_participants(table))
     names = table.texts["scenario_id"].names if "scenario_id" in table.texts else ()
@@ -78,9 +78,7 @@ def read_motion(path: Path, map_path: Path | None = None) -> Recording:
     )
 
 
-_REMARK = (
-    "sizes, which the file does not say, are taken to be usual ones: vehicles are 4.6 m by 1.9 m"
-)
+_REMARK = "sizes are not in the file; usual ones are assumed: vehicles are 4.6 m by 1.9 m"
 
 
 def _participants(table: ArrowTable) -> Iterator[Participant]:

@@ -56,8 +56,7 @@ _BOXES = Wanted(
 )
 _NAME = re.compile(MAP.replace("*", r"([0-9A-Za-z-]+)_*.*").replace(".json", r"\.json"))
 _REMARK = (
-    f"ego's middle, which the log does not say, is taken to be {EGO_MIDDLE_M:g} m ahead of its "
-    "rear axle"
+    f"ego's middle is not in the log; it is assumed to be {EGO_MIDDLE_M:g} m ahead of its rear axle"
 )
 
 
@@ -79,7 +78,7 @@ def read_sensor_log(path: Path, map_path: Path | None = None) -> Recording:
     path = only_in(path, ANNOTATIONS, SENSOR)
     boxes = read_table(path, SENSOR, _BOXES)
     if not boxes.rows:
-        raise SENSOR.refused(path, "nobody is in it")
+        raise SENSOR.refused(path, "it contains no road users")
     moments, sweep_of = np.unique(boxes.whole["timestamp_ns"], return_inverse=True)
     steps, step_s = on_grid(path, SENSOR, moments)
     at = path.parent / POSES

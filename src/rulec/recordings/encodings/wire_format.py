@@ -179,7 +179,7 @@ class WireFile:
             case Words(by_number, other):
                 word = by_number.get(_signed(bits), other)
                 if not word:
-                    why = f"`{field.name}` has the value {_signed(bits)}, which is none of it"
+                    why = f"`{field.name}` has the unknown value {_signed(bits)}"
                     raise self.wrong(why, place, f"one of {', '.join(map(str, by_number))}")
                 return word, after
         return _signed(bits), after

@@ -38,7 +38,7 @@ def even_steps(times_s: NDArray[float64]) -> tuple[float, NDArray[int64]]:
     if off.max() > MOST_OFF or counts.min() < 1:
         at = int(np.argmax(off))
         raise ValueError(
-            f"its times are uneven: {between[at]:g} s from one to the next is no multiple of "
+            f"its times are uneven: {between[at]:g} s from one to the next is not a multiple of "
             f"{step_s:g} s"
         )
     if counts.sum() > min(MOST_STEPS, SPARSEST * len(times_s)):

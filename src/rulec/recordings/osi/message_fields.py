@@ -64,7 +64,9 @@ def number(fields: Fields, name: str, wrong: WireFile) -> float:
     """A number, 0 if missing. Raises RulecError R0610 if it is huge or not finite."""
     value = float(fields.get(name, 0.0))
     if not abs(value) < LARGEST:
-        raise wrong.form.refused(wrong.path, f"`{name}` is {value:g}, which is no such number")
+        raise wrong.form.refused(
+            wrong.path, f"`{name}` is {value:g}, which is not a number that can be read"
+        )
     return value
 
 

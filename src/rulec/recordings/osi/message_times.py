@@ -58,7 +58,7 @@ def time_grid(path: Path, times: Sequence[int]) -> TimeGrid:
         off = np.abs(since - grid.steps * grid.step_s * _NS)
         at = int(np.argmax(taken)) + 1 if taken.any() else int(np.argmax(off))
         why = (
-            f"its times are uneven: {since[at] / _NS:g} s after the first is no multiple of"
+            f"its times are uneven: {since[at] / _NS:g} s after the first is not a multiple of"
             f" {grid.step_s:g} s, the usual time from one to the next"
         )
         raise OSI.refused(path, why, help_text="have it written at even times, or resampled")

@@ -44,7 +44,7 @@ def read_osi(path: Path, map_path: Path | None = None) -> Recording:
     grid = time_grid(path, content.times)
     file = WireFile(b"", path, OSI)
     if not content.objects:
-        raise OSI.refused(path, "nobody is in it")
+        raise OSI.refused(path, "it contains no road users")
     network = _network(content, file)
     if map_path is None and not any(is_lane(x) for x in network.lanelets.values()):
         map_path = _map_beside(path)

@@ -99,7 +99,7 @@ class KeyedValue:
             raise self.wrong("has other things than numbers in it")
         numbers: NDArray[float64] = value.astype(float64)
         if numbers.size and not (np.abs(numbers) < LARGEST).all():
-            raise self.wrong(f"has a number that is none below {LARGEST:.0e}")
+            raise self.wrong(f"contains a number that is not below {LARGEST:.0e}")
         return numbers
 
     def column(self) -> NDArray[float64]:

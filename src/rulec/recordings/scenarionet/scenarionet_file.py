@@ -66,13 +66,13 @@ def read_scenarionet(path: Path) -> Recording:
     try:
         step_s, steps = even_steps(times.column())
     except ValueError as reason:
-        raise times.wrong(f"makes no sense: {reason}") from None
+        raise times.wrong(f"is invalid: {reason}") from None
     ego = _text(metadata, "sdc_id")
     features = road_features(scenario, known, steps.tolist())
     remarks = _Remarks()
     bodies = tuple(_participants(scenario, known, ego, (step_s, steps), remarks))
     if not bodies:
-        raise scenario.child("tracks").wrong("has nobody in it")
+        raise scenario.child("tracks").wrong("contains no road users")
     if ego and ego not in scenario.child("tracks").value:
         raise metadata.wrong(f"says that ego is `{ego[:40]}`, who is not in `tracks`")
     title = f" of {known.title}" if known.title else ""

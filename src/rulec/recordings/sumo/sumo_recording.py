@@ -79,7 +79,7 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
         why = "its positions are geographic, in degrees of longitude and latitude"
         raise FCD.refused(path, why, help_text="have SUMO write them without --fcd-output.geo")
     if not data.tracks:
-        raise FCD.refused(path, "nobody is in it")
+        raise FCD.refused(path, "it contains no road users")
     net_path = net_beside(path, data.head) if net_path is None else net_path
     net = read_net(net_path)
     _check_places(path, data, net_path, net)
@@ -230,7 +230,7 @@ def time_step(path: Path, moments: list[int]) -> float:
     off = next((moment for moment in moments if moment % step), None)
     if off is not None:
         why = (
-            f"its times are uneven: {off / MICROSECONDS:g} s is no multiple of "
+            f"its times are uneven: {off / MICROSECONDS:g} s is not a multiple of "
             f"{step / MICROSECONDS:g} s, the shortest time from one to the next"
         )
         way_out = "have SUMO write every step, or every n-th one (--device.fcd.period)"

@@ -135,7 +135,7 @@ def _scenario(file: WireFile, record: TfRecord) -> Recording:
         twice = next(name for name in ids if ids.count(name) > 1)
         raise file.wrong(f"record {record.number} has two tracks {short(twice)}", 0)
     if not there:
-        raise file.wrong(f"nobody is in record {record.number}", 0)
+        raise file.wrong(f"there are no road users in record {record.number}", 0)
     if content.sdc is not None and not 0 <= content.sdc < len(ids):
         raise file.wrong(f"`sdc_track_index` is {content.sdc} of {len(ids)} tracks", 0)
     ego = "" if content.sdc is None else content.bodies[content.sdc].id

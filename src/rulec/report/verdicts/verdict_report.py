@@ -99,7 +99,7 @@ def open_in_words(result: OpenVerdict, most: int = MOST_CASES) -> str:
     if "not over" in result.because:
         parts.append("not over when the trace is cut" if not parts else "not over")
     if "step" in result.because:
-        parts.append("depends on a bound that is no multiple of the step")
+        parts.append("depends on a bound that is not a multiple of the step")
     fewest = fewest_cases(result.outcomes)
     cases = [f"{case.outcome} if {_conditions(case.when)}" for case in fewest[:most]]
     if len(fewest) > most:

@@ -133,7 +133,7 @@ def replace_files(files: Sequence[Formatted]) -> tuple[Diagnostic, ...]:
 def _replace(path: Path, data: bytes) -> None:
     if not path.is_file():
         way_out = "give `-` to have standard input formatted to standard output"
-        message = "the file cannot be written: it is no ordinary file"
+        message = "the file cannot be written: it is not a regular file"
         raise UNWRITABLE_FILE.error(SourceLocation(str(path)), message, help=way_out)
     with written_whole(path, in_place=True) as stream:
         stream.write(data)

@@ -125,7 +125,7 @@ def over_limit(limit: Limit, part: str, name: tree.Name) -> Diagnostic:
         return FORMULA_TOO_DEEP.at(
             name.span,
             f"{subject} is nested more than {DEEPEST} levels deep, with definitions put in",
-            help="say its parts in rules of their own",
+            help="write its parts as separate rules",
         )
     return FORMULA_TOO_LARGE.at(
         name.span,
