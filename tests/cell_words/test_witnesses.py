@@ -135,6 +135,16 @@ def test_a_scene_is_mirrored_for_rules_of_the_other_side(prediction):
     }
 
 
+def test_a_mirrored_scene_is_mirrored_back(german):
+    made = replace(recording(LANES, [OVERTAKEN], ego=(60, 0)), side="right")
+    scene = seen_from_ego(made, Choice(), "f.xml")
+    mirrored = find_maneuvers(scene, compile_rulebook("gb")).graph.scenario
+    assert find_maneuvers(mirrored, compile_rulebook("gb")).graph.scenario == mirrored
+    back = find_maneuvers(mirrored, german)
+    assert back.graph.scenario == scene
+    assert back.satisfying == find_maneuvers(scene, german).satisfying
+
+
 def test_a_scene_of_the_rules_side_is_not_mirrored():
     made = recording(LANES, [OVERTAKEN], ego=(60, 0))
     for side in ("right", None):

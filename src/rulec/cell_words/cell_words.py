@@ -68,7 +68,8 @@ def cell_words(graph: NavigationGraph, rules: CompiledRulebook) -> CellWords | N
     origin = None if account is None else account.origin
     if not isinstance(origin, SceneOrigin):
         return None
-    side, _ = chosen_side(origin.recording, RequestedDrives(), rules.traffic)
+    side, mirrored = chosen_side(origin.recording, RequestedDrives(), rules.traffic)
+    assert not mirrored
     of_others = NEEDS_JUNCTION | NEEDS_CROSSING
     probes = probe_drives(graph, origin, rules, side, of_others, in_time=OF_OTHERS)
     boxes = list(ego_boxes(graph, probes.recording.step_s))

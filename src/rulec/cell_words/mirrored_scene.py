@@ -17,8 +17,10 @@ def on_side_of(rules: CompiledRulebook, scene: Scenario) -> Scenario:
     """The scene, mirrored if its recording is of traffic that keeps to the other side.
 
     Coordinates are then those of the mirror image: ``d`` is positive to the right of what was
-    recorded. Raises RulecError R0418 for a scene that is to be mirrored and is no longer what its
-    recording gives, apart from step and horizon.
+    recorded. A mirrored scene is mirrored back.
+
+    Raises RulecError R0418 for a scene that is to be mirrored and is no longer what its recording
+    gives, apart from step and horizon.
     """
     source = None if scene.account is None else scene.account.source
     if not isinstance(source, SceneSource):
@@ -26,14 +28,17 @@ def on_side_of(rules: CompiledRulebook, scene: Scenario) -> Scenario:
     recorded = source.recording.side
     if not rules.traffic or recorded in (None, rules.traffic):
         return scene
-    if scene != _read_again(source.recording, source, scene):
+    was_mirrored = scene.account is not None and scene.account.mirrored
+    if scene != _read_again(source.recording, scene, mirrored=was_mirrored):
         raise changed_scene(source.file, str(recorded), rules.name, rules.traffic)
-    mirrored = _read_again(mirrored_recording(source.recording), source, scene)
-    assert mirrored.account is not None  # it is a recorded scene
-    return replace(mirrored, account=replace(mirrored.account, mirrored=True))
+    return _read_again(mirrored_recording(source.recording), scene, mirrored=not was_mirrored)
 
 
-def _read_again(recording: Recording, source: SceneSource, scene: Scenario) -> Scenario:
+def _read_again(recording: Recording, scene: Scenario, *, mirrored: bool) -> Scenario:
     """The scene of a recording, with the step and the horizon of another scene."""
-    read = seen_from_ego(recording, source.choice, source.file)
-    return replace(read, horizon_s=scene.horizon_s, step_s=scene.step_s)
+    assert scene.account is not None
+    assert isinstance(scene.account.source, SceneSource)
+    read = seen_from_ego(recording, scene.account.source.choice, scene.account.source.file)
+    assert read.account is not None  # it is a recorded scene
+    account = replace(read.account, mirrored=mirrored)
+    return replace(read, account=account, horizon_s=scene.horizon_s, step_s=scene.step_s)
