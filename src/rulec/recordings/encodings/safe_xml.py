@@ -118,7 +118,7 @@ def _scan(
         words = errors.messages[problem.code]
         why = f"it is not well-formed XML: {words}"
         if words in _ENDS_EARLY:
-            why = "it ends before all that has begun in it ends; it has been cut short"
+            why = "it ends in the middle of an element: it has been cut short"
         raise form.refused(path, why, problem.lineno) from None
     finally:
         # Parser and handlers refer to each other, and so keep all content in memory
