@@ -35,14 +35,14 @@ def test_what_is_good(folder, capsys):
     assert check(capsys, "good.rules") == (
         0,
         (
-            "1 file checked, nothing found; `rulec test` runs the examples\n"
+            "1 file checked, no mistakes found; `rulec test` runs the examples\n"
             "rule `r` cites no provision\nrule `r` has no example\n"
         ),
         "",
     )
     assert check(capsys, "esterle2019", "paper") == (
         0,
-        "2 files checked, nothing found; `rulec test` runs the examples\n",
+        "2 files checked, no mistakes found; `rulec test` runs the examples\n",
         "",
     )
     assert list(folder.iterdir()) == [folder / "good.rules"]
@@ -212,7 +212,7 @@ def test_fixes_are_written_and_leave_nothing_to_say(capsys, tmp_path):
     assert (status, path.read_text()) == (0, after)
     assert (out, err) == (
         (
-            "1 file checked, nothing found; `rulec test` runs the examples\n"
+            "1 file checked, no mistakes found; `rulec test` runs the examples\n"
             "5 rules cite no provision: `a`, `b`, `c`, `d`, `e`\n"
             "5 rules have no example: `a`, `b`, `c`, `d`, `e`\n"
         ),

@@ -174,7 +174,7 @@ def test_a_word_from_elsewhere_is_had_by_an_option(files, formula, way_out, caps
 def test_the_formula_stands_before_the_files(files, capsys):
     _, drives = files
     assert main(["find", drives, "speed > 50 km/h"]) == 2
-    said = f"`{drives}` is a file: the formula stands first, as in `rulec find 'speed > 50 km/h' "
+    said = f"`{drives}` is a file: the formula comes first, as in `rulec find 'speed > 50 km/h' "
     assert said in capsys.readouterr().err
 
 

@@ -184,10 +184,10 @@ def test_standard_input_stays_utf_8_whatever_the_terminal_speaks():
     assert (done.returncode, done.stdout) == (0, text.encode())
 
 
-def test_standard_input_stands_alone(folder, capsys):
+def test_standard_input_is_given_alone(folder, capsys):
     status, _, err = fmt(capsys, "-", "ugly.rules")
     assert status == 2
-    assert "stands alone" in err
+    assert "cannot be combined with files" in err
     assert (folder / "ugly.rules").read_text() == UGLY
 
 

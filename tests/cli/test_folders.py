@@ -66,7 +66,7 @@ def test_what_is_excluded_is_left_alone_in_folders_and_taken_by_name(project, ca
     assert run(capsys, "check", "laws") == (
         0,
         (
-            "2 files checked, nothing found; `rulec test` runs the examples\n"
+            "2 files checked, no mistakes found; `rulec test` runs the examples\n"
             "rule `r` cites no provision\n"
         ),
         left,
@@ -80,7 +80,7 @@ def test_what_is_excluded_is_left_alone_in_folders_and_taken_by_name(project, ca
     assert run(capsys, "check", "..") == (
         0,
         (
-            "2 files checked, nothing found; `rulec test` runs the examples\n"
+            "2 files checked, no mistakes found; `rulec test` runs the examples\n"
             "rule `r` cites no provision\n"
         ),
         left,
@@ -133,7 +133,7 @@ def test_after_a_change_it_is_done_again(verb, project, capsys, monkeypatch):
     assert err.splitlines().count("watching 4 files; Ctrl-C ends it") == 3
     assert (out + err).count("error[R0202]: nothing is called `q`") == 1
     done = (
-        "4 files checked, nothing found; `rulec test` runs the examples"
+        "4 files checked, no mistakes found; `rulec test` runs the examples"
         if verb == "check"
         else "4 examples: 4 passed, 0 failed"
     )

@@ -46,7 +46,7 @@ formula
   always not (R_pc and f(p))
 
 automaton
-  2 states; a trace starts in state 0, and is accepted or rejected as it says behind its last step
+  2 states; a trace starts in state 0, and is accepted or rejected as written after its last step
   state 0
     R_pc and f(p)   to state 1   rejected
     otherwise       stays        accepted

@@ -62,7 +62,7 @@ def test_failing_examples_say_where_and_what(odd, capsys):
         "  |   ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\n"
         "7 |      r(v); f(v) }\n"
         "  |      ---- cannot be kept any more after this state\n"
-        "  = help: mend the example, or the formula, which `rulec show` reads aloud\n"
+        "  = help: correct the example or the formula; `rulec show` puts the formula into words\n"
         "  = note: the rule cannot be kept any more after state 1, counted from 0\n"
         "\n"
         "error[R0406]: example number 3 of rule `A` says `reject`, but the rule accepts it\n"
@@ -70,14 +70,14 @@ def test_failing_examples_say_where_and_what(odd, capsys):
         "  |\n"
         "8 |   reject { b(v); l(v) }\n"
         "  |   ^^^^^^^^^^^^^^^^^^^^^\n"
-        "  = help: mend the example, or the formula, which `rulec show` reads aloud\n"
+        "  = help: correct the example or the formula; `rulec show` puts the formula into words\n"
         "\n"
         "error[R0406]: example `never` of rule `B` says `accept`, but the rule rejects it\n"
         "  --> odd.rules:12:3\n"
         "   |\n"
         '12 |   accept "never" { b(v); l(v) }\n'
         "   |   ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^\n"
-        "   = help: mend the example, or the formula, which `rulec show` reads aloud\n"
+        "   = help: correct the example or the formula; `rulec show` puts the formula into words\n"
         "   = note: the rule could still be kept, if the last state did not go on for ever\n"
         "\n"
         "4 examples: 1 passed, 3 failed\n"
@@ -247,7 +247,7 @@ def test_an_inherited_example_is_mended_by_an_override(capsys, tmp_path, monkeyp
     assert helps == [
         inherited.format("A (v: vehicle)"),
         inherited.format("B"),
-        "mend the example, or the formula, which `rulec show` reads aloud",
+        "correct the example or the formula; `rulec show` puts the formula into words",
     ]
     _, out, _ = run(capsys, "below.rules", "--output-format", "junit")
     assert out.count("the example is inherited") == 2

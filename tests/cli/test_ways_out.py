@@ -72,11 +72,11 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         (["compile", "de"], "  = help: such as `rulec compile de -o build/de`"),
         (["doc", "deutschland"], "  = help: did you mean `de` (Germany)?"),
         (["list", "rulebook"], "error: there is no `rulebook`; did you mean `rulebooks`?"),
-        (["draw", "de"], "`rulec draw de` is no command; it is one of drive, graph, scene, trace"),
+        (["draw", "de"], "`rulec draw` has no command `de`; it has drive, graph, scene, trace"),
         (["draw", "scen"], "did you mean `scene`?"),
         (["analyze", "de.rules"], "  = help: `de` ships with rulec: leave out `.rules`"),
         (["build", "de"], "did you mean `compile`?"),
-        (["de"], "for a rulebook it stands behind one, as in `rulec check de`"),
+        (["de"], "to name a rulebook, put a command before it, as in `rulec check de`"),
         (["show", "R3"], "`R3` is a rule; give its rulebook, too: `rulec show esterle2019 R3`"),
         (
             ["show", "de", "--automaton", "png"],
@@ -101,7 +101,7 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         (["verify", "--watch"], "no option `--watch` here; `rulec check` and `rulec test` have it"),
         (["verify"], "error: `FILE...` is missing\n"),
         (["verify", "x"], "error: `-r` or `--rulebook` is missing\n"),
-        (["test", "-r", "de"], "the rulebook stands without `-r`, as in `rulec test de`"),
+        (["test", "-r", "de"], "the rulebook is given without `-r`, as in `rulec test de`"),
         (["monitor", "--rulebook", "de"], "without `--rulebook`, as in `rulec monitor de`"),
         (["explain", "-r", "de"], "error: there is no option `-r`\n"),
         (

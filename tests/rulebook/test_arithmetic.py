@@ -334,7 +334,7 @@ def test_a_value_beside_a_sign_stands_alone():
     with pytest.raises(RulecError) as problem:
         parse_rulebook("rulebook a\nsignal p, q\nhard rule r { require always (nothing = q) }\n")
     (found,) = [one for one in problem.value.diagnostics if one.code == "R0313"]
-    assert found.help == "what is true or false stands alone, such as `q`"
+    assert found.help == "what is true or false is written alone, such as `q`"
     # What they quote is offered as an edit.
     assert "`=`" not in found.expected + found.help
 

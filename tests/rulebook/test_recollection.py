@@ -279,6 +279,10 @@ def test_recalling_imports_neither_the_parser_nor_the_language(folder):
         ).stdout.splitlines()
         for _ in range(2)
     ]
-    assert run[0][0] == run[1][0] == "1 file checked, nothing found; `rulec test` runs the examples"
+    assert (
+        run[0][0]
+        == run[1][0]
+        == "1 file checked, no mistakes found; `rulec test` runs the examples"
+    )
     assert "rulec.syntax" in run[0][-1]
     assert run[1][-1] == ""

@@ -7,15 +7,15 @@ from rulec.syntax import parse, parse_formula
 from rulec.syntax.messages.in_items import FORMS, IN_FORCE
 
 COMPARED = (
-    "quantities are compared by `=`, formulas by `iff`; one of several values stands alone: `q`"
+    "quantities are compared by `=`, formulas by `iff`; one of several values is written alone: `q`"
 )
 NAMES = "names are made of letters, digits and `_`, and begin with a letter"
 AS_OFTEN = "a state is one step long: write it as often as it lasts, with `;` between"
 BOUNDS = "a bound is written `[<= 3 s]`, `[>= 1 s]`, `[1 s .. 4 s]` or `[2 steps]`"
-BEHIND = "a bound stands behind its operator, such as `always[<= 3 s] p`"
+BEHIND = "a bound follows its operator, such as `always[<= 3 s] p`"
 OVER_TIME = "only operators over time take a bound, such as `always[<= 3 s]`"
 BOTH_UNITS = "write the unit at both ends, and `..` between: `{}`"
-BETWEEN_WORDS = "between two words stands an operator, such as `and`"
+BETWEEN_WORDS = "two words are joined by an operator, such as `and`"
 OF_AN_OBJECT = f"{BETWEEN_WORDS}; what is of an object is written `{{}}`"
 OR_AND = "write `or` where one of them is enough, `and` where it takes all"
 TWO_ENDS = "write `..` between the two ends, such as `[3 s .. 4 s]`"
@@ -23,7 +23,7 @@ BY_SIGNS = "a quantity is compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
 CHAINS = "`else` chains: write it "
 AS_IN = "as in `3 m if wet else 2 m if dark else 1 m`"
 CONDITIONAL = "a conditional is written `(1.5 m if built_up else 2 m)`"
-DIGITS = "a number's digits stand together, such as `1000`"
+DIGITS = "a number's digits are written together, such as `1000`"
 NO_DATES = "an option has no dates; a parameter and a rule may have them"
 NO_FUNCTION = "there is no"
 ONE_BY_ONE = "one after the other, `x <= a"
@@ -31,7 +31,7 @@ BY_ITSELF = "each value stands for itself: write"
 IN_A_FORMULA = "in a formula write"
 A_CLAUSE = "of a whole rule it is a clause"
 ONE_VARIABLE = "it has one variable; put one inside the other: "
-LASTING = "how long something lasts stands in a bound, such as "
+LASTING = "how long something lasts is a bound, such as "
 FORMULAS = [
     ("p => q", "=>", "write `implies` or `->`"),
     ("p → q", "→", "write `implies` or `->`"),
@@ -54,7 +54,7 @@ FORMULAS = [
     ("coun x: T (p) > 2", "x", "did you mean `count`?"),
     ("wek next p", "next", "did you mean `weak`?"),
     ("p wek until q", "wek", "did you mean `weak`?"),
-    ("now not p", "not", "it stands before what it is about, such as `not (speed > 50 km/h)`"),
+    ("now not p", "not", "it comes before what it is about, such as `not (speed > 50 km/h)`"),
     ("p untl q", "untl", "did you mean `until`?"),
     ("p // why", "//", "a comment begins with `#`"),
     ("p <=> q", "<=>", "write `iff` or `<->`"),
@@ -66,7 +66,11 @@ FORMULAS = [
     ("p og q", "og", "write `and` or `&`"),
     ("p eller q", "eller", "write `or` or `|`"),
     ("p and nicht q", "q", "write `not` or `!` for `nicht`"),
-    ("lane is kerb", "is", "a value stands alone, such as `kerb`; of an object it is `kerb(lane)`"),
+    (
+        "lane is kerb",
+        "is",
+        "a value is written alone, such as `kerb`; of an object it is `kerb(lane)`",
+    ),
     ("gap >= at least 3 m", "least", "for `at least` write `>=`"),
     ("gap at least 3 m", "at", f"for `at least` write `>=`; {LASTING}`historically[>= 3 s] p`"),
     ("gap at most 3 m", "at", f"for `at most` write `<=`; {LASTING}`historically[<= 3 s] p`"),
@@ -82,7 +86,7 @@ FORMULAS = [
     ("eventualy f", "f", "did you mean `eventually`?"),
     ("p sinc q", "sinc", "did you mean `since`?"),
     ("p than q", "than", "did you mean `then`?"),
-    ("p and then q", "then", "`then` stands alone between two phases: write `p then q`"),
+    ("p and then q", "then", "`then` alone separates two phases: write `p then q`"),
     ("if not p then q", "if", "write `p implies q` for `if p then q`"),
     ("⧫ p", "⧫", "write `once` or `O`"),
     ("Previously p", "p", "did you mean `previously`?"),
@@ -100,13 +104,13 @@ FORMULAS = [
     ("always[<= 0,5 s] p", ",", "write a point: `0.5`"),
     ("always[<= three seconds] p", "seconds", "write the number in digits: `3 seconds`"),
     ("speed < seven km/h", "km", "write the number in digits: `7` for `seven`"),
-    ("not p always", "always", "it stands before what it is about: `always p`"),
+    ("not p always", "always", "it comes before what it is about: `always p`"),
     (
         "always (v: car) near(v)",
         ":",
-        "write `every v: car (…)` or `some v: car (…)`, or declare it behind the rule's name",
+        "write `every v: car (…)` or `some v: car (…)`, or declare it after the rule's name",
     ),
-    ("always[3 s <=] p", "<=", "the sign stands before the time: `[<= 3 s]`"),
+    ("always[3 s <=] p", "<=", "the sign comes before the time: `[<= 3 s]`"),
     ("p and eventualy[<= 3 s] q", "[", "did you mean `eventually`?"),
     ("speed is less than 50 km/h", "is", "for `is less than` write `<`"),
     ("speed is below 50 km/h", "is", "for `is below` write `<`"),
@@ -126,7 +130,7 @@ FORMULAS = [
     ("p and[<= 3 s] q", "[", OVER_TIME),
     ("[<= 3 s] p", "[", BEHIND),
     ("always (p)[<= 3 s]", "[", BEHIND),
-    ("always <= 3 s p", "<=", "a bound stands in brackets, such as `always[<= 3 s]`"),
+    ("always <= 3 s p", "<=", "a bound goes in brackets, such as `always[<= 3 s]`"),
     ("p within 3 s", "within", "write `eventually[<= 3 s] p`"),
     ("within 10 s p", "10", "write `eventually[<= 10 s] p`"),
     # Comparisons and arithmetic.
@@ -160,7 +164,7 @@ FORMULAS = [
     (
         "gap > 1.5 m if town else 2 m",
         "if",
-        "a conditional stands in parentheses: `(1.5 m if built_up else 2 m)`",
+        "a conditional goes in parentheses: `(1.5 m if built_up else 2 m)`",
     ),
     (
         "gap > (1.5 m if town)",
@@ -181,9 +185,9 @@ FORMULAS = [
     (
         "some x: T p(x)",
         "p",
-        "what is said of it stands in parentheses: `some x: vehicle (…)`",
+        "what is said about it goes in parentheses: `some x: vehicle (…)`",
     ),
-    ("some x: T", "", "what is said of it stands in parentheses: `some x: vehicle (…)`"),
+    ("some x: T", "", "what is said about it goes in parentheses: `some x: vehicle (…)`"),
     ("count(x: T (p)) > 2", "(", "it is written `count x: vehicle (…)`"),
     ("every x, y: T (p)", ",", f"{ONE_VARIABLE}`every x: T (every y: T (…))`"),
     ("every x: T, y: T (p)", ",", f"{ONE_VARIABLE}`every x: T (every y: T (…))`"),
@@ -191,11 +195,11 @@ FORMULAS = [
     ("p(q(v))", "(", "an argument is a name; it has no arguments of its own"),
     (
         "nie (q(v) und p)",
-        "(",
-        "an argument is a name; it has no arguments of its own; no operator is called `nie`",
+        "nie",
+        "if it is meant for a name, an argument is a name; it has no arguments of its own",
     ),
-    ("nevr (p(v) and q)", "(", "did you mean `never`?"),
-    ("alwais (p and q)", "and", "did you mean `always`?"),
+    ("nevr (p(v) and q)", "nevr", "did you mean `never`?"),
+    ("alwais (p and q)", "alwais", "did you mean `always`?"),
     ("p(v w)", "w", "separate the names by `,`"),
     ("p()", ")", "without arguments there are no parentheses"),
     ("p(1)", "1", NAMES),
@@ -206,13 +210,13 @@ FORMULAS = [
     ),
     ("gap >= max(3 m, gap)", "3", f"{NO_FUNCTION} `max`: compare {ONE_BY_ONE} or x <= b`"),
     # What other languages have.
-    ("ego.speed > 3 m/s", ".", "what is ego's stands alone: write `speed`"),
+    ("ego.speed > 3 m/s", ".", "what is about ego is written alone: `speed`"),
     ("v.speed > 3 m/s", ".", "what is of an object is written `speed(v)`"),
     ("place(v) in {left, right}", "in", f"{BY_ITSELF} `left(v) or right(v)`"),
     ("place in (left, right)", "in", f"{BY_ITSELF} `left or right`"),
     ("gap in 3 m .. 4 m", "in", "write `a <= x and x <= b`"),
     ('speed <= "50 km/h"', '"50 km/h"', "write `50 km/h` without quotes"),
-    ("p for at least 3 s", "for", "for how long stands in a bound, such as `always[<= 3 s] p`"),
+    ("p for at least 3 s", "for", "for how long is written as a bound, such as `always[<= 3 s] p`"),
     (
         "speed < previous speed",
         "speed",
@@ -222,10 +226,10 @@ FORMULAS = [
     ("(unless p then q)", "unless", f"{IN_A_FORMULA} `not p implies q`; {A_CLAUSE}"),
     ("p, q", ",", OR_AND),
     ("p; q", ";", OR_AND),
-    ("{ p }", "{", "a formula stands in parentheses, or alone, but not in braces"),
-    ("weak p", "weak", "`weak` stands before `until`, `next` or `previously`"),
-    ("p weak since q", "weak", "`weak` stands before `until`, `next` or `previously`"),
-    ("p strong until q", "strong", "`strong` stands before `release`"),
+    ("{ p }", "{", "a formula goes in parentheses, or alone, but not in braces"),
+    ("weak p", "weak", "`weak` comes before `until`, `next` or `previously`"),
+    ("p weak since q", "weak", "`weak` comes before `until`, `next` or `previously`"),
+    ("p strong until q", "strong", "`strong` comes before `release`"),
     ("(p & q))", ")", "delete the `)`, or open it before"),
     ("p;", ";", "delete the `;`"),
     ("'p'", "'p'", "write `p` without quotes"),
@@ -260,13 +264,13 @@ LINES = [
     (
         "hard rule a { re\u00adquire p }",
         "re",
-        "behind `re`, delete the character there, which cannot be seen",
+        "after `re`, delete the character there, which cannot be seen",
     ),
-    ("title 'A'", "'A'", 'texts stand in straight double quotes: "…"'),
+    ("title 'A'", "'A'", 'texts go in straight double quotes: "…"'),
     ('title = "A"', "=", "delete the `=`"),
     ('title: "A"', ":", "delete the `:`"),
     ("title A", "A", 'put the text in double quotes: "…"'),
-    ("law «A»", "«", 'texts stand in straight double quotes: "…"'),
+    ("law «A»", "«", 'texts go in straight double quotes: "…"'),
     ("signal p q", "q", "separate the names by `,`"),
     ("signal p; q", ";", "separate the names by `,`"),
     (
@@ -274,7 +278,7 @@ LINES = [
         "1",
         "a signal is true or false: write `default true` or `default false`",
     ),
-    ("x is a, b", "a", "the values stand behind `is one of`, such as `is one of a, b`"),
+    ("x is a, b", "a", "the values follow `is one of`, such as `is one of a, b`"),
     ("x is one of a or b", "or", "separate the names by `,`"),
     ("sgnal p", "sgnal", "did you mean `signal`?"),
     ("import p", "import", "write `use NAME`"),
@@ -288,7 +292,7 @@ LINES = [
     ("// why", "//", "a comment begins with `#`"),
     ("hard rule a { require p accept { p for 3 s } }", "for", AS_OFTEN),
     ("hard rule a { require p accept { 3 x (not p) } }", "3", AS_OFTEN),
-    ("hard rule a { p -> q }", "p", "a formula stands behind `require`"),
+    ("hard rule a { p -> q }", "p", "a formula follows `require`"),
     ("colour", "colour", "an enumeration is declared by `colour is one of a, b`"),
     ("hard a { require p }", "a", "write `hard rule a`"),
     ("soft a { require p }", "a", "write `soft rule a`"),
@@ -308,7 +312,7 @@ LINES = [
         "w",
         "separate the variables by `,`",
     ),
-    ("hard rule a:", ":", "what a rule says stands between `{` and `}`"),
+    ("hard rule a:", ":", "what a rule says goes between `{` and `}`"),
     ("hard rule a () { require p }", ")", "a rule without variables has no parentheses"),
     ("hard rule a { require p accept { gap = 1,5 m } }", ",", "write a point: `1.5`"),
     (
@@ -359,7 +363,7 @@ LINES = [
     (
         "hard rule a { require p accept { p; } }",
         "",
-        "say what holds in this state; a `;` stands only between two states",
+        "say what holds in this state; a `;` only separates two states",
     ),
     ('hard rule a { require p says "a "b" c" }', "b", 'a quote inside a text is written \\"'),
     ("hard rule a { require p; }", ";", "delete the `;`"),
@@ -370,7 +374,7 @@ LINES = [
     ("semantics ltlf", "ltlf", FORMS["semantics"]),
     ("semantics infinite", "infinite", FORMS["semantics"]),
     ("step = 0.5 s", "=", FORMS["step"]),
-    ("priority a < b", "<", "the more important one stands first: write `b > a`"),
+    ("priority a < b", "<", "the more important one comes first: write `b > a`"),
     ("drop x", "x", FORMS["drop"]),
     ("drop rule x", "", FORMS["drop"]),
     ('drop rule because "y"', "because", FORMS["drop"]),
@@ -421,7 +425,7 @@ LINES = [
     (
         "hard rule a { require p unless throughout q }",
         "throughout",
-        "the scope stands behind the formula, such as `unless p throughout`",
+        "the scope follows the formula, such as `unless p throughout`",
     ),
     ("hard rule a { require p except q }", "except", "an exception is written `unless formula`"),
     ("hard rule a { require p from 2020-01-01 }", "from", IN_FORCE),
@@ -462,7 +466,7 @@ LINES = [
     (
         "hard rule a { require p accept { v = w } }",
         "w",
-        "a quantity gets a number, such as `speed = 50 km/h`; a value stands alone: `w`",
+        "a quantity gets a number, such as `speed = 50 km/h`; for a value write only `w`",
     ),
     (
         "hard rule a { require p accept { q and p = true } }",
@@ -477,7 +481,7 @@ LINES = [
     (
         'hard rule a { require p accept (v: T) "x" { p } }',
         '"x"',
-        'the label stands before the objects: `accept "…" (v: vehicle)`',
+        'the label comes before the objects: `accept "…" (v: vehicle)`',
     ),
 ]
 

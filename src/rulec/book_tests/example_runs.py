@@ -217,7 +217,7 @@ def example_warning(outcome: ExampleOutcome, book: str) -> Diagnostic:
             else "the last state did not go on for ever"
         )
         notes.append(f"the rule could still be kept, if {end}")
-    way_out = "mend the example, or the formula, which `rulec show` reads aloud"
+    way_out = "correct the example or the formula; `rulec show` puts the formula into words"
     if is_inherited(outcome, book):
         variables = ", ".join(f"{variable.name}: {variable.type}" for variable in rule.variables)
         head = f"{rule.name} ({variables})" if variables else rule.name

@@ -80,7 +80,7 @@ def reworded(problem: click.ClickException) -> str:
             }
             if names & {"rulebook", "rulebooks", "sources"}:
                 path = problem.ctx.command_path
-                return f"the rulebook stands without `{problem.option_name}`, as in `{path} de`"
+                return f"the rulebook is given without `{problem.option_name}`, as in `{path} de`"
         fitting = [option for option in known if option.startswith(problem.option_name)]
         # Compared without dashes, which all options have.
         by_name = {option.lstrip("-"): option for option in known}
@@ -133,8 +133,8 @@ def reworded(problem: click.ClickException) -> str:
     if context is not None and (match := _NO_COMMAND.match(message)):
         names = context.command.list_commands(context)
         near = nearest_name(match["given"], names)
-        way_out = f"did you mean `{near}`?" if near else f"it is one of {', '.join(names)}"
-        return f"`{context.command_path} {match['given']}` is no command; {way_out}"
+        way_out = f"did you mean `{near}`?" if near else f"it has {', '.join(names)}"
+        return f"`{context.command_path}` has no command `{match['given']}`; {way_out}"
     return message
 
 
@@ -190,7 +190,7 @@ def unknown_verb(name: str) -> str:
     from rulec.rulebook.files.search_path import available_rulebooks
 
     if name.endswith(".rules") or name in available_rulebooks():
-        way_out = f"for a rulebook it stands behind one, as in `rulec check {name}`"
+        way_out = f"to name a rulebook, put a command before it, as in `rulec check {name}`"
     return f"there is no command `{name}`; {way_out}"
 
 

@@ -216,7 +216,7 @@ def _check_value(
                 way_out = _TRUTHS_ELSEWHERE.get(value, "")
             if isinstance(declaration, Quantity) and isinstance(value, str):
                 if _is_number(value):
-                    way_out = "numbers stand without quotes"
+                    way_out = "numbers are written without quotes"
                 elif _is_number(value.partition(" ")[0]):
                     way_out = "write the number alone, in that unit"
             message = f"{where} says `{name}` is {_shown(value)}; {expected}"

@@ -45,7 +45,7 @@ def _unfit(findings: Sequence[Diagnostic], source: Source) -> Iterator[Diagnosti
                 span,
                 "this comment says no reason",
                 severity="warning",
-                help="write `because` and the reason behind it",
+                help="write `because` and the reason after it",
             )
         codes = re.findall(r"R\d{4}", match["codes"])
         for code in codes:

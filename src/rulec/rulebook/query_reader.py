@@ -91,7 +91,7 @@ def read_query(
 
 def _in_words(problem: Diagnostic) -> Diagnostic:
     """The diagnostic without the rule's name, and with help for a formula instead of a rule."""
-    way_out = problem.help.replace("behind the rule's name", "before the formula")
+    way_out = problem.help.replace("after the rule's name", "before the formula")
     way_out = re.sub(r": `use (\w+)`$", r": `--use \1`", way_out)
     # Nothing is declared in a formula.
     way_out = re.sub(r"^declare it, such as .*", _NO_WORD, way_out)

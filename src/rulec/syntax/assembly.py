@@ -151,7 +151,7 @@ def _misplaced(parts: Sequence[Part]) -> Iterable[Diagnostic]:
         elif item is not None:
             yield structure.MISPLACED_LINE.at(
                 part.span,
-                "header lines stand before declarations and rules",
+                "header lines come before declarations and rules",
                 expected="expected a declaration or a rule",
                 help="move it to the top of the file, below `rulebook NAME`",
                 labels=(Label(_start(item.span).place, "the header ended before this"),),

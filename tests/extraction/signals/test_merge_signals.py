@@ -86,6 +86,21 @@ def test_where_a_net_has_all_lanes_that_one_ends():
     assert not told.unknown["narrowing"].any()
 
 
+def test_where_the_whole_road_ends_and_vehicles_can_only_turn_around():
+    road = [
+        straight(1, 0, 100, 0, left_of=2),
+        straight(2, 0, 100, 4, right_of=1, successors=(9,)),
+        lanelet(9, [(100, 4), (102, 6), (100, 8)], predecessors=(2,), successors=(10,)),
+        lanelet(10, [(100, 8), (0, 8)], predecessors=(9,)),
+    ]
+    ego = vehicle(7, {0: (80, 4), 1: (95, 4), 2: (97, 8), 3: (80, 8)})
+    found = replace(recording(road, [ego]), complete=frozenset({"lanes"}))
+    told = merge_signals(context_of(found, ("2", "9", "10")))
+    for name in ("narrowing", "merged"):
+        assert not told.world[name].any()
+        assert not told.unknown[name].any()
+
+
 @pytest.mark.parametrize(
     "road",
     [

@@ -104,9 +104,8 @@ def command(
 
 
 def _nothing_found(done: Checked) -> str:
-    lines = [
-        f"{counted(len(done.files), 'file')} checked, nothing found; `rulec test` runs the examples"
-    ]
+    files = counted(len(done.files), "file")
+    lines = [f"{files} checked, no mistakes found; `rulec test` runs the examples"]
     for rules, lack in ((done.uncited, "cites no provision"), (done.untested, "has no example")):
         if rules:
             many = lack.replace("cites", "cite").replace("has", "have")

@@ -113,6 +113,5 @@ def _way_out(name: str) -> str:
     if near := nearest_name(name, known, _ALIKE):
         return f"did you mean the word `{near}`?"
     return offer(name, described(known, words)) or (
-        "`rulec list codes` shows the codes, `rulec list vocabularies` where words are; `rulec "
-        "show RULEBOOK RULE` explains a rule, `rulec verify` a violation"
+        "`rulec list codes` shows all codes, and `rulec list vocabularies` the files with words"
     )

@@ -98,7 +98,7 @@ def command(
 
     if os.path.isfile(formula) and not any(map(os.path.exists, files)):  # noqa: PTH113 - Path raises on a null character
         raise click.UsageError(
-            f"`{formula}` is a file: the formula stands first, as in `rulec find '{files[0]}' "
+            f"`{formula}` is a file: the formula comes first, as in `rulec find '{files[0]}' "
             f"{formula}`"
         )
     inputs = input_files(files)

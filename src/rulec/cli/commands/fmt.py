@@ -50,7 +50,7 @@ def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -
     writes = not (check or diff)
     if "-" in paths:
         if len(paths) > 1:
-            raise click.UsageError("`-` is standard input and stands alone")
+            raise click.UsageError("`-` is standard input and cannot be combined with files")
         file = formatted("standard input", None, standard_input().read(MAX_SOURCE_BYTES + 1))
         if writes:
             # Written as bytes: the terminal's encoding might change the text.

@@ -213,7 +213,7 @@ def _check_lengths(
         why = f"it seems to be cut short: its last row has {n_cells}, its head {len(names)} names"
         way_out = "write or copy the file again; or take out its last row"
         raise refused(why, int(lines[at]), help_text=way_out)
-    raise refused(why, int(lines[at]), help_text="cells with commas in them stand in quotes")
+    raise refused(why, int(lines[at]), help_text="cells with commas in them go in quotes")
 
 
 def _no_number(name: str, cell: str, line: int, refused: Any) -> RulecError:

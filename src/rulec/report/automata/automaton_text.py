@@ -22,7 +22,7 @@ def as_text(automaton: Automaton, width: int) -> str:
     """A paragraph per state; the last column is the verdict if the trace ends there."""
     head = f"{counted(len(automaton.fates), 'state')}; a trace starts in state 0"
     if automaton.transitions:
-        head += ", and is accepted or rejected as it says behind its last step"
+        head += ", and is accepted or rejected as written after its last step"
     lines = wrap(head, width)
     for state, fate in enumerate(automaton.fates):
         if fate != "open":

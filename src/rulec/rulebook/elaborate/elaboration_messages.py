@@ -101,7 +101,7 @@ def _origins(node: tree.Formula, scope: Scope) -> Iterator[Label]:
 def number_for_truth(node: tree.Formula, number: NumberByCases, scope: Scope) -> Diagnostic:
     unit = scope.symbols.unit_text(node.name.text) if isinstance(node, tree.AtomUse) else ""
     inside = f" (in {unit})" if unit else ""
-    way_out = "how long stands in a bound, such as `historically[<= 3 s] p`"
+    way_out = "how long is written as a bound, such as `historically[<= 3 s] p`"
     test = f"< 5 {unit}" if unit else ">= 1" if isinstance(node, tree.Aggregate) else "< …"
     if not isinstance(node, tree.NumberLiteral) or number.dimension != TIME:
         way_out = f"compare it, such as `{short(node)} {test}`"
@@ -137,7 +137,7 @@ def no_number(
         expected = "expected a number, as it is compared"
         way_out = _COMPARED
         if isinstance(node, tree.AtomUse) and what_of(operand) == "true or false":
-            way_out = f"what is true or false stands alone, such as `{short(node)}`"
+            way_out = f"what is true or false is written alone, such as `{short(node)}`"
     return NUMBER_OR_FORMULA.at(
         node.span,
         f"`{short(node)}` is {what_of(operand)}, not a number",
@@ -279,7 +279,10 @@ def _speed_help(
     ]
     for (_, cases), (node, other) in ((left, right), (right, left)):
         if speeds and (cases.dimension, other.dimension) == _LENGTH_AND_TIME:
-            return f"a speed makes a length of a time: `{short(node)} * {speeds[0]}`"
+            way_out = f"a speed makes a length of a time: `{short(node)} * {speeds[0]}`"
+            if isinstance(node, tree.NumberLiteral) and node.unit:
+                way_out = f"write `{node.text} m`, or, as {way_out}"
+            return way_out
     return ""
 
 
@@ -294,7 +297,7 @@ def two_kinds(node: tree.Conditional, value: object, otherwise: object, scope: S
     return NUMBER_OR_FORMULA.at(
         node.otherwise.span,
         f"`{short(node.value)}` is {what_of(value)} and `{short(node.otherwise)}` "
-        f"{what_of(otherwise)}: they cannot stand for each other",
+        f"{what_of(otherwise)}: one cannot replace the other",
         expected=f"this is {what_of(otherwise)}",
         help=way_out,
         labels=origins(scope, node.value),
@@ -328,7 +331,7 @@ def not_linear(node: tree.Arithmetic) -> Diagnostic:
         way_out = "multiply and divide by fixed numbers and parameters only"
     else:
         why = "a number that changes from state to state cannot be divided by"
-        where = "behind `/`"
+        where = "after `/`"
         left, right = short(node.left), short(node.right)
         way_out = f"for `{left} / {right} >= n` write `{left} >= n * {right}`"
     return NOT_LINEAR.at(
@@ -369,7 +372,7 @@ def objects_have_no_order(node: tree.Compare) -> Diagnostic:
 def temporal_in_count(node: tree.Prefix | tree.Infix) -> Diagnostic:
     return MISPLACED_TEMPORAL_OPERATOR.at(
         node.span,
-        f"`{node.operator}` cannot stand here: a count, a parameter and a fact speak of one state",
+        f"`{node.operator}` cannot be used here: counts, parameters and facts speak of one state",
         expected="expected a formula about one state",
         help="put the operator around it, or give the rule a variable",
     )

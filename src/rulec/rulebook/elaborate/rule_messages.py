@@ -187,10 +187,10 @@ def unused_variable(
             part, where = f"formula of `{name.text}`", "in `require`"
             way_out = "leave the variable out, or speak of it"
         case tree.DefineItem(name=name):
-            part, where = f"definition of `{name.text}`", "behind `=`"
+            part, where = f"definition of `{name.text}`", "after `=`"
             way_out = "leave it out, or speak of it"
         case _:
-            part, where = "formula", "behind it"
+            part, where = "formula", "after it"
             way_out = "speak of it, or leave the variable out"
     return UNUSED_VARIABLE.at(
         variable.span,
@@ -238,7 +238,7 @@ def unfitting_exception(problem: str, item: tree.RuleItem, *, first_state_only: 
             "does not begin with `never` or `always`",
             expected="expected a rule that begins with `never` or `always`"
             if first_state_only
-            else "expected `initially` behind it",
+            else "expected `initially` after it",
             help="write `require always (…)`, since this asks for something in the first state "
             "only; or `initially` at the end of the exception, if that is meant"
             if first_state_only

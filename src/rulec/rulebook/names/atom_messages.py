@@ -230,11 +230,11 @@ def _short_form(name: str, symbols: SymbolTable, variables: Sequence[str]) -> st
     head, _, tail = name.rpartition("_")
     item = symbols.behind_atom(head)
     if item is not None and len(item.parameters) == 1:
-        known = f"its variables are {named(variables)}" if variables else "it has none"
+        known = f"it has {named(variables)}" if variables else "it has none"
         return f"`{name}` means `{head}({tail})`, but the rule has no variable `{tail}`; {known}"
     if item is not None and tail in variables:
         number = len(item.parameters) or "no"
-        return f"`{head}` is about {number} objects, so `_{tail}` cannot stand behind it"
+        return f"`{head}` is about {number} objects, so `_{tail}` cannot follow it"
     near = nearest_name(head, symbols.about_one()) if tail in variables else None
     return f"did you mean `{near}_{tail}`?" if near else ""
 
@@ -281,7 +281,7 @@ def _declared(name: str, item: Signal | Enumeration | Quantity) -> str:
     pairs = zip(letters, item.parameters, strict=False)
     variables = ", ".join(f"{letter}: {parameter}" for letter, parameter in pairs)
     return (
-        f"write `{name}({', '.join(letters)})`, and `({variables})` behind the rule's name or that "
+        f"write `{name}({', '.join(letters)})`, and `({variables})` after the rule's name or that "
         "of the definition"
     )
 
@@ -312,11 +312,13 @@ def unknown_variable(
     kind = next(iter(symbols.types), "vehicle")
     if owner == "example":
         declared = f"({name.text}: {kind})"
-        way_out = f"declare it behind the rule's name, or behind this example's label: `{declared}`"
+        way_out = f"declare it after the rule's name, or after this example's label: `{declared}`"
     elif variables:
         way_out = f"the {owner}'s variables are {named(variables)}"
+        if len(variables) == 1:
+            way_out = f"the {owner}'s only variable is {named(variables)}"
     else:
-        way_out = f"declare it behind the {owner}'s name, such as `({name.text}: {kind})`"
+        way_out = f"declare it after the {owner}'s name, such as `({name.text}: {kind})`"
     return UNKNOWN_VARIABLE.at(
         name.span,
         f"the {owner} has no variable `{name.text}`",

@@ -145,7 +145,7 @@ def which_type(parameter: tree.Parameter, roots: Sequence[str]) -> Diagnostic:
     return PARAMETER_WITHOUT_TYPE.at(
         parameter.span,
         f"it is not clear which objects `{parameter.name.text}` stands for: {why}",
-        expected="expected a type behind the name",
+        expected="expected a type after the name",
         help=f"write `{parameter.name.text}: {example}`",
     )
 

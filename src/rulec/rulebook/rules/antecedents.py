@@ -16,7 +16,7 @@ from rulec.rulebook.rulebook_model import Rule
 AntecedentKind = Literal["implies", "phase", "when", "unless"]
 
 _IN_WORDS: Mapping[AntecedentKind, str] = {
-    "implies": "what stands before `implies`",
+    "implies": "what comes before `implies`",
     "phase": "the first phase",
     "when": "the condition `when`",
     "unless": "the exception",

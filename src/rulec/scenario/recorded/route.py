@@ -164,7 +164,7 @@ def _straight_on(
             and (again or number not in seen)
             and is_lane(lanelets[number])
             # A road does not turn back on itself, though vehicles may turn around at its end
-            and abs(turn(leaving, _end_heading(lanelets[number], backwards))) < _TURNS_BACK
+            and not turns_back(here, lanelets[number], backwards=backwards)
         ]
         if not options:
             break
@@ -174,6 +174,15 @@ def _straight_on(
         seen.add(chosen.id)
         reach += max(lanelet_length(chosen), _SHORTEST_M)
     return way
+
+
+def turns_back(before: Lanelet, lanelet: Lanelet, *, backwards: bool = False) -> bool:
+    """Whether a lanelet leads back beside the one before it, as where vehicles turn around.
+
+    ``backwards``: whether both are followed from their end to their start.
+    """
+    angle = turn(_end_heading(before, backwards), _end_heading(lanelet, backwards))
+    return abs(angle) >= _TURNS_BACK
 
 
 def lanelet_length(lanelet: Lanelet) -> float:

@@ -51,15 +51,15 @@ def advise_on_bound(ctx: ParseContext) -> str:
         return _inside(ctx)
     text, before = ctx.text, ctx.text_before
     if text == "[" and ctx.operand and _holds_a_formula(ctx):
-        return "a formula stands in parentheses, `(p or q)`; brackets hold bounds of time"
+        return "a formula goes in parentheses, `(p or q)`; brackets hold time bounds"
     if text == "[" and ctx.operand and before in _BOOLEAN:
         return "only operators over time take a bound, such as `always[<= 3 s]`"
     if text == "[" and ctx.operator and (near := did_you_mean(before, UNARY_OPERATORS)):
         return near
     if text == "[" and (ctx.operand or ctx.operator):
-        return "a bound stands behind its operator, such as `always[<= 3 s] p`"
+        return "a bound follows its operator, such as `always[<= 3 s] p`"
     if ctx.operand and before in OVER_TIME and text in _OPENINGS:
-        return f"a bound stands in brackets, such as `{before}[<= 3 s]`"
+        return f"a bound goes in brackets, such as `{before}[<= 3 s]`"
     for word, at in ((text, ctx.at + 1), (before, ctx.at)):
         if word in _WITHIN and ctx.operator and ctx.is_number(at):
             amount = ctx.source.text[ctx.tokens[at].start : _end_of_amount(ctx, at)]
@@ -90,7 +90,7 @@ def _inside(ctx: ParseContext) -> str:
     if before.casefold() in IN_DIGITS and ctx.is_word():
         return f"write the number in digits: `{IN_DIGITS[before.casefold()]} {text}`"
     if text in ("<=", ">=") and ctx.is_number(ctx.at - 2):
-        return f"the sign stands before the time: `[{text} {ctx.text_at(ctx.at - 2)} {before}]`"
+        return f"the sign comes before the time: `[{text} {ctx.text_at(ctx.at - 2)} {before}]`"
     if before == "[" and text in ("<", "=<", ">", "=>"):
         sign = "<=" if "<" in text else ">="
         return f"a bound includes its end: write `[{sign} 3 s]`"
@@ -143,7 +143,7 @@ def _quotes(ctx: ParseContext) -> str:
         name = token.text.strip("'") if token.kind == "quoted" else ctx.text_behind
         if ctx.operand and name.isidentifier():
             return f"write `{name}` without quotes"
-        return 'texts stand in straight double quotes: "…"'
+        return 'texts go in straight double quotes: "…"'
     if ctx.accepted == {"STRING"} and (token.kind != "symbol" or token.text == "§"):
         return 'put the text in double quotes: "…"'
     if token.kind == "string" and "STRING" not in ctx.accepted:
@@ -166,7 +166,7 @@ def _names(text: str) -> bool:
 
 def _comment(ctx: ParseContext) -> str:
     if ctx.text == "§":
-        return 'an article stands in its rule, such as `cite "§ 3"`; a remark begins with `#`'
+        return 'an article is cited in its rule, such as `cite "§ 3"`; a remark begins with `#`'
     return "a comment begins with `#`" if ctx.text in ("//", "/*") else ""
 
 
@@ -307,7 +307,7 @@ def _closed_before_a_clause(ctx: ParseContext) -> str:
     is_clause = "\n" in behind[: behind.find(word)] and line.count(")") <= line.count("(")
     if word in ("unless", "when") and not is_clause:
         instead = "p or q` for `p unless q" if word == "unless" else "q implies p` for `p when q"
-        return f"`{word}` is a clause behind the whole formula; inside of one write `{instead}`"
+        return f"`{word}` is a clause after the whole formula; inside one write `{instead}`"
     return "close it with `)`"
 
 

@@ -57,7 +57,7 @@ def advise_on_number(ctx: ParseContext) -> str:
         return f"write `0.{ctx.text_behind}`"
     grouped = "_" in ctx.text_before or ctx.is_number(ctx.at)
     if (ctx.is_number(ctx.at - 1) and grouped) or (text.startswith("'") and around):
-        return "a number's digits stand together, such as `1000`"
+        return "a number's digits are written together, such as `1000`"
     if not ctx.operator:
         return ""
     if ctx.is_number(ctx.at) and (
@@ -87,19 +87,17 @@ def advise_on_comparison(ctx: ParseContext) -> str:
             about = f"`{words[0]}({before})`"
             if re.search(rf"\b{re.escape(before)}\s*:", ctx.source.text):
                 return f"what is of an object is written {about}"
-            return f"a value stands alone, such as `{words[0]}`; of an object it is {about}"
+            return f"a value is written alone, such as `{words[0]}`; of an object it is {about}"
         return "quantities are compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
     if ctx.operator and ctx.is_number(ctx.at + 1) and (sign := _IN_WORDS.get((before, text))):
-        return f"how many stands behind what is counted: `count x: vehicle (…) {sign} 3`"
+        return f"how many follows what is counted: `count x: vehicle (…) {sign} 3`"
     at_sign = sign_in_words(text, ctx.text_behind) if ctx.operator and text == "at" else ""
     if at_sign and ctx.is_number(ctx.at + 2):
-        lasting = (
-            f"how long something lasts stands in a bound, such as `historically[{at_sign} 3 s] p`"
-        )
+        lasting = f"how long something lasts is a bound, such as `historically[{at_sign} 3 s] p`"
         return f"for `at {ctx.text_behind}` write `{at_sign}`; {lasting}"
     if ctx.operator and text == "==":
         value = ctx.text_behind if ctx.text_behind.isidentifier() else ""
-        alone = f"; one of several values stands alone: `{value}`" if value else ""
+        alone = f"; one of several values is written alone: `{value}`" if value else ""
         return f"quantities are compared by `=`, formulas by `iff`{alone}"
     if (ctx.operator or ctx.quantity) and text in _SIGNS:
         return f"write `{_SIGNS[text]}`"

@@ -43,6 +43,8 @@ IN_DIGITS: Final = {
     )
 }
 AGGREGATES: Final = ("some", "every", "count")
+_ABSOLUTE: Final = ("abs", "absolute", "magnitude")
+_ARGUMENT: Final = "an argument is a name; it has no arguments of its own"
 
 
 def advise_on_formula(ctx: ParseContext) -> str:
@@ -77,7 +79,7 @@ def advise_on_aggregate(ctx: ParseContext) -> str:
         if any(ctx.is_number(ctx.at + number) for number in range(1, 4)) and text == "for":
             past = ctx.text_at(ctx.at + 2) in ("last", "past", "previous")
             word = "historically" if past else "always"
-            return f"for how long stands in a bound, such as `{word}[<= 3 s] p`"
+            return f"for how long is written as a bound, such as `{word}[<= 3 s] p`"
         at = ctx.at + (text in _QUANTIFIERS)
         own = ctx.text_at(at + 1) == ":" and ctx.text_at(at + 2).isidentifier()
         variable = f"{ctx.text_at(at)}: {ctx.text_at(at + 2)}" if own else "x: vehicle"
@@ -87,13 +89,11 @@ def advise_on_aggregate(ctx: ParseContext) -> str:
     is_head = ctx.text_at(ctx.at - 2) == "(" and ctx.text_at(ctx.at - 3) != "fact"
     if text == ":" and ctx.operator and is_head:
         head = f"{before}: {ctx.text_at(ctx.at + 1)}"
-        return (
-            f"write `every {head} (…)` or `some {head} (…)`, or declare it behind the rule's name"
-        )
+        return f"write `every {head} (…)` or `some {head} (…)`, or declare it after the rule's name"
     if text in keywords.UNARY_OPERATORS and ctx.operator and ctx.first not in ("unless", "also"):
         if ctx.text_behind in ("", "}"):
-            return f"it stands before what it is about: `{text} p`"
-        return f"it stands before what it is about, such as `{text} (speed > 50 km/h)`"
+            return f"it comes before what it is about: `{text} p`"
+        return f"it comes before what it is about, such as `{text} (speed > 50 km/h)`"
     heads = [index for index in range(ctx.at) if ctx.text_at(index) in AGGREGATES]
     if not heads or ctx.at - heads[-1] > 4:
         return ""
@@ -101,43 +101,50 @@ def advise_on_aggregate(ctx: ParseContext) -> str:
     if text == "," and ctx.accepted <= {"COLON", "LPAR"}:
         return f"it has one variable; put one inside the other: `{word} x: T ({word} y: T (…))`"
     if ctx.accepted == {"LPAR"}:
-        return f"what is said of it stands in parentheses: `{word} x: vehicle (…)`"
+        return f"what is said about it goes in parentheses: `{word} x: vehicle (…)`"
     if ctx.accepted == {"COLON"}:
         return f"it is written `{word} x: vehicle (…)`"
     return ""
+
+
+def no_operator(ctx: ParseContext) -> tuple[int, str] | None:
+    """The index of a word that is meant for an operator and is none, and what may help.
+
+    ``nevr (p and q)`` and ``nie (p(x) …)`` read as a name with arguments up to a word behind.
+    """
+    opened = ctx.opened("(", ")")
+    in_formula = ctx.kind in ("clause", "formula", "item")
+    if not opened or not in_formula or ctx.accepted != {"COMMA", "RPAR"} or ctx.text == ")":
+        return None
+    if near := did_you_mean(ctx.text_at(opened - 1), keywords.UNARY_OPERATORS):
+        return opened - 1, near
+    is_spaced = ctx.tokens[opened - 1].end < ctx.tokens[opened].start
+    if ctx.text != "(" or not is_spaced or ctx.text_at(opened - 1).casefold() in _ABSOLUTE:
+        return None
+    return opened - 1, f"if it is meant for a name, {_ARGUMENT}"
 
 
 def _arguments(ctx: ParseContext) -> str:
     opened = ctx.opened("(", ")")
     if opened is None or ctx.kind not in ("clause", "formula", "item"):
         return ""
-    if opened and ctx.accepted == {"COMMA", "RPAR"} and ctx.text != ")":
-        # `nevr (p and q)` reads as a name with arguments
-        near = did_you_mean(ctx.text_at(opened - 1), keywords.UNARY_OPERATORS)
-        if near:
-            return near
     if ctx.accepted == {"NAME"} and ctx.text_before == "(" and ctx.text == ")":
         return "without arguments there are no parentheses"
     if ctx.accepted == {"NAME"} and ctx.text_before == "," and ctx.text == ")":
         return "delete the `,`"
     if ctx.accepted == {"COMMA", "RPAR"} and ctx.text == ":":
-        return f"types stand where variables are declared: leave out `: {ctx.text_behind}`"
+        return f"types are given where variables are declared: leave out `: {ctx.text_behind}`"
     if ctx.accepted == {"COMMA", "RPAR"} and ctx.text == "(":
-        if opened and ctx.text_at(opened - 1).casefold() in ("abs", "absolute", "magnitude"):
+        if opened and ctx.text_at(opened - 1).casefold() in _ABSOLUTE:
             return NO_ABSOLUTE_VALUE
-        way_out = "an argument is a name; it has no arguments of its own"
-        spaced = opened and ctx.tokens[opened - 1].end < ctx.tokens[opened].start
-        # `nie (p(x) …)` is meant for an operator
-        return (
-            f"{way_out}; no operator is called `{ctx.text_at(opened - 1)}`" if spaced else way_out
-        )
+        return _ARGUMENT
     joins = ctx.text in keywords.PRECEDENCE or ctx.text in (
         *keywords.SYMBOLS.values(),
         *RELATIONS,
     )
     if opened and ctx.accepted == {"COMMA", "RPAR"} and joins:
         named = "".join(token.text for token in ctx.tokens[opened - 1 : ctx.at])
-        way_out = f"close the parenthesis behind the name: `{named.replace(',', ', ')})`"
+        way_out = f"close the parenthesis after the name: `{named.replace(',', ', ')})`"
         if "," in named:
             return f"an argument is a name: `define` one for what is more, or {way_out}"
         return way_out
@@ -159,7 +166,7 @@ def _conditionals(ctx: ParseContext) -> str:
         return "write `(p implies q) and (not p implies r)` for `if p then q else r`"
     if text == "?" or (otherwise and text == "if"):
         if ctx.operator and text == "if":
-            return "a conditional stands in parentheses: `(1.5 m if built_up else 2 m)`"
+            return "a conditional goes in parentheses: `(1.5 m if built_up else 2 m)`"
         return "a conditional is written `(1.5 m if built_up else 2 m)`"
     if text == "if" and ctx.operator:
         return "write `q implies p` for `p if q`"
@@ -180,7 +187,7 @@ def _operators(ctx: ParseContext) -> str:
     if ctx.operator and len(before) > 1 and set(before) <= set(keywords.PREFIX_LETTERS):
         return f"`{before}` is read as one name; write `{' '.join(before)}`"
     if text == "then" and before == "and":
-        return "`then` stands alone between two phases: write `p then q`"
+        return "`then` alone separates two phases: write `p then q`"
     if text == "as" and ctx.text_behind == "soon":
         return "for `as soon as p, q` write `always (p implies q)`, or `eventually[<= 2 s] q` in it"
     if ctx.operator and _MEANT.get(before) == "not":
@@ -193,11 +200,11 @@ def _operators(ctx: ParseContext) -> str:
         symbol = keywords.SYMBOLS.get(word, word)
         return f"write `{word}` or `{symbol}`" if symbol != word else f"write `{word}`"
     if "weak" in (before, text):
-        return "`weak` stands before `until`, `next` or `previously`"
+        return "`weak` comes before `until`, `next` or `previously`"
     if "strong" in (before, text):
-        return "`strong` stands before `release`"
+        return "`strong` comes before `release`"
     if ctx.operand and text == "{":
-        return "a formula stands in parentheses, or alone, but not in braces"
+        return "a formula goes in parentheses, or alone, but not in braces"
     if ctx.operand and text in RELATIONS and text != "=":
         return "say what is compared, such as `speed <= 50 km/h`"
     return ""
@@ -208,7 +215,7 @@ def _joined(ctx: ParseContext) -> str:
     member = behind is not None and behind.kind == "word" and behind.text not in keywords.RESERVED
     if ctx.operator and ctx.text == "." and member and ctx.before and ctx.touches():
         if ctx.text_before in EGO:
-            return f"what is ego's stands alone: write `{ctx.text_behind}`"
+            return f"what is about ego is written alone: `{ctx.text_behind}`"
         return f"what is of an object is written `{ctx.text_behind}({ctx.text_before})`"
     more = behind is not None and behind.text not in {")", *keywords.CLAUSE_WORDS}
     if ctx.operator and more and ctx.text in (",", ";", "."):
@@ -216,12 +223,12 @@ def _joined(ctx: ParseContext) -> str:
     words = (ctx.before, ctx.unexpected)
     is_word = ctx.is_word() and ctx.text not in keywords.RESERVED
     if ctx.operator and ctx.text_before == ")" and is_word:
-        return "between two formulas stands an operator, such as `and`, `or` or `implies`"
+        return "two formulas are joined by an operator, such as `and`, `or` or `implies`"
     if ctx.operator and all(
         token is not None and token.kind == "word" and token.text not in keywords.RESERVED
         for token in words
     ):
-        joined = "between two words stands an operator, such as `and`"
+        joined = "two words are joined by an operator, such as `and`"
         if len(ctx.text) == 1:
             of_object = f"{ctx.text_before}({ctx.text})"
             return f"{joined}; what is of an object is written `{of_object}`"

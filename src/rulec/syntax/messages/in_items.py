@@ -66,7 +66,7 @@ def advise_on_item(ctx: ParseContext) -> str:
         return dates
     asks = text in UNARY_OPERATORS or text in ("if", "every", "some", "no")
     if asks and ctx.accepted == {"$END"} and ctx.unexpected and ctx.unexpected.first:
-        return "what must hold stands in a rule: `hard rule NAME { require … }`"
+        return "what must hold is written in a rule: `hard rule NAME { require … }`"
     is_text = ctx.unexpected is not None and ctx.unexpected.kind == "string"
     if first == "provisions" and "SEMICOLON" in ctx.accepted and is_text:
         return "put a `;` between two articles"
@@ -75,7 +75,7 @@ def advise_on_item(ctx: ParseContext) -> str:
     if first == "fact" and text == ":" and ctx.text_at(1) == "(":
         return "leave the variables' types out: a fact is about all objects that fit its words"
     if "ONE" in ctx.accepted:
-        return "the values stand behind `is one of`, such as `is one of a, b`"
+        return "the values follow `is one of`, such as `is one of a, b`"
     listed = text in (";", "|", "or", "and") or ctx.is_word()
     if "COMMA" in ctx.accepted and listed:
         return "separate the names by `,`"
@@ -86,7 +86,7 @@ def advise_on_item(ctx: ParseContext) -> str:
     if first in ("option", "set") and text == "in" and ctx.text_before in ("on", "off"):
         return "an option has no dates; a parameter and a rule may have them"
     if first == "priority" and text == "<" and ctx.text_behind:
-        return f"the more important one stands first: write `{ctx.text_behind} > {ctx.text_before}`"
+        return f"the more important one comes first: write `{ctx.text_behind} > {ctx.text_before}`"
     if ctx.text_at(ctx.at - 2) == "default" and ctx.is_number(ctx.at - 1):
         return f"the number is in the quantity's own unit: `default {ctx.text_before}`"
     if "EQUALS" in ctx.accepted and not ctx.operator and text in _EQUALS:
@@ -142,7 +142,7 @@ _OTHER_CLAUSES: Final = {
     ),
     **dict.fromkeys(
         ("penalty", "fine", "points", "severity"),
-        "how much a rule counts stands in its head: `soft rule NAME weight 3`",
+        "how much a rule counts is written in its head: `soft rule NAME weight 3`",
     ),
     **dict.fromkeys(("example", "examples", "test", "tests", "trace", "case"), _EXAMPLE),
     **dict.fromkeys(("description", "text", "comment", "note"), 'write `says "…"`'),
@@ -178,7 +178,7 @@ def advise_on_rule_head(ctx: ParseContext) -> str:
     if ctx.at == 0:
         return "a rule begins with `hard rule` or `soft rule`"
     if ctx.text_before == "rule" and ctx.accepted == {"NAME"}:
-        return "a rule has a name, which stands behind `rule`"
+        return "a rule has a name, which follows `rule`"
     if ctx.first == "confirm" and ctx.at > 1:
         return _CONFIRMATION
     if text == "override" and ctx.accepted == {"RULE"}:
@@ -192,13 +192,13 @@ def advise_on_rule_head(ctx: ParseContext) -> str:
     if ctx.accepted >= {"COMMA", "RPAR"} and ctx.is_word() and ctx.text_behind == ":":
         return "separate the variables by `,`"
     if ctx.unexpected is None and ctx.text_before == "(":
-        return "in parentheses stand a rule's variables; what it says stands between `{` and `}`"
+        return "a rule's variables go in parentheses; what it says goes between `{` and `}`"
     if ctx.unexpected is None and "RPAR" in ctx.accepted:
         return "close the list of variables with `)`"
     if text == "," and ctx.text_before != ")" and "RPAR" not in ctx.accepted:
         return "a rule has one name: write a rule for each"
     if text == ":" and "RPAR" not in ctx.accepted:
-        return "what a rule says stands between `{` and `}`"
+        return "what a rule says goes between `{` and `}`"
     return _HEAD if "RPAR" not in ctx.accepted else ""
 
 
@@ -218,7 +218,7 @@ def advise_on_clause(ctx: ParseContext) -> str:
     if scoped and ctx.operator and ctx.text == "always":
         return "for the whole time write `throughout`, or nothing"
     if scoped and ctx.text in ("initially", "throughout", "at") and ctx.operand:
-        return "the scope stands behind the formula, such as `unless p throughout`"
+        return "the scope follows the formula, such as `unless p throughout`"
     if scoped and ctx.accepted >= SCOPES and ctx.is_word():
         return _SCOPE
     if ctx.operator and ctx.text == "at" and ctx.text_behind not in _BEHIND_AT:
@@ -243,7 +243,7 @@ def _example_head(ctx: ParseContext) -> str:
     if ctx.accepted == {"COLON"}:
         return "an object is written with its type, such as `v: vehicle`"
     if ctx.unexpected is not None and ctx.unexpected.kind == "string" and ctx.text_before == ")":
-        return f'the label stands before the objects: `{ctx.first} "…" (v: vehicle)`'
+        return f'the label comes before the objects: `{ctx.first} "…" (v: vehicle)`'
     if ctx.is_word() and "STRING" in ctx.accepted:
         return 'put the text in double quotes: "…"'
     return ""
@@ -254,7 +254,7 @@ def advise_on_state(ctx: ParseContext) -> str:
         return ""
     text = ctx.text
     if ctx.unexpected is None and "NAME" in ctx.accepted:
-        return "say what holds in this state; a `;` stands only between two states"
+        return "say what holds in this state; a `;` only separates two states"
     if text == "," and ctx.is_number(ctx.at - 1) and ctx.is_number(ctx.at + 1):
         return ctx.with_a_point()
     if text == ",":
@@ -278,7 +278,7 @@ def advise_on_state(ctx: ParseContext) -> str:
     sums = text in ("+", "-", "*", "/")
     if ctx.text_before == "=" and ctx.is_word():
         return (
-            f"a quantity gets a number, such as `speed = 50 km/h`; a value stands alone: `{text}`"
+            f"a quantity gets a number, such as `speed = 50 km/h`; for a value write only `{text}`"
         )
     if number or sums or text in _RELATIONS or ctx.is_number(ctx.at):
         return "a state gives a quantity one value, such as `speed = 50 km/h`"

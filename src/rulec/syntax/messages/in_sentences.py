@@ -36,7 +36,7 @@ def advise_on_sentence(ctx: ParseContext) -> str:
     if text in _OBLIGATIONS:
         return f"leave out `{text}`: what a formula says must hold, such as `speed <= 50 km/h`"
     if before in EGO and ctx.is_word() and (subject := _predicate(ctx)):
-        return f"what is ego's stands alone: write `{subject}`"
+        return f"what is about ego is written alone: `{subject}`"
     if text in _CONJUNCTIONS:
         return _CONJUNCTIONS[text]
     if text in _COMPARING and behind:

@@ -9,6 +9,7 @@ from rulec.diagnostics.code import Code
 from rulec.syntax import keywords
 from rulec.syntax.file_pieces import Piece, span_of
 from rulec.syntax.messages.advice import advise
+from rulec.syntax.messages.in_formulas import no_operator
 from rulec.syntax.messages.in_items import other_clause, other_word
 from rulec.syntax.messages.parse_context import (
     DELETE_IT,
@@ -105,6 +106,14 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
         return _reserved(span, token.text, ctx)
     if piece.kind == "item" and at < 2 and first not in keywords.ITEM_WORDS:
         return _unknown_item(source, inside)
+    if found := no_operator(ctx):
+        word, way_out = found
+        return UNEXPECTED_WORD.at(
+            _span(source, inside[word]),
+            f"no operator is called `{_short(inside[word].text)}`",
+            expected="expected an operator such as `never`",
+            help=way_out,
+        )
     subject = _BY_KIND.get(piece.kind) or _WHAT.get(first, "the declaration")
     begins = at == (first == "require")
     if token is None:
@@ -126,13 +135,13 @@ def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnos
     token = tokens[piece.first]
     others = tokens[piece.first + 1 : piece.last]
     symbols = any(token.kind == "symbol" for token in (token, *others))
-    formula = "a formula stands behind `require`" if symbols else ""
+    formula = "a formula follows `require`" if symbols else ""
     words = frozenset(token.text for token in others)
     if token.text == "{":
-        formula = "the states of an example stand between one `{` and `}`, with `;` between them"
+        formula = "the states of an example go between one `{` and `}`, with `;` between them"
     if others and is_invisible(others[0].text) and others[0].start == token.end:
         # Where word processors may break a line: the word goes on behind it.
-        formula = f"behind `{_short(token.text)}`, {DELETE_IT}"
+        formula = f"after `{_short(token.text)}`, {DELETE_IT}"
     return UNEXPECTED_WORD.at(
         _span(source, token),
         f"no clause begins with `{_short(token.text)}`",
@@ -238,7 +247,7 @@ def _unterminated(span: Span) -> Diagnostic:
     first, *more = text.splitlines()
     return UNTERMINATED_TEXT.at(
         Span(span.source, span.start, span.start + len(first)),
-        "this text goes on behind its line" if more else "this text has no closing quote",
+        "this text goes on after its line" if more else "this text has no closing quote",
         expected='expected `"` before the end of the line',
         help="write all of it on one line, however long"
         if more

@@ -187,7 +187,7 @@ class StructureMessages:
             way_out = 'write which provision confirms it, such as `{ cite "s. 12" }`'
         return UNBALANCED_BRACE.at(
             self._behind(before),
-            f"{content} stand between `{{` and `}}`, and the `{{` is missing",
+            f"{content} go between `{{` and `}}`, and the `{{` is missing",
             expected="expected `{`",
             help=way_out,
         )
@@ -206,9 +206,9 @@ class StructureMessages:
         word = self.tokens[index].text
         return OUTSIDE_BRACES.at(
             self.place(index),
-            f"`{'in force' if word == 'in' else word}` stands outside of any rule",
+            f"`{'in force' if word == 'in' else word}` is outside any rule",
             expected="expected a declaration or a rule",
-            help="clauses stand between the `{` and the `}` of their rule, as in "
+            help="clauses go between the `{` and the `}` of their rule, as in "
             "`hard rule NAME { require … }`",
             labels=labels,
         )
@@ -216,7 +216,7 @@ class StructureMessages:
     def behind_vocabulary(self, index: int, closed: int) -> Diagnostic:
         return OUTSIDE_BRACES.at(
             self.place(index),
-            "nothing can stand behind a vocabulary's `}`",
+            "nothing can follow a vocabulary's `}`",
             expected="expected the end of the file",
             help="move it before the `}`, or into a file of its own",
             labels=(Label(self.place(closed), "the vocabulary ended here"),),

@@ -2,7 +2,8 @@
 
 Two lanes beside each other become one where both lead to the same lane and to no other, or where
 one of them ends. One of several ways on from a lane is not a lane that ends. A lane that merely has
-no successor on the map may go on beyond it.
+no successor on the map may go on beyond it. Beside a lane from which vehicles only turn around,
+no lane ends but the whole road.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses, once_a_road
 from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import RAMPS, Lanelet, Recording
-from rulec.scenario.recorded.route import lanelet_length
+from rulec.scenario.recorded.route import lanelet_length, turns_back
 
 _TAPERED = 0.6
 """A lane that ends is narrower at its end than this part of its width before."""
@@ -121,8 +122,9 @@ def _merges(context: DriveContext) -> Iterator[tuple[float, int, bool]]:
                     continue
                 yield float(borders[piece + 1]), right, True
             elif sum(bool(way) for way in ways) == 1:
-                ends = lanelet if not ways[0] else other
-                if not ends.successors:
+                ends, goes = (lanelet, other) if not ways[0] else (other, lanelet)
+                turned = all(turns_back(goes, x) for x in after if x and x.id in goes.successors)
+                if not ends.successors and not turned:
                     yield float(borders[piece + 1]), right, whole or _tapers(ends)
 
 
