@@ -139,6 +139,7 @@ class Drives:
         self._parts: dict[DrivenRoad, _PlacesInPart] = {}
         self._expected = expected
         self._ready: dict[_Key, Drive] = {}
+        self._routes: dict[MatchedStretch, tuple[RouteStretch, ...]] = {}
 
     def egos(self) -> tuple[str, ...]:
         """The participants that move and steer, in the order of the file."""
@@ -171,10 +172,17 @@ class Drives:
         along = [
             stretch
             for matched in self._matching.of(row)
-            for stretch in route_stretches(self.recording, matched, self._map.graph)
+            for stretch in self._routes_of(matched)
             if stretch.last - stretch.first + 1 >= FEWEST_STATES
         ]
         return sorted((*along, *self._against.get(row, ())), key=lambda stretch: stretch.first)
+
+    def _routes_of(self, matched: MatchedStretch) -> tuple[RouteStretch, ...]:
+        # Many candidates of one vehicle drive along the same lanelets at the same times
+        if matched not in self._routes:
+            found = route_stretches(self.recording, matched, self._map.graph)
+            self._routes[matched] = tuple(found)
+        return self._routes[matched]
 
     @cached_property
     def _against(self) -> dict[int, list[RouteStretch]]:
