@@ -44,16 +44,18 @@ def test_who_is_out_of_reach_changes_nothing(world, monkeypatch):
     monkeypatch.setattr(drives, "MOST_PLACES", 0)
     rows_in_reach, left_out = drives.rows_in_reach, []
 
-    def noted(tracks, road, ego, columns, limits):
-        flags = rows_in_reach(tracks, road, ego, columns, limits)
-        left_out.append(tracks.present[:, columns].any(axis=1) & ~flags)
+    def noted(tracks, road, egos, limits):
+        flags = rows_in_reach(tracks, road, egos, limits)
+        present = [tracks.present[:, columns].any(axis=1) for _, columns in egos]
+        left_out.append(np.logical_or.reduce(present) & ~flags)
         return flags
 
     monkeypatch.setattr(drives, "rows_in_reach", noted)
-    some = told(found, near)
+    some, alone = told(found, near), Drives(found, "right", near)
+    one_by_one = [one for ego in alone.egos() for one in alone.of(ego)]
     everybody = np.ones_like(left_out[0])
     monkeypatch.setattr(drives, "rows_in_reach", lambda *_: everybody)
-    assert told(found, near) == some
+    assert told(found, near) == some == one_by_one
     assert 2 * sum(map(np.count_nonzero, left_out)) >= len(left_out) > 10
 
 

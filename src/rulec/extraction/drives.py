@@ -334,8 +334,7 @@ class Drives:
         begin, end = min(own.start for _, own in egos), max(own.stop for _, own in egos)
         columns = slice(begin, end)
         tracks, limits, step_s = self._tracks, self._thresholds, self.recording.step_s
-        reached = [rows_in_reach(tracks, road, *ego, limits) for ego in egos]
-        rows = np.logical_or.reduce(reached).nonzero()[0]
+        rows = rows_in_reach(tracks, road, egos, limits).nonzero()[0]
         near = near_road(tracks, road, (rows, columns), limits, step_s)
         near[rows.searchsorted([row for row, _ in egos])] = True
         n_near = np.count_nonzero(near & tracks.present[rows, columns])
@@ -360,7 +359,7 @@ class Drives:
         ``first_piece`` is the piece of the road in which the drive begins.
         """
         columns = slice(stretch.first, stretch.last + 1)
-        near = rows_in_reach(self._tracks, road, row, columns, self._thresholds)
+        near = rows_in_reach(self._tracks, road, [(row, columns)], self._thresholds)
         for rows in (near.nonzero()[0], self._present(columns)):
             tracks = self._tracks.part(rows, columns)
             lanelets = self._matching.lanelets[rows, columns]

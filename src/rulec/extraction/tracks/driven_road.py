@@ -197,7 +197,8 @@ def _layout(recording: Recording, pieces: tuple[tuple[str, ...], ...]) -> _Layou
     line = reference_line(smoothed(np.concatenate([_middle(recording, piece) for piece in pieces])))
     borders = borders_along(lanelets, line)
     numbers = tuple(_lane_numbers(recording, pieces))
-    lanes = lanes_along(recording, entries, line, float(borders[0] + borders[-1]) / 2, numbers)
+    middle_s = float(borders[0] + borders[-1]) / 2
+    lanes = lanes_along(recording, entries, line, middle_s, numbers, borders)
     return _Layout(pieces, numbers, borders, line, lanes)
 
 

@@ -54,13 +54,13 @@ def lanes_touched(
         inside = np.minimum(breadth, middle - next_middle)
         np.minimum(inside, np.minimum(high, -next_low), out=inside)
         breadth /= 2
-        exists = is_in(there, lane)
         for sets, least in zip(found, least_m, strict=True):
             # A narrow body, such as a pedestrian's, is in a lane with most of its width
             touched = inside > np.minimum(least, breadth)
-            touched &= exists
             sets |= touched.astype(sets.dtype) << lane
         low, high, middle = next_low, next_high, next_middle
+    for sets in found:
+        sets &= there
     return found
 
 

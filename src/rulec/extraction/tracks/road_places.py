@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -142,31 +143,33 @@ class RoadPlaces:
 
 
 def rows_in_reach(
-    tracks: Tracks, road: DrivenRoad, ego: int, columns: slice, limits: Thresholds
+    tracks: Tracks, road: DrivenRoad, egos: Sequence[tuple[int, slice]], limits: Thresholds
 ) -> Flags:
-    """Mask of the tracks that may count for ego on a road, or be in its sight.
+    """Mask of the tracks that may count for one of the egos on a road, or be in its sight.
 
-    They come near enough to ego in some column, in a straight line and at their greatest speeds.
-    The feet of a body's corners on the road are no farther apart than its outline is large, and ego
-    is no farther off the road than ``are_on_road`` allows.
+    They come near enough to the ego, given as row and columns, in some column, in a straight line
+    and at their greatest speeds. The feet of a body's corners on the road are no farther apart than
+    its outline is large, and egos are no farther off the road than ``are_on_road`` allows.
     """
-    # Like the gap that counts, measured along the road, but with all directions unknown
-    along = np.maximum(
-        limits.near_m, (tracks.fastest + tracks.fastest[ego] + 1.0) * limits.catching_up_s
-    )
-    off = 2 * _farthest_off(road, limits) + _PIECES_M + tracks.reaches + tracks.reaches[ego]
-    squares = (along + off) ** 2
-    flags = np.zeros(len(squares), dtype=bool)
-    flags[ego] = True
+    flags = np.zeros(len(tracks.present), dtype=bool)
+    flags[[ego for ego, _ in egos]] = True
+    off = 2 * _farthest_off(road, limits) + _PIECES_M
     # Most of those that come near enough already are so at one of a few times
     for step in (_SOME_TIMES, 1):
-        rows, times = (~flags).nonzero()[0], slice(columns.start, columns.stop, step)
-        away = tracks.x[rows, times] - tracks.x[ego, times]
-        aside = tracks.y[rows, times] - tracks.y[ego, times]
-        away *= away
-        aside *= aside
-        away += aside
-        flags[rows] = (away <= squares[rows, None]).any(axis=1)
+        for ego, columns in egos:
+            rows, times = (~flags).nonzero()[0], slice(columns.start, columns.stop, step)
+            if not len(rows):
+                return flags
+            # Like the gap that counts, measured along the road, but with all directions unknown
+            fastest = tracks.fastest[rows] + tracks.fastest[ego]
+            along = np.maximum(limits.near_m, (fastest + 1.0) * limits.catching_up_s)
+            squares = (along + off + tracks.reaches[rows] + tracks.reaches[ego]) ** 2
+            away = tracks.x[rows, times] - tracks.x[ego, times]
+            aside = tracks.y[rows, times] - tracks.y[ego, times]
+            away *= away
+            aside *= aside
+            away += aside
+            flags[rows] = (away <= squares[:, None]).any(axis=1)
     return flags
 
 

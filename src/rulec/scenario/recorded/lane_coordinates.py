@@ -131,14 +131,16 @@ def lanes_along(
     line: ReferenceLine,
     ego_s: float,
     numbers: Sequence[int] | None = None,
+    borders: _Values | None = None,
 ) -> Lanes:
     """The lanes of the road along a route: the route's own and those beside it in its direction.
 
     ``numbers``: the lane number of each lanelet of the route, from any first number on; without
-    them the route is one lane. Raises ValueError if no lane is as wide as ``NARROWEST_LANE_M``.
+    them the route is one lane. ``borders`` are those of ``borders_along``, if already known. Raises
+    ValueError if no lane is as wide as ``NARROWEST_LANE_M``.
     """
     lanelets = [recording.lanelets[number] for number in way]
-    borders = borders_along(lanelets, line)
+    borders = borders_along(lanelets, line) if borders is None else borders
     grid = distinct(np.concatenate([np.arange(0.0, line.length, _EVERY_M), borders]))
     grid = grid[np.concatenate(([True], np.diff(grid) > _HAIR_M))]
     own_number = np.zeros(len(way), dtype=int) if numbers is None else np.array(numbers)
