@@ -146,9 +146,8 @@ def _obstructed(context: DriveContext) -> Flags:
         there = (is_in(sets, lane) & used[columns, lane]).nonzero()[0]
         if not len(there):
             continue
-        part, bound = cells.part(there), np.full(context.states, lane)
-        low, _ = context.extents.cells_from_bound(part, bound)
-        _, high = context.extents.cells_from_bound(part, bound + 1)
+        part = cells.part(there)
+        (low, _), (_, high) = context.extents.cells_from_bounds(part, lane, lane + 1)
         room = width[part.columns] + needed[there]
         blocked[part.columns[np.maximum(low, -high) < room]] = True
     return blocked

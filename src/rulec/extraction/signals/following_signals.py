@@ -85,12 +85,11 @@ def _before(context: DriveContext, cells: Cells) -> Floats:
     rows, states, reach = cells.rows, cells.columns, limits.touching_m
     right = context.ego_lane
     left = right + 1
-    low, high = others.cells_from_bound(cells, left)
+    (low, high), (low_r, high_r) = others.cells_from_bounds(cells, left, right)
     from_left = np.maximum(own.left_of_max[0, states, left[states]] - low, -high) + reach
     inside = np.minimum(-low - reach, from_left)
-    low, high = others.cells_from_bound(cells, right)
-    from_right = np.maximum(high - own.left_of_min[0, states, right[states]], low) + reach
-    inside = np.minimum(inside, np.minimum(high - reach, from_right))
+    from_right = np.maximum(high_r - own.left_of_min[0, states, right[states]], low_r) + reach
+    inside = np.minimum(inside, np.minimum(high_r - reach, from_right))
     way = np.fmax(inside - context.tolerances.place_m, 0.0)
     across = others.across[rows, states]
     speed = np.maximum(np.abs(across), np.abs(across - own.across[0, states]))

@@ -136,9 +136,8 @@ def laterals(context: DriveContext) -> Laterals:
 
 def _left_of_bounds(context: DriveContext, cells: Cells) -> RoadExtents:
     """How far (m) left of each lane bound bodies begin and end, by cell."""
-    bounds = [np.full(context.states, k) for k in range(context.existing_lanes.shape[1] + 1)]
-    ends = np.array([context.extents.cells_from_bound(cells, bound) for bound in bounds])
-    low, high = np.moveaxis(ends, 0, -1)
+    bounds = range(context.existing_lanes.shape[1] + 1)
+    low, high = np.moveaxis(np.array(context.extents.cells_from_bounds(cells, *bounds)), 0, -1)
     return replace(context.ego_extents, left_of_min=low, left_of_max=high)
 
 
@@ -259,11 +258,7 @@ def _beside_lane_shifted(
         cells = cells.part(chosen)
     own, others = context.ego_extents.moved(-shift), context.extents
     # How far left of the two bounds of ego's lane others begin and end
-    low_r, high_r, low_l, high_l = (
-        values
-        for bound in (own.lane[0], own.lane[0] + 1)
-        for values in others.cells_from_bound(cells, bound)
-    )
+    (low_r, high_r), (low_l, high_l) = others.cells_from_bounds(cells, own.lane[0], own.lane[0] + 1)
     if shift.any():
         by = cells.of(shift)
         low_r, high_r, low_l, high_l = (values - by for values in (low_r, high_r, low_l, high_l))

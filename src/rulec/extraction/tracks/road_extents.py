@@ -122,14 +122,24 @@ class RoadExtents:
         """How far (m) left of one lane bound, given by column, bodies begin and end."""
         return _at_bound(self.left_of_min, bound), _at_bound(self.left_of_max, bound)
 
-    def cells_from_bound(self, cells: Cells, bound: NDArray[intp]) -> tuple[Floats, Floats]:
-        """``from_bound`` for some cells only."""
-        steps = bound * len(self.left_of_min)
-        places = (steps[cells.columns] + cells.rows) * len(bound) + cells.columns
-        low, high = (
-            own.transpose(2, 0, 1).take(places) for own in (self.left_of_min, self.left_of_max)
-        )
-        return low, high
+    def cells_from_bounds(
+        self, cells: Cells, *bounds: NDArray[intp] | int
+    ) -> list[tuple[Floats, Floats]]:
+        """``from_bound`` for some cells only, for each of several bounds."""
+        whole, at = self._places_of(cells)
+        by_bound = [own.transpose(2, 0, 1) for own in (whole.left_of_min, whole.left_of_max)]
+        _, rows, columns = by_bound[0].shape
+        found = []
+        for bound in bounds:
+            before = bound * (rows * columns)
+            places = at + (before if isinstance(before, int) else before.take(cells.columns))
+            low, high = (own.take(places) for own in by_bound)
+            found.append((low, high))
+        return found
+
+    def _places_of(self, cells: Cells) -> tuple[RoadExtents, NDArray[intp]]:
+        """Extents and, in their flattened arrays by participant and state, the places of cells."""
+        return self, cells.rows * self.left_of_min.shape[1] + cells.columns
 
     def from_middle(self, lane: NDArray[intp]) -> tuple[Floats, Floats]:
         """How far (m) left of the middle of one lane, given by column, bodies begin and end."""
@@ -215,18 +225,12 @@ class _LaidExtents(RoadExtents):
             return super().part(rows, columns)
         return _LaidExtents(self.__dict__["_whole"], self.__dict__["_laid"].of_rows(rows))
 
-    def cells_from_bound(self, cells: Cells, bound: NDArray[intp]) -> tuple[Floats, Floats]:
-        """How far (m) left of one lane bound, given by column, bodies begin and end in cells."""
-        own, laid = self.__dict__["_whole"], self.__dict__["_laid"]
-        steps = bound * len(own.left_of_min)
-        columns = laid.columns.take(cells.columns)
-        places = steps.take(cells.columns) + laid.rows.take(cells.rows)
-        places *= own.left_of_min.shape[1]
-        places += columns
-        low, high = (
-            own.transpose(2, 0, 1).take(places) for own in (own.left_of_min, own.left_of_max)
-        )
-        return low, high
+    def _places_of(self, cells: Cells) -> tuple[RoadExtents, NDArray[intp]]:
+        whole, laid = self.__dict__["_whole"], self.__dict__["_laid"]
+        places: NDArray[intp] = laid.rows.take(cells.rows)
+        places *= whole.left_of_min.shape[1]
+        places += laid.columns.take(cells.columns)
+        return whole, places
 
     def __getattr__(self, name: str) -> NDArray[Any]:
         if name not in _FIELDS:

@@ -173,9 +173,8 @@ def _drifts(
     drifts, whole = np.zeros(whom.shape, dtype=bool), context.relevant.shape
     for lane in distinct(lanes).tolist():
         rows, ways = (whom & (lanes == lane)).nonzero()
-        bound = np.full(context.states, lane)
-        now, then = (
-            context.extents.cells_from_bound(Cells.in_shape(whole, rows, at[ways]), bound)
+        (now,), (then,) = (
+            context.extents.cells_from_bounds(Cells.in_shape(whole, rows, at[ways]), lane)
             for at in (states, before)
         )
         moved = np.abs((now[0] + now[1]) - (then[0] + then[1])) / 2

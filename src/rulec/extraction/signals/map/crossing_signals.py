@@ -273,8 +273,7 @@ def _from_edges(
     """
     others, count, sets = context.extents, context.existing_lanes.shape[1], context.lanes_there
     there = np.stack([is_in(cells.of(sets), lane) for lane in range(count)])
-    bounds = [np.full(context.states, number) for number in range(count + 1)]
-    ends = np.array([others.cells_from_bound(cells, bound) for bound in bounds])
+    ends = np.array(others.cells_from_bounds(cells, *range(count + 1)))
     edges = (there.argmax(axis=0), count - there[::-1].argmax(axis=0))
     right, left = (ends[edge, :, np.arange(len(edge))].T for edge in edges)
     return (right[0], right[1]), (left[0], left[1])
