@@ -25,6 +25,9 @@ OTHER_CARRIAGEWAY_M = 30.0
 
 _AGAINST = np.radians(135.0)
 
+_HAIR = 1e-9
+"""Upper bound on rounding errors of a cosine."""
+
 Directions = tuple["bool | None", "bool | None"]
 
 
@@ -161,7 +164,7 @@ class Surroundings:
         opposite = []
         for index in tree.query(middle, predicate="dwithin", distance=OTHER_CARRIAGEWAY_M).tolist():
             lane = lanes[index]
-            if lane.id != lanelet.id and lane.id not in beside:
+            if lane.id != lanelet.id and lane.id not in beside and _turns_against(lane, heading):
                 turned = abs(turn(heading, float(directions_beside(lane, places)[0])))
                 if turned > _AGAINST and _is_beside(lane, middle, heading):
                     opposite.append(lanelet_area(lane))
@@ -173,6 +176,13 @@ class Surroundings:
             shapely.buffer(middle, OTHER_CARRIAGEWAY_M),
         )
         return float(shapely.distance(opposite, own).min())
+
+
+def _turns_against(lane: Lanelet, heading: float) -> bool:
+    """Whether some part of a lane may lead against a heading (rad)."""
+    steps = lane.centre[1:] - lane.centre[:-1]
+    along = steps @ np.array([np.cos(heading), np.sin(heading)])
+    return bool((along <= (np.cos(_AGAINST) + _HAIR) * np.hypot(*steps.T)).any())
 
 
 def _is_beside(lane: Lanelet, place: shapely.Point, heading: float) -> bool:

@@ -1,15 +1,18 @@
 """Where vehicles are along lanelets: as Shapely says, whatever the lanelet's middle looks like."""
 
+from dataclasses import replace
+from unittest.mock import patch
+
 import numpy as np
 import pytest
 import shapely
 
 from rulec.extraction.tracks.matching.lane_candidates import (
     NEAR_M,
-    are_near,
     feet_on,
     leading_on,
 )
+from rulec.extraction.tracks.matching.lane_strips import LaneStrip
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import lanelet_area
 from support.builders.recordings import lanelet
@@ -81,6 +84,27 @@ def test_who_is_near_a_lane_is_as_near_as_shapely_says(shape, width):
         area = lanelet_area(lane)
         x, y = (line[random.integers(0, len(line), 50)] + random.normal(size=(50, 2)) * far).T
         told = shapely.dwithin(area, shapely.points(x, y), NEAR_M)
-        assert (are_near(lane, area, x, y) == told).all()
+        assert (LaneStrip.of(lane, area).near(x, y, NEAR_M) == told).all()
         near += int(told.sum())
     assert 0 < near < 60 * 50
+
+
+def test_who_is_near_a_straight_lane_is_told_without_shapely():
+    """Lanes with repeated corners that begin with no width: few places are left to Shapely."""
+    random = np.random.default_rng(17)
+    n_asked = n_near = n_far = 0
+    for _ in range(60):
+        line = along_x(random, int(random.integers(3, 12)))
+        lane = lanelet(1, line, [0.0, *random.uniform(2, 4, len(line) - 1)])
+        left, right = (bound.repeat(2, axis=0) for bound in (lane.left, lane.right))
+        lane = replace(lane, left=left, right=right)
+        area = lanelet_area(lane)
+        x, y = (line[random.integers(0, len(line), 50)] + random.normal(size=(50, 2)) * 6).T
+        told = shapely.dwithin(area, shapely.points(x, y), NEAR_M)
+        with patch.object(shapely, "dwithin", wraps=shapely.dwithin) as dwithin:
+            near = LaneStrip.of(lane, area).near(x, y, NEAR_M)
+        assert (near == told).all()
+        n_asked += sum(len(call.args[1]) for call in dwithin.call_args_list)
+        n_near, n_far = n_near + int(told.sum()), n_far + int((~told).sum())
+    assert min(n_near, n_far) > 500
+    assert n_asked < (n_near + n_far) / 3

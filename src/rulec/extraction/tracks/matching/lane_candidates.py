@@ -9,13 +9,12 @@ from itertools import pairwise
 from math import pi, radians
 
 import numpy as np
-import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
-from rulec.recordings.recording import Lanelet, Points
+from rulec.recordings.recording import Points
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_at
 from rulec.trace.plain_arrays import are_new
@@ -25,9 +24,6 @@ NEAR_M = 3.0
 
 _AROUND_M = NEAR_M + 0.1
 """Places farther (m) than this from the rectangle around a lanelet are not near it."""
-
-_SIDEWAYS_M = NEAR_M - 0.1
-"""A place that is on a lanelet when moved sideways by this (m) is near it."""
 
 _HAIR_RAD, _HAIR_M = 1e-6, 1e-6
 _FEW_CORNERS = 6
@@ -74,7 +70,7 @@ _NONE = LaneCandidates(
 
 def candidates(graph: LaneletGraph, tracks: Tracks) -> LaneCandidates:
     """The lanelets near each moving participant that lead its way."""
-    lanes, areas = graph.lanes, graph.areas
+    lanes = graph.lanes
     moving = np.array([not body.standing for body in tracks.participants], dtype=bool)
     rows, columns = (tracks.present & moving[:, None]).nonzero()
     if not lanes or not len(rows):
@@ -87,8 +83,7 @@ def candidates(graph: LaneletGraph, tracks: Tracks) -> LaneCandidates:
         own = ((x >= left) & (x <= right) & (y >= low) & (y <= high)).nonzero()[0]
         if len(own):
             own = own[leading_on(lanes[number].centre, headings[own])]
-            own = own[_beside(lanes[number], areas[number], x[own], y[own])]
-            own = own[are_near(lanes[number], areas[number], x[own], y[own])]
+            own = own[graph.strip(number).near(x[own], y[own], NEAR_M)]
         if len(own):
             near[number] = own
     if not near:
@@ -138,42 +133,6 @@ def leading_on(line: Points, headings: Floats) -> Flags:
     off = np.abs(turn(directions[0] + (least + most) / 2, headings))
     leading: Flags = off < pi / 2 + (most - least) / 2 + _HAIR_RAD
     return leading
-
-
-def _beside(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> Flags:
-    """Mask of places hardly farther to the sides than a lanelet's area; includes all near ones.
-
-    Excludes most of the places in the rectangle around a slanting lanelet.
-    """
-    corners = shapely.get_coordinates(area)
-    (ux, uy), (x0, y0) = lanelet.centre[-1] - lanelet.centre[0], lanelet.centre[0]
-    length = np.hypot(ux, uy)
-    if not length:
-        return np.ones(len(x), dtype=bool)
-    own = ((corners[:, 1] - y0) * ux - (corners[:, 0] - x0) * uy) / length
-    away = ((y - y0) * ux - (x - x0) * uy) / length
-    beside: Flags = (away >= own.min() - _AROUND_M) & (away <= own.max() + _AROUND_M)
-    return beside
-
-
-def are_near(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> Flags:
-    """Mask of places within ``NEAR_M`` of a lanelet's area.
-
-    Most are in it, or would be if moved a little sideways, which takes a tenth of the time to test.
-    """
-    shapely.prepare(area)
-    near: Flags = shapely.intersects_xy(area, x, y)
-    ahead = lanelet.centre[-1] - lanelet.centre[0]
-    length = np.hypot(*ahead)
-    for sideways in (-_SIDEWAYS_M, _SIDEWAYS_M) if length else ():
-        left = (~near).nonzero()[0]
-        if not len(left):
-            return near
-        to_x, to_y = x[left] - ahead[1] / length * sideways, y[left] + ahead[0] / length * sideways
-        near[left] = shapely.intersects_xy(area, to_x, to_y)
-    left = (~near).nonzero()[0]
-    near[left] = shapely.dwithin(area, shapely.points(x[left], y[left]), NEAR_M)
-    return near
 
 
 def _numbers(groups: Iterable[tuple[int, NDArray[intp]]]) -> NDArray[intp]:

@@ -15,6 +15,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from rulec.extraction.tracks.matching.lane_strips import LaneStrip
 from rulec.recordings.adjacency import bordering
 from rulec.recordings.recording import Lanelet, Recording, is_lane
 from rulec.scenario.recorded.route import lanelet_area, lanelet_length, lanes_beside
@@ -52,6 +53,7 @@ class LaneletGraph:
         self._ways: dict[str, Mapping[str, Way]] = {}
         self._rows: dict[str, tuple[str, ...]] = {}
         self._lengths: dict[str, float] = {}
+        self._strips: dict[int, LaneStrip] = {}
         self._bordering: dict[str, list[str]] = defaultdict(list)
         for pair in bordering(recording.lanelets.values()):
             if pair.length >= _SHORTEST_M:
@@ -73,6 +75,12 @@ class LaneletGraph:
         """The bounding box of each lane's area: least x and y (m), greatest x and y."""
         found: NDArray[np.float64] = shapely.bounds(np.array(self.areas, dtype=object))
         return found
+
+    def strip(self, number: int) -> LaneStrip:
+        """A lane as a strip, given by its number among the lanes."""
+        if number not in self._strips:
+            self._strips[number] = LaneStrip.of(self.lanes[number], self.areas[number])
+        return self._strips[number]
 
     def length(self, start: str) -> float:
         """The length (m) of a lane's middle line."""
