@@ -185,8 +185,10 @@ def _differences(body: Participant, order: int) -> NDArray[np.float64]:
     way = places[order:] - places[:-order]
     length = np.hypot(*way.T)
     counts = (steps[order:] - steps[:-order] == order) & (length > _MOVES_M)
-    (x, y), (dx, dy) = np.diff(places, order, axis=0)[counts].T, way[counts].T / length[counts]
-    sizes: NDArray[np.float64] = np.abs(np.stack((x * dx + y * dy, y * dx - x * dy), axis=-1))
+    for _ in range(order):
+        places = places[1:] - places[:-1]
+    (x, y), (dx, dy) = places[counts].T, way[counts].T / length[counts]
+    sizes: NDArray[np.float64] = np.abs(np.array((x * dx + y * dy, y * dx - x * dy)).T)
     return sizes
 
 

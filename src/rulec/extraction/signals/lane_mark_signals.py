@@ -194,8 +194,11 @@ def _not_moved_yet(context: DriveContext) -> Flags:
 
 def _outer_lines(context: DriveContext) -> Flags:
     """Mask of the lines (second axis) at the edges of ego's road, by state."""
-    there = np.pad(context.existing_lanes, ((0, 0), (1, 1)))
-    outer: Flags = there[:, 1:] != there[:, :-1]
+    lanes = context.existing_lanes
+    outer = np.empty((len(lanes), lanes.shape[1] + 1), dtype=bool)
+    # Beyond the outermost lanes there are none
+    outer[:, 0], outer[:, -1] = lanes[:, 0], lanes[:, -1]
+    outer[:, 1:-1] = lanes[:, 1:] != lanes[:, :-1]
     return outer
 
 

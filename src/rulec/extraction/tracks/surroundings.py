@@ -161,13 +161,17 @@ class Surroundings:
         middle = shapely.LineString(lanelet.centre).interpolate(0.5, normalized=True)
         places = np.array([middle])
         heading = float(directions_beside(lanelet, places)[0])
-        opposite = []
-        for index in tree.query(middle, predicate="dwithin", distance=OTHER_CARRIAGEWAY_M).tolist():
+        far, opposite = OTHER_CARRIAGEWAY_M, []
+        around = shapely.box(*(middle.x - far, middle.y - far, middle.x + far, middle.y + far))
+        for index in tree.query(around).tolist():
             lane = lanes[index]
-            if lane.id != lanelet.id and lane.id not in beside and _turns_against(lane, heading):
-                turned = abs(turn(heading, float(directions_beside(lane, places)[0])))
-                if turned > _AGAINST and _is_beside(lane, middle, heading):
-                    opposite.append(lanelet_area(lane))
+            if lane.id in (lanelet.id, *beside) or not _turns_against(lane, heading):
+                continue
+            turned = abs(turn(heading, float(directions_beside(lane, places)[0])))
+            is_across = turned > _AGAINST and _is_beside(lane, middle, heading)
+            area = tree.geometries[index]
+            if is_across and shapely.dwithin(area, middle, far):
+                opposite.append(area)
         if not opposite:
             return np.inf
         row = [lanelet, *(self.recording.lanelets[name] for name in beside)]

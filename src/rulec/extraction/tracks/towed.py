@@ -54,7 +54,8 @@ def towed_by(tracks: Tracks, row: int, step_s: float) -> str | None:
 def _near_enough(tracks: Tracks, row: int, columns: NDArray[intp]) -> NDArray[intp]:
     """The rows of other vehicles that may be near a participant all the time, by where it begins.
 
-    No number is farther from a mean than the standard deviation times the root of the count.
+    No number is farther from a mean than the standard deviation times the root of the count. At
+    both ends of its track they are not aside of it.
     """
     first, last = columns[0], columns[-1]
     x, y = tracks.x[:, first], tracks.y[:, first]
@@ -63,4 +64,10 @@ def _near_enough(tracks: Tracks, row: int, columns: NDArray[intp]) -> NDArray[in
     near: Flags = np.hypot(x - x[row], y - y[row]) < most
     near &= tracks.present[:, last] & tracks.of_type("vehicle")
     near[row] = False
-    return near.nonzero()[0]
+    others = near.nonzero()[0]
+    for column in (first, last) if len(others) else ():
+        heading = tracks.heading[row, column]
+        dx, dy = (places[others, column] - places[row, column] for places in (tracks.x, tracks.y))
+        aside = np.abs(dy * np.cos(heading) - dx * np.sin(heading))
+        others = others[~(aside > _ASIDE_M + _HAIR_M)]
+    return others
