@@ -360,8 +360,12 @@ def _over_the_middle(context: DriveContext) -> Flags:
     low, high = sides_beyond_far_edge(context, others)
     over: Flags = both_ways & (low + high > 0) & (low < _HALF_M) & (abs(others.turned) < 1.0)
     over &= context.tracks.of_type("vehicle")[:, None] & ~context.on_lanes
-    over &= spans.latest(np.isnan(others.s)) < spans.latest(context.driving_along)
-    return over & (relations.gap(context) <= context.thresholds.near_m)
+    over &= relations.gap(context) <= context.thresholds.near_m
+    # Hardly any vehicle is there
+    rows = over.any(axis=1).nonzero()[0]
+    gone, came = np.isnan(others.s[rows]), context.driving_along[rows]
+    over[rows] &= spans.latest(gone) < spans.latest(came)
+    return over
 
 
 def _gets_past(
