@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from itertools import groupby, pairwise
-from math import atan2, hypot, pi, radians
+from math import atan2, pi, radians, sqrt
 from unittest import mock
 
 import numpy as np
@@ -172,7 +172,9 @@ def cheapest_by_hand(found, tracks, graph, row):
             yield from least(paths)
             paths = {name: (cost, [name], s) for name, cost, s in options}
         else:
-            moved = hypot(*(getattr(tracks, k)[row, [before, column]] @ [-1, 1] for k in "xy"))
+            # To the last digit, since equal costs are decided by name
+            dx, dy = (getattr(tracks, k)[row, [before, column]] @ [-1, 1] for k in "xy")
+            moved = sqrt(dx * dx + dy * dy)
             weight = min(1.0, moved / (2 * SIGMA_M))
             paths = {
                 name: (*further(paths, graph, name, s, moved, weight * cost), s)

@@ -20,7 +20,7 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from math import hypot, inf
+from math import inf
 
 import numpy as np
 from numpy import bool_, intp
@@ -292,9 +292,8 @@ def _padded(found: LaneCandidates, states: NDArray[intp], values: Floats) -> Flo
 def _transitions(
     found: LaneCandidates, places: Floats, states: NDArray[intp], graph: LaneletGraph
 ) -> _Transitions:
-    # Numpy's hypot rounds differently
-    steps = (places[states] - places[states - 1]).T.tolist()
-    moved = np.array(list(map(hypot, *steps)))
+    dx, dy = (places[states] - places[states - 1]).T
+    moved = np.sqrt(dx * dx + dy * dy)
     weight = np.zeros(len(found.rows))
     weight[states] = np.minimum(1.0, moved / (2 * SIGMA_M))
     own = _padded(found, states, weight.repeat(found.counts) * found.costs)
