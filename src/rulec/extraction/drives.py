@@ -31,6 +31,7 @@ from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.towed import towed_by
 from rulec.extraction.tracks.tracks import Flags, Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
+from rulec.files import no_garbage_collection
 from rulec.recordings.recording import Lanelet, Recording, Side
 from rulec.trace.end_to_end import UnlikeDrivesError
 
@@ -206,6 +207,8 @@ class Drives:
             name = ego if number == 1 else f"{ego}#{number}"
             yield self._drive(row, name, stretch)
 
+    # Tens of thousands of objects are created for several drives, none of which is garbage
+    @no_garbage_collection()
     def _drive(self, row: int, name: str, stretch: RouteStretch) -> Drive | NoDrive:
         ego = self._tracks.participants[row].id
         laid_out = self._map.road(stretch.route)

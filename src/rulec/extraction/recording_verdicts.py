@@ -13,6 +13,7 @@ from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.to_trace import Drive
+from rulec.files import no_garbage_collection
 from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.findings import JudgedTrace
 from rulec.monitoring.batch.stacked.verify_arrays import answer_to, judge_arrays, verify_arrays
@@ -204,6 +205,7 @@ def agreed_answers(
     return [answer_to(own, trace) for own, trace in zip(judged, traces, strict=True)]
 
 
+@no_garbage_collection()
 def _judged(
     traces: Sequence[TraceArrays], roundings: Sequence[CompiledRulebook]
 ) -> list[JudgedTrace | Verdict | NotJudged]:
