@@ -567,7 +567,7 @@ def test_what_is_not_known_is_said_of_each_maneuver(tmp_path, capsys):
         [
             "satisfying  4 by esterle2019 (R1, R2, R3)",
             "violating   0",
-            "open        1 more",
+            "open        1",
             "unknown     CONGESTED: not, or not exactly, known",
         ],
     )

@@ -277,6 +277,6 @@ def test_what_options_rule_out_is_not_told(capsys, tmp_path, monkeypatch):
     out = capsys.readouterr().out
     assert (
         "  It never happens that “p” holds.\n"
-        "  It does not count if, throughout the stretch that the rule guards, “q” holds.\n"
+        "  It does not count if, throughout the time that the rule is about, “q” holds.\n"
     ) in out
     assert "  It never counts, for its condition is false as options are set.\n" in out

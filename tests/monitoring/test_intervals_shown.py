@@ -66,7 +66,7 @@ def test_an_open_verdict_says_that_the_limit_is_within_the_tolerance(rules):
     (result,) = verdict.open
     assert (result.depends_on, result.because) == (("speed",), ("tolerance",))
     assert open_in_words(result) == (
-        "open, depends on speed and a limit is within the tolerance of what was measured: "
+        "open, depends on speed; a limit is within the tolerance of what was measured: "
         "violated if speed > 50, kept if speed <= 50"
     )
 

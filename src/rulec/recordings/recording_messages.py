@@ -33,7 +33,8 @@ NOT_A_RECORDING = Code(
     "Argoverse 2, Waymo, ScenarioNet, 123D, tracks as tables, and maps. The format is detected "
     "from the file's name and first bytes; otherwise give it by `--input-format`. A file must be "
     "complete and valid; the message names the line, byte, row or record where it is not. XML "
-    "must not have a `DOCTYPE`, and a pickle must not contain code, since these could do anything.",
+    "must not have a `DOCTYPE`, and a pickle must not contain code, since these could do anything. "
+    "CommonRoad's files are read in its versions 2018b and 2020a, but not in older ones.",
     bad=_COMMONROAD.replace("2018b", "2017a") + "rulec maneuvers road.xml -r esterle2019",
     good=_COMMONROAD + "rulec maneuvers road.xml -r esterle2019",
     kind="command",

@@ -255,7 +255,8 @@ def test_what_is_wrong_has_its_row_and_column(tmp_path, head, row, line, said):
 
 
 def test_ways_out(tmp_path):
-    assert message(tmp_path, "trak,t,x,y", "a,0,20,0").help == "if that is the one, call it `track`"
+    misspelt = message(tmp_path, "trak,t,x,y", "a,0,20,0")
+    assert misspelt.help == "if `trak` is meant, rename it to `track`"
     degrees = message(tmp_path, f"{HEAD},heading", *driving(more=",90"))
     assert "heading_deg" in degrees.help
     wrong = message(tmp_path, f"{HEAD},type", *driving(more=",pedestrain"))
@@ -419,7 +420,7 @@ def test_all_back(tmp_path):
 def test_units_behind_the_names_of_columns(tmp_path):
     found = message(tmp_path, "track,t [s],x [m],y (m)", *driving(steps=4))
     assert found.message.endswith("it has no column `t`, but `t [s]`")
-    assert found.help == "if that is the one, call it `t`"
+    assert found.help == "if `t [s]` is meant, rename it to `t`"
 
 
 def test_speeds_with_a_sign_that_headings_deny(tmp_path):

@@ -198,7 +198,7 @@ def _layout(recording: Recording, pieces: tuple[tuple[str, ...], ...]) -> _Layou
     borders = borders_along(lanelets, line)
     numbers = tuple(_lane_numbers(recording, pieces))
     middle_s = float(borders[0] + borders[-1]) / 2
-    lanes = lanes_along(recording, entries, line, middle_s, numbers, borders)
+    lanes = lanes_along(recording, entries, line, middle_s, numbers, borders=borders)
     return _Layout(pieces, numbers, borders, line, lanes)
 
 

@@ -115,15 +115,19 @@ def _scan(
             raise form.refused(path, "it is empty")
         parser.Parse(b"", True)
     except ExpatError as problem:
-        words = errors.messages[problem.code]
-        why = f"it is not well-formed XML: {words}"
-        if words in _ENDS_EARLY:
+        why = _mistake(problem)
+        if errors.messages[problem.code] in _ENDS_EARLY:
             why = "it ends in the middle of an element: it has been cut short"
         raise form.refused(path, why, problem.lineno) from None
     finally:
         # Parser and handlers refer to each other, and so keep all content in memory
         parser.StartElementHandler = parser.EndElementHandler = None
         parser.CommentHandler = parser.CharacterDataHandler = None
+
+
+def _mistake(problem: ExpatError) -> str:
+    words = errors.messages[problem.code]
+    return f"it is not well-formed XML: {words.removeprefix('not well-formed').strip(' ()')}"
 
 
 def root_of(path: Path, form: FileFormat) -> str:
@@ -157,7 +161,7 @@ def root_of(path: Path, form: FileFormat) -> str:
         if not names and (kind := packed(first)) is not None:
             raise form.refused(path, f"it is {kind.noun}", help_text=kind.help) from None
         if not names:
-            why = f"it is not well-formed XML: {errors.messages[problem.code]}"
+            why = _mistake(problem)
             raise form.refused(path, why, problem.lineno) from None
     return names[0]
 

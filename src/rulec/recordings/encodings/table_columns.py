@@ -190,7 +190,7 @@ def _missing(
     why = f"it has no column `{kind.name}`" + (f", but `{short(near)}`" if near else "")
     also = [name for name in kind.also if name != kind.name][:4]
     way_out = (
-        f"if that is the one, call it `{kind.name}`"
+        f"if `{short(near)}` is meant, rename it to `{kind.name}`"
         if near
         else f"name a column `{kind.name}`"
         + (f" (also {', '.join(f'`{name}`' for name in also)})" if also else "")

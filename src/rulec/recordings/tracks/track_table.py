@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from rulec.recordings.recording_format import RecordingSource
 
 TRACKS = FileFormat(
-    "tracks as a table",
+    "a table of tracks",
     "it has a row for each time of each track, with the columns `track`, `t`, `x`, `y`",
     4_000_000_000,
 )

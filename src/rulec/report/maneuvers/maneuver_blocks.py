@@ -78,8 +78,8 @@ def _driven(trajectory: WitnessTrajectory) -> str:
     slowest = "" if least >= min(trajectory.states[0][2], speed) - 0.1 else f", least {least:.1f}"
     return (
         f"   drivable: accelerates by at most {trajectory.greatest_acceleration:.1f} m/s², brakes "
-        f"by {trajectory.greatest_braking:.1f}; {trajectory.states[0][2]:.1f} … {speed:.1f} m/s"
-        f"{slowest}; ends at s {s:.0f} m, d {d:.1f} m"
+        f"by {trajectory.greatest_braking:.1f}; from {trajectory.states[0][2]:.1f} to {speed:.1f} "
+        f"m/s{slowest}; ends at s {s:.0f} m, d {d:.1f} m"
     )
 
 

@@ -159,16 +159,19 @@ def _paths(maneuvers: Maneuvers) -> str:
 def _judged(maneuvers: Maneuvers, answers: ManeuverAnswers) -> Iterator[str]:
     """The number of rules that can be judged from the words of cells."""
     if answers.judged is not None and maneuvers.traces:
-        every = f"{len(answers.judged)} of {len(maneuvers.rules.rules)} could be judged"
-        yield f"rules       {every}: kept or violated on half of the maneuvers or more"
+        n_rules = len(maneuvers.rules.rules)
+        every = f"{len(answers.judged)} of {n_rules} could be judged"
+        fewer = n_rules - len(answers.judged) - len(maneuvers.not_judged)
+        on_fewer = f"; {fewer} on fewer" if fewer > 0 else ""
+        yield f"rules       {every}: kept or violated on half of the maneuvers or more{on_fewer}"
 
 
 def _doubts(maneuvers: Maneuvers) -> Iterator[str]:
     """The lines about open maneuvers, unknown values and rules not judged."""
     if maneuvers.in_doubt and maneuvers.judges:
         yield f"violating   {styled(shown_count(maneuvers.violating), 'bold')}"
-        more = "" if maneuvers.exact else ", or fewer: there were too many cases to examine"
-        yield f"open        {styled(shown_count(maneuvers.open), 'bold')} more{more}"
+        fewer = "" if maneuvers.exact else ", or fewer: there were too many cases to examine"
+        yield f"open        {styled(shown_count(maneuvers.open), 'bold')}{fewer}"
     if maneuvers.unknown:
         names = first_of(maneuvers.unknown, MOST_DEFAULTS)
         yield visible(f"unknown     {names}: not, or not exactly, known")

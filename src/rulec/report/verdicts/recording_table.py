@@ -142,7 +142,7 @@ def _findings(causes: Mapping[tuple[str, ...], Sequence[str]]) -> Iterator[str]:
     shared = [(about, drives) for about, drives in causes.items() if about and len(drives) > 1]
     shared.sort(key=lambda cause: -len(cause[1]))
     for about, drives in shared[:MOST_CAUSES]:
-        yield f"  one finding: about {', '.join(about)}, {len(drives):,} drives"
+        yield f"  one finding in {len(drives):,} drives, about {', '.join(about)}"
     if len(shared) > MOST_CAUSES:
         yield f"  and {len(shared) - MOST_CAUSES:,} more findings of several drives"
 

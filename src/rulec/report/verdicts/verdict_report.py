@@ -104,7 +104,7 @@ def open_in_words(result: OpenVerdict, most: int = MOST_CASES) -> str:
     cases = [f"{case.outcome} if {_conditions(case.when)}" for case in fewest[:most]]
     if len(fewest) > most:
         cases.append(f"and {len(fewest) - most} more; --json has them all")
-    text = f"open, {' and '.join(parts)}"
+    text = f"open, {'; '.join(parts)}"
     return f"{text}: {', '.join(cases)}" if cases else text
 
 
@@ -182,6 +182,9 @@ def judged_by(judged: Mapping[str, int], compiled_by: str) -> str:
 def summary(counts: Mapping[bool | None, int], not_judged: int, noun: str = "trace") -> str:
     """The summary line of a run: the numbers of traces or drives by outcome."""
     total = sum(counts.values()) + not_judged
+    if total == not_judged == 1:
+        # Also for a file that holds none
+        return f"no {noun} could be judged"
     satisfied, violated, doubtful = (counts.get(key, 0) for key in (True, False, None))
     parts = [f"{satisfied:,} satisfied", f"{violated:,} violated"]
     if doubtful:

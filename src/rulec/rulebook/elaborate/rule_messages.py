@@ -84,8 +84,8 @@ UNKNOWN_PRIORITY = Code(
 UNFITTING_SCOPE = Code(
     "R0318",
     title="an exception's scope does not fit the rule",
-    why="Exceptions `at start`, `throughout`, `at some point` and `at end` refer to the stretch "
-    "of time that a rule guards, which begins with `never` or `always`. Other rules can only have "
+    why="Exceptions `at start`, `throughout`, `at some point` and `at end` refer to the time "
+    "that a rule is about, which begins with `never` or `always`. Other rules can only have "
     "exceptions that hold `initially`. `throughout` cannot be combined with phases of bounded "
     "length.",
     bad="rulebook example\nsignal wet, fog\n"

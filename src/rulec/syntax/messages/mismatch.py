@@ -247,7 +247,7 @@ def _unterminated(span: Span) -> Diagnostic:
     first, *more = text.splitlines()
     return UNTERMINATED_TEXT.at(
         Span(span.source, span.start, span.start + len(first)),
-        "this text goes on after its line" if more else "this text has no closing quote",
+        "this text does not end on its line" if more else "this text has no closing quote",
         expected='expected `"` before the end of the line',
         help="write all of it on one line, however long"
         if more

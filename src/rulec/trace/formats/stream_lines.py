@@ -99,6 +99,8 @@ _BEGINNINGS = {
     b"\xfe\xff": _UTF16,
 }
 
+_TEXTS = "traces are JSON Lines, CSV or Parquet, and tables of recorded traffic CSV or Parquet"
+
 _TEXT = frozenset(b"\t\n\r\f")
 
 
@@ -114,7 +116,7 @@ def foreign(beginning: bytes) -> Foreign | None:
     if kind is None and _is_utf16(some):
         return _UTF16
     if kind is None and any(byte < 32 and byte not in _TEXT for byte in some):
-        return Foreign("binary data", "give traces as JSON Lines, CSV or Parquet")
+        return Foreign("binary data", _TEXTS)
     return kind
 
 

@@ -106,7 +106,7 @@ def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
     for name in (TRACE, STEP):
         if name not in times:
             near = nearest_name(name, columns)
-            way_out = _FORM if near is None else f"if `{near}` is meant, call it `{name}`"
+            way_out = _FORM if near is None else f"if `{near}` is meant, rename it to `{name}`"
             if {column.casefold() for column in columns} & _DEGREES:
                 way_out = _IN_METRES
             if name == TRACE:
@@ -120,7 +120,7 @@ _BOUNDS = "an interval needs both bounds, such as 1 and 2.5"
 
 _TRACKS = "tables of recorded traffic have `track`, `t`, `x`, `y` (`--input-format tracks`)"
 
-_FORM = "the first columns are `trace`, `step`, `object`, `type`; others are named after values"
+_FORM = "traces have the columns `trace`, `step`, `object`, `type`, and one for each value"
 
 
 def problem(message: str, place: SourceLocation, help_text: str = "") -> RulecError:
