@@ -6,6 +6,7 @@ from random import Random
 
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 import rulec
 from rulec.automata.mealy_monitor import Read
@@ -156,9 +157,43 @@ def test_of_law_with_one_number_between_others_in_parts_as_together():
     several = [agree_in_parts(chance, compiled, x, one_between, 60) for x in compiled.rules]
     assert sum(several) > 10
     tables = compiled.prepared[KnownParts].tables.values()
-    met = [steps for table in tables for steps in table._steps.values() if steps is not None]
+    met = [own for table in tables for own in table._alike.values() if own is not None]
     # Many intervals end beside the same steps
-    assert any(steps.points and len(steps.possible) > 3 for steps in met)
+    assert any(own.kinds.points and len(own.found) > 3 for own in met)
+
+
+SUMS = """
+rulebook sums
+quantity a in m default 0
+quantity b in m default 0
+signal   p
+hard rule r {
+  require always (p or FIRST or SECOND or THIRD)
+}
+"""
+NEAR = st.integers(-4, 4).map(float)
+SUM = st.tuples(st.integers(-2, 2), st.integers(-2, 2), st.integers(-3, 3)).filter(any)
+
+
+@given(
+    st.lists(SUM, min_size=3, max_size=3),
+    st.lists(st.tuples(NEAR, NEAR, st.booleans(), NEAR, NEAR), min_size=20, max_size=20),
+)
+def test_of_two_numbers_between_others_in_parts_as_together(sums, drawn_values):
+    """Lines that cross in, beside or at corners of small rectangles, or are parallel, or none."""
+    text = SUMS
+    for place, (first, second, limit) in zip(("FIRST", "SECOND", "THIRD"), sums, strict=True):
+        text = text.replace(place, f"{first} * a + {second} * b <= {limit} m")
+    compiled = compile_here(rulec.parse_rulebook(text), Fraction(1))
+    (rule,) = compiled.rules
+    values = iter(drawn_values)
+
+    def draw(_chance, declared):
+        low, high, truth, least, most = next(values)
+        known = {"a": Interval(*sorted((low, high))), "b": Interval(*sorted((least, most)))}
+        return tuple(known.get(one.name, truth) for one in declared)
+
+    agree_in_parts(None, compiled, rule, draw, len(drawn_values))
 
 
 def outcome(call, *given):

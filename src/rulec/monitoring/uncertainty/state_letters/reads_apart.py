@@ -7,7 +7,6 @@ have far fewer combinations than those of all subjects together.
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
@@ -20,7 +19,13 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.monitoring.state_view import StateView, with_values
-from rulec.monitoring.uncertainty.state_letters.completions.completions import Digits, joint_digits
+from rulec.monitoring.uncertainty.number_regions import number_regions
+from rulec.monitoring.uncertainty.state_letters.alike_intervals import AlikeIntervals, Cut
+from rulec.monitoring.uncertainty.state_letters.completions.completions import (
+    Digits,
+    joint_digits,
+    surely_hold,
+)
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import (
     MOST_KNOWN,
@@ -32,7 +37,7 @@ from rulec.monitoring.uncertainty.state_letters.joint_values import (
     read_ways,
     values_at,
 )
-from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, read_digits
+from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, digits_in, read_digits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     PartialView,
     Subject,
@@ -53,17 +58,8 @@ class _PossibleDigits(NamedTuple):
     exact: bool
 
 
-class _Steps(NamedTuple):
-    """Where reads change along a number, and the possible digits by where an interval ends."""
-
-    points: Sequence[Fraction]
-    possible: dict[tuple[int, int], _PossibleDigits]
-
-    def place(self, number: float) -> int:
-        """The position of a number: odd at a point, even between two points."""
-        value = exact(number)
-        place = bisect_left(self.points, value)
-        return 2 * place + (place < len(self.points) and self.points[place] == value)
+_FEW_INTERVALS = (1, 2)
+"""As many numbers have kinds of intervals."""
 
 
 class _PartTable:
@@ -83,16 +79,22 @@ class _PartTable:
         self._reads, self._ready = reads, [read_digits(read) for read in reads]
         self._subjects, self._binding, self._axioms = subjects, binding, axioms
         self._objects, self._vocabulary, self._together = objects, vocabulary, together
+        self._count = any(count_in(read) for read in reads)
         self.possible: list[_PossibleDigits] = []
         self._numbers: dict[_PossibleDigits, int] = {}
         self._known: dict[tuple[object, ...], int] = {}
-        self._steps: dict[tuple[object, ...], _Steps | None] = {}
+        self._alike: dict[tuple[object, ...], AlikeIntervals[_PossibleDigits] | None] = {}
+        self._by_regions: dict[tuple[object, ...], _PossibleDigits] = {}
+        alone = number_regions(tuple(reads), tuple([axiom.formula for axiom in axioms]))
+        self._regions = [
+            (place, alone[name]) for place, (name, _) in enumerate(subjects) if name in alone
+        ]
 
     def number(self, values: tuple[PartialValue | None, ...]) -> int:
         """The place among ``possible`` of the digits for these values. Raises MissingValueError."""
         known = self._known.get(values)
         if known is None:
-            possible = self._once_per_steps(values)
+            possible = self._once_per_regions(values)
             known = self._numbers.setdefault(possible, len(self.possible))
             if known == len(self.possible):
                 self.possible.append(possible)
@@ -101,54 +103,79 @@ class _PartTable:
             self._known[values] = known
         return known
 
-    def _once_per_steps(self, values: tuple[PartialValue | None, ...]) -> _PossibleDigits:
-        """The possible digits, computed once for intervals with the same changes of reads."""
-        intervals = [place for place, value in enumerate(values) if isinstance(value, Interval)]
-        if len(intervals) != 1 or self._axioms:
-            return self._possible(values)
-        (place,) = intervals
-        others = (*values[:place], *values[place + 1 :])
-        key = place, others
-        if key not in self._steps:
-            if len(self._steps) >= MOST_KNOWN:
-                self._steps.clear()
-            self._steps[key] = self._steps_along(place, others)
-        steps, interval = self._steps[key], values[place]
-        if steps is None:
-            return self._possible(values)
-        assert isinstance(interval, Interval)
-        ends = steps.place(interval.low), steps.place(interval.high)
-        if ends not in steps.possible:
-            steps.possible[ends] = self._possible(values)
-        return steps.possible[ends]
+    def _once_per_regions(self, values: tuple[PartialValue | None, ...]) -> _PossibleDigits:
+        """The possible digits, computed once for numbers compared alone and in the same regions."""
+        if not self._regions:
+            return self._once_per_kind(values)
+        coded: list[object] = list(values)
+        for place, regions in self._regions:
+            value = values[place]
+            if isinstance(value, Interval):
+                coded[place] = regions.region(exact(value.low)), regions.region(exact(value.high))
+            elif isinstance(value, int | float):
+                coded[place] = regions.region(exact(value))
+        key = tuple(coded)
+        if key not in self._by_regions:
+            if len(self._by_regions) >= MOST_KNOWN:
+                self._by_regions.clear()
+            self._by_regions[key] = self._once_per_kind(values)
+        return self._by_regions[key]
 
-    def _steps_along(self, place: int, others: Sequence[PartialValue | None]) -> _Steps | None:
-        """Where reads change along one subject's number, if all others are known; else None."""
-        if None in others or not UNKNOWN_TYPES.isdisjoint(map(type, others)):
+    def _once_per_kind(self, values: tuple[PartialValue | None, ...]) -> _PossibleDigits:
+        """The possible digits, computed once for intervals with the same changes of reads."""
+        places = [place for place, value in enumerate(values) if isinstance(value, Interval)]
+        if len(places) not in _FEW_INTERVALS or self._axioms:
+            return self._possible(values)
+        others = tuple([None if n in places else value for n, value in enumerate(values)])
+        key = (*places, others)
+        if key not in self._alike:
+            if len(self._alike) >= MOST_KNOWN:
+                self._alike.clear()
+            cuts = self._cuts(places, others)
+            self._alike[key] = None if cuts is None else AlikeIntervals.of(len(places), cuts)
+        alike = self._alike[key]
+        if alike is None:
+            return self._possible(values)
+        kind = alike.kinds.kind(*[value for value in values if isinstance(value, Interval)])
+        if kind not in alike.found:
+            alike.found[kind] = self._possible(values)
+        return alike.found[kind]
+
+    def _cuts(
+        self, places: Sequence[int], others: Sequence[PartialValue | None]
+    ) -> list[Cut] | None:
+        """The limits with which reads compare the numbers at some places; None if more is unknown.
+
+        ``others`` are the values of the other subjects.
+        """
+        known = {
+            subject: value
+            for place, (subject, value) in enumerate(zip(self._subjects, others, strict=True))
+            if place not in places
+        }
+        if None in known.values() or not UNKNOWN_TYPES.isdisjoint(map(type, known.values())):
             return None
-        along = self._subjects[place]
-        known = dict(
-            zip((*self._subjects[:place], *self._subjects[place + 1 :]), others, strict=True)
-        )
-        points: set[Fraction] = set()
+        along = [self._subjects[place] for place in places]
+        cuts: list[Cut] = []
         for read in self._reads:
             if isinstance(read, Read):
                 continue
-            factor, rest = Fraction(0), Fraction(0)
+            factors, rest = dict.fromkeys(along, Fraction(0)), Fraction(0)
             for own, term in read.terms:
                 if not isinstance(term, ltl.QuantityTerm):
                     return None
                 subject = term.name, tuple([self._binding[item] for item in term.arguments])
-                if subject == along:
-                    factor += own
+                if subject in factors:
+                    factors[subject] += own
                     continue
                 value = known.get(subject)
                 if not isinstance(value, int | float):
                     return None
                 rest += own * exact(value)
-            if factor:
-                points.update((threshold.limit - rest) / factor for threshold in read.thresholds)
-        return _Steps(sorted(points), {})
+            cuts += [
+                (tuple(factors.values()), threshold.limit - rest) for threshold in read.thresholds
+            ]
+        return cuts
 
     @cached_property
     def _read_ways(self) -> ReadWays | None:
@@ -186,6 +213,10 @@ class _PartTable:
             known = tuple([own.bit_length() - 1 for own in digits])
             if UNKNOWN_TYPES.isdisjoint(map(type, values)):
                 return _PossibleDigits(known, frozenset({known}), True)
+        several = [own for own in digits if own & (own - 1)]
+        if len(several) <= 1 and not self._count and surely_hold(self._axioms, state):
+            # Nothing restricts the only read that may have several digits
+            return _PossibleDigits(known, frozenset(product(*map(digits_in, digits))), True)
         possible = joint_digits(self._reads, self._binding, state, self._axioms)
         return _PossibleDigits(known, possible.digits, possible.exact)
 

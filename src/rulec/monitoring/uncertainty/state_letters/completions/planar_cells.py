@@ -113,7 +113,7 @@ def _closed(
     edges += [PlanarLine(none, unit, end) for end in up or ()]
     drawn = [line for line in (*lines, *edges) if line.x or line.y]
     points = [(none, none), *map(_nearest_to_origin, drawn)]
-    points += [x for pair in combinations(drawn, 2) if (x := _crossing(*pair)) is not None]
+    points += [x for pair in combinations(drawn, 2) if (x := crossing(*pair)) is not None]
     return across or _around([x for x, _ in points]), up or _around([y for _, y in points])
 
 
@@ -126,7 +126,7 @@ def _nearest_to_origin(line: PlanarLine) -> Corner:
     return share * line.x, share * line.y
 
 
-def _crossing(first: PlanarLine, second: PlanarLine) -> Corner | None:
+def crossing(first: PlanarLine, second: PlanarLine) -> Corner | None:
     """The point where two lines cross (Cramer's rule); None if they are parallel."""
     area = first.x * second.y - second.x * first.y
     if not area:
