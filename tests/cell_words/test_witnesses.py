@@ -165,6 +165,42 @@ def test_a_mirrored_scene_keeps_its_step_and_horizon_and_other_changes_are_refus
     assert find_maneuvers(emptied, compile_rulebook("de")).judges
 
 
+def test_one_who_leaves_the_road_and_comes_back_is_the_same(german):
+    """A drive gives it another name then; cells call it by its id."""
+    away = {k: (95.0 + 5 * k, 400.0) for k in range(3, 6)}
+    comes = vehicle(10, {k: (95.0 + 5 * k, 0.0) for k in range(13)} | away, speed=3.0)
+    made = replace(recording(LANES, [comes], ego=(60, 0)), side="right")
+    found = find_maneuvers(seen_from_ego(made, Choice(), "f.xml"), german)
+    assert check(found, 2)
+    assert [*found.paths.objects] == ["10"]
+
+
+@pytest.mark.parametrize(("start", "heading"), [((200.0, 0.0), 0.0), ((100.0, 8.0), np.pi)])
+def test_cells_at_ends_where_vehicles_turn_around_are_of_the_road_that_ends(start, heading, german):
+    road = [
+        straight(1, 0, 300, 0, predecessors=(4,), successors=(2,)),
+        lanelet(
+            2,
+            [(300, 0), (303, 2), (304, 4), (303, 6), (300, 8)],
+            predecessors=(1,),
+            successors=(3,),
+        ),
+        lanelet(3, [(300, 8), (0, 8)], predecessors=(2,), successors=(4,)),
+        lanelet(4, [(0, 8), (-3, 6), (-4, 4), (-3, 2), (0, 0)], predecessors=(3,), successors=(1,)),
+        lanelet(5, [(40, -6), (40, 2)], types=frozenset({"crosswalk"})),
+    ]
+    made = recording(road, [], ego=start, heading=heading)
+    start_state = replace(made.problems[0].start, speed=3.0)
+    made = replace(
+        made,
+        side="right",
+        complete=frozenset({"lanes", "junctions", "crossings"}),
+        problems=(replace(made.problems[0], start=start_state),),
+    )
+    found = find_maneuvers(seen_from_ego(made, Choice(), "f.xml"), german)
+    assert check(found, 4)
+
+
 @pytest.mark.parametrize(("kind", "lacking"), [("bus", True), ("car", False)])
 def test_a_bus_may_be_a_school_bus_for_maneuvers_as_for_drives(kind, lacking):
     other = vehicle(10, dict.fromkeys(range(13), (90.0, 4.0)), kind, speed=0.0)

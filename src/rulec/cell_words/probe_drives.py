@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import ceil
+from math import ceil, inf
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -20,6 +20,7 @@ from rulec.partition import NavigationGraph
 from rulec.recordings.recording import HEADINGS, Participant, Recording, Side
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
 from rulec.scenario.recorded.lane_coordinates import borders_along
+from rulec.scenario.recorded.route import lanes_beside, turns_back
 from rulec.scenario.recorded.scene_origin import SceneOrigin
 
 EVERY_M = 1.0
@@ -149,13 +150,18 @@ def probe_drives(
     count = ceil((len(graph.layers) - 1) * graph.step_s / step_s - 1e-9) + 1
     beside = _lanes_beside(graph, origin) if in_time else ()
     n_timed = len(rows) + len(_SPEEDS_MPS)
+    _, end = _ends(origin)
     for row, speed in _through_time(graph, count, step_s, beside):
+        # At least two states make a drive
+        kept = max(int(np.searchsorted(row[0], end, side="right")), 2)
+        row, speed = (row[0][:kept], row[1][:kept], row[2][:kept]), speed[:kept]
         bodies.append(body_along(graph, origin, row, speed))
     longest = max(len(body.states) for body in bodies)
     among = world_of(origin, bodies[0], side, longest)
     writer = TraceWriter(rules.vocabulary, names_read(rules))
     found = among.of(bodies, writer)
     lane_probes, timed, told = [], [], set[str]()
+    ids = frozenset(body.id for body in among.recording.participants)
     for number, drives in enumerate(found):
         own = [drive for drive in drives if isinstance(drive, Drive)]
         for drive in own:
@@ -168,12 +174,12 @@ def probe_drives(
                 of_lane = drive.arrays.part(names, drive.arrays.objects.keys())
                 lane_probes.append(LaneProbe(lanes[number], s, of_lane.trace().states))
             elif len(own) == 1 and number < n_timed:
-                timed.append(TimedProbe(drive.first_step, drive.trace.states))
+                timed.append(_timed(drive, drive.trace.states, ids))
             elif len(own) == 1:
                 part = drive.arrays.part(
                     in_time & drive.arrays.about.keys(), drive.arrays.objects.keys()
                 )
-                timed.append(TimedProbe(drive.first_step, part.trace().states))
+                timed.append(_timed(drive, part.trace().states, ids))
     return ProbeDrives(
         among=among,
         origin=origin,
@@ -181,6 +187,45 @@ def probe_drives(
         timed=tuple(timed),
         told=frozenset(told),
         stretches=tuple((lane, float(row[0][0]), float(row[0][-1])) for lane, row in rows),
+    )
+
+
+def _timed(drive: Drive, states: Sequence[Mapping[str, Any]], ids: Set[str]) -> TimedProbe:
+    """The probe with objects called by their ids: who comes again has another name in a drive."""
+    again = {name: name.rpartition("_")[0] for name in drive.arrays.objects if name not in ids}
+    if again:
+        states = [
+            {
+                word: {again.get(name, name): own for name, own in value.items()}
+                if isinstance(value, Mapping)
+                else value
+                for word, value in state.items()
+            }
+            for state in states
+        ]
+    return TimedProbe(drive.first_step, states)
+
+
+def _ends(origin: SceneOrigin) -> tuple[float, float]:
+    """Places (m) beyond which vehicles can only turn around; infinite where the road has none.
+
+    A body there is on its way back, along another road than the scene's.
+    """
+    recording = origin.recording
+
+    def turns(name: str, way: int) -> bool:
+        right, left = (lanes_beside(recording, name, left=left) for left in (False, True))
+        lanes = [recording.lanelets[lane] for lane in (name, *right, *left)]
+        return any(
+            turns_back(lane, recording.lanelets[other], backwards=way < 0)
+            for lane in lanes
+            for other in (lane.successors if way > 0 else lane.predecessors)
+            if other in recording.lanelets
+        )
+
+    return (
+        -origin.ego_s if turns(origin.way[0], -1) else -inf,
+        origin.line.length - origin.ego_s if turns(origin.way[-1], 1) else inf,
     )
 
 
@@ -197,7 +242,10 @@ def _places(graph: NavigationGraph, origin: SceneOrigin, low: float, high: float
     ends.sort()
     middles = ((ends[1:] + ends[:-1]) / 2)[np.diff(ends) <= EVERY_M]
     even = np.arange(low, high + EVERY_M, EVERY_M)
-    return np.union1d(even, middles[(middles > low) & (middles < high)])
+    begin, end = _ends(origin)
+    last = [place for place in (begin, end) if low < place < high]
+    places = np.unique(np.concatenate((even, middles[(middles > low) & (middles < high)], last)))
+    return places[(places >= begin) & (places <= end)]
 
 
 def _along_lanes(origin: SceneOrigin, s: Floats) -> Iterator[tuple[int, Row]]:
