@@ -11,7 +11,7 @@ from rulec.diagnostics.code import Code
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.names.word_meanings import described, offer
 from rulec.syntax import tree
-from rulec.syntax.keywords import INFIX_LETTERS, PREFIX_LETTERS
+from rulec.syntax.keywords import INFIX_LETTERS, PREFIX_LETTERS, UNARY_OPERATORS
 from rulec.vocabulary import Enumeration, Quantity, Signal
 from rulec.vocabulary.units import parse_unit
 
@@ -161,6 +161,8 @@ def _unknown(
     name = use.name.text
     atoms = symbols.atoms()
     quantities = [item.name for item in symbols.items.values() if isinstance(item, Quantity)]
+    # `nevr (p)` reads as a name with an argument
+    operators = sorted(UNARY_OPERATORS) if use.arguments else []
     glued = _glued(name, set(atoms))
     parted = _PARTED_UNIT.search(use.span.source.text, 0, use.name.span.start)
     if parted and parse_unit(f"{parted[1]}/{name}"):
@@ -172,7 +174,7 @@ def _unknown(
     else:
         way_out = (
             ("" if use.arguments else _short_form(name, symbols, list(variables)))
-            or did_you_mean(name, [*atoms, *quantities, *others], _ALIKE)
+            or did_you_mean(name, [*atoms, *quantities, *others, *operators], _ALIKE)
             or _by_meaning(name, [*atoms, *quantities], symbols)
             or f"declare it, such as `{_declaration(use, variables)}`, "
             "or `use` a vocabulary that has it"
