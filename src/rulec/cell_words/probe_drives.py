@@ -142,7 +142,8 @@ def probe_drives(
     reach = [own.s for row in graph.reach for own in row if own is not None]
     low = min((s for s, _ in reach), default=graph.scenario.road.s[0]) - _BEFORE_M
     high = max((s for _, s in reach), default=graph.scenario.road.s[1]) + _BEYOND_M
-    rows = list(_along_lanes(origin, _places(graph, origin, low, high)))
+    between = _between(origin)
+    rows = list(_along_lanes(origin, _places(graph, origin, (low, high), between)))
     lanes = [lane for lane, _ in rows]
     bodies = [
         body_along(graph, origin, row, np.full(len(row[0]), EVERY_M / step_s)) for _, row in rows
@@ -150,10 +151,9 @@ def probe_drives(
     count = ceil((len(graph.layers) - 1) * graph.step_s / step_s - 1e-9) + 1
     beside = _lanes_beside(graph, origin) if in_time else ()
     n_timed = len(rows) + len(_SPEEDS_MPS)
-    _, end = _ends(origin)
     for row, speed in _through_time(graph, count, step_s, beside):
         # At least two states make a drive
-        kept = max(int(np.searchsorted(row[0], end, side="right")), 2)
+        kept = max(int(np.searchsorted(row[0], between[1], side="right")), 2)
         row, speed = (row[0][:kept], row[1][:kept], row[2][:kept]), speed[:kept]
         bodies.append(body_along(graph, origin, row, speed))
     longest = max(len(body.states) for body in bodies)
@@ -206,10 +206,11 @@ def _timed(drive: Drive, states: Sequence[Mapping[str, Any]], ids: Set[str]) -> 
     return TimedProbe(drive.first_step, states)
 
 
-def _ends(origin: SceneOrigin) -> tuple[float, float]:
-    """Places (m) beyond which vehicles can only turn around; infinite where the road has none.
+def _between(origin: SceneOrigin) -> tuple[float, float]:
+    """Places (m) between which vehicles can go on or come from; infinite where the road goes on.
 
-    A body there is on its way back, along another road than the scene's.
+    Beyond them they can only turn around: a body there is on its way back, along another road than
+    the scene's.
     """
     recording = origin.recording
 
@@ -229,8 +230,17 @@ def _ends(origin: SceneOrigin) -> tuple[float, float]:
     )
 
 
-def _places(graph: NavigationGraph, origin: SceneOrigin, low: float, high: float) -> Floats:
-    """Places along the road, plus one in everything shorter than the distance between two."""
+def _places(
+    graph: NavigationGraph,
+    origin: SceneOrigin,
+    reach: tuple[float, float],
+    between: tuple[float, float],
+) -> Floats:
+    """Places within ``reach``, plus one in everything shorter than the distance between two.
+
+    None lies outside ``between``.
+    """
+    low, high = reach
     lanelets = [origin.recording.lanelets[name] for name in origin.way]
     borders = borders_along(lanelets, origin.line) - origin.ego_s
     crossings = np.array([surface.s for surface in graph.scenario.road.surfaces]).ravel()
@@ -242,7 +252,7 @@ def _places(graph: NavigationGraph, origin: SceneOrigin, low: float, high: float
     ends.sort()
     middles = ((ends[1:] + ends[:-1]) / 2)[np.diff(ends) <= EVERY_M]
     even = np.arange(low, high + EVERY_M, EVERY_M)
-    begin, end = _ends(origin)
+    begin, end = between
     last = [place for place in (begin, end) if low < place < high]
     places = np.unique(np.concatenate((even, middles[(middles > low) & (middles < high)], last)))
     return places[(places >= begin) & (places <= end)]

@@ -12,10 +12,11 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.context_arrays import EgosOnRoad, drives_context
-from rulec.extraction.drives import Drives, LaidOutMap, NoDrive
+from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.to_trace import Drive, TraceWriter, to_traces
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.junction_passages import junction_passages
+from rulec.extraction.tracks.laid_out_map import LaidOutMap
 from rulec.extraction.tracks.matching.driven_route import RouteStretch
 from rulec.extraction.tracks.matching.map_matching import MapMatching, MatchedStretch
 from rulec.extraction.tracks.road_places import RoadPlaces

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from rulec.extraction.context_arrays import EgosOnRoad, drive_context, drives_context
 from rulec.extraction.recording_parts import egos_of
 from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_traces
-from rulec.extraction.tracks.driven_road import DrivenRoad, DrivenRoads, junction_lanelets
+from rulec.extraction.tracks.driven_road import DrivenRoad
+from rulec.extraction.tracks.laid_out_map import LaidOutMap
 from rulec.extraction.tracks.matching.driven_route import RouteStretch, route_stretches
-from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.matching.map_matching import MapMatching, MatchedStretch
 from rulec.extraction.tracks.matching.wrong_way import wrong_way_stretches
 from rulec.extraction.tracks.road_extents import (
@@ -76,25 +76,6 @@ class _PlacesInPart:
 
     places: RoadPlaces
     awaited: set[_Key]
-
-
-class LaidOutMap:
-    """A map prepared for drives: its lanelet graph, and the roads already laid out along routes."""
-
-    def __init__(self, recording: Recording) -> None:
-        self.graph = LaneletGraph(recording)
-        self.numbers = {name: number for number, name in enumerate(recording.lanelets)}
-        self._driven_roads = DrivenRoads(recording, junction_lanelets(recording))
-        self._roads: dict[tuple[str, ...], tuple[DrivenRoad, int] | str] = {}
-
-    def road(self, route: tuple[str, ...]) -> tuple[DrivenRoad, int] | str:
-        """The road of a route and the piece in which the route begins, or why there is none."""
-        if route not in self._roads:
-            try:
-                self._roads[route] = self._driven_roads.along(route)
-            except ValueError as reason:
-                self._roads[route] = f"its road is invalid: {reason}"
-        return self._roads[route]
 
 
 class Matching(Protocol):

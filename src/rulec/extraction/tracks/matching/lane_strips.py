@@ -63,7 +63,7 @@ class LaneStrip:
             ahead = ahead / length
         strip = LaneStrip(start, ahead, area, None)
         right, left = (
-            _Bound.of(*strip._seen(*line.T)) if length else None
+            _Bound.of(*strip._along_and_aside(*line.T)) if length else None
             for line in (lanelet.right, lanelet.left)
         )
         if right is None or left is None:
@@ -75,14 +75,14 @@ class LaneStrip:
 
     def near(self, x: Floats, y: Floats, near_m: float) -> Flags:
         """Mask of the places within ``near_m`` of the area."""
-        near, unsure = self._told(x, y, near_m)
+        near, unsure = self._sure_and_possible(x, y, near_m)
         asked = unsure.nonzero()[0]
         if len(asked):
             shapely.prepare(self.area)
             near[asked] = shapely.dwithin(self.area, shapely.points(x[asked], y[asked]), near_m)
         return near
 
-    def _told(self, x: Floats, y: Floats, near_m: float) -> tuple[Flags, Flags]:
+    def _sure_and_possible(self, x: Floats, y: Floats, near_m: float) -> tuple[Flags, Flags]:
         """Masks of the places surely near the area, and of those that may be.
 
         A bound's place across from a place is in the area. The area lies beyond both bounds drawn
@@ -92,7 +92,7 @@ class LaneStrip:
         if self.bounds is None:
             return np.zeros(len(x), dtype=bool), np.ones(len(x), dtype=bool)
         right, left = self.bounds
-        along, aside = self._seen(x, y)
+        along, aside = self._along_and_aside(x, y)
         off_right, off_left = right.at(along) - aside, aside - left.at(along)
         begin = max(right.along[0], left.along[0])
         end = min(right.along[-1], left.along[-1])
@@ -104,7 +104,7 @@ class LaneStrip:
         unsure &= (off_right <= most * right.per_m) & (off_left <= most * left.per_m)
         return near, unsure
 
-    def _seen(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    def _along_and_aside(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
         """How far (m) along the line, and left of it, places are."""
         (ux, uy), (x0, y0) = self.ahead.tolist(), self.start.tolist()
         dx, dy = x - x0, y - y0

@@ -230,10 +230,5 @@ def names_of_read(read: Read | NumberRead) -> tuple[str, ...]:
     return (read.name,) if isinstance(read, Read) else scale(read).names
 
 
-def digits_in(bits: int) -> list[int]:
-    """The digits that are given as bits."""
-    return [digit for digit in range(bits.bit_length()) if bits >> digit & 1]
-
-
 def _digits_between(first: int, last: int) -> int:
     return ((1 << (last - first + 1)) - 1) << first

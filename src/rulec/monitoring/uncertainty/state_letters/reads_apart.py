@@ -24,7 +24,6 @@ from rulec.monitoring.uncertainty.state_letters.alike_intervals import AlikeInte
 from rulec.monitoring.uncertainty.state_letters.completions.completions import (
     Digits,
     joint_digits,
-    surely_hold,
 )
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import (
@@ -37,7 +36,7 @@ from rulec.monitoring.uncertainty.state_letters.joint_values import (
     read_ways,
     values_at,
 )
-from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, digits_in, read_digits
+from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, read_digits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     PartialView,
     Subject,
@@ -213,10 +212,6 @@ class _PartTable:
             known = tuple([own.bit_length() - 1 for own in digits])
             if UNKNOWN_TYPES.isdisjoint(map(type, values)):
                 return _PossibleDigits(known, frozenset({known}), True)
-        several = [own for own in digits if own & (own - 1)]
-        if len(several) <= 1 and not self._count and surely_hold(self._axioms, state):
-            # Nothing restricts the only read that may have several digits
-            return _PossibleDigits(known, frozenset(product(*map(digits_in, digits))), True)
         possible = joint_digits(self._reads, self._binding, state, self._axioms)
         return _PossibleDigits(known, possible.digits, possible.exact)
 

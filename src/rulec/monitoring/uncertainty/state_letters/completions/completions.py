@@ -111,11 +111,6 @@ def can_be(view: PartialView, axioms: Sequence[CompiledAxiom]) -> bool:
     return all(_completed(cluster, (), view) for cluster in clusters)
 
 
-def surely_hold(axioms: Sequence[CompiledAxiom], view: PartialView) -> bool:
-    """Whether no completion of a state violates an axiom."""
-    return next(_links_of_axioms(axioms, view), None) is None
-
-
 def _links_of_reads(
     reads: Sequence[Read | NumberRead],
     binding: Mapping[str, str],

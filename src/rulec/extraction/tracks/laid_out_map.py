@@ -1,0 +1,26 @@
+"""A recording's map prepared for drives."""
+
+from __future__ import annotations
+
+from rulec.extraction.tracks.driven_road import DrivenRoad, DrivenRoads, junction_lanelets
+from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
+from rulec.recordings.recording import Recording
+
+
+class LaidOutMap:
+    """Its lanelet graph, and the roads already laid out along routes."""
+
+    def __init__(self, recording: Recording) -> None:
+        self.graph = LaneletGraph(recording)
+        self.numbers = {name: number for number, name in enumerate(recording.lanelets)}
+        self._driven_roads = DrivenRoads(recording, junction_lanelets(recording))
+        self._roads: dict[tuple[str, ...], tuple[DrivenRoad, int] | str] = {}
+
+    def road(self, route: tuple[str, ...]) -> tuple[DrivenRoad, int] | str:
+        """The road of a route and the piece in which the route begins, or why there is none."""
+        if route not in self._roads:
+            try:
+                self._roads[route] = self._driven_roads.along(route)
+            except ValueError as reason:
+                self._roads[route] = f"its road is invalid: {reason}"
+        return self._roads[route]
