@@ -15,10 +15,14 @@ STEPS = 12
 ROAD = [straight(1, -100, 300)]
 
 
-def found(flags, away_s=1.0, nowhere=(), others=("8",)):
-    """Name, first and last column of each presence; half a second lies between two columns."""
+def found(flags, away_s=1.0, nowhere=(), others=("8",), far_away=()):
+    """Name, first and last column of each presence; half a second lies between two columns.
+
+    Those ``far_away`` are in the recording, but not in the drive.
+    """
     bodies = [steady(name, 30 + 10 * k, 0, steps=STEPS) for k, name in enumerate(others)]
     cars = [steady(7, 0, 0, steps=STEPS), *bodies]
+    cars += [steady(name, 9_000, 9_000, steps=STEPS) for name in far_away]
     context = context_of(recording(ROAD, cars), away_s=away_s)
     s_min = context.extents.s_min.copy()
     s_min[0, list(nowhere)] = np.nan
@@ -50,6 +54,11 @@ def test_an_absence_off_the_road_is_never_bridged():
 def test_names_that_others_have_are_left_out():
     parts = found(flags("##....##....")) + found(flags("##....##...."), others=("8", "8_2"))
     assert parts == [("8", 0, 1), ("8_2", 6, 7), ("8", 0, 1), ("8_3", 6, 7), ("8_2", 0, 11)]
+
+
+def test_names_of_participants_elsewhere_are_left_out():
+    parts = found(flags("##....##...."), far_away=("8_2",))
+    assert parts == [("8", 0, 1), ("8_3", 6, 7)]
 
 
 @given(st.lists(st.booleans(), min_size=STEPS, max_size=STEPS).filter(any), st.integers(0, 4))

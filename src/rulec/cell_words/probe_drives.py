@@ -13,6 +13,7 @@ import numpy as np
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.cell_words.ego_boxes import Floats, body_size
 from rulec.extraction.candidate_drives import CandidateDrives
+from rulec.extraction.presences import participant_called
 from rulec.extraction.recording_verdicts import names_read
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.traffic_thresholds import USUAL
@@ -161,7 +162,7 @@ def probe_drives(
     writer = TraceWriter(rules.vocabulary, names_read(rules))
     found = among.of(bodies, writer)
     lane_probes, timed, told = [], [], set[str]()
-    ids = frozenset(body.id for body in among.recording.participants)
+    ids = among.recording.ids
     for number, drives in enumerate(found):
         own = [drive for drive in drives if isinstance(drive, Drive)]
         for drive in own:
@@ -192,11 +193,11 @@ def probe_drives(
 
 def _timed(drive: Drive, states: Sequence[Mapping[str, Any]], ids: Set[str]) -> TimedProbe:
     """The probe with objects called by their ids: who comes again has another name in a drive."""
-    again = {name: name.rpartition("_")[0] for name in drive.arrays.objects if name not in ids}
-    if again:
+    id_of = {name: participant_called(name, ids) for name in drive.arrays.objects}
+    if not id_of.keys() <= ids:
         states = [
             {
-                word: {again.get(name, name): own for name, own in value.items()}
+                word: {id_of[name]: own for name, own in value.items()}
                 if isinstance(value, Mapping)
                 else value
                 for word, value in state.items()

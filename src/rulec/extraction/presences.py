@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from itertools import count
 from typing import Any
@@ -82,20 +83,27 @@ def in_presences(
 def presence_names(context: DriveContext) -> list[str]:
     """The object names of the presence runs in their drives.
 
-    A participant that returns after being away, or not beside the road, gets a new name.
+    A participant that returns after being away, or not beside the road, gets a new name, which is
+    no participant's id.
     """
     runs = presence_runs(context)
     names = list(map(context.ids.__getitem__, runs.rows.tolist()))
     again = (runs.drives[1:] == runs.drives[:-1]) & (runs.rows[1:] == runs.rows[:-1])
+    if not again.any():
+        return names
+    ids = context.recording.ids
     for drive in distinct(runs.drives[1:][again]).tolist():
         begin, end = runs.drives.searchsorted((drive, drive + 1)).tolist()
         comes_again = again[begin : end - 1].tolist()
-        names[begin:end] = _renamed(names[begin:end], comes_again, _ids_in(context, drive))
+        names[begin:end] = _renamed(names[begin:end], comes_again, ids)
     return names
 
 
 def _renamed(names: Sequence[str], comes_again: Sequence[bool], ids: frozenset[str]) -> list[str]:
-    """The names in a drive; ``comes_again`` marks those after the first that repeat the last."""
+    """The names in a drive; ``comes_again`` marks those after the first that repeat the last.
+
+    They get new ones, which are not among ``ids``.
+    """
     found = list(names[:1])
     for name, again in zip(names[1:], comes_again, strict=True):
         if again:
@@ -105,9 +113,6 @@ def _renamed(names: Sequence[str], comes_again: Sequence[bool], ids: frozenset[s
     return found
 
 
-def _ids_in(context: DriveContext, drive: int) -> frozenset[str]:
-    """The ids of the participants that count or are in sight in a drive."""
-    columns = context.spans.slices[drive]
-    rows = (context.relevant | context.in_sight)[:, columns].any(axis=1)
-    bodies = context.tracks.participants
-    return frozenset(bodies[row].id for row in rows.nonzero()[0].tolist())
+def participant_called(name: str, ids: AbstractSet[str]) -> str:
+    """The id of the participant that an object's name stands for; ``ids`` are the recording's."""
+    return name if name in ids else name.rpartition("_")[0]

@@ -155,6 +155,7 @@ def whole_recording(recording: Recording) -> WholeRecording:
             if "vehicle" in body.object_types
         ),
         shows=frozenset().union(*(body.shows for body in recording.participants)),
+        ids=recording.ids,
     )
 
 

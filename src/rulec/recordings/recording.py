@@ -280,7 +280,7 @@ class WholeRecording:
     ``first`` and ``last`` are its time steps, ``stated_error`` the median of the errors that it
     states, ``noise_m`` the standard deviation of its positions from smooth motion. ``arrivals``:
     some vehicle appears after the first step. ``shows`` are the lamps for which it has information
-    about any participant.
+    about any participant. ``ids`` are those of all participants.
     """
 
     first: int
@@ -289,6 +289,7 @@ class WholeRecording:
     noise_m: float
     arrivals: bool
     shows: frozenset[Lamp]
+    ids: frozenset[str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -320,3 +321,10 @@ class Recording:
     rounding: Rounding | None = None
     ego: str = ""
     whole: WholeRecording | None = None
+
+    @property
+    def ids(self) -> frozenset[str]:
+        """The participants' ids; for a part, those of the whole recording."""
+        if self.whole is not None:
+            return self.whole.ids
+        return frozenset([body.id for body in self.participants])

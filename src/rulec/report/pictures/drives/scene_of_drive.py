@@ -10,6 +10,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.extraction.presences import participant_called
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.to_trace import Drive
 from rulec.extraction.tracks.mirror import mirrored_recording
@@ -74,11 +75,8 @@ def drive_scene(
     origin: Points = np.round(path.mean(axis=0))
     lanelets = scene_map.lanelets_near(recording, path)
     bodies = _bodies(tracks, row, origin)
-    known = {body.id for body in tracks.participants}
-    # An object's name is its participant's id, with a number appended if it has returned.
-    participants = {
-        name: name if name in known else name.rpartition("_")[0] for name in drive.arrays.objects
-    }
+    known = recording.ids
+    participants = {name: participant_called(name, known) for name in drive.arrays.objects}
     ids = {body.id: body for body in bodies}
     steps = range(first, first + drive.arrays.n_states)
     return DriveScene(
