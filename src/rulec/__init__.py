@@ -58,7 +58,7 @@ if TYPE_CHECKING:
     from rulec.extraction.recording_verdicts import DriveVerdict as DriveVerdict
     from rulec.extraction.recording_verdicts import RecordingVerdicts as RecordingVerdicts
     from rulec.extraction.selection import RequestedDrives as RequestedDrives
-    from rulec.extraction.to_trace import Drive as Drive
+    from rulec.extraction.traces.recorded_drive import Drive as Drive
     from rulec.extraction.traffic_thresholds import Thresholds as Thresholds
     from rulec.monitoring.assumptions import Assumptions as Assumptions
     from rulec.monitoring.batch.verdict_columns import VerdictColumns as VerdictColumns
@@ -156,7 +156,7 @@ _HOME = {
     "rulec.extraction.moment_search": "DriveMoments",
     "rulec.extraction.recording_verdicts": "DriveVerdict RecordingVerdicts",
     "rulec.extraction.selection": "RequestedDrives",
-    "rulec.extraction.to_trace": "Drive",
+    "rulec.extraction.traces.to_trace": "Drive",
     "rulec.extraction.traffic_thresholds": "Thresholds",
     "rulec.monitoring.assumptions": "Assumptions",
     "rulec.monitoring.batch.verdict_columns": "VerdictColumns",

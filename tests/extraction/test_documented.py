@@ -7,10 +7,10 @@ from pathlib import Path
 from rulec.extraction.drives import Drives
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.signals.ego_signals import ego_signals
-from rulec.extraction.signals.following_signals import following_signals
 from rulec.extraction.signals.map.line_signals import line_signals
 from rulec.extraction.signals.map.map_signals import map_signals
-from rulec.extraction.signals.participant_signals import participant_signals
+from rulec.extraction.signals.participants.following_signals import following_signals
+from rulec.extraction.signals.participants.participant_signals import participant_signals
 from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
 from rulec.extraction.traffic_thresholds import LEAST_S, USUAL
 from rulec.rulebook.loader import load_rulebook

@@ -7,7 +7,7 @@ import shapely
 from hypothesis import given
 
 from rulec.extraction.drives import Drive, Drives
-from rulec.extraction.signals.participant_signals import participant_signals
+from rulec.extraction.signals.participants.participant_signals import participant_signals
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.drive_contexts import context_of, steady

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rulec.extraction.to_trace import TraceWriter, to_traces
+from rulec.extraction.traces.to_trace import TraceWriter, to_traces
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.drive_contexts import context_of, steady

@@ -3,7 +3,7 @@
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, ViolationTally
-from rulec.extraction.to_trace import Drive
+from rulec.extraction.traces.recorded_drive import Drive
 from rulec.monitoring.verdict import (
     NotJudged,
     OpenReasons,

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 import rulec
-from rulec.extraction.to_trace import Place
+from rulec.extraction.traces.recorded_drive import Place
 from rulec.fleet.drive_rows import DriveRows, driven_m
 from rulec.fleet.finding_columns import COLUMNS, arrow_schema, arrow_table
 from rulec.fleet.judged_by import judged_by, rulebook_hash

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rulec.api.rulebook_compilation import Rules
     from rulec.diagnostics import Diagnostic
     from rulec.diagnostics.code import Code
-    from rulec.extraction.to_trace import Drive
+    from rulec.extraction.traces.recorded_drive import Drive
     from rulec.logic.sentences.language import LanguageCode
     from rulec.monitoring.explain.explanation import Explanation
     from rulec.monitoring.verdict import Violation

@@ -13,7 +13,7 @@ from rulec.batch.jobs import Jobs
 from rulec.batch.worker_pool import LostTask, in_order
 from rulec.diagnostics import SourceLocation
 from rulec.extraction.selection import RequestedDrives, SelectedDrives, selected_drives
-from rulec.extraction.to_trace import Drive
+from rulec.extraction.traces.recorded_drive import Drive
 from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
 from rulec.recordings.recording_messages import NOT_IN_RECORDING

@@ -15,7 +15,8 @@ from rulec.cell_words.ego_boxes import Floats, body_size
 from rulec.extraction.candidate_drives import CandidateDrives
 from rulec.extraction.presences import participant_called
 from rulec.extraction.recording_verdicts import names_read
-from rulec.extraction.to_trace import Drive, TraceWriter
+from rulec.extraction.traces.recorded_drive import Drive
+from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.partition import NavigationGraph
 from rulec.recordings.recording import HEADINGS, Participant, Recording, Side

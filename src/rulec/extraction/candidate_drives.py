@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from rulec.extraction.context_arrays import EgosOnRoad, drives_context
 from rulec.extraction.drives import Drives, NoDrive
-from rulec.extraction.to_trace import Drive, TraceWriter, to_traces
+from rulec.extraction.traces.recorded_drive import Drive
+from rulec.extraction.traces.to_trace import TraceWriter, to_traces
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.junction_passages import junction_passages
 from rulec.extraction.tracks.laid_out_map import LaidOutMap

@@ -322,6 +322,11 @@ class DriveContext:
         there = count > 0
         return medians(of_drive[there], own[there], n_drives)
 
+    @cached_property
+    def stays(self) -> Flags:
+        """Mask of participants that stand for as long as they are recorded, by row."""
+        return self.surroundings.stays[self.tracks.rows]
+
     def zero_if_standing(self, speed_kmh: Floats) -> Floats:
         """Speeds (km/h), set to exactly 0 below the threshold of standing."""
         return speed_kmh * (abs(speed_kmh) >= self.thresholds.standing_kmh)

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from rulec.extraction.context_arrays import EgosOnRoad, drive_context, drives_context
 from rulec.extraction.recording_parts import egos_of
-from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_traces
+from rulec.extraction.traces.recorded_drive import Drive
+from rulec.extraction.traces.to_trace import ALL_SIGNALS, TraceWriter, to_traces
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.laid_out_map import LaidOutMap
 from rulec.extraction.tracks.matching.driven_route import RouteStretch, route_stretches

@@ -12,7 +12,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection import RequestedDrives, selected_drives
-from rulec.extraction.to_trace import Drive
+from rulec.extraction.traces.recorded_drive import Drive
 from rulec.files import no_garbage_collection
 from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.findings import JudgedTrace

@@ -12,7 +12,8 @@ from rulec.diagnostics import SourceLocation, did_you_mean, named
 from rulec.diagnostics.argument_kinds import expected
 from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.recording_parts import RecordingPart, egos_of, recording_parts
-from rulec.extraction.to_trace import Drive, DrivePlaces, TraceWriter
+from rulec.extraction.traces.recorded_drive import Drive, DrivePlaces
+from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds, hinted, pair_of
 from rulec.recordings.mending.mended_recording import mended

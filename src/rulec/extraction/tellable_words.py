@@ -126,6 +126,6 @@ TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
 def told_words(drives: SelectedDrives) -> frozenset[str]:
     """The words that at least one of these drives supplies."""
     # Extraction and its arrays take 250 ms to import: not needed for the tables above.
-    from rulec.extraction.to_trace import Drive
+    from rulec.extraction.traces.recorded_drive import Drive
 
     return frozenset().union(*(drive.words for drive in drives if isinstance(drive, Drive)))

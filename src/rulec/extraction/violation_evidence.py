@@ -9,7 +9,7 @@ import numpy as np
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.extraction.to_trace import Drive, Place
+from rulec.extraction.traces.recorded_drive import Drive, Place
 from rulec.logic.formula import Comparison, Count, atoms_of
 from rulec.logic.free_names import names_in
 from rulec.monitoring.explain.explained_arrays import explain_arrays

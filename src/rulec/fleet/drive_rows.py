@@ -9,7 +9,7 @@ from math import hypot
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
-from rulec.extraction.to_trace import Drive
+from rulec.extraction.traces.recorded_drive import Drive
 from rulec.fleet.finding_columns import COLUMNS, Cell, Row
 from rulec.fleet.judged_by import JudgedBy
 from rulec.monitoring.moments.drive_facts import DriveFacts, facts_of

@@ -22,7 +22,8 @@ from rulec.extraction.recording_verdicts import (
     rounded_rulebooks,
     some_rules,
 )
-from rulec.extraction.to_trace import Drive, TraceWriter
+from rulec.extraction.traces.recorded_drive import Drive
+from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_participant
 from rulec.files import no_garbage_collection
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleFor, Verdict, Violation, rule_for

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.extraction.recording_verdicts import DriveVerdict
-from rulec.extraction.to_trace import Drive
+from rulec.extraction.traces.recorded_drive import Drive
 from rulec.logic import formula as ltl
 from rulec.logic.formula import atoms_of
 from rulec.monitoring.bindings import Cast

@@ -12,7 +12,7 @@ from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
-from rulec.extraction.signals.participant_signals import participant_signals
+from rulec.extraction.signals.participants.participant_signals import participant_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import HEADINGS, Light, Weather
 from support.builders.drive_contexts import along, context_of, steady

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from rulec.api.rulebook_compilation import machines
 from rulec.extraction.presences import presence_cells
-from rulec.extraction.signals.following_signals import following_signals
 from rulec.extraction.signals.measured_numbers import LONGEST_S
+from rulec.extraction.signals.participants.following_signals import following_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.drive_verdicts import violated
 from support.builders.recordings import recording, vehicle

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.measured_numbers import LONGEST_S
-from rulec.extraction.signals.participant_signals import participant_signals
+from rulec.extraction.signals.participants.participant_signals import participant_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, vehicle
 from support.generators.random_recordings import lanes

@@ -17,8 +17,6 @@ from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.flow_signals import flow_signals
-from rulec.extraction.signals.following_signals import following_signals
-from rulec.extraction.signals.intention_signals import intention_signals
 from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
 from rulec.extraction.signals.map.junction_signals import junction_signals
@@ -30,7 +28,9 @@ from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.road_signals import road_signals
 from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
 from rulec.extraction.signals.map.zone_signals import zone_signals
-from rulec.extraction.signals.participant_signals import participant_signals
+from rulec.extraction.signals.participants.following_signals import following_signals
+from rulec.extraction.signals.participants.intention_signals import intention_signals
+from rulec.extraction.signals.participants.participant_signals import participant_signals
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tellable_words import TELLABLE_WORDS

@@ -7,8 +7,7 @@ import pytest
 
 from rulec.extraction.signals.map.lanes_ahead import junctions_ahead
 from rulec.extraction.signals.measured_numbers import LONGEST_S, safe_distances
-from rulec.extraction.signals.participant_signals import participant_signals
-from rulec.extraction.signals.relations import stays
+from rulec.extraction.signals.participants.participant_signals import participant_signals
 from rulec.trace.cells import Cells
 from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
@@ -83,7 +82,7 @@ def test_who_stays_is_the_same_however_axes_lie(angle):
     boxes = [wanders, box(2, (0.0, 0.0), (1.6, 0.0), (0.8, 0.0))]
     found = context_of(recording(lanes(2), [steady(7, 0, 0, steps=3), *boxes]))
     assert [body.id for body in found.tracks.participants] == ["1", "2"]
-    assert stays(found, np.arange(2)).tolist() == [True, False]
+    assert found.stays.tolist() == [True, False]
 
 
 def test_headway_is_the_time_for_the_gap():

@@ -14,7 +14,7 @@ from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
 from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
-from rulec.extraction.signals.participant_signals import participant_signals
+from rulec.extraction.signals.participants.participant_signals import participant_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.rings import ring_lanelets
 from support.builders.drive_contexts import along, context_of, steady, told_on_both_sides

@@ -11,7 +11,7 @@ from rulec import recordings
 from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.measured_numbers import speed_bounds
-from rulec.extraction.signals.participant_signals import participant_signals
+from rulec.extraction.signals.participants.participant_signals import participant_signals
 from rulec.extraction.tracks.source_tolerances import (
     BY_FORM,
     DRONES,

@@ -10,7 +10,8 @@ import numpy as np
 from rulec.cell_words.probe_drives import body_along, world_of
 from rulec.extraction.recording_verdicts import names_read
 from rulec.extraction.signals.settling import fewest_states
-from rulec.extraction.to_trace import Drive, TraceWriter
+from rulec.extraction.traces.recorded_drive import Drive
+from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf

@@ -166,7 +166,7 @@ def _near_obstacle(context: DriveContext, cells: Cells) -> Flags:
     near |= early & walks
     early &= cells.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
     rows, never_moves = distinct(cells.rows[early]), np.zeros(len(context.relevant), dtype=bool)
-    never_moves[rows] = relations.stays(context, rows)
+    never_moves[rows] = context.stays[rows]
     near |= early & never_moves[cells.rows]
     return near
 

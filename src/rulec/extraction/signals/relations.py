@@ -13,12 +13,10 @@ from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 from numpy import int8, intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
-from rulec.extraction.signals.signal_passes import once_a_recording
 from rulec.extraction.tracks.lane_sets import LaneSets, lane_sets, lanes_touched
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
@@ -35,7 +33,6 @@ assert STATIONS == ("behind", "beside", "in_front_of")
 assert LATERALS == ("right_of", "same_lane", "left_of")
 
 _STANDS_MPS = 0.1
-_DRIFT_M = 1.5
 _FACING: tuple[Facing, ...] = ("along", "left", "against", "right")
 
 
@@ -374,33 +371,3 @@ def _facing(others: RoadExtents) -> NDArray[intp]:
     angle = np.round(np.degrees(np.nan_to_num(angle)), 6)
     across = np.where(angle > 0, 1, 3)
     return np.where(np.abs(angle) < 45, 0, np.where(np.abs(angle) > 135, 2, across))
-
-
-def stays(context: DriveContext, rows: NDArray[intp]) -> Flags:
-    """Mask of the participants in ``rows`` that stand for as long as they are recorded.
-
-    Boxes of standing participants drift by up to ``_DRIFT_M``.
-    """
-    still: Flags = _who_stays(context)[context.tracks.rows[rows]]
-    return still
-
-
-@once_a_recording
-def _who_stays(context: DriveContext) -> Flags:
-    """``stays`` for all participants: no two places of one are farther apart than that."""
-    tracks = context.surroundings.tracks
-    spreads = [
-        np.where(tracks.present, places, -np.inf).max(axis=1, initial=-np.inf)
-        - np.where(tracks.present, places, np.inf).min(axis=1, initial=np.inf)
-        for places in (tracks.x, tracks.y)
-    ]
-    diagonal = np.hypot(spreads[0], spreads[1])
-    still: Flags = diagonal <= _DRIFT_M
-    # For a few the spreads do not decide: they depend on the direction of a file's axes
-    in_doubt = (np.maximum(spreads[0], spreads[1]) <= _DRIFT_M) & np.isfinite(diagonal) & ~still
-    for row in in_doubt.nonzero()[0].tolist():
-        own = tracks.present[row]
-        places = shapely.multipoints(np.column_stack((tracks.x[row, own], tracks.y[row, own])))
-        corners = shapely.get_coordinates(shapely.convex_hull(places))
-        still[row] = max(np.hypot(*(corners - corner).T).max() for corner in corners) <= _DRIFT_M
-    return still

@@ -13,7 +13,7 @@ from rulec.extraction.recording_parts import whole_recording
 from rulec.extraction.tracks.junction_passages import JunctionPassages, junction_passages
 from rulec.extraction.tracks.rings import ring_lanelets
 from rulec.extraction.tracks.source_tolerances import Tolerances, tolerances_of
-from rulec.extraction.tracks.tracks import ObjectTypes, Tracks
+from rulec.extraction.tracks.tracks import Flags, ObjectTypes, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Lanelet, Recording, Side, WholeRecording, is_lane
 from rulec.scenario.recorded.reference_line import turn
@@ -24,6 +24,9 @@ OTHER_CARRIAGEWAY_M = 30.0
 """Greatest distances (m) between the lanes of a carriageway, and the carriageways of a road."""
 
 _AGAINST = np.radians(135.0)
+
+_DRIFT_M = 1.5
+"""Boxes of standing participants drift by up to this."""
 
 _HAIR = 1e-9
 """Upper bound on rounding errors of a cosine."""
@@ -77,6 +80,30 @@ class Surroundings:
     def passages(self) -> JunctionPassages:
         """The passages of all participants through junctions."""
         return junction_passages(self.recording, self.tracks)
+
+    @cached_property
+    def stays(self) -> Flags:
+        """Mask of participants that stand for as long as they are recorded, by row.
+
+        No two places of one are farther apart than ``_DRIFT_M``.
+        """
+        tracks = self.tracks
+        spreads = [
+            np.where(tracks.present, places, -np.inf).max(axis=1, initial=-np.inf)
+            - np.where(tracks.present, places, np.inf).min(axis=1, initial=np.inf)
+            for places in (tracks.x, tracks.y)
+        ]
+        diagonal = np.hypot(spreads[0], spreads[1])
+        still: Flags = diagonal <= _DRIFT_M
+        # For a few the spreads do not decide: they depend on the direction of a file's axes
+        in_doubt = (np.maximum(*spreads) <= _DRIFT_M) & np.isfinite(diagonal) & ~still
+        for row in in_doubt.nonzero()[0].tolist():
+            own = tracks.present[row]
+            places = shapely.multipoints(np.column_stack((tracks.x[row, own], tracks.y[row, own])))
+            corners = shapely.get_coordinates(shapely.convex_hull(places))
+            farthest = max(np.hypot(*(corners - corner).T).max() for corner in corners)
+            still[row] = farthest <= _DRIFT_M
+        return still
 
     def ring(self, side: Side) -> frozenset[str]:
         """The lanelets of roundabouts, for traffic that keeps to ``side``."""

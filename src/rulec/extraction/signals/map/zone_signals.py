@@ -225,7 +225,7 @@ def _until(context: DriveContext, flags: Flags) -> Flags:
 def _standing_rows(context: DriveContext, ahead: Flags) -> Flags:
     """Mask, one per row, of those ever ahead that stand for as long as they are recorded."""
     still, rows = np.zeros((len(ahead), 1), dtype=bool), ahead.any(axis=1).nonzero()[0]
-    still[rows, 0] = relations.stays(context, rows)
+    still[rows, 0] = context.stays[rows]
     return still
 
 

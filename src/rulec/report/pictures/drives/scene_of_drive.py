@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.extraction.presences import participant_called
 from rulec.extraction.recording_verdicts import RecordingVerdicts
-from rulec.extraction.to_trace import Drive
+from rulec.extraction.traces.recorded_drive import Drive
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.tracks import Tracks, tracks_of
 from rulec.monitoring.explain.explained_parts import Deciding

@@ -1,0 +1,1 @@
+"""Signals of the other participants, one by one."""

@@ -1,0 +1,217 @@
+"""What participants do, whatever ego does: oncoming, going across, standing, beside the lanes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.recording_parts import span_of
+from rulec.extraction.signals.ego_lanelets import (
+    CYCLE_LANE,
+    SHOULDER,
+    map_contents,
+    those_on_lanes,
+)
+from rulec.extraction.signals.participants.intention_signals import may_have_broken_down
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.tracks.road_extents import RoadExtents
+from rulec.extraction.tracks.tracks import Flags
+from rulec.trace.cells import Cells
+from rulec.trace.plain_arrays import distinct
+
+_ALONG = 0.5
+"""Sine of the largest angle to the road at which a participant heads along it."""
+
+_FACES_RAD = np.radians(120.0)
+"""Beyond this angle to the road a participant faces ego."""
+
+_TWO_WHEELED = ("motorcycle", "bicycle")
+
+_EDGE_M, _ROOM_M = 0.5, 3.05
+"""A parked vehicle is at the edge; the widest vehicle (2.55 m) needs half a metre more to pass."""
+
+
+def oncoming(context: DriveContext) -> SignalColumns:
+    """Whether participants come towards ego; see ``comes_towards``."""
+    return SignalColumns(about={"oncoming": comes_towards(context)})
+
+
+@once
+def comes_towards(context: DriveContext) -> Flags:
+    """Mask of participants that move against ego's direction, or wait on lanes of that way."""
+    along = context.extents.along
+    faces: Flags = np.abs(context.extents.turned) > _FACES_RAD
+    comes = faces & (along * -KMH >= context.thresholds.standing_kmh)
+    others = Cells.at(faces & ~comes)
+    comes.ravel()[others.places] = _waits_elsewhere(context, others)
+    return comes
+
+
+def _waits_elsewhere(context: DriveContext, cells: Cells) -> Flags:
+    """Mask of cells of drivers and riders that face ego on lanes not of its way.
+
+    They may stand in a queue there. Ego does not overtake them, nor oncoming ones that move, nor
+    follow one that waits in a junction for its turn. A body that always stands there, the wrong way
+    round, is an obstacle in ego's lanes. One that faces ego and moves away from it reverses, or its
+    box drifts: it counts as standing.
+    """
+    rows = distinct(cells.rows)
+    slow = np.abs(context.extents.along[rows]) * KMH < context.thresholds.standing_kmh
+    still = context.spans.all(slow)[rows.searchsorted(cells.rows), cells.columns]
+    drivers = context.tracks.of_type("vehicle") | context.tracks.of_type("light_rider")
+    moves_elsewhere = cells.of(context.elsewhere) & ~still
+    waits: Flags = drivers[cells.rows] & (moves_elsewhere | ~cells.of(context.on_lanes))
+    return waits
+
+
+def goes_across(context: DriveContext) -> SignalColumns:
+    """Whether participants move across the road more than along it.
+
+    A person or cycle that crosses keeps crossing, even if it stops or is hit, until it leaves the
+    road or moves along it. Unknown where the tolerance of speeds decides.
+    """
+    least = context.thresholds.standing_kmh / KMH
+    along, across = np.abs(context.extents.along), np.abs(context.extents.across)
+    goes: Flags = (across >= least) & (across > along)
+    # The error of a difference of two speeds
+    wrong = context.tolerances.joint(context.tracks.speed_error, context.tracks.speed_error)
+    unsure = (np.maximum(along, across) >= least) & (np.abs(across - along) <= wrong)
+    users = context.tracks.of_type("vulnerable_user").nonzero()[0]
+    if len(users):
+        off = _mostly_along(context, users) | ~context.tracks.on_lane[users]
+        went = goes[users] & ~unsure[users]
+        goes[users] |= context.spans.latest(goes[users]) > context.spans.latest(off)
+        unsure[users] &= context.spans.latest(went) <= context.spans.latest(off)
+        present = context.tracks.present[users]
+        known, away = map(context.spans.latest, ((goes[users] | off) & present, ~present))
+        unsure[users] |= _appears_there(context, users, away) & (known <= away)
+    return SignalColumns(about={"goes_across": goes}, unknown={"goes_across": unsure})
+
+
+def _appears_there(context: DriveContext, rows: NDArray[intp], away: NDArray[intp]) -> Flags:
+    """Mask of participants in ``rows`` first recorded in the road, after the recording's start.
+
+    Or recorded there again after the states in which they were last ``away``. Such a track may
+    continue the one of a participant that went across.
+    """
+    first, bodies = context.surroundings.whole.first, context.tracks.participants
+    later = [span_of(bodies[row])[0] > first for row in rows.tolist()]
+    appears = np.array(later)[:, None] | (away >= context.spans.first)
+    found: Flags = appears & context.tracks.on_lane[rows]
+    return found
+
+
+def _mostly_along(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Mask of participants in ``rows`` that have moved along the road in most recent steps.
+
+    By steps: in means over a second, a collision that displaces a body at once lasts as long.
+    """
+    least, step_s = context.thresholds.standing_kmh / KMH, context.recording.step_s
+    others, spans = context.extents, context.spans
+    along, across = others.s[rows], others.d_min[rows] + others.d_max[rows]
+    s, d = (np.abs(values - spans.before(values)) for values in (along, across / 2))
+    turns = (s >= least * step_s) & (s > d)
+    steps = max(round(context.thresholds.smoothing_s / step_s), 1)
+    return 2 * spans.count_of_last(turns, steps) > steps
+
+
+def stopped(context: DriveContext) -> SignalColumns:
+    """Whether participants stand."""
+    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
+    return SignalColumns(about={"stopped": stands})
+
+
+def parked(context: DriveContext) -> SignalColumns:
+    """Whether participants are parked; unknown for those that may have broken down."""
+    standing = [body.standing for body in context.tracks.participants]
+    parked = _constant(context, standing) | _stays_aside(context)
+    return SignalColumns(
+        about={"parked": parked}, unknown={"parked": may_have_broken_down(context) & ~parked}
+    )
+
+
+def _stays_aside(context: DriveContext) -> Flags:
+    """Mask of vehicles that stand aside for as long as they are recorded.
+
+    Their middles are beside the lanes of ego's road, or their sides at the road's edge with room
+    for all others in their lane. Vehicles that wait in a lane do not stand aside, however long.
+    """
+    lanes, vehicles = context.existing_lanes, context.tracks.of_type("vehicle").nonzero()[0]
+    aside = np.zeros(context.relevant.shape, dtype=bool)
+    first, end = lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)
+    still = vehicles[context.stays[vehicles]]
+    if len(still):
+        others = context.extents.part(still, slice(None))
+        out = (others.middle_from(first) < 0) | (others.middle_from(end) > 0)
+        wide = [context.tracks.participants[row].type not in _TWO_WHEELED for row in still.tolist()]
+        out |= np.array(wide)[:, None] & _at_edge(others, context.there[still])
+        aside[still] = context.spans.all(out | ~context.relevant[still])
+    return aside
+
+
+def _at_edge(others: RoadExtents, there: Flags) -> Flags:
+    """Mask of bodies at an edge of the lanes, in a lane that has room beside them.
+
+    ``there``: the lanes (last axis) that exist at their places.
+    """
+    first, end = there.argmax(axis=2), there.shape[2] - there[..., ::-1].argmax(axis=2)
+    right = (others.from_bound(first)[0] < _EDGE_M) & (others.from_bound(first + 1)[1] < -_ROOM_M)
+    left = (others.from_bound(end)[1] > -_EDGE_M) & (others.from_bound(end - 1)[0] > _ROOM_M)
+    at_edge: Flags = there.any(axis=2) & (right | left)
+    return at_edge
+
+
+def on_shoulder(context: DriveContext) -> SignalColumns:
+    """Whether vehicles heading along the road stand beside its lanes or are on a hard shoulder.
+
+    Only at the near side: at the far one they may be on lanes of the other direction. A vehicle
+    that moves beside the lanes may be on a lane that the road does not contain.
+    """
+    others, there = context.extents, context.there
+    if context.side == "right":
+        beyond = -others.middle_from(there.argmax(axis=2))
+    else:
+        beyond = others.middle_from(there.shape[2] - there[..., ::-1].argmax(axis=2))
+    vehicles = context.tracks.of_type("vehicle")[:, None] & there.any(axis=2)
+    along = vehicles & ~context.elsewhere & (np.abs(np.sin(others.turned)) < _ALONG)
+    inside = those_on_lanes(context, SHOULDER, along)
+    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
+    loose = context.tolerances.place_m + np.abs(context.map_offset_m)
+    beside = along & (inside | (stands & (beyond > 0)))
+    unsure = along & ~inside & ((np.abs(beyond) < loose) | (~stands & (beyond > 0)))
+    return SignalColumns(about={"on_shoulder": beside}, unknown={"on_shoulder": unsure})
+
+
+def two_wheeled(context: DriveContext) -> SignalColumns:
+    """Whether participants ride on two wheels."""
+    two_wheeled = [body.type in _TWO_WHEELED for body in context.tracks.participants]
+    return SignalColumns(about={"two_wheeled": _constant(context, two_wheeled)})
+
+
+def _constant(context: DriveContext, flags: list[bool]) -> Flags:
+    return np.array(flags, dtype=bool)[:, None].repeat(context.states, axis=1)
+
+
+def in_the_road(context: DriveContext) -> SignalColumns:
+    """Whether people are on a lane; unknown at the outermost edges of ego's, where they may wait.
+
+    Unknown, too, for riders on a cycle lane: it may be a path beside the road.
+    """
+    unsure, users = np.zeros_like(context.relevant), context.tracks.of_type("vulnerable_user")
+    if len(rows := users.nonzero()[0]):
+        error = context.tolerances.place_m + np.abs(context.map_offset_m)
+        least = np.maximum(context.thresholds.changed_m, error)
+        lanes, others = context.existing_lanes, context.extents.part(rows, slice(None))
+        for edge in (lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)):
+            low, high = others.from_bound(edge)
+            unsure[rows] |= np.abs(low + high) / 2 <= least
+    if CYCLE_LANE in map_contents(context).types:
+        rides = context.tracks.of_type("light_rider")[:, None] & context.tracks.on_lane
+        unsure |= those_on_lanes(context, CYCLE_LANE, rides)
+    return SignalColumns(
+        about={"in_the_road": context.tracks.on_lane},
+        only={"in_the_road": users},
+        unknown={"in_the_road": unsure & context.tracks.on_lane},
+    )

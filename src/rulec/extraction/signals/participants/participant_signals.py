@@ -1,0 +1,232 @@
+"""Signals of other participants: ego's relations to them, gaps and speeds, and what they do."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.presences import in_presences, presence_cells, presence_runs
+from rulec.extraction.signals import relations
+from rulec.extraction.signals.map.lanes_ahead import leads_elsewhere
+from rulec.extraction.signals.measured_numbers import (
+    LONGEST_S,
+    difference_bounds,
+    gap_bounds,
+    gaps,
+    headway_bounds,
+    lateral_gap_bounds,
+    moves,
+    own_speed,
+    speed_differences,
+)
+from rulec.extraction.signals.participants.following_signals import keeps_safe_gap, may_part
+from rulec.extraction.signals.participants.participant_conduct import (
+    comes_towards,
+    goes_across,
+    in_the_road,
+    on_shoulder,
+    oncoming,
+    parked,
+    stopped,
+    two_wheeled,
+)
+from rulec.extraction.signals.settling import only_when, with_one_change
+from rulec.extraction.signals.signal_columns import (
+    Bounds,
+    SignalColumns,
+    rounded,
+    rounded_outward,
+)
+from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.scenario.paper_words import LATERALS, STATIONS
+
+_ASKED_FOR_M = 3.0
+"""No law requires more room between a vehicle and a cycle, or people in the road."""
+
+
+def _position(context: DriveContext) -> SignalColumns:
+    """The paper's positions; unknown, like stations, for participants at ego's side at first."""
+    position = relations.position(context)
+    at_side = (position == "l") | (position == "r")
+    return SignalColumns(
+        about={"position": position}, unknown={"position": _at_first(context) & at_side}
+    )
+
+
+def _station(context: DriveContext) -> SignalColumns:
+    """The stations; unknown within the tolerance of places, except while ego or the other passes.
+
+    There only the moment is in doubt, unless passing takes longer than ``passed_s``. Unknown, too,
+    for cycles and people that were never seen beside ego while it went past them, and for
+    participants beside it in their first state: ego may have come up from behind.
+    """
+    station, others = relations.station(context), relations.possible_stations(context)
+    doubtful = np.logical_or.reduce([station != codes for codes in others])
+    there = context.relevant & ~np.isnan(context.extents.s_min)
+    longest = round(context.thresholds.passed_s / context.recording.step_s)
+    station = with_one_change(station, doubtful, there, context.spans)
+    doubtful &= ~only_when(station, doubtful, there, longest, context.spans)
+    beside = _at_first(context) & (relations.station(context) == relations.BESIDE)
+    return SignalColumns(
+        about={"station": station},
+        unknown={"station": doubtful | _passed_unseen(context) | beside},
+        texts={"station": STATIONS},
+    )
+
+
+@once
+def _at_first(context: DriveContext) -> Flags:
+    """Mask of others' first states in a drive, if they were not recorded just before."""
+    runs, spans, first = presence_runs(context), context.spans, np.zeros_like(context.relevant)
+    rows, columns = runs.rows, spans.begins[runs.drives] + runs.first
+    present = context.surroundings.tracks.present
+    before = np.maximum(context.columns[columns] - 1, 0)
+    unseen = ~present[context.tracks.rows[rows], before] | (columns == spans.first[columns])
+    first[rows[unseen], columns[unseen]] = True
+    return first
+
+
+def _passed_unseen(context: DriveContext) -> Flags:
+    """Mask of cycles and people near ego's side that it passed from one state to the next.
+
+    Set in both states: how near ego was while beside them lies in between.
+    """
+    passed, spans = np.zeros(context.relevant.shape, dtype=bool), context.spans
+    rows = context.tracks.of_type("vulnerable_user").nonzero()[0]
+    if not len(rows):
+        return passed
+    station = relations.station(context)[rows]
+    near = (relations.way_across(context)[rows] < _ASKED_FOR_M) & context.relevant[rows]
+    ahead = near & (station == relations.BEHIND)
+    past = near & (station == relations.IN_FRONT_OF)
+    comes = past & spans.before(ahead)
+    passed[rows] = comes | (ahead & spans.after(comes))
+    return passed
+
+
+def _lateral(context: DriveContext) -> SignalColumns:
+    """The sides of others; unknown within tolerances, except while ego or the other moves over.
+
+    There only the moment is in doubt, as with stations.
+    """
+    laterals = relations.laterals(context)
+    there = context.relevant & ~np.isnan(context.extents.s_min)
+    longest = round(context.thresholds.passed_s / context.recording.step_s)
+    codes = with_one_change(laterals.codes, laterals.doubtful, there, context.spans)
+    over = only_when(codes, laterals.doubtful, there, longest, context.spans)
+    return SignalColumns(
+        about={"lateral": codes},
+        unknown={"lateral": laterals.doubtful & ~over},
+        texts={"lateral": LATERALS},
+    )
+
+
+def _gap(context: DriveContext) -> SignalColumns:
+    return _measured("gap", gaps(context)[0], gap_bounds(context))
+
+
+def _time_headway(context: DriveContext) -> SignalColumns:
+    # The speed that the word `speed` has
+    cells = presence_cells(context)
+    speed, drives = cells.of(own_speed(context)[0]), cells.of(moves(context))
+    seconds = gaps(context)[0] / np.where(drives, speed, 1.0)
+    headway = np.where(drives, np.minimum(seconds, LONGEST_S), LONGEST_S)
+    return _measured("time_headway", headway, headway_bounds(context))
+
+
+def _lateral_gap(context: DriveContext) -> SignalColumns:
+    gap = presence_cells(context).of(relations.lateral_gap(context))
+    return _measured("lateral_gap", gap, lateral_gap_bounds(context))
+
+
+def _speed_difference(context: DriveContext) -> SignalColumns:
+    difference, _ = speed_differences(context)
+    return _measured("speed_difference", difference, difference_bounds(context))
+
+
+def _time_to_collision(context: DriveContext) -> SignalColumns:
+    """The time (s) in which ego reaches participants ahead in its lane, at both current speeds."""
+    measured, surely, perhaps = relations.ahead_in_lane(context)
+    # Ego runs into no other participants
+    cells, place = relations.perhaps_ahead(context), context.tolerances.place_m
+    closing = cells.of(context.ego_extents.along[0]) - cells.of(context.extents.along)
+    errors = context.ego.speed_error[0], context.tracks.speed_error
+    wrong = context.tolerances.joint(*map(cells.of, errors))
+    way = cells.of(relations.way_along(context))
+
+    def seconds(counts: Flags, more_m: float, faster: Floats) -> Floats:
+        runs_into = cells.of(counts) & (faster > 0)
+        taken = np.maximum(way + more_m, 0.0) / np.where(runs_into, faster, 1.0)
+        return np.where(runs_into, np.minimum(taken, LONGEST_S), LONGEST_S)
+
+    seconds_measured = rounded(seconds(measured, 0.0, closing))
+    soonest = seconds(perhaps, -place, closing + wrong)
+    latest_s = seconds(surely, place, closing - wrong)
+    found, low, high = (
+        in_presences(context, cells, own, LONGEST_S)
+        for own in (seconds_measured, *rounded_outward(soonest, latest_s))
+    )
+    return SignalColumns(
+        about={"time_to_collision": found}, bounds={"time_to_collision": (low, high)}
+    )
+
+
+def _measured(name: str, values: Floats, bounds: Bounds) -> SignalColumns:
+    return SignalColumns(about={name: rounded(values)}, bounds={name: bounds})
+
+
+def _precedes(context: DriveContext) -> SignalColumns:
+    """The participant next ahead of ego in its lane."""
+    (follows, _, _), cells = relations.ahead_in_lane(context), relations.perhaps_ahead(context)
+    counts = cells.of(follows) & ~cells.of(comes_towards(context)) & cells.of(context.relevant)
+    ahead = cells.part(counts.nonzero()[0])
+    gap = ahead.of(relations.gap(context))
+    return SignalColumns(about={"precedes": ahead.laid(gap == ahead.of(ahead.least(gap)))})
+
+
+def _one_between(context: DriveContext) -> SignalColumns:
+    """Whether another vehicle ahead in ego's lane is nearer to ego than a participant ahead.
+
+    It is if it is nearer by more than the tolerance of places, and unknown within that.
+    """
+    (_, surely, _), cells = relations.ahead_in_lane(context), relations.perhaps_ahead(context)
+    drives = context.tracks.of_type("vehicle")[cells.rows] & ~cells.of(comes_towards(context))
+    gap, place = cells.of(relations.gap(context)), context.tolerances.place_m
+    nearest, may_be = (
+        cells.of(cells.part(ahead).least(gap.take(ahead)))
+        for ahead in ((cells.of(surely) & drives).nonzero()[0], drives.nonzero()[0])
+    )
+    between = gap > nearest + place
+    unknown = ~between & (gap > may_be - place) & (gap > may_be)
+    return SignalColumns(
+        about={"one_between": cells.laid(between)},
+        unknown={"one_between": cells.laid(unknown)},
+    )
+
+
+participant_signals = SignalPasses(
+    {
+        ("position",): _position,
+        ("station",): _station,
+        ("lateral",): _lateral,
+        ("gap",): _gap,
+        ("time_headway",): _time_headway,
+        ("lateral_gap",): _lateral_gap,
+        ("speed_difference",): _speed_difference,
+        ("time_to_collision",): _time_to_collision,
+        ("safe_gap",): keeps_safe_gap,
+        ("parts_soon",): may_part,
+        ("precedes",): _precedes,
+        ("one_between",): _one_between,
+        ("oncoming",): oncoming,
+        ("goes_across",): goes_across,
+        ("stopped",): stopped,
+        ("parked",): parked,
+        ("on_shoulder",): on_shoulder,
+        ("leads_elsewhere",): leads_elsewhere,
+        ("two_wheeled",): two_wheeled,
+        ("in_the_road",): in_the_road,
+    }
+)
+"""The signals about objects."""
