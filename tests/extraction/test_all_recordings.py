@@ -4,7 +4,9 @@ import pytest
 
 from rulec import read_recording
 from rulec.api.rulebook_compilation import machines
+from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_parts import egos_of
 from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
 from rulec.extraction.selection import RequestedDrives
 from rulec.monitoring.verdict import Verdict
@@ -22,7 +24,12 @@ ALMOST_ALL = 0.95
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_its_drives(file):
-    judged = RecordingVerdicts(read_recording(file), PAPER, RequestedDrives(), file.name)
+    recording = read_recording(file)
+    if not egos_of(recording):
+        with pytest.raises(RulecError, match="no vehicle drives in it"):
+            RecordingVerdicts(recording, PAPER, RequestedDrives(), file.name)
+        return
+    judged = RecordingVerdicts(recording, PAPER, RequestedDrives(), file.name)
     tally = ViolationTally()
     seen = []
     for one in judged.answers():
