@@ -194,3 +194,52 @@ def test_a_monitor_that_began_in_the_middle_is_no_past():
     with pytest.raises(RulecError, match="before the first state of the past") as error:
         past_of(LONE, judge, RULES, HALF)
     assert [one.code for one in error.value.diagnostics] == ["R0511"]
+
+
+CONSTANTS = """
+rulebook constants
+use paper
+signal heavy default false
+constant heavy
+hard rule r (o: obstacle) { require never (heavy and f(o)) }
+"""
+
+
+@pytest.fixture(scope="module")
+def with_constants(tmp_path_factory):
+    file = tmp_path_factory.mktemp("rules") / "constants.rules"
+    file.write_text(CONSTANTS)
+    return rulec.compile_rulebook(file)
+
+
+@pytest.mark.parametrize("heavy", [False, True])
+def test_constants_of_the_past_hold_in_the_future(with_constants, heavy):
+    """As in the traces that begin with the past, each judged as a whole."""
+    traces = list(rulec.traces("s1", with_constants, step_s=0.5))
+    objects = traces[0].objects
+    state = {"position": dict.fromkeys(objects, "b"), "heavy": heavy}
+    monitor = rulec.Monitor(with_constants, 0.5)
+    monitor.step(state, objects)
+    whole = [
+        rulec.verify(Trace("t", 0.5, objects, (state, *own.states)), with_constants)
+        for own in traces
+    ]
+    kept = sum(verdict.satisfied is True for verdict in whole)
+    assert (0 < kept < len(whole)) if heavy else kept == len(whole)
+    for past in (Trace("t", 0.5, objects, (state,)), monitor, monitor.snapshot()):
+        found = rulec.find_maneuvers("s1", with_constants, after=past, step_s=0.5)
+        assert (found.traces, found.satisfying) == (len(whole), kept)
+        assert "heavy" not in found.by_default
+
+
+def test_constants_that_contradict_the_past_are_refused(with_constants):
+    state = {"surface": "R_cw", "CONGESTED": False, "heavy": True}
+    assumed = rulec.Assumptions(values={"heavy": False})
+    with pytest.raises(RulecError, match="the past says that `heavy` is true") as error:
+        rulec.find_maneuvers(
+            *("s1", with_constants),
+            after=Trace("t", 0.5, {}, (state,)),
+            step_s=0.5,
+            assumptions=assumed,
+        )
+    assert [x.code for x in error.value.diagnostics] == ["R0511"]

@@ -13,10 +13,10 @@ from rulec.trace import State, Trace
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
-_Subject: TypeAlias = tuple[str, ...]
+Subject: TypeAlias = tuple[str, ...]
 """The objects that a value is about; none for the world."""
 
-_Stated: TypeAlias = dict[_Subject, tuple[Any, int]]
+_Stated: TypeAlias = dict[Subject, tuple[Any, int]]
 """The known values of a name by subject, each with the first state that contains it."""
 
 
@@ -55,7 +55,7 @@ def _stated_values(
         before = given
         for subject, value in values_in(given, depth):
             known = stated.get(subject)
-            merged = value if known is None else _agreed(known[0], value)
+            merged = value if known is None else agreed_value(known[0], value)
             if merged is None and known is not None:
                 earlier = f"{where(known[1])} says {display(known[0])}"
                 raise changed(
@@ -66,7 +66,7 @@ def _stated_values(
     return stated
 
 
-def values_in(given: Any, depth: int) -> Iterator[tuple[_Subject, Any]]:
+def values_in(given: Any, depth: int) -> Iterator[tuple[Subject, Any]]:
     """The values of a name in a state, with the objects that each is about."""
     if depth and isinstance(given, Mapping):
         for item, inner in given.items():
@@ -76,13 +76,19 @@ def values_in(given: Any, depth: int) -> Iterator[tuple[_Subject, Any]]:
         yield (), given
 
 
-def changed(name: str, subject: _Subject, message: str, place: SourceLocation | None) -> RulecError:
+def changed(
+    name: str,
+    subject: Subject,
+    message: str,
+    place: SourceLocation | None,
+    way_out: str = "say one value, or leave out the others",
+) -> RulecError:
     """The error (R0503) that a constant has two values in one trace."""
     about = f" of {', '.join(f'`{item}`' for item in subject)}" if subject else ""
     return UNFITTING_VALUE.error(
         place,
         f"`{name}`{about} cannot change in a trace: {message}",
-        help=f"the vocabulary says `constant {name}`; say one value, or leave out the others",
+        help=f"the vocabulary says `constant {name}`; {way_out}",
     )
 
 
@@ -95,7 +101,7 @@ def display(value: object) -> str:
     return f"`{value:g}`" if isinstance(value, float) else f"`{value}`"
 
 
-def _agreed(first: Any, second: Any) -> Any:
+def agreed_value(first: Any, second: Any) -> Any:
     """What two values of a constant imply together; None if they contradict each other."""
     if first is UNKNOWN or second is UNKNOWN:
         return second if first is UNKNOWN else first

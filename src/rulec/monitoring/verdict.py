@@ -231,7 +231,8 @@ class CarriedState:
 
     ``settled`` are the rules among the ``violations``, for objects that stay. If the past was
     partly unknown, a machine may be in several ``possible`` states, and for ``perhaps_settled``
-    rules it is unknown whether they have been violated.
+    rules it is unknown whether they have been violated. ``constants`` are the values of the world's
+    constants that it has given.
     """
 
     states: Mapping[RuleFor, int] = field(default_factory=dict)
@@ -239,6 +240,7 @@ class CarriedState:
     violations: tuple[Violation, ...] = ()
     possible: Mapping[RuleFor, frozenset[int]] = field(default_factory=dict)
     perhaps_settled: frozenset[RuleFor] = frozenset()
+    constants: Mapping[str, Any] = field(default_factory=dict)
 
     def starts(self, about: RuleFor) -> frozenset[int]:
         """The states in which a machine may be."""

@@ -10,7 +10,13 @@ from rulec.planning.maneuvers import AS_WRITTEN, Maneuvers
 from rulec.planning.product.graph_instances import HARD
 from rulec.planning.product.graph_product import count_paths, explore
 from rulec.planning.product.node_transformers import node_transformers
-from rulec.planning.rule_instances import SceneReading, bind_rules, in_rule_words, past_for
+from rulec.planning.rule_instances import (
+    SceneReading,
+    bind_rules,
+    check_constants,
+    in_rule_words,
+    past_for,
+)
 from rulec.trace import TraceGraph
 
 if TYPE_CHECKING:
@@ -37,6 +43,10 @@ def evaluate(
     traces = graph.trace_graph()
     paths = in_rule_words(graph, traces, graph.objects, rules.vocabulary, reading, words=words)
     past = past_for(graph, paths, rules, HARD, after)
+    if past.constants:
+        reading = reading.after(past.constants)
+        paths = in_rule_words(graph, traces, graph.objects, rules.vocabulary, reading, words=words)
+        check_constants(paths, past)
     bound = bind_rules(graph, paths, rules, HARD, past)
     hard = perhaps = node_transformers(paths, bound)
     product = possible = explore(hard)

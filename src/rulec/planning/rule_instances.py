@@ -12,14 +12,15 @@ from rulec.diagnostics.argument_kinds import checked_kinds
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.free_names import names_in
 from rulec.monitoring.assumptions import Assumptions
+from rulec.monitoring.constant_values import agreed_value, display
 from rulec.monitoring.monitoring_messages import UNDECLARED_NAME, UNFITTING_VALUE
 from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.monitoring.verdict import NO_PAST, CarriedState
-from rulec.planning.planning_messages import TWO_PARTITIONS
+from rulec.planning.planning_messages import TWO_PARTITIONS, UNFITTING_PAST
 from rulec.planning.product.graph_instance import GraphInstance
 from rulec.planning.product.graph_instances import instances
 from rulec.rulebook.rulebook_model import Strength
-from rulec.trace import State, Trace, TraceGraph
+from rulec.trace import State, Trace, TraceGraph, Value
 from rulec.trace.trace_messages import UNKNOWN_OBJECT
 from rulec.trace.vocabulary_projection import project_graph
 from rulec.vocabulary import Vocabulary
@@ -102,6 +103,11 @@ class SceneReading:
     assumptions: Assumptions = NOTHING_ASSUMED
     told_only: bool = False
 
+    def after(self, constants: Mapping[str, Value]) -> SceneReading:
+        """The same after a past that has given these constants."""
+        values = {**constants, **self.assumptions.values}
+        return replace(self, assumptions=replace(self.assumptions, values=values))
+
     def of(self, graph: TraceGraph) -> TraceGraph:
         """The graph with the assumed values."""
         if not self.assumptions and not self.told_only:
@@ -166,6 +172,20 @@ def past_for(
     from rulec.planning.trace_history import past_of  # imported late: 30 ms
 
     return past_of(paths, after, rules, graph.step, strengths)
+
+
+def check_constants(paths: TraceGraph, past: CarriedState) -> None:
+    """Raises RulecError R0511 if a scenario's constants differ from those of its past."""
+    state = paths.states[0][paths.start]
+    for name, value in past.constants.items():
+        own = state.get(name)
+        if own is not None and agreed_value(own, value) is None:
+            raise UNFITTING_PAST.error(
+                None,
+                f"the past says that `{name}` is {display(value)}, and the scenario, or what is "
+                f"assumed, that it is {display(own)}",
+                help=f"the vocabulary says `constant {name}`; give the past of this scenario",
+            )
 
 
 def bind_rules(

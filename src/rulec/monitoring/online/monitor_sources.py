@@ -16,6 +16,7 @@ from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import with_place
 from rulec.files import MAX_SAVED_BYTES, opened, read_whole, written_whole
 from rulec.logic.codec import number_from_data
+from rulec.monitoring.constant_values import with_constants
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
 from rulec.monitoring.online.monitor_state import SoFar
@@ -37,6 +38,8 @@ def replay_trace(trace: Trace, rulebook: CompiledRulebook) -> Monitor:
     check_objects(trace.objects, rulebook.vocabulary, trace.place)
     for number, state in enumerate(trace.states):
         check_state(state, trace.objects, rulebook.vocabulary, f"state {number}", trace.place)
+    # A constant may be given later than in the first state
+    for number, state in enumerate(with_constants(trace, rulebook.vocabulary).states):
         present = present_in(number, trace.objects, trace.present)
         restricted = {name: _restricted_to(present, value) for name, value in state.items()}
         monitor.step(restricted, present, trace.place)

@@ -26,6 +26,7 @@ from rulec.monitoring.online.rule_group import (
     OtherVerdictError,
     RuleGroup,
 )
+from rulec.monitoring.online.running_constants import NO_CONSTANTS, KnownConstants
 from rulec.value_display import short_repr
 
 if TYPE_CHECKING:
@@ -89,8 +90,8 @@ class MonitorState(msgspec.Struct, frozen=True, eq=False):
     ``nodes`` are the states of each group's machines for each binding, in the order of the groups.
     ``n_violations`` is how many bindings have violated their rule for good. Rules that are
     ``doubted`` may have been violated by objects that have left; for rules that are ``inexact`` the
-    possible letters were overestimated. ``exact`` is as in ``SoFar``. ``after`` caches the steps
-    that follow, by the keys of states.
+    possible letters were overestimated. ``exact`` is as in ``SoFar``. ``constants`` are those given
+    so far, ``after`` caches the steps that follow, by the keys of states.
     """
 
     bound_rules: BoundRules
@@ -101,6 +102,7 @@ class MonitorState(msgspec.Struct, frozen=True, eq=False):
     doubted: frozenset[str] = frozenset()
     inexact: frozenset[str] = frozenset()
     exact: bool = True
+    constants: KnownConstants = NO_CONSTANTS
     after: dict[Hashable, StepResult] = msgspec.field(default_factory=dict)
 
 
@@ -155,6 +157,7 @@ def take_step(current: MonitorState, bound_rules: BoundRules, letters: Letters) 
                 doubted=current.doubted,
                 inexact=current.inexact,
                 exact=current.exact,
+                constants=current.constants,
             )
             return after, ()
     else:
@@ -181,6 +184,13 @@ def with_inexact(state: MonitorState, rules: frozenset[str]) -> MonitorState:
         return state
     exact = not any(isinstance(state.rules[rule], VerdictRange) for rule in rules)
     return msgspec.structs.replace(state, inexact=rules, exact=exact, after={})
+
+
+def with_constants_known(state: MonitorState, constants: KnownConstants) -> MonitorState:
+    """The state, with these constants given so far."""
+    if state.constants is constants:
+        return state
+    return msgspec.structs.replace(state, constants=constants, after={})
 
 
 def carry_over(

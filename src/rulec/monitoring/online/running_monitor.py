@@ -22,9 +22,15 @@ from rulec.monitoring.online.monitor_state import (
     carry_over,
     initial_state,
     take_step,
+    with_constants_known,
     with_inexact,
 )
 from rulec.monitoring.online.rule_group import MOST_CACHED, rule_groups
+from rulec.monitoring.online.running_constants import (
+    Arrival,
+    constants_of_world,
+    with_known_constants,
+)
 from rulec.monitoring.online.snapshot import from_data, restored, to_data, with_source
 from rulec.monitoring.online.transition_cache import TransitionCache
 from rulec.monitoring.state_validation import check_objects, check_told
@@ -204,6 +210,12 @@ class Monitor:
             cache = TransitionCache()
         if type(state) is not dict and not isinstance(state, Mapping):
             raise _no_object(f"state {number}", "names and values", place)
+        constants = current.constants
+        if self._judged.vocabulary.constants:
+            arrival = Arrival(number, objects, current.bound_rules.objects, place)
+            state, constants = with_known_constants(
+                state, arrival, constants, self._judged.vocabulary
+            )
         if bound_rules.lazy:
             waking = bound_rules.waking(state, number, place)
             if not bound_rules.has(waking):
@@ -215,6 +227,10 @@ class Monitor:
         after, changes = take_step(current, bound_rules, letters)
         if current.inexact or bound_rules.groups.cache_size.is_inexact:
             after = with_inexact(after, current.inexact | bound_rules.inexact(letters))
+        if constants is not current.constants:
+            # What follows this state depends on them, and so does what was cached
+            known, cache = None, TransitionCache()
+        after = with_constants_known(after, constants)
         n_before = current.n_violations
         same = bound_rules is current.bound_rules and after.n_violations == n_before
         if same and known is not None:
@@ -269,7 +285,14 @@ class Monitor:
             possible[about] = without_sink(machines[about[0]], possible[about])
         lost = [self._violation(change, None) for change in ended if change.verdict == "violated"]
         violations = (*self.violations, *lost)
-        return CarriedState(states, frozenset(settled), violations, possible, frozenset(doubtful))
+        return CarriedState(
+            states,
+            frozenset(settled),
+            violations,
+            possible,
+            frozenset(doubtful),
+            constants=constants_of_world(current.constants),
+        )
 
     def snapshot(self) -> dict[str, Any]:
         """The monitor's state, for ``restore``, as data that can be written as JSON."""

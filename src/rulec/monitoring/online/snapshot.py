@@ -17,6 +17,7 @@ from rulec.diagnostics.json_problems import json_words
 from rulec.logic.codec import number_from_data
 from rulec.monitoring.bindings import types_of
 from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
+from rulec.monitoring.online import running_constants
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.encoding.state_shape import Items
 from rulec.monitoring.online.four_valued import FourValued, MonitorEdge, VerdictRange
@@ -25,10 +26,12 @@ from rulec.monitoring.online.monitor_state import (
     initial_state,
     nodes_at,
     state_at,
+    with_constants_known,
     with_inexact,
 )
 from rulec.monitoring.online.prepared_rule import PreparedRule
 from rulec.monitoring.online.rule_group import RuleGroups
+from rulec.monitoring.online.running_constants import SavedConstant
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import Violation
 
@@ -37,7 +40,7 @@ if TYPE_CHECKING:
 
 FORMAT = "rulec monitor"
 VERSION, PARTIAL_VERSION = 1, 2
-"""Versions of the files; the second is for monitors with unknown values."""
+"""Versions of the files; the second is for monitors with unknown values, or with constants."""
 
 
 class _Header(msgspec.Struct):
@@ -67,7 +70,8 @@ class SavedMonitor(msgspec.Struct, forbid_unknown_fields=True):
 
     With unknown values there are several machine states, and the best and worst verdict;
     ``doubted`` are rules that may have been violated by objects that have left, ``inexact`` those
-    with overestimated letters; ``told`` and ``cut`` are as in a trace.
+    with overestimated letters; ``told`` and ``cut`` are as in a trace. ``constants`` are those
+    given so far.
     """
 
     format: str
@@ -83,6 +87,7 @@ class SavedMonitor(msgspec.Struct, forbid_unknown_fields=True):
     cut: bool = False
     doubted: list[str] = []
     inexact: list[str] = []
+    constants: list[SavedConstant] = []
 
 
 def to_data(
@@ -96,9 +101,11 @@ def to_data(
     edges = {rule: rule.edges(current.nodes) for rule in current.bound_rules.rules}
     single = all(isinstance(edge, MonitorEdge) for row in edges.values() for edge in row)
     doubted, inexact = sorted(current.doubted), sorted(current.inexact)
+    constants = running_constants.to_data(current.constants)
+    is_plain = single and not doubted and not inexact and not constants
     return {
         "format": FORMAT,
-        "version": VERSION if single and not doubted and not inexact else PARTIAL_VERSION,
+        "version": VERSION if is_plain else PARTIAL_VERSION,
         "rulebook": rulebook.name,
         "machines": fingerprint(rulebook),
         "step_s": None if step_s is None else str(step_s),
@@ -116,6 +123,7 @@ def to_data(
         ],
         **({"doubted": doubted} if doubted else {}),
         **({"inexact": inexact} if inexact else {}),
+        **({"constants": constants} if constants else {}),
         "violations": [
             {"rule": violation.rule, "binding": dict(violation.binding), "step": violation.step}
             for violation in violations
@@ -219,6 +227,7 @@ def restored(
         edges = _edges(saved, bound_rules)
         rules = {rule.name: rule for rule in rulebook.rules}
         violations = [_violation(violation, saved.states, rules) for violation in saved.violations]
+        constants = running_constants.from_data(saved.constants, saved.objects, rulebook.vocabulary)
     except (LookupError, ValueError, RulecError):
         raise _refused("this saved monitor is damaged", place) from None
     violated_rules = {violation.rule for violation in violations}
@@ -228,7 +237,8 @@ def restored(
     known = current.rules.keys()
     if not known >= set(saved.inexact):
         raise _refused("this saved monitor is damaged", place)
-    return saved.states - 1, with_inexact(current, frozenset(saved.inexact)), violations
+    current = with_constants_known(with_inexact(current, frozenset(saved.inexact)), constants)
+    return saved.states - 1, current, violations
 
 
 def _saved_choices(
