@@ -50,6 +50,16 @@ def test_where_a_line_is(drawn, first):
     assert ends == pytest.approx(first + 0.3, abs=0.05)
 
 
+def test_a_line_is_near_its_lanelets_end_though_the_road_comes_by_again():
+    """On a road that goes round a block and passes close by the line, nearer than its own lane."""
+    line = np.array([(95.0, 0.4), (95.0, 4.4)])
+    first = straight(1, 0, 100, successors=(2,), signs=frozenset({"STOP"}), stop_line=line)
+    block = [(100, 0), (200, 0), (200, 60), (-50, 60), (-50, 2.5), (150, 2.5)]
+    lanes = [first, lanelet(2, block, 4.0, predecessors=(1,))]
+    ego = context(lanes, 50, 60, route=("1", "2"))
+    assert stop_line(ego, 0, 0) == pytest.approx((95.0, 95.3), abs=0.05)
+
+
 @pytest.mark.parametrize(
     ("xs", "crosses"),
     [

@@ -80,15 +80,22 @@ def around_crossing(
 
 
 @once_a_road
-def drawn_lines(context: DriveContext) -> dict[str, float]:
-    """The places along the road of the stop lines that the map has, by lanelet."""
+def drawn_lines(context: DriveContext) -> dict[tuple[int, str], float]:
+    """The places along the road of the stop lines that the map has, by piece and lanelet.
+
+    Only near the end of the lanelet: a road may come by again, or lead twice along the same one.
+    """
+    road = context.road
     drawn = {
-        lanelet.id: lanelet.stop_line.mean(axis=0)
-        for row in context.road.rows
+        (piece, lanelet.id): lanelet.stop_line.mean(axis=0)
+        for piece, row in enumerate(road.rows)
         for lanelet in row
         if lanelet is not None and lanelet.stop_line is not None
     }
-    places = context.road.line.coordinates(np.reshape([*drawn.values()], (-1, 2)))[:, 0]
+    ends = np.array([road.borders[piece + 1] for piece, _ in drawn], dtype=float)
+    reach = np.full(len(drawn), LINE_REACH_M)
+    middles = np.reshape([*drawn.values()], (-1, 2))
+    places = road.line.coordinates_near(middles, ends, reach)[:, 0]
     return dict(zip(drawn, places.tolist(), strict=True))
 
 
@@ -126,7 +133,7 @@ def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, floa
     lanelet, road = context.road.lanelet(piece, lane), context.road
     end, touching = float(road.borders[piece + 1]), context.thresholds.touching_m
     if lanelet.stop_line is not None:
-        place = drawn_lines(context)[lanelet.id]
+        place = drawn_lines(context)[piece, lanelet.id]
         if abs(place - end) <= LINE_REACH_M:
             return place, place + touching
     begins, passages = 0.0, context.surroundings.passages

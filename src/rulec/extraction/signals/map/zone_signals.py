@@ -145,10 +145,11 @@ def _directed_stretches(context: DriveContext, there: bool) -> Stretches:
     ``there``: for lights that surely exist, else for all others.
     """
     road, stretches = context.road, []
-    for row, end in zip(road.rows, road.borders[1:].tolist(), strict=True):
+    for piece, row in enumerate(road.rows):
+        end = float(road.borders[piece + 1])
         lit = [lanelet for lanelet in row if lanelet is not None and lanelet.lights]
         if lit and any(is_there(light) for lanelet in lit for light in lanelet.lights) == there:
-            place = drawn_lines(context).get(lit[0].id, np.nan)
+            place = drawn_lines(context).get((piece, lit[0].id), np.nan)
             near = abs(place - end) <= _LIGHTS_AT_CROSSING_M
             last = [
                 high + context.thresholds.side_road_m
