@@ -50,12 +50,12 @@ def braking_from_behind(mps2):
     return np.interp(np.arange(STEPS), [28, 38], [28.0, 28.0 - mps2])
 
 
-def told(*others, road=None, route=("1",)):
+def told(*others, road=None, route=("1",), **more):
     """Whether the lane is clear in the state of the change, "?" where that is unknown."""
     # At 1.33 m/s it is 0.3 m beyond the mark at 2 m after 1.73 s, and there all of the next state
     ego = driving(7, 100, across(BEGINS, ENDS, 0.0, 4.0), steady_speed())
     found = recording(road or lanes(3), [ego, *others], step_s=STEP_S)
-    words = told_on_both_sides(lane_change_signals, found, route)
+    words = told_on_both_sides(lane_change_signals, found, route, **more)
     changes = np.flatnonzero(np.array(words["lane_change"]) == "True")
     assert len(changes) == 1
     assert abs(int(changes[0]) - 38) <= 1
@@ -213,3 +213,28 @@ def test_who_turns_round_looks_for_those_who_come_towards_it(away_m, mps2, clear
     words = told_on_both_sides(lane_change_signals, found, ("1",))
     told_words = set(words["lane_is_clear"])
     assert told_words - {"True"} == (set() if clear == "True" else {clear})
+
+
+FORKING = [
+    straight(1, 0, 170, left_of=2, successors=(11,)),
+    straight(2, 0, 170, 4.0, right_of=1, successors=(12, 20)),
+    straight(11, 170, 900, left_of=12, predecessors=(1,)),
+    straight(12, 170, 900, 4.0, right_of=11, predecessors=(2,)),
+    lanelet(20, [(170, 4), (190, 12), (190, 300)], 4.0, predecessors=(2,)),
+]
+
+
+@pytest.mark.parametrize(
+    ("turns", "is_told", "clear"),
+    [(False, False, "False"), (True, True, "True"), (True, False, "?")],
+    ids=["goes on", "turns off", "turns off, perhaps"],
+)
+def test_one_that_takes_another_way_before_it_comes_to_egos_lane_brakes_for_that(
+    turns, is_told, clear
+):
+    """Its lane forks at 170 m, where ego has just been; it is on the other way 0.5 s later."""
+    y = across(42, 52, 4.0, 14.0 if turns else 4.0)
+    other = driving(8, 62, y, braking_from_behind(8.0))
+    elsewhere = np.zeros((2, STEPS), dtype=bool)
+    elsewhere[1, 45:] = is_told
+    assert told(other, road=FORKING, route=("1", "11"), elsewhere=elsewhere) == clear

@@ -40,16 +40,31 @@ def come_into_lane(
     Vehicles on the same lane do if it does not fork between the two; vehicles whose lane ends there
     do not, since they have to change lanes themselves.
     """
-    comes, perhaps = context.in_ego_lane[rows, states], np.zeros(len(rows), dtype=bool)
-    if not len(rows):
-        return comes, perhaps
-    s, own = context.extents.s[rows, states], context.ego_extents.s[0, states]
-    theirs, egos = (context.road.piece(zero_if_nan(places)) for places in (s, own))
+    comes, perhaps = comes_from_before(context, rows, states)
+    theirs, egos = _pieces(context, rows, states)
+    comes &= (theirs < egos) | context.in_ego_lane[rows, states]
+    return comes, perhaps
+
+
+def comes_from_before(
+    context: DriveContext, rows: NDArray[intp], states: NDArray[intp]
+) -> tuple[Flags, Flags]:
+    """``come_into_lane``, with those on the same piece of the road as ego coming, wherever."""
+    comes, perhaps = np.ones(len(rows), dtype=bool), np.zeros(len(rows), dtype=bool)
+    theirs, egos = _pieces(context, rows, states)
     for number in (theirs < egos).nonzero()[0].tolist():
         pieces = int(theirs[number]), int(egos[number])
         found = _comes_by_its_way(context, int(rows[number]), int(states[number]), pieces)
         comes[number], perhaps[number] = found is True, found is None
     return comes, perhaps
+
+
+def _pieces(
+    context: DriveContext, rows: NDArray[intp], states: NDArray[intp]
+) -> tuple[NDArray[intp], NDArray[intp]]:
+    """The pieces of the road that vehicles are on, and ego."""
+    s, own = context.extents.s[rows, states], context.ego_extents.s[0, states]
+    return context.road.piece(zero_if_nan(s)), context.road.piece(zero_if_nan(own))
 
 
 def _comes_by_its_way(

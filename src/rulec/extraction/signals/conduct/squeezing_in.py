@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.conduct.lanes_from_behind import comes_from_before
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.extraction.tracks.tracks import Flags
@@ -55,14 +56,20 @@ def squeezed(context: DriveContext, ways: Sequence[WayIn]) -> tuple[Flags, Flags
     were beside it when its body came over the mark, or then braked harder than ``disturbing_mps2``;
     perhaps if they let it in, or have a slower vehicle ahead); or they would have had to brake that
     hard, and did before ego was in their lane; or they do with ego close ahead, which is not slower
-    itself. Perhaps, too, where ego's lane ends: there drivers let each other in.
+    itself. Perhaps, too, where ego's lane ends: there drivers let each other in. Not those behind
+    ego that take another way than ego's where their lane forks: they brake for that.
     """
     changes = np.array([way.state for way in ways], dtype=intp)
     begins, reaches = _moves_over(context, ways, changes)
     close = _close_behind(context, changes)
     gave_way, unsure = _gives_way(context, begins, reaches, changes)
-    sure = (close | gave_way) & ~_lane_ends(context, begins)
-    return sure, (unsure | close | gave_way) & ~sure
+    every = unsure | close | gave_way
+    rows, numbers = every.nonzero()
+    comes, may_come = comes_from_before(context, rows, changes[numbers])
+    every[rows, numbers] = comes | may_come
+    sure = (close | gave_way) & every & ~_lane_ends(context, begins)
+    sure[rows, numbers] &= comes
+    return sure, every & ~sure
 
 
 def _moves_over(
