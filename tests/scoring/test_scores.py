@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import rulec
 from rulec.api.rulebook_compilation import machines
 from rulec.diagnostics import RulecError
 from rulec.extraction.tracks import tracks
@@ -201,9 +202,28 @@ def test_questions_that_make_no_sense():
     found = score(steady(5.0, world.past[-1])[None], world, GERMAN)
     with pytest.raises(ValueError, match="has no rule `speed_limits`; did you mean `speed_limit`"):
         found.outcomes("speed_limits")
+    with pytest.raises(TypeError, match="`worth` is a number, not NoneType"):
+        found.reward(worth=None)
     for worth in (0.0, -1.0, 1e300):
         with pytest.raises(ValueError, match="worth"):
             found.reward(worth)
+
+
+@pytest.mark.parametrize("step_s", [0.1, [0.1, 0.2]])
+@pytest.mark.parametrize("y", [0.0, 40.0])
+def test_rules_compiled_for_another_step_are_refused(step_s, y):
+    within = "always (speed > 3 m/s implies eventually[<= 1 s] speed > 5 m/s)"
+    book = rulec.parse_rulebook(f"rulebook b use road hard rule r {{ require {within} }}")
+    world, other = street(), rulec.compile_rulebook(book, step_s=step_s)
+    future = steady(10.0, world.past[-1]) + (0.0, y, 0.0, 0.0)
+    for after in (None, world.past):
+        assert score(future[None], world, rulec.compile_rulebook(book), after).candidates
+        with pytest.raises(RulecError) as caught:
+            score(future[None], world, other, after)
+        assert [found.code for found in caught.value.diagnostics] == ["R0507"]
+    # A recording's drives still say so one by one
+    (drive,) = rulec.verify_recording(world.recording, other)
+    assert drive.answer.error.diagnostics[0].code == "R0507"
 
 
 def test_who_is_on_no_lane_is_not_judged():

@@ -11,7 +11,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
+from rulec.automata.thresholds import exact_step
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import (
     DriveVerdict,
@@ -19,7 +20,6 @@ from rulec.extraction.recording_verdicts import (
     agreed_answers,
     judged_drives,
     names_read,
-    rounded_rulebooks,
     some_rules,
 )
 from rulec.extraction.traces.recorded_drive import Drive
@@ -50,7 +50,8 @@ def score(
     ``candidates`` (candidate x state x 4) has x, y (m), heading (rad) and speed (m/s), one state
     for each step of the world from the one after its present on; ``after`` (state x 4) are the
     states up to the present, and may be empty. The verdicts are those of ``verify_recording`` for
-    the recording in which ego drives past and candidate. Raises RulecError R0780.
+    the recording in which ego drives past and candidate. Raises RulecError R0780, and R0507 if a
+    rule was compiled for another step than the world's.
     """
     paths, past = world.candidates_of(candidates), world.past_of(after)
     # Many candidates create tens of thousands of objects, none of which is garbage
@@ -75,7 +76,7 @@ def _scored(
     if is_asked:
         # The past alone, first, to find what it violates whatever follows
         bodies.insert(0, world.body_at(past, steps[0]))
-    roundings = rounded_rulebooks(rules, world.recording.step_s)
+    roundings = _roundings(rules, world.recording.step_s)
     beside, back = world.beside_lanes(paths), world.drives_back(paths, past)
     again = partial(_by_itself, paths, past, world, rules)
     half = first + n_states // 2
@@ -114,6 +115,14 @@ def _scored(
     known[world] = about, before
     ordered = CandidateScores([candidates[number] for number in range(len(paths))])
     return Scores(roundings[0], ordered, before, paths, first)
+
+
+def _roundings(rules: CompiledRulebook, step_s: float) -> tuple[CompiledRulebook, ...]:
+    """The rulebook at a world's step, rounded as for recordings. Raises R0507 for another step."""
+    roundings = rules.judgeable_at(step_s)
+    for rule in roundings[0].rules:
+        check_step(rule, exact_step(step_s), "the world")
+    return roundings
 
 
 def _by_itself(

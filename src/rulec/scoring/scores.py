@@ -115,7 +115,7 @@ class Scores(Rows):
         (below 1) is subtracted. Raises ValueError for a worth with which a rank would count less
         than a lower one.
         """
-        finite("worth", worth)
+        finite("worth", expected("worth", "float", worth))
         if not 1 <= worth <= _MOST_WORTH:
             raise ValueError(f"`worth` is a number from 1 to {_MOST_WORTH:,}, not {worth:g}")
         above = self._order.above
