@@ -171,6 +171,18 @@ def test_a_past_without_states_is_none(nothing):
     assert without.candidates[1].violations
 
 
+def test_a_single_state_takes_a_past_to_be_judged():
+    world = street()
+    future = steady(10.0, world.past[-1], count=1)
+    for after in (None, world.past[:0]):
+        with pytest.raises(RulecError, match=r"single state without a past.*R0780"):
+            score(future[None], world, GERMAN, after)
+    (found,) = score(future[None], world, GERMAN, world.past[-1:]).candidates
+    assert (found.off_road, found.why) == (0, "")
+    (found,) = score(steady(10.0, world.past[-1], count=2)[None], world, GERMAN).candidates
+    assert (found.off_road, found.why) == (0, "")
+
+
 @pytest.mark.parametrize("bad", [np.empty((0, 3)), np.empty((0, 2, 4)), [[1, 2, 3, 4], [5]]])
 def test_a_past_without_states_has_the_columns(bad):
     with pytest.raises(RulecError, match="R0780"):

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
-from rulec.extraction.drives import NoDrive
+from rulec.extraction.drives import FEWEST_STATES, NoDrive
 from rulec.extraction.recording_verdicts import (
     DriveVerdict,
     JudgedDrive,
@@ -32,6 +32,7 @@ from rulec.scoring.candidate_score import CandidateScore
 from rulec.scoring.charges import CandidateCharges, CandidateScores, at, forget_reasons
 from rulec.scoring.scored_again import without_drives
 from rulec.scoring.scores import Scores
+from rulec.scoring.scoring_messages import BAD_CANDIDATES
 from rulec.scoring.traffic_world import TrafficWorld
 from rulec.trace.trace_arrays import TraceArrays
 
@@ -54,6 +55,10 @@ def score(
     rule was compiled for another step than the world's.
     """
     paths, past = world.candidates_of(candidates), world.past_of(after)
+    if len(past) + paths.shape[1] < FEWEST_STATES:
+        message = "candidates: a single state without a past cannot be judged"
+        way_out = "give what led up to it, such as `after=world.past`, or more states"
+        raise BAD_CANDIDATES.error(None, message, help=way_out)
     # Many candidates create tens of thousands of objects, none of which is garbage
     with no_garbage_collection():
         return _scored(paths, past, world, rules)

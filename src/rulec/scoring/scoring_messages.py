@@ -18,6 +18,7 @@ BAD_CANDIDATES = Code(
     why="Candidates are an array with three axes: candidate, state, and x, y (m), heading (rad) "
     "and speed (m/s) of ego's centre, with a state for each step of the world after the present. "
     "The past has the same four columns, with a row for each state; the last one is the present. "
+    "Past and candidate together have at least two states, since a single one is not a drive. "
     "All numbers are finite.",
     bad=f'{_WORLD}rulec.score([[20, 0, 0, 10], [25, 0, 0, 10]], world, "de")\n',
     good=f'{_WORLD}rulec.score([[[20, 0, 0, 10], [25, 0, 0, 10]]], world, "de")\n',
