@@ -11,18 +11,22 @@ PASSING_ON_THE_RIGHT = [
 ]
 
 
+def answer_to(data: bytes, monitor: rulec.Monitor) -> dict:
+    """The verdict after a state; an invalid one is answered by its error and then ignored."""
+    try:
+        said = json.loads(data)
+        now = monitor.step(said["state"], said.get("objects", {}))
+    except (rulec.RulecError, ValueError, LookupError, TypeError, RecursionError) as error:
+        return {"error": str(error)[:1000]}
+    return {"number": now.state, "verdict": str(now.verdict)}
+
+
 def serve(server: socket.socket, rules: rulec.CompiledRulebook, n_states: int) -> None:
-    """Answer ``n_states`` datagrams; an invalid one is answered by its error and then ignored."""
+    """Answer ``n_states`` datagrams."""
     monitor = rulec.Monitor(rules)
     for _ in range(n_states):
         data, sender = server.recvfrom(65_507)
-        try:
-            said = json.loads(data)
-            now = monitor.step(said["state"], said.get("objects", {}))
-            answer = {"number": now.state, "verdict": str(now.verdict)}
-        except (rulec.RulecError, ValueError, LookupError, TypeError) as error:
-            answer = {"error": str(error)}
-        server.sendto(json.dumps(answer).encode(), sender)
+        server.sendto(json.dumps(answer_to(data, monitor)).encode(), sender)
 
 
 def main() -> None:

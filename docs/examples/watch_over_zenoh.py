@@ -19,6 +19,16 @@ PASSING_ON_THE_RIGHT = [
 ]
 
 
+def answer_to(data: bytes, monitor: rulec.Monitor) -> dict:
+    """The verdict after a state; an invalid one is answered by its error and then ignored."""
+    try:
+        said = json.loads(data)
+        now = monitor.step(said["state"], said.get("objects", {}))
+    except (rulec.RulecError, ValueError, LookupError, TypeError, RecursionError) as error:
+        return {"error": str(error)[:1000]}
+    return {"number": now.state, "verdict": str(now.verdict)}
+
+
 def main() -> None:
     """Publish three states, and print the verdicts published for them."""
     rules = rulec.compile_rulebook("esterle2019")
@@ -32,9 +42,7 @@ def main() -> None:
         verdicts = session.declare_publisher(VERDICTS)
 
         def watch(sample) -> None:
-            given = json.loads(sample.payload.to_bytes())
-            now = monitor.step(given["state"], given.get("objects", {}))
-            verdicts.put(json.dumps({"number": now.state, "verdict": str(now.verdict)}))
+            verdicts.put(json.dumps(answer_to(sample.payload.to_bytes(), monitor)))
 
         def hear(sample) -> None:
             said.put(json.loads(sample.payload.to_bytes()))

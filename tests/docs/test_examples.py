@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+import rulec
+
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "docs" / "examples"
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -52,6 +54,31 @@ def test_scripts(path, capsys):
         runpy.run_path(str(path), run_name="__main__")
         out, err = capsys.readouterr()
         assert (bool(out), err) == (True, "")
+
+
+DATAGRAM_BYTES = 65_507
+ODD_STATES = {
+    "nested": b"[" * 60_000,
+    "nested in a state": b'{"state": {"position": ' + b'{"a":' * 9000 + b"1" + b"}" * 9002,
+    "longer when answered": json.dumps({"state": {"ä" * 30_000: 1}}, ensure_ascii=False).encode(),
+    "digits": b'{"state": {"position": ' + b"1" * 5000 + b"}}",
+    "not text": b"\xff\xfe\x00",
+    "no object": b"null",
+    "no state": b"{}",
+}
+
+
+@pytest.mark.parametrize("data", ODD_STATES.values(), ids=ODD_STATES)
+@pytest.mark.parametrize("example", ["watch_over_udp", "watch_over_zenoh"])
+def test_whatever_is_sent_to_a_watch_is_answered(example, data):
+    names = runpy.run_path(str(EXAMPLES / f"{example}.py"))
+    monitor = rulec.Monitor(rulec.compile_rulebook("esterle2019"))
+    assert len(data) <= DATAGRAM_BYTES
+    answer = names["answer_to"](data, monitor)
+    assert list(answer) == ["error"]
+    assert len(json.dumps(answer).encode()) <= DATAGRAM_BYTES
+    (state, *_) = names["PASSING_ON_THE_RIGHT"]
+    assert names["answer_to"](json.dumps(state).encode(), monitor)["number"] == 0
 
 
 def programs():
