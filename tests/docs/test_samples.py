@@ -2,6 +2,7 @@
 
 import json
 import re
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -43,6 +44,19 @@ def test_the_run_of_a_compiled_machine_is_as_documented():
         for word in ([a, b, c] for a in everything for b in everything for c in everything):
             classes = [rule.machine.letters[letter] for letter in word]
             assert names["accepts"](machine, word) == run(rule.machine, classes)[0]
+
+
+def test_the_loop_over_a_recording_goes_past_drives_that_cannot_be_judged(capsys):
+    page = (ROOT / "docs" / "for_developers.md").read_text()
+    (text,) = [one for one in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "Drive" in one]
+    soon = "require always (speed > 3 m/s implies eventually[<= 1 s] speed > 5 m/s)"
+    book = parse_rulebook(f"rulebook soon use road hard rule r {{ {soon} }}")
+    exec(
+        text.replace('"de").', "rules)."), {"rules": compile_rulebook(book, step_s=Fraction(1, 3))}
+    )
+    said = capsys.readouterr().out.splitlines()
+    assert said
+    assert all(line.startswith("not judged:") for line in said)
 
 
 def anchors(page):

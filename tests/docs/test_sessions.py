@@ -112,7 +112,9 @@ def test_what_is_shown_is_what_happens(page, tmp_path, monkeypatch, capsys):
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text, encoding="utf-8")
         else:
+            files = set(tmp_path.rglob("*"))
             said = printed(kind, what, capsys, monkeypatch, page)
+            assert kind == "command" or set(tmp_path.rglob("*")) == files, what
             assert without_times(said) == without_times(text), what
 
 
