@@ -95,6 +95,20 @@ def test_the_way_out(answer):
     assert 'a line such as {"state"' in answer(["[]"])[2]
 
 
+@pytest.mark.parametrize("objects", [{"v1": 5}, ["v1"], None])
+def test_types_in_a_way_out_are_of_the_rulebook(answer, folder, objects):
+    lines = [json.dumps({"state": {}, "objects": objects})]
+    for types, way_out in (
+        ("", 'the rulebook has no types of objects: leave out "objects"'),
+        ("type obstacle", 'objects have types: write "objects": {"v1": "obstacle"}'),
+        ("type obstacle type vehicle is obstacle", '{"v1": "vehicle"}'),
+    ):
+        book = f"rulebook waiting {types} signal p hard rule r {{ require always p }}"
+        (folder / "waiting.rules").write_text(book, encoding="utf-8")
+        assert f"{way_out}\n" in answer(lines)[2]
+        assert ('"objects"' in answer(["{"])[2]) == bool(types)
+
+
 def test_json(answer):
     there = json.dumps({"state": {"seen": {"c": False}}, "objects": {"c": "car"}})
     status, out, _ = answer([there, "{", NOTHING], "--json")

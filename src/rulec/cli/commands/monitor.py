@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from fractions import Fraction
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import click
 
@@ -24,6 +24,9 @@ from rulec.cli.standard_input import STANDARD_INPUT, standard_input
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_remark, print_result
+
+if TYPE_CHECKING:
+    from rulec.vocabulary.vocabulary_model import Vocabulary
 
 
 def _no_states(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -98,7 +101,7 @@ def command(
     form = running_verdicts.as_json if to.form == "json" else running_verdicts.as_text
     file = None if save is None or is_shown else Path(save)
     with monitor_sources.saved_at_the_end(monitor, file), answer_lines(to) as write:
-        for live in read_live(given, "standard input"):
+        for live in read_live(given, "standard input", _object_type(rules.vocabulary)):
             result = monitor_sources.answer(monitor, live)
             if isinstance(result, RulecError):
                 refused = True
@@ -117,6 +120,12 @@ def command(
         return ExitStatus.NOT_ANSWERED
     violated = {"violated"} if save is not None else {"violated", "pending"}
     return ExitStatus.after(answered=not refused, failed=monitor.so_far.best in violated)
+
+
+def _object_type(vocabulary: Vocabulary) -> str:
+    """A type of objects for examples in messages; empty if the vocabulary has none."""
+    types = vocabulary.types
+    return "vehicle" if "vehicle" in types else next(iter(types), "")
 
 
 def _saved(restore: str | None, given: IO[bytes]) -> Any:

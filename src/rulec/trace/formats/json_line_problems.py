@@ -34,11 +34,15 @@ Record = TypeVar("Record", bound=msgspec.Struct)
 
 @dataclass(frozen=True)
 class Kind(Generic[Record]):
-    """What lines should contain: its name, such as ``"trace"``, the structure, an example."""
+    """What lines should contain: its name, such as ``"trace"``, the structure, an example.
+
+    ``object_type`` is a type that objects may have; empty if there are no types.
+    """
 
     name: str
     structure: type[Record]
     example: str
+    object_type: str = "car"
 
     @property
     def no_list(self) -> str:
@@ -88,7 +92,9 @@ class Kind(Generic[Record]):
             if unknown[1] == "version":
                 help_text = _answer_of_rulec(line) or help_text
         if "at `$.objects" in str(problem):
-            help_text = 'objects have types: write "objects": {"v1": "car"}'
+            help_text = f'objects have types: write "objects": {{"v1": "{self.object_type}"}}'
+            if not self.object_type:
+                help_text = 'the rulebook has no types of objects: leave out "objects"'
         if "trailing characters" in words:
             help_text = f"write each {self.name} on a line of its own"
         if "expected a number, got a string" in words:

@@ -336,17 +336,18 @@ class _StateRecord(msgspec.Struct, forbid_unknown_fields=True):
     objects: dict[str, str] = {}
 
 
-_STATE = json_line_problems.Kind(
-    "state", _StateRecord, 'a state is a line such as {"state": {…}, "objects": {"v1": "vehicle"}}'
-)
-
-
-def read_live(stream: IO[bytes], file: str) -> Iterator[LiveState | RulecError]:
+def read_live(
+    stream: IO[bytes], file: str, object_type: str = "vehicle"
+) -> Iterator[LiveState | RulecError]:
     """Read the states of a stream as their lines arrive.
 
     Each line that is not blank gives a LiveState, or the RulecError (R0501) that says why it is not
-    one; messages call the stream ``file``.
+    one; messages call the stream ``file``, and their examples have objects of ``object_type``, none
+    if it is empty.
     """
+    objects = f', "objects": {{"v1": "{object_type}"}}' if object_type else ""
+    example = f'a state is a line such as {{"state": {{…}}{objects}}}'
+    kind = json_line_problems.Kind("state", _StateRecord, example, object_type)
     lines = chain.from_iterable(lines_as_they_come(stream, json_line_problems.LONGEST_LINE_BYTES))
     for number, line in enumerate(lines, 1):
         if number == 1:
@@ -354,11 +355,11 @@ def read_live(stream: IO[bytes], file: str) -> Iterator[LiveState | RulecError]:
             result = foreign(line)
             if result is not None:
                 message = f"these are not states but {result.noun}"
-                yield _STATE.bad(message, SourceLocation(file), result.help)
+                yield kind.bad(message, SourceLocation(file), result.help)
                 return
         if line.strip():
             place = SourceLocation(file, number)
-            record = _STATE.read(line, place)
+            record = kind.read(line, place)
             if isinstance(record, RulecError):
                 yield record
             else:
@@ -366,11 +367,11 @@ def read_live(stream: IO[bytes], file: str) -> Iterator[LiveState | RulecError]:
                     if may_be_no_float(line):
                         record.state = exactly(line)["state"]
                 except ValueError as wrong:
-                    yield _STATE.bad(str(wrong), place)
+                    yield kind.bad(str(wrong), place)
                     continue
                 try:
                     state = from_json(record.state, record.objects)
                 except ValueError as wrong:
-                    yield _STATE.bad(str(wrong), place, _INTERVAL)
+                    yield kind.bad(str(wrong), place, _INTERVAL)
                 else:
                     yield LiveState(state, record.objects, place)
