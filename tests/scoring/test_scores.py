@@ -227,7 +227,7 @@ def test_rules_compiled_for_another_step_are_refused(step_s, y):
     within = "always (speed > 3 m/s implies eventually[<= 1 s] speed > 5 m/s)"
     book = rulec.parse_rulebook(f"rulebook b use road hard rule r {{ require {within} }}")
     world, other = street(), rulec.compile_rulebook(book, step_s=step_s)
-    future = steady(10.0, world.past[-1]) + (0.0, y, 0.0, 0.0)
+    future = steady(10.0, world.past[-1]) + np.array([0.0, y, 0.0, 0.0])
     for after in (None, world.past):
         assert score(future[None], world, rulec.compile_rulebook(book), after).candidates
         with pytest.raises(RulecError) as caught:

@@ -19,9 +19,10 @@ class CandidateScore:
     of the candidate, from 0, negative for a state of the past, None if the end decides.
     ``not_judged`` are rules for which the world provides too little. ``off_road`` is the number of
     its states that are in no judged drive, mostly because ego is on no lane there in its direction,
-    or with ego's middle beside all lanes, or driven backwards; ``why`` gives the reason. ``drives`` are those of ``verify_recording`` for past and candidate; if there are many
-    candidates they are computed on demand. ``late`` is the number of states until everything that
-    the past violated is kept for good.
+    or with ego's middle beside all lanes, or driven backwards; ``why`` gives the reason. ``drives``
+    are those of ``verify_recording`` for past and candidate; if there are many candidates they are
+    computed on demand. ``late`` is the number of states until everything that the past violated is
+    kept for good.
     """
 
     __repr__ = short_repr
