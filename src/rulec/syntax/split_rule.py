@@ -11,6 +11,8 @@ from rulec.syntax.keywords import CLAUSE_WORDS
 from rulec.syntax.messages.structure import StructureMessages
 from rulec.syntax.scanner import Token
 
+_WITH_FORMULA = ("require", "when", "unless", "also", "accept", "reject")
+
 
 @dataclass(frozen=True, slots=True)
 class RuleSplitter:
@@ -29,6 +31,9 @@ class RuleSplitter:
         if self.marks.is_symbol(index, "{"):
             opened, index = index, index + 1
             head = Piece("rule_head", first, opened)
+        elif (brace := self._brace_behind_clauses(index)) is not None:
+            head = Piece("rule_head", first, index, then=self.say.before_brace(index))
+            opened, index = brace, brace + 1
         else:
             opened = index - 1
             confirms = self.marks.is_word(first, "confirm")
@@ -54,6 +59,18 @@ class RuleSplitter:
                 index = end
         self.mistakes.append(self.say.no_close("the rule", opened, index))
         return RulePieces(head, tuple(body), first, index)
+
+    def _brace_behind_clauses(self, index: int) -> int | None:
+        """The ``{`` of a rule behind clauses that belong into it, such as ``in force``."""
+        if not self._at_clause(index):
+            return None
+        while index < len(self.tokens) and not self.marks.begins_item_inside(index):
+            if self.marks.is_symbol(index, "{"):
+                return index
+            if self.marks.is_word(index, *_WITH_FORMULA) or self.marks.is_symbol(index, "}"):
+                return None
+            index += 1
+        return None
 
     def _at_clause(self, index: int) -> bool:
         return index < len(self.tokens) and self.marks.begins_clause(index)

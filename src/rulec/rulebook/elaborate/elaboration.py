@@ -14,6 +14,7 @@ from rulec.rulebook.arithmetic.size_limits import exceeded_limit
 from rulec.rulebook.elaborate import constant_messages
 from rulec.rulebook.elaborate import elaboration_messages as say
 from rulec.rulebook.elaborate.amounts import bound_of, literal
+from rulec.rulebook.elaborate.dimension_messages import two_dimensions
 from rulec.rulebook.elaborate.macro_expansion import expand_macro, parameter_value
 from rulec.rulebook.elaborate.rule_messages import unused_variable
 from rulec.rulebook.elaborate.scope import AnyArgument, BoundVariable, Scope
@@ -218,7 +219,7 @@ def _fit(
     """Whether two numbers have the same dimension; if not, report it."""
     if left.dimension is None or right.dimension in (None, left.dimension):
         return True
-    scope.report(say.two_dimensions(node, left, right, scope))
+    scope.report(two_dimensions(node, left, right, scope))
     return False
 
 

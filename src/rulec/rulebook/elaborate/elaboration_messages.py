@@ -10,13 +10,12 @@ from rulec.logic.formula import Formula
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.elaborate.scope import SIDES, Scope
-from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, NUMBER_OR_FORMULA
+from rulec.rulebook.names.atom_messages import NOT_BOOLEAN, NUMBER_OR_FORMULA
 from rulec.syntax import tree
 from rulec.syntax.messages.literal_values import NUMBER_TOO_LARGE
 from rulec.syntax.tree_printer import print_formula
-from rulec.vocabulary import Enumeration, Quantity
-from rulec.vocabulary.dimensions import DIMENSIONS, TIME, Dimension
-from rulec.vocabulary.units import hour_in_another_language
+from rulec.vocabulary import Enumeration
+from rulec.vocabulary.dimensions import TIME, Dimension
 
 POINT_OF_THOUSANDS = Code(
     "R0365",
@@ -185,105 +184,6 @@ def truths_compared(node: tree.Compare, scope: Scope) -> Diagnostic:
         help=way_out,
         labels=origins(scope, node.left, node.right),
     )
-
-
-def two_dimensions(
-    node: tree.Compare | tree.Arithmetic | tree.Conditional,
-    left: NumberByCases,
-    right: NumberByCases,
-    scope: Scope,
-) -> Diagnostic:
-    if isinstance(node, tree.Conditional):
-        first, second, sign = node.value, node.otherwise, "or"
-    else:
-        first, second = node.left, node.right
-        sign = node.relation if isinstance(node, tree.Compare) else node.operator
-    first_kind, second_kind = kind_of(left.dimension), kind_of(right.dimension)
-    verb = {"+": "added", "-": "subtracted", "or": "one number"}.get(sign, "compared")
-    return MIXED_DIMENSIONS.at(
-        second.span,
-        f"`{short(first)}` is {first_kind} and `{short(second)}` {second_kind}: "
-        f"they cannot be {verb}",
-        expected=f"this is {second_kind}",
-        help=_unit_help(second, first, scope)
-        or _unit_help(first, second, scope)
-        or _speed_help((first, left), (second, right), scope)
-        or _other_unit(second, first, scope)
-        or _other_unit(first, second, scope)
-        or _parameter_help(second, second_kind, first, scope)
-        or _parameter_help(first, first_kind, second, scope)
-        or _kind_help(first, left, second, right)
-        or "check the names and the units",
-        labels=(Label(first.span.place, f"this is {first_kind}"), *origins(scope, first, second)),
-    )
-
-
-def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
-    unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
-    bare = isinstance(node, tree.NumberLiteral) and not node.unit
-    return f"write the unit, such as `{short(node)} {unit}`" if bare and unit else ""
-
-
-def _parameter_help(node: tree.Formula, kind: str, beside: tree.Formula, scope: Scope) -> str:
-    """Help for a parameter without a unit, or of another dimension than what is beside it."""
-    unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
-    is_param = isinstance(node, tree.AtomUse) and scope.constants.overlay.kind_of(node.name.text)
-    if is_param != "parameter" or not unit:
-        return ""
-    if kind == "a number":
-        return f"write its unit where it is declared, such as `param {short(node)} = 3 {unit}`"
-    return f"`{short(beside)}` is in {unit}: check the unit of `{short(node)}` where it is declared"
-
-
-def _other_unit(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
-    """Help for a number of another dimension than what it is compared with."""
-    unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
-    if not (isinstance(node, tree.NumberLiteral) and unit):
-        return ""
-    if node.unit == "%":
-        return f"a share is a factor: for 10 % more write `1.1 * {short(beside)}`"
-    slip = hour_in_another_language(node.unit)
-    return slip or f"`{short(beside)}` is in {unit}: check the unit of `{short(node)}`"
-
-
-def _kind_help(
-    first: tree.Formula, left: NumberByCases, second: tree.Formula, right: NumberByCases
-) -> str:
-    if left.dimension is not None and right.dimension is not None:
-        ratio = left.dimension / right.dimension
-        if DIMENSIONS["time"] in (ratio, ratio**-1):
-            node = second if ratio == DIMENSIONS["time"] else first
-            text = short(node)
-            factor = f"({text})" if isinstance(node, tree.Arithmetic | tree.Minus) else text
-            return f"a time makes them alike, such as `2 s * {factor}`"
-    return ""
-
-
-_LENGTH_AND_TIME = (DIMENSIONS["length"], DIMENSIONS["time"])
-
-
-def _speed_help(
-    left: tuple[tree.Formula, NumberByCases],
-    right: tuple[tree.Formula, NumberByCases],
-    scope: Scope,
-) -> str:
-    """Help for a length beside a time, if the vocabulary has ego's speed."""
-    symbols = scope.symbols
-    speeds = [
-        name
-        for name, item in symbols.items.items()
-        if isinstance(item, Quantity)
-        and not item.parameters
-        and (unit := symbols.unit(item.unit)) is not None
-        and unit.dimension == DIMENSIONS["speed"]
-    ]
-    for (_, cases), (node, other) in ((left, right), (right, left)):
-        if speeds and (cases.dimension, other.dimension) == _LENGTH_AND_TIME:
-            way_out = f"a speed makes a length of a time: `{short(node)} * {speeds[0]}`"
-            if isinstance(node, tree.NumberLiteral) and node.unit:
-                way_out = f"write `{node.text} m`, or, as {way_out}"
-            return way_out
-    return ""
 
 
 def two_kinds(node: tree.Conditional, value: object, otherwise: object, scope: Scope) -> Diagnostic:

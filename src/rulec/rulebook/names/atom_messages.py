@@ -158,6 +158,9 @@ def _unknown(
     variables: Mapping[str, str | None],
     others: Collection[str],
 ) -> Diagnostic:
+    # Late import: these are the parser's messages, which no file without mistakes loads.
+    from rulec.syntax.messages.in_comparisons import ABSOLUTE, NO_ABSOLUTE_VALUE
+
     name = use.name.text
     atoms = symbols.atoms()
     quantities = [item.name for item in symbols.items.values() if isinstance(item, Quantity)]
@@ -169,6 +172,8 @@ def _unknown(
         way_out = f"a unit is one word: write `{parted[1]}/{name}`"
     elif name == "if":
         way_out = "write `p implies q` for `if p then q`"
+    elif use.arguments and name.casefold() in ABSOLUTE:
+        way_out = NO_ABSOLUTE_VALUE
     elif glued:
         way_out = f"write `{glued}`"
     else:
@@ -176,6 +181,7 @@ def _unknown(
             ("" if use.arguments else _short_form(name, symbols, list(variables)))
             or did_you_mean(name, [*atoms, *quantities, *others, *operators], _ALIKE)
             or _by_meaning(name, [*atoms, *quantities], symbols)
+            or _of_no_object(use, quantities)
             or f"declare it, such as `{_declaration(use, variables)}`, "
             "or `use` a vocabulary that has it"
         )
@@ -188,6 +194,12 @@ def _by_meaning(name: str, known: Sequence[str], symbols: SymbolTable) -> str:
     """Words of the shipped vocabularies that mean what a name seems to mean."""
     vocabularies = {Path(file.name).stem for file in symbols.of_vocabularies}
     return offer(name, tuple(word for word in described(known, vocabularies) if word.phrase))
+
+
+def _of_no_object(use: tree.AtomUse, quantities: Collection[str]) -> str:
+    """Help for what looks like a function of numbers, which no declaration can be."""
+    number = next((one.text for one in use.arguments if one.text in quantities), "")
+    return f"only objects go in parentheses, and `{number}` is a number" if number else ""
 
 
 def _declaration(use: tree.AtomUse, variables: Mapping[str, str | None]) -> str:

@@ -121,6 +121,8 @@ _OTHER_DIMENSIONS: Final = {
     "height": "length",
     "width": "length",
     "gap": "length",
+    **dict.fromkeys(("second", "seconds", "minutes", "hours"), "time"),
+    **dict.fromkeys(("metre", "metres", "meters", "kilometres"), "length"),
 }
 
 

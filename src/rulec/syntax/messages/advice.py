@@ -21,6 +21,7 @@ from rulec.syntax.messages.in_comparisons import RELATIONS, sign_in_words
 from rulec.syntax.messages.in_formulas import (
     AGGREGATES,
     IN_DIGITS,
+    PAST,
     advise_on_aggregate,
     advise_on_formula,
 )
@@ -31,18 +32,29 @@ from rulec.syntax.messages.in_items import (
     advise_on_rule_head,
     advise_on_state,
 )
-from rulec.syntax.messages.parse_context import DELETE_IT, ParseContext, is_invisible, spelling
+from rulec.syntax.messages.in_sentences import advise_on_pair, of_owner
+from rulec.syntax.messages.parse_context import (
+    COMMENT,
+    DELETE_IT,
+    ParseContext,
+    is_comment,
+    is_invisible,
+    spelling,
+)
 
 _BOOLEAN: Final = frozenset(
     (*("not", "and", "or", "implies", "iff", "xor"), *("!", "&", "&&", "|", "||", "->", "<->", "^"))
 )
 OVER_TIME: Final = (OPERATOR_WORDS | OPERATOR_LETTERS | {"[]", "<>"}) - _BOOLEAN
-_BETWEEN: Final = ("to", "-", ",", ";", ":", "...", "and", "until")
+_OF_TIME: Final = ("ms", "s", "min", "h", "step", "steps")
+_DASHES: Final = ("-", "–", "—", "−", "…", "...")
+_BETWEEN: Final = ("to", *_DASHES, ",", ";", ":", "and", "until")
 _OPENINGS: Final = ("<=", ">=", "<", ">", "=", "{", "in", "within")
 _FORMS: Final = "a bound is written `[<= 3 s]`, `[>= 1 s]`, `[1 s .. 4 s]` or `[2 steps]`"
+_FORMULA_IN_BRACKETS: Final = "a formula goes in parentheses, `(p or q)`; brackets hold time bounds"
 _NUMBER: Final = re.compile(r"\d+(?:\.\d+)?")
 _RANGE: Final = re.compile(r"(\d+)[-–](\d+)")
-_WITHIN: Final = {"within": "eventually", "for": "always", "during": "always", "after": "next"}
+_WITHIN: Final = ("within", "for", "during", "after")
 
 
 def advise_on_bound(ctx: ParseContext) -> str:
@@ -51,21 +63,40 @@ def advise_on_bound(ctx: ParseContext) -> str:
         return _inside(ctx)
     text, before = ctx.text, ctx.text_before
     if text == "[" and ctx.operand and _holds_a_formula(ctx):
-        return "a formula goes in parentheses, `(p or q)`; brackets hold time bounds"
+        return _FORMULA_IN_BRACKETS
     if text == "[" and ctx.operand and before in _BOOLEAN:
         return "only operators over time take a bound, such as `always[<= 3 s]`"
     if text == "[" and ctx.operator and (near := did_you_mean(before, UNARY_OPERATORS)):
         return near
     if text == "[" and (ctx.operand or ctx.operator):
         return "a bound follows its operator, such as `always[<= 3 s] p`"
-    if ctx.operand and before in OVER_TIME and text in _OPENINGS:
-        return f"a bound goes in brackets, such as `{before}[<= 3 s]`"
+    called = ctx.text_at(ctx.at - 2) if before == "(" else before
+    opens = text in _OPENINGS and (called == before or ctx.is_number(ctx.at + 1))
+    if ctx.operand and called in OVER_TIME and opens and not _holds_a_formula(ctx):
+        return f"a bound goes in brackets, such as `{called}[<= 3 s]`"
+    if ctx.operand and before == "]" and text in _BETWEEN and ctx.is_number(ctx.at + 1):
+        return "a bound's two ends go in one pair of brackets, such as `[3 s .. 4 s]`"
     for word, at in ((text, ctx.at + 1), (before, ctx.at)):
-        if word in _WITHIN and ctx.operator and ctx.is_number(at):
-            amount = ctx.source.text[ctx.tokens[at].start : _end_of_amount(ctx, at)]
-            sign = "" if word == "after" else "<= "
-            return f"write `{_WITHIN[word]}[{sign}{amount}] p`"
+        if word in _WITHIN and ctx.operator:
+            return _of_time(ctx, word, at)
     return ""
+
+
+def _of_time(ctx: ParseContext, word: str, at: int) -> str:
+    """Help at ``within 3 s`` and ``within the last 3 s``; empty without a number."""
+    at += ctx.text_at(at) == "the"
+    past = ctx.text_at(at) in PAST
+    at += past or ctx.text_at(at) == "next"
+    if not ctx.is_number(at):
+        return ""
+    amount = ctx.source.text[ctx.tokens[at].start : _end_of_amount(ctx, at)]
+    if word == "after":
+        return f"write `next[{amount}] p`"
+    lasts = word != "within"
+    before, ahead = ("historically", "always") if lasts else ("once", "eventually")
+    if past:
+        return f"write `{before}[<= {amount}] p`"
+    return f"write `{ahead}[<= {amount}] p`, or `{before}[<= {amount}] p` of the past"
 
 
 def _holds_a_formula(ctx: ParseContext) -> bool:
@@ -76,12 +107,20 @@ def _holds_a_formula(ctx: ParseContext) -> bool:
 
 def _inside(ctx: ParseContext) -> str:
     text, before = ctx.text, ctx.text_before
+    opened = ctx.opened("[", "]")
+    only_word = opened == ctx.at - 2 and before.isidentifier()
+    if only_word and before in (*_WITHIN, "max") and ctx.is_number(ctx.at):
+        amount = ctx.source.text[ctx.tokens[ctx.at].start : _end_of_amount(ctx, ctx.at)]
+        return f"for `{before} {amount}` write `[<= {amount}]`"
+    is_time = ctx.is_number(ctx.at + 1) and ctx.text_at(ctx.at + 2) in _OF_TIME
+    if only_word and not is_time and (text in RELATIONS or text in OPERATOR_WORDS):
+        return _FORMULA_IN_BRACKETS
     if match := _RANGE.fullmatch(text):
         return _both_ends(match[1], match[2], ctx.text_behind)
     if ctx.accepted == {"UNIT"}:
         if text == "," and ctx.is_number(ctx.at + 1):
             return ctx.with_a_point()
-        if text == "..":
+        if text == ".." or (text in _DASHES and ctx.is_number(ctx.at + 1)):
             return _both_ends(before, ctx.text_behind, ctx.text_at(ctx.at + 2))
         return f"say what it counts: `{before} s` or `{before} steps`"
     if (sign := sign_in_words(before, text)) and ctx.is_number(ctx.at + 1):
@@ -104,7 +143,7 @@ def _inside(ctx: ParseContext) -> str:
         return "a bound counts forward, or back for `once` and its family: it has no sign"
     if "TO" in ctx.accepted and text in _BETWEEN:
         return "write `..` between the two ends, such as `[3 s .. 4 s]`"
-    if ctx.accepted <= {"RSQB", "TO", "LPAR"} and text not in ("+", "*", "/", "-", ".."):
+    if ctx.accepted <= {"RSQB", "TO", "LPAR"} and text not in (*RELATIONS, *"+*/-", ".."):
         return "close the bound with `]`"
     return _FORMS
 
@@ -135,6 +174,9 @@ def _quotes(ctx: ParseContext) -> str:
         return ""
     grouped = ctx.is_number(ctx.at - 1) and ctx.is_number(ctx.at + 1)
     if token.text[0] in "'’" and before is not None and before.kind == "word" and ctx.touches():
+        owned = ctx.text_at(ctx.at + 2)
+        if ctx.operator and ctx.text_behind == "s" and _names(owned):
+            return of_owner(before.text, owned)
         later = "; what is so in the next state is written `next p`" if ctx.operator else ""
         return f"a name has letters, digits and `_` only{later}"
     if token.kind == "string" and ctx.first == "fact" and ctx.at == 1:
@@ -165,9 +207,12 @@ def _names(text: str) -> bool:
 
 
 def _comment(ctx: ParseContext) -> str:
+    minus = ctx.operator and ctx.text == "–"
+    if "$END" in ctx.accepted and is_comment(ctx.tokens, ctx.at) and not minus:
+        return COMMENT
     if ctx.text == "§":
         return 'an article is cited in its rule, such as `cite "§ 3"`; a remark begins with `#`'
-    return "a comment begins with `#`" if ctx.text in ("//", "/*") else ""
+    return COMMENT if ctx.text in ("//", "/*") else ""
 
 
 def _name_of_two_words(ctx: ParseContext) -> str:
@@ -328,6 +373,7 @@ _IN_ORDER: tuple[Callable[[ParseContext], str], ...] = (
     _comment,
     _ending,
     advise_on_bound,
+    advise_on_pair,
     _misspelt_prefix,
     advise_on_aggregate,
     _name_of_two_words,

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from typing import Final
-from unicodedata import numeric
 
 from rulec.syntax import keywords
 from rulec.syntax.messages.literals import how_hours_are_written
@@ -36,6 +36,7 @@ def sign_in_words(before: str, text: str) -> str:
     return _IN_WORDS.get((before, text), "")
 
 
+ABSOLUTE: Final = ("abs", "absolute", "magnitude")
 NO_ABSOLUTE_VALUE: Final = (
     "there is no absolute value: say both limits, such as `-3 km/h <= x and x <= 3 km/h`"
 )
@@ -48,11 +49,14 @@ def advise_on_number(ctx: ParseContext) -> str:
         return ""
     if text == ":" and ctx.is_number(ctx.at - 1) and ctx.is_number(ctx.at + 1):
         return how_hours_are_written(f"{ctx.text_before}:{ctx.text_behind}")
-    if len(ctx.text_before) == 1 and numeric(ctx.text_before, 0) % 1:
-        return f"write `{numeric(ctx.text_before):g}` for `{ctx.text_before}`"
+    if len(ctx.text_before) == 1 and unicodedata.numeric(ctx.text_before, 0) % 1:
+        return f"write `{unicodedata.numeric(ctx.text_before):g}` for `{ctx.text_before}`"
     around = ctx.is_number(ctx.at - 1) and ctx.is_number(ctx.at + 1)
     if text == "," and around:
         return ctx.with_a_point()
+    if text == "of" and ctx.text_before == "%" and ctx.is_number(ctx.at - 2):
+        share = f"{ctx.text_at(ctx.at - 2)} %"
+        return f"for `{share} of` write `{share} *`"
     if text == "." and ctx.quantity and ctx.is_number(ctx.at + 1):
         return f"write `0.{ctx.text_behind}`"
     grouped = "_" in ctx.text_before or ctx.is_number(ctx.at)
@@ -83,6 +87,10 @@ def advise_on_comparison(ctx: ParseContext) -> str:
         key = words[:1] if words[:1] in _IN_WORDS else words
         if sign := _IN_WORDS.get(key):
             return f"for `is {' '.join(key)}` write `{sign}`"
+        no, value = ("not ", words[1]) if words[0] == "not" else ("", words[0])
+        if before == ")" and value.isidentifier() and value not in keywords.RESERVED:
+            instead = f"{no}{value}{_called(ctx)}"
+            return f"a value is written in place of what it is one of: `{instead}`"
         if words[0].isidentifier() and words[0] not in keywords.RESERVED:
             about = f"`{words[0]}({before})`"
             if re.search(rf"\b{re.escape(before)}\s*:", ctx.source.text):
@@ -99,6 +107,12 @@ def advise_on_comparison(ctx: ParseContext) -> str:
         value = ctx.text_behind if ctx.text_behind.isidentifier() else ""
         alone = f"; one of several values is written alone: `{value}`" if value else ""
         return f"quantities are compared by `=`, formulas by `iff`{alone}"
+    if ctx.operator and text == ":=":
+        return "write `=` for `:=`"
+    if text == "·" and before.isalpha() and ctx.text_at(ctx.at + 2) == "⁻":
+        power = unicodedata.normalize("NFKC", ctx.text_at(ctx.at + 3))
+        unit = f"{before}/{ctx.text_behind}{f'^{power}' if power != '1' else ''}"
+        return f"write the unit as `{unit}`"
     if (ctx.operator or ctx.quantity) and text in _SIGNS:
         return f"write `{_SIGNS[text]}`"
     if before == "-" and text == ">":
@@ -114,6 +128,11 @@ def advise_on_comparison(ctx: ParseContext) -> str:
     ahead = any(ctx.is_number(ctx.at + number) for number in (1, 2))
     if ctx.operator and text in ("between", "in") and ahead:
         return "write `a <= x and x <= b`"
+    if ctx.operator and text == "in" and ctx.text_behind.isidentifier():
+        case = ctx.text_behind
+        if ctx.first in ("unless", "also", "when"):
+            return f"for `… in {case}` write `… and {case}`"
+        return f"for `… in {case}` write `{case} implies …`, or behind `never` `{case} and …`"
     if text == "+" and ctx.quantity:
         return "delete the `+`"
     if text in ("|", "||") and ctx.quantity:
@@ -130,12 +149,16 @@ def _any_value(ctx: ParseContext) -> str:
             values.append(token.text)
         elif token.text != ",":
             break
-    opened = next((n for n in range(ctx.at - 1, 0, -1) if ctx.text_at(n) == "("), None)
-    of = ""
-    if ctx.text_before == ")" and opened is not None:
-        of = "".join(token.text for token in ctx.tokens[opened : ctx.at])
-    choice = " or ".join(f"{value}{of}" for value in values[:3])
+    choice = " or ".join(f"{value}{_called(ctx)}" for value in values[:3])
     return f"each value stands for itself: write `{choice}`" if values else ""
+
+
+def _called(ctx: ParseContext) -> str:
+    """The arguments before the unexpected token: `(v)` behind `lateral(v)`."""
+    opened = next((n for n in range(ctx.at - 1, 0, -1) if ctx.text_at(n) == "("), None)
+    if ctx.text_before != ")" or opened is None:
+        return ""
+    return "".join(token.text for token in ctx.tokens[opened : ctx.at])
 
 
 def _chain(ctx: ParseContext) -> str:

@@ -7,12 +7,13 @@ from typing import Final
 from rulec.diagnostics import did_you_mean
 from rulec.syntax import keywords
 from rulec.syntax.messages.in_comparisons import (
+    ABSOLUTE,
     NO_ABSOLUTE_VALUE,
     RELATIONS,
     advise_on_comparison,
     advise_on_number,
 )
-from rulec.syntax.messages.in_sentences import EGO, advise_on_sentence
+from rulec.syntax.messages.in_sentences import advise_on_sentence, of_owner
 from rulec.syntax.messages.parse_context import ParseContext
 
 _OTHER_SPELLINGS: Final = {
@@ -42,8 +43,8 @@ IN_DIGITS: Final = {
         ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"), start=1
     )
 }
+PAST: Final = ("last", "past", "previous")
 AGGREGATES: Final = ("some", "every", "count")
-_ABSOLUTE: Final = ("abs", "absolute", "magnitude")
 _ARGUMENT: Final = "an argument is a name; it has no arguments of its own"
 
 
@@ -77,9 +78,15 @@ def advise_on_aggregate(ctx: ParseContext) -> str:
     word = _QUANTIFIERS.get(text) or (_QUANTIFIERS.get(before) if ctx.operator else None)
     if word and (ctx.operand or ctx.operator) and ctx.unexpected is not None:
         if any(ctx.is_number(ctx.at + number) for number in range(1, 4)) and text == "for":
-            past = ctx.text_at(ctx.at + 2) in ("last", "past", "previous")
+            past = ctx.text_at(ctx.at + 2) in PAST
             word = "historically" if past else "always"
             return f"for how long is written as a bound, such as `{word}[<= 3 s] p`"
+        if word == "every" and ctx.first == "require" and ctx.at <= 2:
+            # Around a whole requirement `every` would forbid its operators over time.
+            return (
+                "a rule holds for every one: leave this out, and write `(v: vehicle)` behind "
+                "the rule's name"
+            )
         at = ctx.at + (text in _QUANTIFIERS)
         own = ctx.text_at(at + 1) == ":" and ctx.text_at(at + 2).isidentifier()
         variable = f"{ctx.text_at(at)}: {ctx.text_at(at + 2)}" if own else "x: vehicle"
@@ -119,7 +126,7 @@ def no_operator(ctx: ParseContext) -> tuple[int, str] | None:
     if near := did_you_mean(ctx.text_at(opened - 1), keywords.UNARY_OPERATORS):
         return opened - 1, near
     is_spaced = ctx.tokens[opened - 1].end < ctx.tokens[opened].start
-    if ctx.text != "(" or not is_spaced or ctx.text_at(opened - 1).casefold() in _ABSOLUTE:
+    if ctx.text != "(" or not is_spaced or ctx.text_at(opened - 1).casefold() in ABSOLUTE:
         return None
     return opened - 1, f"if it is meant for a name, {_ARGUMENT}"
 
@@ -135,7 +142,7 @@ def _arguments(ctx: ParseContext) -> str:
     if ctx.accepted == {"COMMA", "RPAR"} and ctx.text == ":":
         return f"types are given where variables are declared: leave out `: {ctx.text_behind}`"
     if ctx.accepted == {"COMMA", "RPAR"} and ctx.text == "(":
-        if opened and ctx.text_at(opened - 1).casefold() in _ABSOLUTE:
+        if opened and ctx.text_at(opened - 1).casefold() in ABSOLUTE:
             return NO_ABSOLUTE_VALUE
         return _ARGUMENT
     joins = ctx.text in keywords.PRECEDENCE or ctx.text in (
@@ -164,6 +171,8 @@ def _conditionals(ctx: ParseContext) -> str:
     truths = then is not None and not ctx.is_number(ctx.at + then + 1)
     if (ctx.operator and text == "else") or (text == "if" and ctx.operand and otherwise and truths):
         return "write `(p implies q) and (not p implies r)` for `if p then q else r`"
+    if text == "if" and before in ("unless", "when") and not truths:
+        return "delete the `if`"
     if text == "?" or (otherwise and text == "if"):
         if ctx.operator and text == "if":
             return "a conditional goes in parentheses: `(1.5 m if built_up else 2 m)`"
@@ -214,9 +223,7 @@ def _joined(ctx: ParseContext) -> str:
     behind = ctx.token(ctx.at + 1)
     member = behind is not None and behind.kind == "word" and behind.text not in keywords.RESERVED
     if ctx.operator and ctx.text == "." and member and ctx.before and ctx.touches():
-        if ctx.text_before in EGO:
-            return f"what is about ego is written alone: `{ctx.text_behind}`"
-        return f"what is of an object is written `{ctx.text_behind}({ctx.text_before})`"
+        return of_owner(ctx.text_before, ctx.text_behind)
     more = behind is not None and behind.text not in {")", *keywords.CLAUSE_WORDS}
     if ctx.operator and more and ctx.text in (",", ";", "."):
         return "write `or` where one of them is enough, `and` where it takes all"

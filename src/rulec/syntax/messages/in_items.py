@@ -6,6 +6,7 @@ from collections.abc import Container
 from typing import Final
 
 from rulec.syntax.keywords import OPERATOR_LETTERS, OPERATOR_WORDS, RESERVED, UNARY_OPERATORS
+from rulec.syntax.messages.in_comparisons import sign_in_words
 from rulec.syntax.messages.literals import how_a_date_is_written
 from rulec.syntax.messages.parse_context import SCOPES, ParseContext
 
@@ -189,8 +190,11 @@ def advise_on_rule_head(ctx: ParseContext) -> str:
         return "a rule without variables has no parentheses"
     if ctx.accepted == {"COLON"}:
         return "a variable is written with its type, such as `v: vehicle`"
-    if ctx.accepted >= {"COMMA", "RPAR"} and ctx.is_word() and ctx.text_behind == ":":
+    another = ctx.is_word() and (ctx.text == "and" or ctx.text_behind == ":")
+    if ctx.accepted >= {"COMMA", "RPAR"} and (another or text == ";"):
         return "separate the variables by `,`"
+    if ctx.text_before == "weight" and text in ("-", "–", "−"):
+        return "a weight is a number above 0"
     if ctx.unexpected is None and ctx.text_before == "(":
         return "a rule's variables go in parentheses; what it says goes between `{` and `}`"
     if ctx.unexpected is None and "RPAR" in ctx.accepted:
@@ -200,6 +204,11 @@ def advise_on_rule_head(ctx: ParseContext) -> str:
     if text == ":" and "RPAR" not in ctx.accepted:
         return "what a rule says goes between `{` and `}`"
     return _HEAD if "RPAR" not in ctx.accepted else ""
+
+
+def _begins_scope(ctx: ParseContext) -> bool:
+    """Whether a scope may be meant, such as `at start`, and no `at least`."""
+    return ctx.text in ("throughout", "at") and not sign_in_words(ctx.text, ctx.text_behind)
 
 
 _BEHIND_AT: Final = ("start", "end", "some", "least", "most")
@@ -219,14 +228,15 @@ def advise_on_clause(ctx: ParseContext) -> str:
         return "for the whole time write `throughout`, or nothing"
     if scoped and ctx.text in ("initially", "throughout", "at") and ctx.operand:
         return "the scope follows the formula, such as `unless p throughout`"
-    if scoped and ctx.accepted >= SCOPES and ctx.is_word():
+    compares = ctx.text == "in" or sign_in_words(ctx.text, ctx.text_behind)
+    if scoped and ctx.accepted >= SCOPES and ctx.is_word() and not compares:
         return _SCOPE
     if ctx.operator and ctx.text == "at" and ctx.text_behind not in _BEHIND_AT:
         state = ctx.text_behind if ctx.text_behind.isidentifier() else "q"
         return f"for `p at {state}` write `p and {state}`"
-    if ctx.first == "when" and ctx.operator and ctx.text in ("throughout", "at"):
+    if ctx.first == "when" and ctx.operator and _begins_scope(ctx):
         return "only an `unless` clause has a scope: a condition has to hold throughout"
-    if ctx.first == "require" and ctx.operator and ctx.text in ("throughout", "at"):
+    if ctx.first == "require" and ctx.operator and _begins_scope(ctx):
         return "only an `unless` clause has a scope; write `always p` for all of the time"
     if ctx.operator and ctx.text in _NO_OPERATORS:
         return other_clause(ctx.text)

@@ -21,6 +21,11 @@ _COMPARING: Final = {
     **dict.fromkeys(("exceeds", "exceed", "exceeding", "above", "over"), ">"),
     **dict.fromkeys(("below", "under"), "<"),
 }
+_IN_PAIRS: Final = {
+    "neither": ("nor", "for `neither p nor q` write `not (p or q)`"),
+    "either": ("or", "delete `either`: `or` says it; if only one of them may be so, write `xor`"),
+    "both": ("and", "delete `both`: `and` says it"),
+}
 _SMALL_WORDS: Final = ("is", "at", "in", "on", "the", "a", "an", "not")
 
 
@@ -46,6 +51,20 @@ def advise_on_sentence(ctx: ParseContext) -> str:
         number, singular = ctx.text_at(ctx.at - 2), before[:-1]
         return f"how many is said by `count x: {singular} ({text}(x)) >= {number}`"
     return ""
+
+
+def advise_on_pair(ctx: ParseContext) -> str:
+    """Help at what follows `neither`, `either` or `both`, which read as names."""
+    second, way_out = _IN_PAIRS.get(ctx.text_before, ("", ""))
+    behind = (token.text for token in ctx.tokens[ctx.at :])
+    return way_out if ctx.operator and second in behind else ""
+
+
+def of_owner(owner: str, what: str) -> str:
+    """How what is of ego or of an object is written."""
+    if owner in EGO:
+        return f"what is about ego is written alone: `{what}`"
+    return f"what is of an object is written `{what}({owner})`"
 
 
 def _predicate(ctx: ParseContext) -> str:

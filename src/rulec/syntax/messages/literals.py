@@ -10,6 +10,9 @@ _ISO_DATE = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}")
 
 _DAY_FIRST = re.compile(r"([0-9]{1,2})\. ?([0-9]{1,2})\. ?([0-9]{4})\b")
 
+_OTHER_DASHES = re.compile(r"([0-9]{4})[-‐-―−]([0-9]{2})[-‐-―−]([0-9]{2})\b")
+"""A date with the hyphens and dashes of word processors, which look like `-`."""
+
 _BY_THE_CLOCK = re.compile(r"([0-9]{1,2})\s*[hH:.]\s*([0-5][0-9])(?:\s*h)?")
 
 _DIRECTION_CONTROLS = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
@@ -34,6 +37,9 @@ def how_a_date_is_written(text: str) -> str:
 
     It gives the date in that form, if the text is a date.
     """
+    if match := _OTHER_DASHES.match(text):
+        written = "-".join(match.groups())
+        return f"its dash is another character: write `{written}` with the `-` of the keyboard"
     if match := _DAY_FIRST.match(text):
         day, month, year = (int(part) for part in match.groups())
         written = f"{year:04}-{month:02}-{day:02}"

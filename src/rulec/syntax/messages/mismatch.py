@@ -12,9 +12,11 @@ from rulec.syntax.messages.advice import advise
 from rulec.syntax.messages.in_formulas import no_operator
 from rulec.syntax.messages.in_items import other_clause, other_word
 from rulec.syntax.messages.parse_context import (
+    COMMENT,
     DELETE_IT,
     ParseContext,
     in_words,
+    is_comment,
     is_invisible,
 )
 from rulec.syntax.parse_nodes import MAX_DEPTH, Mismatch
@@ -139,6 +141,8 @@ def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnos
     words = frozenset(token.text for token in others)
     if token.text == "{":
         formula = "the states of an example go between one `{` and `}`, with `;` between them"
+    if is_comment((token, *others), 0):
+        formula = COMMENT
     if others and is_invisible(others[0].text) and others[0].start == token.end:
         # Where word processors may break a line: the word goes on behind it.
         formula = f"after `{_short(token.text)}`, {DELETE_IT}"
@@ -164,8 +168,8 @@ def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
             way_out = way_out or f"write `param {token.text} = …` or `define {token.text} = …`"
         if not (way_out or named or token.text in keywords.RESERVED):
             way_out = f"an enumeration is declared by `{token.text} is one of a, b`"
-    if token.text in ("//", "/*"):
-        way_out = "a comment begins with `#`"
+    if is_comment(inside, 0):
+        way_out = COMMENT
     if is_invisible(token.text):
         way_out = DELETE_IT
     return UNEXPECTED_WORD.at(

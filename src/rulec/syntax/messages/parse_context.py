@@ -183,6 +183,15 @@ class ParseContext:
         return None
 
 
+COMMENT: Final = "a comment begins with `#`"
+
+
+def is_comment(tokens: Sequence[Token], at: int) -> bool:
+    """Whether a comment of another language begins at a token: ``//``, ``/*``, ``--``, a dash."""
+    signs = "".join(token.text for token in tokens[at : at + 2])
+    return signs[:2] in ("//", "/*", "--") or signs[:1] in ("—", "–")
+
+
 DELETE_IT: Final = "delete the character there, which cannot be seen"
 
 

@@ -192,6 +192,17 @@ class StructureMessages:
             help=way_out,
         )
 
+    def before_brace(self, index: int) -> Diagnostic:
+        """A clause between a rule's head and its ``{``."""
+        word = self.tokens[index].text
+        clause = "in force" if word == "in" else word
+        return OUTSIDE_BRACES.at(
+            self.place(index),
+            f"`{clause}` comes before the `{{` of its rule",
+            expected="expected `{`",
+            help=f"move it behind the `{{`: `{clause}` is a clause, and no part of the head",
+        )
+
     def outside(self, index: int, closed: int | None) -> Diagnostic:
         labels: tuple[Label, ...] = ()
         if closed is not None:

@@ -1,0 +1,152 @@
+"""Messages about two numbers of different dimensions, compared or added."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TypeAlias
+
+from rulec.diagnostics import Diagnostic, Label
+from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
+from rulec.rulebook.elaborate.elaboration_messages import kind_of, origins, short
+from rulec.rulebook.elaborate.scope import Scope
+from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS
+from rulec.syntax import tree
+from rulec.vocabulary import Quantity
+from rulec.vocabulary.dimensions import DIMENSIONS
+from rulec.vocabulary.units import hour_in_another_language
+
+_Side: TypeAlias = tuple[tree.Formula, NumberByCases]
+
+
+def two_dimensions(
+    node: tree.Compare | tree.Arithmetic | tree.Conditional,
+    left: NumberByCases,
+    right: NumberByCases,
+    scope: Scope,
+) -> Diagnostic:
+    if isinstance(node, tree.Conditional):
+        first, second, sign = node.value, node.otherwise, "or"
+    else:
+        first, second = node.left, node.right
+        sign = node.relation if isinstance(node, tree.Compare) else node.operator
+    first_kind, second_kind = kind_of(left.dimension), kind_of(right.dimension)
+    verb = {"+": "added", "-": "subtracted", "or": "one number"}.get(sign, "compared")
+    return MIXED_DIMENSIONS.at(
+        second.span,
+        f"`{short(first)}` is {first_kind} and `{short(second)}` {second_kind}: "
+        f"they cannot be {verb}",
+        expected=f"this is {second_kind}",
+        help=_help(node, (first, left), (second, right), scope),
+        labels=(Label(first.span.place, f"this is {first_kind}"), *origins(scope, first, second)),
+    )
+
+
+def _help(node: tree.Formula, left: _Side, right: _Side, scope: Scope) -> str:
+    """The suggested correction of ``node``, which has these two sides."""
+    (first, one), (second, other) = left, right
+    return (
+        _unit_help(second, first, scope)
+        or _unit_help(first, second, scope)
+        or _speed_help(left, right, scope)
+        or _other_unit(second, first, node, scope)
+        or _other_unit(first, second, node, scope)
+        or _parameter_help(second, kind_of(other.dimension), first, scope)
+        or _parameter_help(first, kind_of(one.dimension), second, scope)
+        or _kind_help(left, right, scope)
+        or "check the names and the units"
+    )
+
+
+def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
+    unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
+    bare = isinstance(node, tree.NumberLiteral) and not node.unit
+    return f"write the unit, such as `{short(node)} {unit}`" if bare and unit else ""
+
+
+def _parameter_help(node: tree.Formula, kind: str, beside: tree.Formula, scope: Scope) -> str:
+    """Help for a parameter without a unit, or of another dimension than what is beside it."""
+    unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
+    is_param = isinstance(node, tree.AtomUse) and scope.constants.overlay.kind_of(node.name.text)
+    if is_param != "parameter" or not unit:
+        return ""
+    if kind == "a number":
+        return f"write its unit where it is declared, such as `param {short(node)} = 3 {unit}`"
+    return f"`{short(beside)}` is in {unit}: check the unit of `{short(node)}` where it is declared"
+
+
+def _other_unit(node: tree.Formula, beside: tree.Formula, whole: tree.Formula, scope: Scope) -> str:
+    """Help for a number of another dimension than what it stands beside in ``whole``."""
+    unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
+    if not (isinstance(node, tree.NumberLiteral) and unit):
+        return ""
+    if node.unit == "%":
+        if isinstance(whole, tree.Arithmetic):
+            return f"a share is a factor: for 10 % more write `1.1 * {short(beside)}`"
+        # Of what it is beside, it would be a comparison of something with itself.
+        return f"say what it is a share of, such as `{short(node)} * x` for a quantity `x`"
+    slip = hour_in_another_language(node.unit)
+    return slip or f"`{short(beside)}` is in {unit}: check the unit of `{short(node)}`"
+
+
+def _kind_help(
+    first: _Side,
+    second: _Side,
+    scope: Scope,
+) -> str:
+    if first[1].dimension is not None and second[1].dimension is not None:
+        ratio = first[1].dimension / second[1].dimension
+        if DIMENSIONS["time"] in (ratio, ratio**-1):
+            more, less = (first, second) if ratio == DIMENSIONS["time"] else (second, first)
+            node = less[0]
+            text = short(node)
+            factor = f"({text})" if isinstance(node, tree.Arithmetic | tree.Minus) else text
+            if by_units := _by_units(more[0], node, factor, scope):
+                return by_units
+            return f"a time makes them alike, such as `2 s * {factor}`"
+    return ""
+
+
+def _by_units(more: tree.Formula, less: tree.Formula, factor: str, scope: Scope) -> str:
+    """Help for half the speedometer, `speed / 2`, which is meant for as many metres."""
+    names = [
+        node.name.text
+        for node in (more, *((less.left, less.right) if isinstance(less, tree.Arithmetic) else ()))
+        if isinstance(node, tree.AtomUse)
+    ]
+    units = [(text, scope.symbols.unit(text)) for text in map(scope.symbols.unit_text, names)]
+    if len(units) != 2 or not isinstance(less, tree.Arithmetic) or less.operator not in "*/":
+        return ""
+    (of_more, whole), (of_less, part) = units
+    if whole is None or part is None:
+        return ""
+    seconds = f"{float(whole.factor / part.factor):g}"
+    if Fraction(seconds) != whole.factor / part.factor:
+        return ""
+    return f"for 1 {of_more} to each {of_less} write `{seconds} s * {factor}`"
+
+
+_LENGTH_AND_TIME = (DIMENSIONS["length"], DIMENSIONS["time"])
+
+
+def _speed_help(
+    left: _Side,
+    right: _Side,
+    scope: Scope,
+) -> str:
+    """Help for a length beside a time, if the vocabulary has ego's speed."""
+    symbols = scope.symbols
+    speeds = [
+        name
+        for name, item in symbols.items.items()
+        if isinstance(item, Quantity)
+        and not item.parameters
+        and (unit := symbols.unit(item.unit)) is not None
+        and unit.dimension == DIMENSIONS["speed"]
+    ]
+    for (_, cases), (node, other) in ((left, right), (right, left)):
+        if speeds and (cases.dimension, other.dimension) == _LENGTH_AND_TIME:
+            way_out = f"a speed makes a length of a time: `{short(node)} * {speeds[0]}`"
+            if isinstance(node, tree.NumberLiteral) and node.unit:
+                way_out = f"write `{node.text} m`, or, as {way_out}"
+            return way_out
+    return ""
