@@ -122,6 +122,23 @@ def test_a_pattern_that_matches_nothing_is_a_mistake(odd, capsys):
         assert help_text in err
 
 
+def test_rules_that_are_not_in_force_are_named(odd, capsys):
+    Path("dated.rules").write_text(
+        "rulebook dated\nsignal p\nhard rule A { require never p accept { not p } reject { p } }\n"
+        "hard rule B { in force from 2030-01-01 require always p accept { p } reject { not p } }\n"
+    )
+    sentence = "rule `B` of dated is not in force on 2026-01-01, so its examples are not run\n"
+    day = ("--at", "2026-01-01")
+    status, out, err = run(capsys, "dated.rules", *day)
+    assert (status, err) == (0, f"rulec: {sentence}")
+    assert "2 examples" in out
+    assert run(capsys, "dated.rules", *day, "--rule", "A")[2] == ""
+    for pattern in ("B", "B/1"):
+        status, _, err = run(capsys, "dated.rules", *day, "--rule", pattern)
+        assert (status, f"error[R0460]: {sentence}" in err) == (2, True)
+    assert run(capsys, "dated.rules", "--at", "2030-01-01", "--rule", "B")[2] == ""
+
+
 def test_json(odd, capsys):
     status, out, _ = run(capsys, odd, "esterle2019", "--output-format", "json")
     assert status == 1

@@ -164,12 +164,15 @@ def with_rules(
     own = own_law(books)
     rules: list[Rule | None] = []
     contradictions: list[Diagnostic] = []
+    not_in_force: list[str] = []
     for entry in laid.rules.values():
         rule = translate(entry, names, any(entry.law is book for book in own))
         mistakes += rule.mistakes
         if in_force(entry.item.in_force, at):
             rules.append(rule.rule)
             contradictions += rule.contradictions
+        else:
+            not_in_force.append(entry.item.name.text)
     good = [rule for rule in rules if rule is not None]
     mistakes = _distinct_mistakes([*mistakes, *contradictions])
     wrong = any(mistake.severity == "error" for mistake in mistakes)
@@ -195,6 +198,7 @@ def with_rules(
         remarks=tuple(laid.remarks),
         at=at,
         axioms=names.axioms,
+        not_in_force=tuple(not_in_force),
         topics=tuple(Topic(name, entry.title.value) for name, entry in laid.topics.items()),
         provisions=tuple(
             Provision(

@@ -189,8 +189,9 @@ class Rulebook(Rows):
 
     ``priorities`` is a pre-order of levels: all pairs (higher, lower), transitive; equal levels are
     paired in both orders. ``extends`` are the rulebooks that it builds upon, nearest first. ``at``
-    is the day (ISO) whose law it is; what was not in force then has been left out. ``topics`` are
-    those of its chain, ``provisions`` the articles of its own law.
+    is the day (ISO) whose law it is; what was not in force then has been left out:
+    ``not_in_force`` names the rules. ``topics`` are those of its chain, ``provisions`` the articles
+    of its own law.
     """
 
     __repr__ = short_repr
@@ -212,6 +213,7 @@ class Rulebook(Rows):
     axioms: tuple[Axiom, ...] = ()
     topics: tuple[Topic, ...] = ()
     provisions: tuple[Provision, ...] = ()
+    not_in_force: tuple[str, ...] = ()
 
     def rows(self) -> list[dict[str, Any]]:
         """One row per rule."""

@@ -105,7 +105,7 @@ def _tested(
 ) -> int:
     # Late import, not for --help: rulebooks and their automata (130 ms).
     from rulec.batch.example_batch import ExampleRequest, measured_runs
-    from rulec.book_tests.book_test_messages import nothing_to_run
+    from rulec.book_tests.book_test_messages import nothing_to_run, untested
     from rulec.book_tests.example_coverage import uncovered_verdicts
     from rulec.report.tests.example_formats import render
     from rulec.report.tests.example_text import Besides, shortcomings
@@ -127,13 +127,16 @@ def _tested(
         runs.append(run)
         coverages.append(covers)
     answered = not unread
+    left_out = [*filter(None, (untested(run.rulebook, wanted.patterns) for run in runs))]
     if (
         wanted.patterns
         and answered
         and not any(run.outcomes or any(map(run.names, run.rulebook.rules)) for run in runs)
     ):
         names = dict.fromkeys(rule.name for run in runs for rule in run.rulebook.rules)
-        raise RulecError([nothing_to_run(wanted.patterns, list(names))])
+        raise RulecError([nothing_to_run(wanted.patterns, list(names), left_out)])
+    for sentence in left_out:
+        print_remark(f"rulec: {sentence}")
     covered = coverages if wanted.measured else None
     short = shortcomings(runs, covered, percent, fail_on_empty=wanted.fails_empty)
     if runs or to.form != "full":

@@ -217,8 +217,14 @@ def locate_base(name: str, user: Path | None, search_path: Sequence[Path]) -> Pa
 
 
 def _around(user: Path | None) -> list[Path]:
-    # A rulebook in a folder of its own has the others beside that folder.
-    return [] if user is None else [user.parent, user.parent.parent]
+    if user is None:
+        return []
+    return [user.parent, *([user.parent.parent] if _has_own_folder(user) else [])]
+
+
+def _has_own_folder(user: Path) -> bool:
+    """Whether a rulebook is in a folder of its name, such as `de/de.rules`, beside the others'."""
+    return user.parent.name == user.stem
 
 
 def read_bytes(path: Path, use: Span | None = None) -> bytes:
@@ -244,7 +250,7 @@ def _instead_of(path: Path) -> str:
 
 def _vocabulary_folders(user: Path | None, search_path: Sequence[Path]) -> list[Path]:
     beside = [] if user is None else [user.parent, user.parent / "vocabulary"]
-    if user is not None and user.parent.name == user.stem:
+    if user is not None and _has_own_folder(user):
         beside.append(user.parent.parent / "vocabulary")
     listed = [inner for folder in search_path for inner in (folder, folder / "vocabulary")]
     return [*beside, *listed, rulebooks_folder() / "vocabulary"]
