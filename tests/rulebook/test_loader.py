@@ -201,3 +201,13 @@ def test_every_file_that_ships_can_be_read():
             assert load_vocabulary(path.stem).name == path.stem
         else:
             assert load_rulebook(path.stem).name == path.stem
+
+
+def test_only_a_folder_of_the_files_name_has_others_beside_it(tmp_path):
+    write(
+        tmp_path / "vienna.rules", MINE.replace("use words", "signal p").replace("mine", "vienna")
+    )
+    own = write(tmp_path / "mine" / "mine.rules", "rulebook mine\nextends vienna\n")
+    other = write(tmp_path / "mine" / "other.rules", "rulebook other\nextends vienna\n")
+    assert [rule.name for rule in load_rulebook(own).rules] == ["r"]
+    assert len(load_rulebook(other).rules) > 1  # the book that ships
