@@ -247,7 +247,10 @@ def test_who_is_about_to_cross_when_first_seen_may_have_come_just_then():
 
 
 def side_road(walker, stops_at=None, more=(), x=12.0):
-    """T, F or ? by step of 0.5 s: ego comes from the south, turns right at (0, 0), drives off."""
+    """T, F or ? by step of 0.5 s: ego comes from the south, turns right at (0, 0), drives off.
+
+    ``walker`` are the places of a pedestrian, or only their y if all are at ``x``.
+    """
     inside = {"types": frozenset({"intersection"}), "junction": "x"}
     bend = [(8 - 8 * np.cos(a), -8 + 8 * np.sin(a)) for a in np.linspace(0, np.pi / 2, 7)]
     road = [
@@ -261,7 +264,7 @@ def side_road(walker, stops_at=None, more=(), x=12.0):
     way = 30 + 2.5 * np.arange(40)
     if stops_at is not None:
         way = np.concatenate([np.minimum(way[:20], stops_at), stops_at + 2.5 * np.arange(20)])
-    places = {k: (x, y) for k, y in enumerate(walker)}
+    places = {k: at if isinstance(at, tuple) else (x, at) for k, at in enumerate(walker)}
     body = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     context = context_of(recording(road, [along(7, line, way), body]), ("1", "2", "3"))
     found = crossing_signals(context, frozenset({"crosses_side_road"}))
@@ -316,6 +319,37 @@ def test_who_walks_on_a_corner_of_the_pavement_is_not_in_the_road():
     walks = [-4.5 + 0.2 * k for k in range(40)]
     assert side_road(walks)[9] == "T"
     assert side_road(walks, more=[corner])[9] == "F"
+
+
+CORNER = (3.6, -3.8)
+COMES_TO_THE_CORNER = [(3.6, -3.8 - 0.6 * (8 - k)) for k in range(8)]
+
+
+def at_the_corner(then, entry=True):
+    """``side_road`` for one that comes to a corner 3 s before ego, which turns over it.
+
+    A crossing of ego's old road ends there, if ``entry``, and one of its new road.
+    """
+    drawn = [lanelet(9, [(6, -10), (6, 10)], width=4.0, types=frozenset({"crosswalk"}))]
+    if entry:
+        drawn.append(lanelet(10, [(-6, -6), (4, -6)], width=4.0, types=frozenset({"crosswalk"})))
+    return side_road([*COMES_TO_THE_CORNER, *then], more=drawn)[9]
+
+
+def test_who_waits_on_a_corner_to_cross_the_road_from_which_ego_comes():
+    """It stays at the crossing of that road, where ways of those who turn lie over the corner."""
+    stays = [CORNER] * 32
+    assert at_the_corner(stays) == "F"
+    assert at_the_corner(stays, entry=False) == "T"
+    crosses = [(3.6 - 0.6 * k, -4.2) for k in range(16)]
+    assert at_the_corner([*stays[:16], *crosses]) == "F"
+
+
+def test_who_waits_on_that_corner_to_cross_the_road_into_which_ego_turns():
+    assert at_the_corner([*[CORNER] * 12, *[(5.0, -3.8 + 0.6 * k) for k in range(20)]]) == "T"
+    # As one that walks on from the one crossing to the other without waiting
+    walks = [(5.0, -3.8 + 0.3 * k) for k in range(32)]
+    assert at_the_corner(walks) == "T"
 
 
 def test_who_gets_to_egos_lane_long_after_ego_may_not_have_to_be_let_across():

@@ -16,9 +16,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
-from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import crossings_told, next_crossing
-from rulec.extraction.signals.map.zone_signals import crossings_lit
+from rulec.extraction.signals.map.zone_signals import crossings_lit, in_side_road, side_road
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.lane_sets import is_in
@@ -116,7 +115,7 @@ def _crosses_side_road(context: DriveContext) -> SignalColumns:
     An ego that waits in the junction until they are across has entered it lawfully.
     """
     rows, (crosses, unsure) = _pedestrians(context), np.zeros((2, *context.relevant.shape), bool)
-    start, end = _side_road(context)
+    start, end = side_road(context)
     if len(rows) and np.isfinite(start).any():
         uses = _crossing_uses(context, (start, end), context.tracks.on_lane) > 0
         if (some := uses.any(axis=1)).any():
@@ -142,7 +141,7 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     own, others = context.ego_extents, context.extents.part(rows, slice(None))
     spans, seen = context.spans, context.relevant[rows]
     limits, step_s = context.thresholds, context.recording.step_s
-    on_lanes, last = context.on_lanes[rows] & context.tracks.on_lane[rows] & seen, spans.end - 1
+    on_lanes, last = in_side_road(context, rows) & seen, spans.end - 1
     stands = context.tracks.speed[rows] * KMH < limits.standing_kmh
     comes = spans.next_state(seen & (own.s_max >= others.s_min))
     reached, at = comes < spans.end, np.minimum(comes, last)
@@ -204,23 +203,6 @@ def _pedestrians(context: DriveContext) -> NDArray[intp]:
 def _used_ahead(context: DriveContext) -> NDArray[intp]:
     """How pedestrians use ego's present or next crossing: indices into ``_USES``, a row each."""
     return _crossing_uses(context, next_crossing(context), context.tracks.on_crosswalk)
-
-
-def _side_road(context: DriveContext) -> tuple[Floats, Floats]:
-    """Begin and end of where pedestrians cross the road into which ego turns, or infinity.
-
-    Many maps draw the crossing of that road in the junction, at its end.
-    """
-    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
-    start, end = np.full((2, context.states), np.inf)
-    for low, high in reversed(context.road.junctions):
-        if turn_at(context, low, high) != "straight_on":
-            nears = (front > low - context.thresholds.approach_m) & (rear < high)
-            beyond = high + context.thresholds.side_road_m
-            drawn = [a for a, b in context.road.crossings if low + high < a + b and a < high]
-            start = np.where(nears, min([high, *drawn]), start)
-            end = np.where(nears, beyond, end)
-    return start, end
 
 
 def _crossing_uses(

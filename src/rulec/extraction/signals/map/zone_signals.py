@@ -1,4 +1,4 @@
-"""Signals of what ego drives through: pedestrian crossings, and the room beyond."""
+"""Signals of what ego drives through: crossings, the road into which it turns, and room beyond."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import map_contents
+from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.level_crossing_signals import Stretches, level_crossings
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.map.stop_lines import drawn_lines
@@ -69,11 +70,78 @@ def crossings_lit(context: DriveContext) -> dict[float, tuple[bool, bool]]:
     return found
 
 
+def side_road(context: DriveContext) -> tuple[Floats, Floats]:
+    """Begin and end of where pedestrians cross the road into which ego turns, or infinity.
+
+    Many maps draw the crossing of that road in the junction, at its end.
+    """
+    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
+    start, end = np.full((2, context.states), np.inf)
+    for low, high in reversed(_turns(context)):
+        nears = (front > low - context.thresholds.approach_m) & (rear < high)
+        beyond = high + context.thresholds.side_road_m
+        drawn = [a for a, b in context.road.crossings if low + high < a + b and a < high]
+        start = np.where(nears, min([high, *drawn]), start)
+        end = np.where(nears, beyond, end)
+    return start, end
+
+
+def _turns(context: DriveContext) -> list[tuple[float, float]]:
+    """The stretches of ego's road in junctions at which it turns."""
+    return [x for x in context.road.junctions if turn_at(context, *x) != "straight_on"]
+
+
+def in_side_road(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Mask, for ``rows``, of pedestrians on the lanes of ego's direction, not before it turns.
+
+    Those who cross the road on which it comes, or wait to, do not cross the one into which it
+    turns.
+    """
+    on_lanes = context.on_lanes[rows] & context.tracks.on_lane[rows]
+    found: Flags = on_lanes & ~_on_crossings_before(context, rows)
+    return found
+
+
 def _starts(context: DriveContext, crossings: Recording) -> list[float]:
     """Where (m) the crossings of a recording begin on ego's road."""
+    return [start for start, _ in _stretches(context, crossings)]
+
+
+def _stretches(context: DriveContext, crossings: Recording) -> Stretches:
+    """The stretches (m) of ego's road that the crossings of a recording cover."""
     road = context.road
-    found = crossings_along(crossings, road.line, road.lanes, 0.0, road.line.length)
-    return [start for start, _ in found]
+    return list(crossings_along(crossings, road.line, road.lanes, 0.0, road.line.length))
+
+
+def _on_crossings_before(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Mask, for ``rows``, of those on a crossing of the road on which ego comes to where it turns.
+
+    Also up to ``at_edge_m`` from it, where they wait for it: on a corner, ways of those who turn
+    may lie over that place. Not those who are on a crossing of the road into which it turns too.
+    """
+    before, beyond = _crossings_at_turns(context)
+    tracks, found = context.tracks, np.zeros((len(rows), context.states), dtype=bool)
+    cells = (context.relevant[rows] & tracks.on_lane[rows]).nonzero()
+    if len(cells[0]) and not before.is_empty:
+        middles = shapely.points(tracks.x[rows][cells], tracks.y[rows][cells])
+        at_it = shapely.distance(before, middles) <= context.thresholds.at_edge_m
+        found[cells] = at_it & ~shapely.intersects(beyond, middles)
+    return found
+
+
+@once_a_road
+def _crossings_at_turns(context: DriveContext) -> tuple[shapely.Geometry, shapely.Geometry]:
+    """The areas of crossings of ego's road before the middles of its turns, and beyond these."""
+    reach, sides = context.thresholds.side_road_m, ([], [])
+    for name, lanelet in context.recording.lanelets.items():
+        if "crosswalk" in lanelet.types:
+            its = replace(context.recording, lanelets={name: lanelet})
+            for begin, end in _stretches(context, its):
+                for low, high in _turns(context):
+                    if end > low - reach and begin < high + reach:
+                        sides[begin + end > low + high].append(lanelet_area(lanelet))
+    before, beyond = map(shapely.union_all, sides)
+    return before, beyond
 
 
 @once_a_map
