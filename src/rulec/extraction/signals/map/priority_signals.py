@@ -7,7 +7,6 @@ ego while both are on their way to where these cross or join (``conflicts``).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import wraps
 from math import ceil
 
@@ -18,7 +17,15 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.signals.map.conflicts import SLOWEST_MPS, first_column, in_conflict
+from rulec.extraction.signals.map.conflicts import (
+    ARRIVALS,
+    FROM_SIDES,
+    SLOWEST_MPS,
+    Encounter,
+    arrivals,
+    first_column,
+    in_conflict,
+)
 from rulec.extraction.signals.map.oncoming_priority import gives_way_to, is_settled, turns_far
 from rulec.extraction.signals.map.roundabout_signals import without_junction
 from rulec.extraction.signals.signal_columns import (
@@ -34,31 +41,12 @@ from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.recorded.reference_line import turn
 
 _ONCOMING = "in_way_of_oncoming"
-_SIDES = ("conflict_from_left", "conflict_from_right", _ONCOMING)
+_SIDES = (*FROM_SIDES, _ONCOMING)
 _RING, _RAIL = "conflict_on_roundabout", "conflict_with_rail"
 _CONFLICTS = (*_SIDES, _RING, _RAIL)
 _PRIORITY = frozenset({"PRIORITY", "RIGHT_OF_WAY"})
-_ARRIVALS = ("arrived_together", "other_arrived_first", "other_in_junction")
 _NEVER = np.iinfo(np.intp).max
 _ROADS = ("unregulated_junction", "own_road_ends", "other_road_ends", "on_priority_road")
-
-
-@dataclass(frozen=True, slots=True)
-class Encounter:
-    """Another participant whose way crosses ego's, and the time in which the two are in conflict.
-
-    In columns of the drive; from ``enters`` on ego is in its way. ``known`` is False if the
-    recording ends before it is clear.
-    """
-
-    kinds: tuple[str, ...]
-    first: int
-    enters: int
-    last: int
-    known: bool
-    other: Passage
-    together: bool
-    comes_first: bool
 
 
 def drive_by_drive(
@@ -78,39 +66,31 @@ def drive_by_drive(
 
 @drive_by_drive
 def _conflicts(context: DriveContext) -> SignalColumns:
-    passages = own_passages(context)
-    conflicts = {name: np.zeros(context.states, dtype=bool) for name in _CONFLICTS}
-    unknown = {name: np.zeros(context.states, dtype=bool) for name in _CONFLICTS}
-    together, other_inside, other_first = np.zeros((3, context.states), dtype=bool)
-    whom = {name: nobody(context.states) for name in _CONFLICTS}
-    for passage in passages:
+    conflicts, unknown, strangers = (
+        {name: np.zeros(context.states, dtype=bool) for name in _CONFLICTS} for _ in range(3)
+    )
+    whom, encounters = {name: nobody(context.states) for name in _CONFLICTS}, []
+    for passage in own_passages(context):
         for met in _encounters(context, passage):
-            span = slice(met.first, met.last + 1)
+            encounters.append(met)
             for kind in met.kinds:
-                from_then = slice(met.enters, met.last + 1) if kind == _ONCOMING else span
+                from_then = slice(met.enters if kind == _ONCOMING else met.first, met.last + 1)
                 (conflicts if met.known else unknown)[kind][from_then] = True
                 if met.known:
                     other = context.surroundings.tracks.participants[met.other.row].id
                     for state in range(from_then.start, from_then.stop):
                         whom[kind][state] = (*whom[kind][state], other)
-            together[span] |= met.together
-            other_first[span] |= met.comes_first
-            entered = met.other.first - first_column(context)
-            other_inside[max(met.first, entered) : met.last + 1] = True
         for side in filter(None, _might_come(context, passage)):
             if side != _ONCOMING or turns_far(context, passage):
-                unknown[side][approach(context, passage)] = True
+                strangers[side][approach(context, passage)] = True
         if not passage.sure:
             for name in _CONFLICTS:
-                unknown[name][approach(context, passage)] = True
-    unknown[_RING] |= without_junction(context)
-    world: dict[str, SignalColumn] = {**conflicts}
-    world |= {"arrived_together": together, "other_in_junction": other_inside}
-    world["other_arrived_first"] = other_first
-    either: Flags = np.any([unknown[name] & ~conflicts[name] for name in _SIDES], axis=0)
-    not_told = {name: unknown[name] & ~conflicts[name] for name in _CONFLICTS}
-    not_told |= dict.fromkeys(_ARRIVALS, either)
-    return SignalColumns(world, unknown=not_told, whom=whom)
+                strangers[name][approach(context, passage)] = True
+    not_told = {x: (unknown[x] | strangers[x]) & ~conflicts[x] for x in _CONFLICTS}
+    when = arrivals(context, encounters, strangers)
+    not_told[_RING] |= without_junction(context) & ~conflicts[_RING]
+    world: dict[str, SignalColumn] = {**conflicts, **when.world}
+    return SignalColumns(world, unknown=not_told | dict(when.unknown), whom=whom)
 
 
 @once
@@ -389,7 +369,7 @@ def _leaves_at_latest(context: DriveContext, own: Passage) -> float:
 priority_signals = SignalPasses(
     {
         _ROADS: _roads,
-        (*_CONFLICTS, *_ARRIVALS): _conflicts,
+        (*_CONFLICTS, *ARRIVALS): _conflicts,
     }
 )
 """The signals of right of way at junctions."""

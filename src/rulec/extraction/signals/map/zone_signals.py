@@ -132,7 +132,8 @@ def _on_crossings_before(context: DriveContext, rows: NDArray[intp]) -> Flags:
 @once_a_road
 def _crossings_at_turns(context: DriveContext) -> tuple[shapely.Geometry, shapely.Geometry]:
     """The areas of crossings of ego's road before the middles of its turns, and beyond these."""
-    reach, sides = context.thresholds.side_road_m, ([], [])
+    reach = context.thresholds.side_road_m
+    sides: tuple[list[shapely.Geometry], list[shapely.Geometry]] = ([], [])
     for name, lanelet in context.recording.lanelets.items():
         if "crosswalk" in lanelet.types:
             its = replace(context.recording, lanelets={name: lanelet})
