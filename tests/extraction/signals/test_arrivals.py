@@ -38,7 +38,7 @@ WAYS = {
 """Where the others come from; all drive straight on, into the junction after 82 m."""
 
 EGO = 32 + 5 * TIMES
-"""Ego turns left; its middle is in the junction at 4 s, on the ways of the others some 2 s later."""
+"""Ego turns left; its middle is in the junction at 4 s, on the others' ways some 2 s later."""
 
 LATER = 82 + 10 * (TIMES - 6.0)
 FIRST = np.where(TIMES < 7, 80.8 + 0.6 * TIMES, 85 + 10 * (TIMES - 7))
