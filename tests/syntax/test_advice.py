@@ -131,8 +131,8 @@ FORMULAS = [
     ("[<= 3 s] p", "[", BEHIND),
     ("always (p)[<= 3 s]", "[", BEHIND),
     ("always <= 3 s p", "<=", "a bound goes in brackets, such as `always[<= 3 s]`"),
-    ("p within 3 s", "within", "write `eventually[<= 3 s] p`"),
-    ("within 10 s p", "10", "write `eventually[<= 10 s] p`"),
+    ("p within 3 s", "within", "write `eventually[<= 3 s] p`, or `once[<= 3 s] p` of the past"),
+    ("within 10 s p", "10", "write `eventually[<= 10 s] p`, or `once[<= 10 s] p` of the past"),
     # Comparisons and arithmetic.
     ("a < b < c", "<", "compare two at a time: write `a < b and b < c`"),
     (
