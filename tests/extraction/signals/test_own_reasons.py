@@ -89,15 +89,3 @@ def test_one_that_comes_at_once_is_endangered_whatever_it_slows_down_for(late_s,
     """It brakes for its sign from 8 to 4 m/s and comes to ego's way, 3 m before the middle."""
     road = [replace(NORTH[0], signs=frozenset({"YIELD"})), *NORTH[1:]]
     assert told(road, slowed(-3 - 4 * (0.5 + late_s), 5, 4)) == (known, not known)
-
-
-@pytest.mark.parametrize(
-    ("aside", "conflict"),
-    [([], True), ([(0, -30), (-4, -25), (0, -20)], False)],
-    ids=["straight on", "aside and back, as onto a ring"],
-)
-def test_one_that_brakes_before_ego_decides_does_so_for_ego_only_if_straight_on(aside, conflict):
-    """At 1 s it brakes from 16 to 6 m/s, so that it comes later than a second after ego."""
-    places = -37 + 16 * np.minimum(TIMES, 1) + 6 * np.maximum(TIMES - 1, 0)
-    path = [TO_NORTH[0], *aside, TO_NORTH[1]]
-    assert told(NORTH, places, path) == (conflict, False)
