@@ -18,7 +18,7 @@ import numpy as np
 import shapely
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.map.right_of_way.own_reasons import bends, slows_for_itself
+from rulec.extraction.signals.map.right_of_way.own_reasons import slows_for_itself
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.tracks import Flags
@@ -204,7 +204,7 @@ def _held_up(
         drove_on = leaves is not None or _drives_on(context, own, comes)
         drives_in = min(max(passages.front_enters(own), first), last)
         late = (at - enters) * step_s > _LATE_S and _stood(context, own, enters, until)
-        # One that slows down for itself comes that soon and is not disturbed, unless it is near
+        # One that slows down for its bend comes that soon and is not disturbed, unless it is near
         near = train or late_s < _NEAR * limits.yielding_s
         own_reason = not near and _slows_for_itself(context, ego, other, first + decides, comes)
         waits = _stands(context, other, drives_in) or own_reason
@@ -226,9 +226,7 @@ def _held_up(
     # Nor was one that brakes once ego is gone
     elif not _slows_down(context, other, first + decides, int(until)):
         return None
-    since = first + decides
-    in_bend = bends(context, other.row, since, comes)
-    own_reason = in_bend or _slows_for_itself(context, ego, other, since, comes)
+    own_reason = _slows_for_itself(context, ego, other, first + decides, comes)
     return int(columns[soon.argmax()]), leaves is not None and not own_reason
 
 
@@ -244,7 +242,7 @@ def _slows_for_itself(
     last = comes if leaves is None else int(leaves)
     until = min(last + round(_BRIEFLY_S / step_s), comes)
     return _slows_down(context, other, first, last) and slows_for_itself(
-        context, (own.row, other.row), (first, until)
+        context, (own.row, other.row), (first, until), comes
     )
 
 

@@ -46,16 +46,18 @@ _AHEAD_S = 6.0
 
 
 def slows_for_itself(
-    context: DriveContext, rows: tuple[int, int], columns: tuple[int, int]
+    context: DriveContext, rows: tuple[int, int], columns: tuple[int, int], comes: int
 ) -> bool:
     """Whether the second of two rows, ego's and another one's, may be slow for reasons of its own.
 
-    ``columns``: when it may be slow, from where its speed is not yet due to ego.
+    ``columns``: when it may be slow, from where its speed is not yet due to ego. ``comes``: when it
+    gets to the place where ego's way meets its own.
     """
     ego, other = rows
     first, slowest = _slowing(context, other, *columns)
     return (
-        _slows_for_bend(context, other, slowest)
+        _bends(context, other, columns[0], comes)
+        or _slows_for_bend(context, other, slowest)
         or _slows_at_line(context, other, first, slowest)
         or _is_behind_another(context, (ego, other), first, slowest)
     )
@@ -80,7 +82,7 @@ def _across(context: DriveContext, row: int, first: int, last: int) -> Floats:
     return across
 
 
-def bends(context: DriveContext, row: int, first: int, last: int) -> bool:
+def _bends(context: DriveContext, row: int, first: int, last: int) -> bool:
     """Whether a participant drives round a bend fast enough to be slow because of it."""
     return bool((_across(context, row, first, last) >= _BENDS_MPS2).any())
 
@@ -89,7 +91,7 @@ def _slows_for_bend(context: DriveContext, row: int, slowest: int) -> bool:
     """Whether a participant, from when it is slowest, stays so slow until it is in a bend."""
     speed = context.surroundings.passages.tracks.speed[row, slowest:]
     slow = int((~np.append(speed <= speed[0] / _AS_SLOW, False)).argmax())
-    return bends(context, row, slowest, slowest + slow)
+    return _bends(context, row, slowest, slowest + slow)
 
 
 def _slows_at_line(context: DriveContext, row: int, first: int, slowest: int) -> bool:
