@@ -18,7 +18,6 @@ import numpy as np
 import shapely
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.map.right_of_way.own_reasons import slows_for_itself
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.tracks import Flags
@@ -35,11 +34,11 @@ _DRIVES_MPS = 3.0
 _SLOWED = 0.9
 """A vehicle that keeps more of its speed was not made to brake: speeds vary this much anyway."""
 
+_BENDS_MPS2 = 2.0
+"""A vehicle in a bend with this usual lateral acceleration may be slow because of the bend."""
+
 _BRIEFLY_S = 1.0
 """Speeds are means over this time (s): shorter braking does not hold up a vehicle."""
-
-_NEAR = 0.5
-"""Who comes within this part of ``yielding_s`` is near, whatever it slows down for."""
 
 _GRAZES_M = 0.15
 """Boxes that overlap by no more do not show that bodies do, since bodies have rounded corners."""
@@ -198,52 +197,30 @@ def _held_up(
     columns, comes = np.arange(first, last + 1), _column(at)
     if at is None or comes is None:
         return (first, False) if int(present[-1]) < until else None
-    decides = min(max(_decides(context, own, enters) - first, 0), last - first)
-    train, late_s = _is_train(context, own, other), (at - until) * step_s
-    if late_s < (limits.held_up_s if train else limits.yielding_s):
+    yielding_s = limits.held_up_s if _is_train(context, own, other) else limits.yielding_s
+    if (at - until) * step_s < yielding_s:
         drove_on = leaves is not None or _drives_on(context, own, comes)
         drives_in = min(max(passages.front_enters(own), first), last)
         late = (at - enters) * step_s > _LATE_S and _stood(context, own, enters, until)
-        # One that slows down for its bend comes that soon and is not disturbed, unless it is near
-        near = train or late_s < _NEAR * limits.yielding_s
-        own_reason = not near and _slows_for_itself(context, ego, other, first + decides, comes)
-        waits = _stands(context, other, drives_in) or own_reason
-        return first, drove_on and not late and not waits
-    if late_s >= limits.held_up_s:
+        return first, drove_on and not late and not _stands(context, other, drives_in)
+    if (at - until) * step_s >= limits.held_up_s:
         return None
     travelled = passages.travelled[other.row]
     way = np.interp(at, np.arange(len(travelled)), travelled) - travelled[columns]
     speed = np.maximum(passages.tracks.speed[other.row, columns], 0.1)
     soon = columns + way / speed / step_s - until < limits.yielding_s / step_s
+    decides = min(max(_decides(context, own, enters) - first, 0), len(soon) - 1)
     # A vehicle that speeds up when ego is already in the junction was not held up by ego's driving
     # in
     if not (soon[decides] and soon[-1]):
         before = max(decides - round(_SEES_S / step_s), 0)
         braked = soon[before] and _brakes_for(context, other, (first + before, int(until)), comes)
-        if not braked:
-            return None
-        decides = before
+        return (int(columns[soon.argmax()]), leaves is not None) if braked else None
     # Nor was one that brakes once ego is gone
-    elif not _slows_down(context, other, first + decides, int(until)):
+    if not _slows_down(context, other, first + decides, int(until)):
         return None
-    own_reason = _slows_for_itself(context, ego, other, first + decides, comes)
-    return int(columns[soon.argmax()]), leaves is not None and not own_reason
-
-
-def _slows_for_itself(
-    context: DriveContext,
-    ego: tuple[Passage, int, float | None],
-    other: Passage,
-    first: int,
-    comes: int,
-) -> bool:
-    """Whether a vehicle gets slower, while ego is on its way there, and not only for ego."""
-    (own, _, leaves), step_s = ego, context.recording.step_s
-    last = comes if leaves is None else int(leaves)
-    until = min(last + round(_BRIEFLY_S / step_s), comes)
-    return _slows_down(context, other, first, last) and slows_for_itself(
-        context, (own.row, other.row), (first, until), comes
-    )
+    for_ego = not _bends(context, other, first + decides, comes)
+    return int(columns[soon.argmax()]), leaves is not None and for_ego
 
 
 def _is_train(context: DriveContext, own: Passage, other: Passage) -> bool:
@@ -259,12 +236,10 @@ def _brakes_for(
     """Whether a vehicle that goes straight on brakes harder than ``disturbing_mps2`` then."""
     tracks = context.surroundings.passages.tracks
     begin, end = columns
-    # One that drives onto a ring turns aside and back
-    heading = tracks.heading[other.row, begin : max(comes, begin) + 1]
-    heading = np.unwrap(heading[~np.isnan(heading)])
+    heading = tracks.heading[other.row, [begin, comes]]
     there = other.row, slice(begin, end + 1)
     hardest = np.nanmin(tracks.acceleration[there] + tracks.acceleration_error[there])
-    straight = np.ptp(heading) < _STRAIGHT_RAD
+    straight = np.abs(np.angle(np.exp(1j * (heading[1] - heading[0])))) < _STRAIGHT_RAD
     return bool(straight and hardest < -context.thresholds.disturbing_mps2)
 
 
@@ -288,6 +263,16 @@ def _slows_down(context: DriveContext, other: Passage, first: int, last: int) ->
     steps = min(steps, len(travelled) - 1)
     slowest = float((travelled[steps:] - travelled[:-steps]).min()) / steps / step_s
     return slowest < _SLOWED * float(passages.tracks.speed[other.row, first])
+
+
+def _bends(context: DriveContext, other: Passage, first: int, last: int) -> bool:
+    """Whether a participant drives round a bend fast enough to be slow because of it."""
+    tracks, step_s = context.surroundings.passages.tracks, context.recording.step_s
+    steps = max(round(_BRIEFLY_S / 2 / step_s), 1)
+    heading = np.unwrap(tracks.heading[other.row, first : last + steps + 1])
+    turns = np.abs(heading[steps:] - heading[:-steps]) / steps / step_s
+    across = turns * tracks.speed[other.row, first : first + len(turns)]
+    return bool((across >= _BENDS_MPS2).any())
 
 
 def _decides(context: DriveContext, own: Passage, enters: int) -> int:
