@@ -156,7 +156,7 @@ _HOME = {
     "rulec.extraction.moment_search": "DriveMoments",
     "rulec.extraction.recording_verdicts": "DriveVerdict RecordingVerdicts",
     "rulec.extraction.selection": "RequestedDrives",
-    "rulec.extraction.traces.to_trace": "Drive",
+    "rulec.extraction.traces.recorded_drive": "Drive",
     "rulec.extraction.traffic_thresholds": "Thresholds",
     "rulec.monitoring.assumptions": "Assumptions",
     "rulec.monitoring.batch.verdict_columns": "VerdictColumns",
