@@ -16,7 +16,8 @@ type car
 signal fast, heavy default false
 signal close(c: car), tall(c: car) default false
 quantity mass in t default 1
-constant heavy, tall, mass
+paint is one of red, blue
+constant heavy, tall, mass, paint
 hard rule r { require never (fast and heavy) }
 hard rule s (c: car) { require always (tall(c) implies not close(c)) }
 hard rule t { require always (fast implies mass <= 3.5 t) }
@@ -43,6 +44,13 @@ def test_what_is_left_out_later_is_as_it_was(rules):
     assert judged(rules, [{"heavy": True}, {"fast": True}]).so_far.rules["r"] == "violated"
     assert judged(rules, [{"heavy": False}, {"fast": True}]).so_far.rules["r"] == "holds so far"
     assert judged(rules, [{"mass": 4.0}, {"fast": True}]).so_far.rules["t"] == "violated"
+
+
+def test_what_has_no_default_may_be_given_later(rules):
+    """No verdict so far rests on it."""
+    assert judged(rules, [{}, {"paint": "red"}, {}]).so_far.state == 2
+    with pytest.raises(RulecError, match="state 1 says `blue`, an earlier state says `red`"):
+        judged(rules, [{"paint": "red"}, {"paint": "blue"}])
 
 
 def test_what_is_unknown_later_is_as_it_was(rules):

@@ -89,8 +89,8 @@ def _merged(
         before = stated.get(subject)
         why, way_out = "an earlier state says", "give the same value in all states"
         together = value if before is None else agreed_value(before, value)
-        if before is None and arrival.was_there(subject) and default is not UNKNOWN:
-            # Verdicts so far rest on the default
+        rests_on_default = default is not None and default is not UNKNOWN
+        if before is None and rests_on_default and arrival.was_there(subject):
             before, together = default, value if value == default else None
             why = "without it before it counted as"
             way_out = f"give `{name}` from the first state on, if unknown as such"

@@ -132,7 +132,7 @@ def advise_on_comparison(ctx: ParseContext) -> str:
         case = ctx.text_behind
         if ctx.first in ("unless", "also", "when"):
             return f"for `… in {case}` write `… and {case}`"
-        return f"for `… in {case}` write `{case} implies …`, or behind `never` `{case} and …`"
+        return f"for `… in {case}` write `{case} implies …`, or after `never` `{case} and …`"
     if text == "+" and ctx.quantity:
         return "delete the `+`"
     if text in ("|", "||") and ctx.quantity:

@@ -84,7 +84,7 @@ def advise_on_aggregate(ctx: ParseContext) -> str:
         if word == "every" and ctx.first == "require" and ctx.at <= 2:
             # Around a whole requirement `every` would forbid its operators over time.
             return (
-                "a rule holds for every one: leave this out, and write `(v: vehicle)` behind "
+                "a rule holds for every one: leave this out, and write `(v: vehicle)` after "
                 "the rule's name"
             )
         at = ctx.at + (text in _QUANTIFIERS)

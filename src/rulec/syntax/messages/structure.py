@@ -200,7 +200,7 @@ class StructureMessages:
             self.place(index),
             f"`{clause}` comes before the `{{` of its rule",
             expected="expected `{`",
-            help=f"move it behind the `{{`: `{clause}` is a clause, and no part of the head",
+            help=f"move it after the `{{`: `{clause}` is a clause, and no part of the head",
         )
 
     def outside(self, index: int, closed: int | None) -> Diagnostic:
