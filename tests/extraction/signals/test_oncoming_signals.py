@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.oncoming_priority import goes_first
 from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.extraction.signals.map.right_of_way.oncoming_priority import goes_first
 from rulec.extraction.tracks.junctions import junctions_of
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import Light, Recording

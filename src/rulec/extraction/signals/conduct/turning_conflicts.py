@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.map.conflicts import first_column
 from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_passages
+from rulec.extraction.signals.map.right_of_way.conflicts import first_column
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.junction_passages import Passage

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.signals.map.conflicts import (
+from rulec.extraction.signals.map.right_of_way.conflicts import (
     ARRIVALS,
     FROM_SIDES,
     SLOWEST_MPS,
@@ -26,7 +26,11 @@ from rulec.extraction.signals.map.conflicts import (
     first_column,
     in_conflict,
 )
-from rulec.extraction.signals.map.oncoming_priority import gives_way_to, is_settled, turns_far
+from rulec.extraction.signals.map.right_of_way.oncoming_priority import (
+    gives_way_to,
+    is_settled,
+    turns_far,
+)
 from rulec.extraction.signals.map.roundabout_signals import without_junction
 from rulec.extraction.signals.signal_columns import (
     SignalColumn,

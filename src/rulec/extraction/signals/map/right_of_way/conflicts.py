@@ -15,9 +15,10 @@ from math import ceil
 from typing import TypeAlias
 
 import numpy as np
-import shapely
 
 from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.map.right_of_way.bodies import collide, gap_s
+from rulec.extraction.signals.map.right_of_way.own_reasons import slows_for_itself
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.tracks import Flags
@@ -34,11 +35,11 @@ _DRIVES_MPS = 3.0
 _SLOWED = 0.9
 """A vehicle that keeps more of its speed was not made to brake: speeds vary this much anyway."""
 
-_BENDS_MPS2 = 2.0
-"""A vehicle in a bend with this usual lateral acceleration may be slow because of the bend."""
-
 _BRIEFLY_S = 1.0
 """Speeds are means over this time (s): shorter braking does not hold up a vehicle."""
+
+_NEAR = 0.7
+"""Who comes within this part of ``yielding_s`` is near, whatever it slows down for."""
 
 _GRAZES_M = 0.15
 """Boxes that overlap by no more do not show that bodies do, since bodies have rounded corners."""
@@ -115,8 +116,8 @@ def _let_pass(
     creeps on behind them. It is not sure if they brake, as that may be because of ego.
     """
     own, there = ego
-    if _collide(context, own, other, there):
-        return (held_up[0], _collide(context, own, other, there, _GRAZES_M)) if waits else held_up
+    if collide(context, own, other, there):
+        return (held_up[0], collide(context, own, other, there, _GRAZES_M)) if waits else held_up
     present = context.surroundings.passages.tracks.present[other.row].nonzero()[0]
     first = max(int(present[0]), own.first)
     brakes = not waits and _slows_down(context, other, first, there.stop)
@@ -127,24 +128,6 @@ def _is_there_at_first(context: DriveContext, passage: Passage, when: float | No
     """Whether a participant is where ways meet in the first state in which it is recorded."""
     present = context.surroundings.passages.tracks.present[passage.row]
     return when is not None and when <= int(present.argmax())
-
-
-def _collide(
-    context: DriveContext, own: Passage, other: Passage, columns: slice, least_m: float = 0.0
-) -> bool:
-    """Whether two bodies overlap in one of the columns by more than the tolerance of places.
-
-    And by ``least_m`` more.
-    """
-    tracks = context.surroundings.passages.tracks
-    ours, theirs = (tracks.participants[passage.row].outlines for passage in (own, other))
-    steps = range(tracks.first + columns.start, tracks.first + columns.stop)
-    inner = -(context.tolerances.place_m + least_m)
-    return any(
-        shapely.Polygon(ours[step]).buffer(inner).intersects(shapely.Polygon(theirs[step]))
-        for step in steps
-        if step in ours and step in theirs
-    )
 
 
 def _runs_into(
@@ -167,12 +150,12 @@ def _runs_into(
     there = slice(enters, until)
     drive = bool((slowest > (SLOWEST_MPS, _DRIVES_MPS)).all()) or (
         bool((slowest > (_DRIVES_MPS, SLOWEST_MPS)).all())
-        and _collide(context, own, other, there, _GRAZES_M)
+        and collide(context, own, other, there, _GRAZES_M)
     )
     inside = (until - enters) * context.recording.step_s > _BEHIND_S
     if not (drive and inside):
         return None
-    creeps = slowest[0] < _DRIVES_MPS and not _collide(context, own, other, there, _GRAZES_M)
+    creeps = slowest[0] < _DRIVES_MPS and not collide(context, own, other, there, _GRAZES_M)
     sure = not creeps and not _slows_down(context, own, enters, until)
     return max(int(present[0]), first_column(context)), sure
 
@@ -197,30 +180,56 @@ def _held_up(
     columns, comes = np.arange(first, last + 1), _column(at)
     if at is None or comes is None:
         return (first, False) if int(present[-1]) < until else None
-    yielding_s = limits.held_up_s if _is_train(context, own, other) else limits.yielding_s
-    if (at - until) * step_s < yielding_s:
+    decides = min(max(_decides(context, own, enters) - first, 0), last - first)
+    train, late_s = _is_train(context, own, other), (at - until) * step_s
+    if late_s < (limits.held_up_s if train else limits.yielding_s):
         drove_on = leaves is not None or _drives_on(context, own, comes)
         drives_in = min(max(passages.front_enters(own), first), last)
         late = (at - enters) * step_s > _LATE_S and _stood(context, own, enters, until)
-        return first, drove_on and not late and not _stands(context, other, drives_in)
-    if (at - until) * step_s >= limits.held_up_s:
+        # The meeting place is wider than the bodies. One that slows down for itself, and whose body
+        # does not come that soon, is not disturbed
+        own_reason = (
+            not (train or late_s < _NEAR * limits.yielding_s)
+            and _slows_for_itself(context, ego, other, first + decides, comes)
+            and gap_s(context, (own, other), (enters, comes)) >= limits.yielding_s
+        )
+        waits = _stands(context, other, drives_in) or own_reason
+        return first, drove_on and not late and not waits
+    if late_s >= limits.held_up_s:
         return None
     travelled = passages.travelled[other.row]
     way = np.interp(at, np.arange(len(travelled)), travelled) - travelled[columns]
     speed = np.maximum(passages.tracks.speed[other.row, columns], 0.1)
     soon = columns + way / speed / step_s - until < limits.yielding_s / step_s
-    decides = min(max(_decides(context, own, enters) - first, 0), len(soon) - 1)
     # A vehicle that speeds up when ego is already in the junction was not held up by ego's driving
     # in
     if not (soon[decides] and soon[-1]):
         before = max(decides - round(_SEES_S / step_s), 0)
         braked = soon[before] and _brakes_for(context, other, (first + before, int(until)), comes)
-        return (int(columns[soon.argmax()]), leaves is not None) if braked else None
+        if not braked:
+            return None
+        decides = before
     # Nor was one that brakes once ego is gone
-    if not _slows_down(context, other, first + decides, int(until)):
+    elif not _slows_down(context, other, first + decides, int(until)):
         return None
-    for_ego = not _bends(context, other, first + decides, comes)
-    return int(columns[soon.argmax()]), leaves is not None and for_ego
+    own_reason = _slows_for_itself(context, ego, other, first + decides, comes)
+    return int(columns[soon.argmax()]), leaves is not None and not own_reason
+
+
+def _slows_for_itself(
+    context: DriveContext,
+    ego: tuple[Passage, int, float | None],
+    other: Passage,
+    first: int,
+    comes: int,
+) -> bool:
+    """Whether a vehicle gets slower, while ego is on its way there, and not only for ego."""
+    (own, _, leaves), step_s = ego, context.recording.step_s
+    last = comes if leaves is None else int(leaves)
+    until = min(last + round(_BRIEFLY_S / step_s), comes)
+    return _slows_down(context, other, first, last) and slows_for_itself(
+        context, (own.row, other.row), (first, until)
+    )
 
 
 def _is_train(context: DriveContext, own: Passage, other: Passage) -> bool:
@@ -236,10 +245,12 @@ def _brakes_for(
     """Whether a vehicle that goes straight on brakes harder than ``disturbing_mps2`` then."""
     tracks = context.surroundings.passages.tracks
     begin, end = columns
-    heading = tracks.heading[other.row, [begin, comes]]
+    # One that drives onto a ring turns aside and back
+    heading = tracks.heading[other.row, begin : max(comes, begin) + 1]
+    heading = np.unwrap(heading[~np.isnan(heading)])
     there = other.row, slice(begin, end + 1)
     hardest = np.nanmin(tracks.acceleration[there] + tracks.acceleration_error[there])
-    straight = np.abs(np.angle(np.exp(1j * (heading[1] - heading[0])))) < _STRAIGHT_RAD
+    straight = np.ptp(heading) < _STRAIGHT_RAD
     return bool(straight and hardest < -context.thresholds.disturbing_mps2)
 
 
@@ -263,16 +274,6 @@ def _slows_down(context: DriveContext, other: Passage, first: int, last: int) ->
     steps = min(steps, len(travelled) - 1)
     slowest = float((travelled[steps:] - travelled[:-steps]).min()) / steps / step_s
     return slowest < _SLOWED * float(passages.tracks.speed[other.row, first])
-
-
-def _bends(context: DriveContext, other: Passage, first: int, last: int) -> bool:
-    """Whether a participant drives round a bend fast enough to be slow because of it."""
-    tracks, step_s = context.surroundings.passages.tracks, context.recording.step_s
-    steps = max(round(_BRIEFLY_S / 2 / step_s), 1)
-    heading = np.unwrap(tracks.heading[other.row, first : last + steps + 1])
-    turns = np.abs(heading[steps:] - heading[:-steps]) / steps / step_s
-    across = turns * tracks.speed[other.row, first : first + len(turns)]
-    return bool((across >= _BENDS_MPS2).any())
 
 
 def _decides(context: DriveContext, own: Passage, enters: int) -> int:

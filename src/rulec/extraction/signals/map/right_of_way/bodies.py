@@ -1,0 +1,79 @@
+"""Where the bodies of two participants are at a junction: whether they meet, and how nearly.
+
+The place where two ways meet is as wide as both lanes; bodies are narrower, and take the inside of
+a bend.
+"""
+
+from __future__ import annotations
+
+from math import ceil
+
+import numpy as np
+import shapely
+
+from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.tracks.junction_passages import Passage
+from rulec.extraction.tracks.tracks import Floats
+
+_FINE_S = 0.05
+"""Bodies are interpolated at least this often: by then they have moved a fraction of a metre."""
+
+_FOLLOWS_S = 1.5
+"""One that comes this long (s) after it got to the place where ways meet follows, or is past."""
+
+
+def collide(
+    context: DriveContext, own: Passage, other: Passage, columns: slice, least_m: float = 0.0
+) -> bool:
+    """Whether two bodies overlap in one of the columns by more than the tolerance of places.
+
+    And by ``least_m`` more.
+    """
+    tracks = context.surroundings.passages.tracks
+    ours, theirs = (tracks.participants[passage.row].outlines for passage in (own, other))
+    steps = range(tracks.first + columns.start, tracks.first + columns.stop)
+    inner = -(context.tolerances.place_m + least_m)
+    return any(
+        shapely.Polygon(ours[step]).buffer(inner).intersects(shapely.Polygon(theirs[step]))
+        for step in steps
+        if step in ours and step in theirs
+    )
+
+
+def gap_s(
+    context: DriveContext, passages: tuple[Passage, Passage], columns: tuple[int, int]
+) -> float:
+    """How long (s) after ego's body another one is where ego's was: the post-encroachment time.
+
+    ``columns``: when ego and the other get to the place where their ways meet. Infinite if the
+    other's body is nowhere where ego's was before.
+    """
+    step_s = context.recording.step_s
+    begin, end = columns[0] - 1, columns[1] + ceil(_FOLLOWS_S / step_s)
+    (ours, ours_at), (theirs, theirs_at) = (
+        _laid_out(context, passage, begin, end) for passage in passages
+    )
+    later, earlier = shapely.STRtree(ours).query(theirs, predicate="intersects")
+    gaps = theirs_at[later] - ours_at[earlier]
+    return float(gaps[gaps >= 0].min(initial=np.inf)) * step_s
+
+
+def _laid_out(
+    context: DriveContext, passage: Passage, begin: int, end: int
+) -> tuple[Floats, Floats]:
+    """A body's polygons between two columns, interpolated, and the columns of each."""
+    tracks = context.surroundings.passages.tracks
+    outlines = tracks.participants[passage.row].outlines
+    parts = ceil(context.recording.step_s / _FINE_S)
+    polygons, places = [], []
+    for column in range(max(begin, 0), end):
+        step = tracks.first + column
+        if step not in outlines or step + 1 not in outlines:
+            continue
+        before, after = outlines[step], outlines[step + 1]
+        # Shapes with other corners in the next state stay as they are
+        change = after - before if after.shape == before.shape else np.zeros_like(before)
+        for part in np.arange(parts) / parts:
+            polygons.append(shapely.Polygon(before + part * change))
+            places.append(column + part)
+    return np.array(polygons, dtype=object), np.array(places)
