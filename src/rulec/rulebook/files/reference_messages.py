@@ -41,8 +41,9 @@ NAME_NOT_FOUND = Code(
     "R0703",
     title="a name was not found on the search path",
     why="There is no rulebook or vocabulary of this name beside the file that refers to it or "
-    "among those that ship with rulec (`rulec list`). To refer to a file, give its path, such as "
-    "`./mine.rules`.",
+    "among those that ship with rulec (`rulec list`). A rulebook in a folder of its own name, such "
+    "as `mine/mine.rules`, may also extend those beside that folder. To refer to a file, give its "
+    "path, such as `./mine.rules`.",
     bad="rulebook example\nuse papr\nhard rule r { require never CONGESTED }\n",
     good="rulebook example\nuse paper\nhard rule r { require never CONGESTED }\n",
 )
