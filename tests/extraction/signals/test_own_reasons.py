@@ -59,6 +59,24 @@ def test_one_that_brakes_for_its_bend_drives_it_no_faster(until_s, known):
     assert told(road, places, [(0, -90), *bend, (-90, 12)]) == (known, not known)
 
 
+@pytest.mark.parametrize(("radius", "known"), [(6, True), (12, False)])
+def test_one_that_has_just_driven_a_sharper_bend_does_not_brake_for_the_next(radius, known):
+    """It comes round a bend at 6.5 m/s, is at 4.5 m/s from 2 s on, and then drives one of 8 m."""
+    turns = np.linspace(0, np.pi / 2, 19)
+    round_it = np.stack([radius * np.sin(turns) - radius, -radius * np.cos(turns)], axis=1)
+    before = [(-90, -10 - radius), *(round_it + (0, -10))]
+    beyond = [*np.stack([8 * np.cos(turns) - 8, 4 + 8 * np.sin(turns)], axis=1), (-90, 12)]
+    road = [
+        lanelet(4, [*before, (0, -4)], successors=(5,)),
+        NORTH[1],
+        lanelet(6, beyond, predecessors=(5,)),
+    ]
+    path = np.array([*before, (0, 0), *beyond])
+    to_middle = np.hypot(*np.diff(np.array([*before, (0, 0)]), axis=0).T).sum()
+    places = slowed(-9.3, 6.5, 4.5) + to_middle - 90
+    assert told(road, places, path) == (known, not known)
+
+
 @pytest.mark.parametrize(("at_2_s", "mps", "known"), [(-13, 8, False), (-10, 14, True)])
 def test_one_that_brakes_for_its_own_line_could_stop_there(at_2_s, mps, known):
     """Its front is at the line 6 m before the middle: 7 m away at 8 m/s, or 4 m at 14 m/s."""

@@ -37,6 +37,9 @@ _OUT_OF_BEND = 1.5
 """Drivers speed up in a bend; one that drives it faster than so many times its speed before it was
 slow for something else."""
 
+_JUST_S = 6.0
+"""Bends driven this long before show which speeds a driver takes them at."""
+
 _STANDS_MPS = 1.0
 """A vehicle this slow waits."""
 
@@ -81,7 +84,7 @@ def slows_for_itself(
     hardest = -float(np.nanmin(acceleration, initial=0.0))
     braking = _Braking(rows, first, slowest, max(_EXPLAINS * hardest, _PREPARES_MPS2))
     return (
-        _slows_for_bend(context, rows[1], slowest)
+        _slows_for_bend(context, braking)
         or _slows_at_line(context, braking)
         or _is_behind_another(context, braking)
     )
@@ -106,11 +109,23 @@ def _across(context: DriveContext, row: int, first: int, last: int) -> Floats:
     return across
 
 
-def _slows_for_bend(context: DriveContext, row: int, slowest: int) -> bool:
-    """Whether a participant drives a bend not much faster than when it was slowest before it."""
-    speed = context.surroundings.passages.tracks.speed[row, slowest:]
-    slow = int((~np.append(speed <= _OUT_OF_BEND * speed[0], False)).argmax())
-    return bool((_across(context, row, slowest, slowest + slow) >= _BENDS_MPS2).any())
+def _slows_for_bend(context: DriveContext, braking: _Braking) -> bool:
+    """Whether a participant drives a bend not much faster than when it was slowest before it.
+
+    One that has just driven round another place faster than this bend would ask of it at its speed
+    before did not slow down for the bend.
+    """
+    row, first, slowest = braking.rows[1], braking.first, braking.slowest
+    speed = context.surroundings.passages.tracks.speed[row]
+    slow = int((~np.append(speed[slowest:] <= _OUT_OF_BEND * speed[slowest], False)).argmax())
+    across = _across(context, row, slowest, slowest + slow)
+    bends = across >= _BENDS_MPS2
+    if not bends.any():
+        return False
+    sharpest = (across / speed[slowest : slowest + len(across)] ** 2)[bends].max()
+    before = max(first - round(_JUST_S / context.recording.step_s), 0)
+    taken = np.nanmax(_across(context, row, before, first), initial=0.0)
+    return bool(sharpest * speed[first] ** 2 > taken)
 
 
 def _slows_at_line(context: DriveContext, braking: _Braking) -> bool:
