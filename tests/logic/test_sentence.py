@@ -90,7 +90,7 @@ def counting(relation, limit, body=BEHIND):
         (Unary(NEXT, HORN, steps(2, 2)), "Exactly 2 steps after the start “horn” holds."),
         (
             Unary(ALWAYS, Unary(UnaryOperator.ONCE, HORN, seconds("0.5", 2))),
-            "At all times, at some time from 0.5 s to 2 s before “horn” holds.",
+            "At all times, at some time from 0.5 s to 2 s earlier, “horn” holds.",
         ),
         (
             Unary(NEVER, Binary(THEN, BEHIND, Binary(THEN, BESIDE, FRONT), seconds(1, 4))),

@@ -69,7 +69,7 @@ ENGLISH = Language(
     span=SpanWords("{} or more", "up to {}", "from {} to {}", "exactly {}"),
     later="later",
     after_start="after the start",
-    before="before",
+    before="earlier",
     lasting=SpanWords("for at least {}", "for at most {}", "for {} to {}", "for exactly {}"),
     at_start="{} at the start",
     there_at_start="at the start {}",
@@ -103,15 +103,15 @@ ENGLISH = Language(
             "{}, if the trace lasts that long,",
         ),
         UnaryOperator.ONCE: AdverbWords(
-            "at that time or before", "at the start or before", "at some time {}"
+            "at that time or earlier,", "at the start or earlier,", "at some time {},"
         ),
         UnaryOperator.HISTORICALLY: AdverbWords(
-            "up to that time always", "up to the start always", "at all times {}"
+            "up to that time always", "up to the start always", "at all times {},"
         ),
-        UnaryOperator.PREVIOUSLY: AdverbWords("at the moment before", "at the moment before", "{}"),
+        UnaryOperator.PREVIOUSLY: AdverbWords("one moment earlier,", "one moment earlier,", "{},"),
         UnaryOperator.WEAK_PREVIOUSLY: AdverbWords(
-            "at the moment before, if there was one,",
-            "at the moment before, if there was one,",
+            "one moment earlier, if there was one,",
+            "one moment earlier, if there was one,",
             "{}, if the trace had begun,",
         ),
     },
