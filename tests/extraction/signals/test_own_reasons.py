@@ -63,8 +63,8 @@ def test_one_that_brakes_for_its_bend_drives_it_no_faster(until_s, known):
 def test_one_that_has_just_driven_a_sharper_bend_does_not_brake_for_the_next(radius, known):
     """It comes round a bend at 6.5 m/s, is at 4.5 m/s from 2 s on, and then drives one of 8 m."""
     turns = np.linspace(0, np.pi / 2, 19)
-    round_it = np.stack([radius * np.sin(turns) - radius, -radius * np.cos(turns)], axis=1)
-    before = [(-90, -10 - radius), *(round_it + (0, -10))]
+    bend = np.stack([radius * np.sin(turns) - radius, -10 - radius * np.cos(turns)], axis=1)
+    before = [(-90, -10 - radius), *bend]
     beyond = [*np.stack([8 * np.cos(turns) - 8, 4 + 8 * np.sin(turns)], axis=1), (-90, 12)]
     road = [
         lanelet(4, [*before, (0, -4)], successors=(5,)),
