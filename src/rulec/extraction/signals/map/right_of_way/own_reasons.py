@@ -147,7 +147,8 @@ def _slows_at_line(context: DriveContext, braking: _Braking) -> bool:
                 return True
             continue
         needed = speed[first] ** 2 / (2 * max(left, 0.1))
-        if not braking.least_mps2 <= needed <= context.thresholds.braking_mps2:
+        too_late = needed > context.thresholds.braking_mps2 and not stands
+        if needed < braking.least_mps2 or too_late:
             continue
         if _is_told_to_stop(context, passage, (first, slowest)):
             return True
