@@ -105,6 +105,13 @@ def test_one_may_brake_for_somebody_ahead_of_it(mps, known):
     assert told(NORTH, slowed(-10, 8, 5), others=(ahead,)) == (known, not known)
 
 
+@pytest.mark.parametrize(("limit_mps", "known"), [(None, True), (9, True), (5, False), (4, False)])
+def test_one_gets_no_slower_than_the_limit_beyond_asks(limit_mps, known):
+    """It brakes from 8 to 5 m/s."""
+    road = [*NORTH[:2], replace(NORTH[2], limit_mps=limit_mps)]
+    assert told(road, slowed(-10, 8, 5)) == (known, not known)
+
+
 @pytest.mark.parametrize(("late_s", "known"), [(0.2, True), (0.95, False)])
 def test_one_that_comes_at_once_is_endangered_whatever_it_slows_down_for(late_s, known):
     """It brakes for its sign from 8 to 4 m/s and comes to ego's way, 3 m before the middle."""

@@ -1,9 +1,10 @@
 """What else may make a participant slow down before ego's way: then it may not be held up by ego.
 
 Its own way may bend; a sign, a light or the order of the ways may tell it to give way; somebody
-else may be ahead in its way. Each is a reason only if it explains the speeds that are driven: a
-bend ahead those that are then driven in the bend, a line those from which one can stop there, and
-somebody ahead those of one that comes nearer to them.
+else may be ahead in its way; the limit may be lower there. Each is a reason only if it explains the
+speeds that are driven: a bend ahead those that are then driven in the bend, a line those from which
+one can stop there, somebody ahead those of one that comes nearer to them, and a limit those above
+it.
 """
 
 from __future__ import annotations
@@ -87,6 +88,7 @@ def slows_for_itself(
         _slows_for_bend(context, braking)
         or _slows_at_line(context, braking)
         or _is_behind_another(context, braking)
+        or _slows_for_limit(context, braking)
     )
 
 
@@ -154,6 +156,23 @@ def _slows_at_line(context: DriveContext, braking: _Braking) -> bool:
             return True
         # Who sees nobody does not stand there
         if (waits or not stands) and _may_have_to_wait(context, passage, (first, slowest)):
+            return True
+    return False
+
+
+def _slows_for_limit(context: DriveContext, braking: _Braking) -> bool:
+    """Whether a participant gets as slow as a limit at or beyond a junction asks, and no slower."""
+    passages, lanelets = context.surroundings.passages, context.recording.lanelets
+    row, first = braking.rows[1], braking.first
+    speed = passages.tracks.speed[row]
+    soon = first + round(_AHEAD_S / context.recording.step_s)
+    for passage in passages.of_row.get(row, ()):
+        if not (passage.first <= soon and passage.last >= first):
+            continue
+        way = passages.way(passage)
+        beyond = (lanelets[name].limit_mps for name in way.names | way.exits if name in lanelets)
+        lowest = min((limit for limit in beyond if limit is not None), default=np.inf)
+        if lowest < _AS_FAST * speed[first] and speed[braking.slowest] > _AS_FAST * lowest:
             return True
     return False
 
