@@ -338,6 +338,20 @@ def test_the_map_may_make_ego_brake(road, expected):
     assert found[:6] == expected
 
 
+def test_who_has_just_braked_for_a_lower_limit_still_seems_to_brake_hard():
+    lower = [
+        straight(1, 0, 78, successors=(2,), limit_mps=30.0),
+        straight(2, 78, 900, predecessors=(1,), limit_mps=14.0),
+    ]
+    # In the fifth state its front is beyond the sign, but the mean over a second is -4 m/s²
+    follower = vehicle(6, {k: (x - 20, y) for k, (x, y) in enumerate(BRAKES)})
+    both = (car(*BRAKES), follower)
+    found = told(
+        reason_signals, "cause_to_brake", lower, *both, complete=SIMULATED, route=("1", "2")
+    )
+    assert found[:8] == "TTTT?FFF"
+
+
 def signed_junction(light=None, signs=(), first=frozenset()):
     """Ego's road, which leads straight on from 140 to 160 m, and one across that comes from -y."""
     lights = {} if light is None else {"lights": (light,), "lights_to": {"2": light}}

@@ -75,9 +75,10 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     drives on at ``_DRIVES_KMH``. It may have had a reason if it stands soon, if its drive ends, if
     a participant is beside it, if it comes up to one beside its lane that is less than half as fast
     and may come into it, if it is before or on a lane that joins others, where it looks for a gap,
-    if it has stood for a reason, or since its drive began, up to ``MOVES_OFF_S`` ago, and if it
-    brakes hard with no vehicle near behind that would be surprised. Where not all traffic is
-    recorded, the road counts as known only as far as a participant is recorded ahead.
+    if it has stood for a reason, or since its drive began, up to ``MOVES_OFF_S`` ago, if it brakes
+    hard with no vehicle near behind that would be surprised, and if it still seems to brake hard
+    when a reason is just gone. Where not all traffic is recorded, the road counts as known only as
+    far as a participant is recorded ahead.
     """
     reach, spans, stands = _reach(context), context.spans, ~moves(context)
     brakes, asked = _asked(context)
@@ -101,6 +102,9 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     bends, too_fast = road_reasons(context, on_road, reach)
     perhaps[on_road] |= bends
     caused[on_road] |= too_fast
+    # The mean still shows hard braking when its reason, such as a lower limit, is just gone
+    shown = round(context.thresholds.smoothing_s / 2 / context.recording.step_s)
+    perhaps |= brakes & spans.within_last(caused, shown)
     if (caused | perhaps).all():
         return caused, ~caused
     others = others.part((~(caused | perhaps)[others.states]).nonzero()[0])
