@@ -91,3 +91,37 @@ def test_a_road_that_changes_lanes_has_its_lanes_side_by_side():
     # In the middle of lanelet 3 one is in the right lane, wherever the line leads
     place = road.line.coordinates(np.array([(190.0, 0.0)]))
     assert road.lanes.from_bounds(place)[0, :2] == pytest.approx([2, -2], abs=0.05)
+
+
+BESIDE_AN_END = [
+    # Lane 2, which 1 leads to, ends beside 3, which leads on to 4; before, 0 leads to 3
+    straight(0, 0, 100, 4, successors=(3,)),
+    straight(1, 0, 100, 0, successors=(2,)),
+    straight(2, 100, 300, 0, predecessors=(1,), left_of=3),
+    straight(3, 100, 300, 4, predecessors=(0,), right_of=2, successors=(4,)),
+    straight(4, 300, 400, 4, predecessors=(3,)),
+]
+
+
+def test_the_road_does_not_end_with_a_lane_that_ego_has_left():
+    joins = [(50, 0), (90, 0), (130, 0), (160, 0), (180, 2.5), (200, 4), (240, 4)]
+    ((first, last, route, pieces),) = stretches(BESIDE_AN_END, *joins)
+    assert (first, last, route) == (0, 6, ("1", "2", "3"))
+    assert pieces == (0, 0, 1, 1, 1, 1, 1)
+    road = driven_road(recording(BESIDE_AN_END), route)
+    assert [[own and own.id for own in row] for row in road.rows][2:] == [[None, "4"]]
+    # Who is still in the lane that ends may go anywhere from there
+    ((_, _, route, _),) = stretches(BESIDE_AN_END, *joins[:4])
+    assert route == ("1", "2")
+
+
+def test_nor_begins_with_a_lane_that_ego_came_to_later():
+    turned = [
+        straight(0, 0, 100, 4, successors=(3,)),
+        straight(2, 100, 300, 0, left_of=3, successors=(5,)),
+        straight(3, 100, 300, 4, predecessors=(0,), right_of=2),
+        straight(5, 300, 400, 0, predecessors=(2,)),
+    ]
+    leaves = [(120, 4), (160, 4), (180, 1.5), (200, 0), (240, 0), (330, 0)]
+    ((_, _, route, pieces),) = stretches(turned, *leaves)
+    assert (route, pieces) == (("3", "2", "5"), (0, 0, 0, 0, 0, 1))

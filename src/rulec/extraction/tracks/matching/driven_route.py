@@ -4,7 +4,8 @@ A change of lanes does not leave the road, so one lanelet is chosen from each ro
 that lead to each other and from which ego was fewest lanes away. Where lanes merge, the one in
 which ego came is chosen: otherwise ego would seem to change lanes there. Where no such lanelets
 lead all the way, as after a turn into one lane and before a turn from another, the road itself
-changes lanes, in a lanelet as long as possible.
+changes lanes, in a lanelet as long as possible. It also does where a drive ends that has left a
+lane which ends, because it goes on beside that lane, and where one begins in the same way.
 """
 
 from __future__ import annotations
@@ -114,6 +115,7 @@ def route_stretches(
     start = 0
     while start < len(rows):
         stop, route = _cheapest(recording, rows, start)
+        route = _led_over(recording, rows[start:stop], route)
         own = [k for k, piece in enumerate(at) if start <= piece < stop]
         if start == 0 and len(own) == len(at):
             yield RouteStretch(matched.columns, route, at)
@@ -121,6 +123,22 @@ def route_stretches(
             columns = tuple([matched.columns[k] for k in own])
             yield RouteStretch(columns, route, tuple([at[k] - start for k in own]))
         start = stop
+
+
+def _led_over(
+    recording: Recording, rows: Sequence[_Row], route: tuple[str, ...]
+) -> tuple[str, ...]:
+    """A route, from or to the lane beside that ego drove in where its own has no other beyond it.
+
+    Otherwise the road would begin or end there, as beside the end of a lane that joins others.
+    """
+    lanelets = recording.lanelets
+    before, after = rows[0].entered, rows[-1].left
+    if not lanelets[route[0]].predecessors and lanelets[before].predecessors:
+        route = (before, *route) if before not in route[:2] else route
+    if not lanelets[route[-1]].successors and lanelets[after].successors:
+        route = (*route, after) if after not in route[-2:] else route
+    return route
 
 
 def _leads_on(recording: Recording, pieces: Sequence[Sequence[str]]) -> bool:
