@@ -288,6 +288,31 @@ def test_nobody_has_to_go_to_a_lane_that_ends_soon(end, free):
     assert found["near_lane_is_free"][0] == free
 
 
+@pytest.mark.parametrize(("gap", "free"), [(8, "?"), (30, "True")])
+def test_lanes_that_each_go_through_a_junction_by_itself_stay_the_same_road_s(gap, free):
+    """The lane at the kerb ends at 250 m; the next one begins beyond another such place."""
+    far = 250 + gap
+    lanes = [
+        straight(1, 0, 250, left_of=2),
+        straight(2, 0, 250, 4, right_of=1, left_of=3, successors=(12,)),
+        straight(3, 0, 250, 8, right_of=2, successors=(13,)),
+        straight(12, 250, far, 4, predecessors=(2,), successors=(22,)),
+        straight(13, 250, far, 8, predecessors=(3,), successors=(23,)),
+        straight(22, far, 400, 4, predecessors=(12,), left_of=23, successors=(32,)),
+        straight(23, far, 400, 8, predecessors=(13,), right_of=22, successors=(33,)),
+        straight(32, 400, 400 + gap, 4, predecessors=(22,), successors=(42,)),
+        straight(33, 400, 400 + gap, 8, predecessors=(23,), successors=(43,)),
+        straight(31, 400, 400 + gap, 0, predecessors=(22,), successors=(41,)),
+        straight(41, 400 + gap, 800, 0, predecessors=(31,), left_of=42),
+        straight(42, 400 + gap, 800, 4, predecessors=(32,), right_of=41, left_of=43),
+        straight(43, 400 + gap, 800, 8, predecessors=(33,), right_of=42),
+    ]
+    behind = steady(9, 0, 4, 10.0)
+    route = ("2", "12", "22", "32", "42")
+    found = signals(lanes, ego(100, y=4), behind, route=route)
+    assert found["near_lane_is_free"][0] == free
+
+
 @pytest.mark.parametrize(("more", "free"), [((35, 60, 85), "?"), ((35,), "True")])
 def test_nobody_has_to_go_to_a_hole_in_a_full_lane(more, free):
     """At 10 m/s 30 m may be a gap in a queue: two of the three here are of 21 m."""

@@ -6,7 +6,7 @@ speed need. A lane's vehicles are those whose middle is in it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -84,20 +84,35 @@ def _lane_lengths(context: DriveContext) -> tuple[Floats, Floats]:
 def _other_roads(road: DrivenRoad) -> Iterator[tuple[slice, list[int]]]:
     """Lanes of another road that ego's joins or leaves, and the range where they are not beside it.
 
-    They do not begin or end there: beyond, on the map, they outnumber ego's that go on.
+    They do not begin or end there: beyond, on the map, they outnumber ego's that go on. Maps may
+    lead each lane through a junction by itself: lanes that are missing for no more than
+    ``_UNEVEN_M`` are the same road's.
     """
     for piece, (before, after) in enumerate(pairwise(road.rows), 1):
         border = int(road.lanes.s.searchsorted(road.borders[piece]))
-        both = [
-            lanelet is not None and other is not None
-            for lanelet, other in zip(before, after, strict=True)
-        ]
-        come = [k for k, lane in enumerate(after) if lane and not before[k] and lane.predecessors]
-        leave = [k for k, lane in enumerate(before) if lane and not after[k] and lane.successors]
-        if len(come) > sum(both):
+        was, will_be = _lanes_around(road, piece)
+        both = sum([lane is not None and was[k] for k, lane in enumerate(after)])
+        come = [k for k, lane in enumerate(after) if lane and not was[k] and lane.predecessors]
+        if len(come) > both:
             yield slice(border), come
-        if len(leave) > sum(both):
+        both = sum([lane is not None and will_be[k] for k, lane in enumerate(before)])
+        leave = [k for k, lane in enumerate(before) if lane and not will_be[k] and lane.successors]
+        if len(leave) > both:
             yield slice(border, None), leave
+
+
+def _lanes_around(road: DrivenRoad, piece: int) -> tuple[Sequence[bool], Sequence[bool]]:
+    """Which lanes there are up to ``_UNEVEN_M`` before a piece, and from its beginning on."""
+    place, borders = road.borders[piece], road.borders
+    before = [k for k in range(piece) if borders[k + 1] > place - _UNEVEN_M or k == piece - 1]
+    after = [
+        k for k in range(piece, len(road.rows)) if borders[k] < place + _UNEVEN_M or k == piece
+    ]
+    was, will_be = (
+        [any(road.rows[k][lane] is not None for k in pieces) for lane in range(len(road.rows[0]))]
+        for pieces in (before, after)
+    )
+    return was, will_be
 
 
 def _length_near(context: DriveContext, lengths: Floats, reach_m: Floats) -> Floats:
