@@ -11,7 +11,7 @@ from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.measured_numbers import LONGEST_S
 from rulec.extraction.signals.participants.participant_signals import participant_signals
 from support.builders.drive_contexts import context_of, steady
-from support.builders.recordings import recording, vehicle
+from support.builders.recordings import recording, straight, vehicle
 from support.generators.random_recordings import lanes
 
 NGSIM, SUMO = {"name": "USA_US101"}, {"form": "SUMO data"}
@@ -48,6 +48,28 @@ def test_at_the_ends_a_change_of_speed_shows_half_a_window_later():
     low, high = ego_signals(seen(ego)).bounds["speed"]
     assert low[0] <= 36.0 <= high[0]
     assert low[2] == pytest.approx((14 - 0.3) * 3.6, abs=0.011)
+
+
+def braking_to_14_mps(at):
+    """From 20 m/s with 5 m/s², until it gets to a place: where its middle is every 0.1 s."""
+    begins = 59.6 + at - 100
+    for t in np.arange(0, 4, 0.1):
+        u, w = np.clip(t - 1.0, 0, 1.2), max(t - 2.2, 0.0)
+        yield begins + 20 * min(t, 1.0) + 20 * u - 2.5 * u * u + 14 * w
+
+
+@pytest.mark.parametrize(("at", "is_faster"), [(100, False), (125, True)])
+def test_who_brakes_until_a_lower_limit_begins_keeps_it(at, is_faster):
+    # There the mean over a second is 14.6 m/s, and 0.1 m/s is its error
+    road = [
+        straight(1, 0, 100, successors=(2,), limit_mps=20.0),
+        straight(2, 100, 300, predecessors=(1,), limit_mps=14.0),
+    ]
+    ego = vehicle(7, {k: (x, 0.0) for k, x in enumerate(braking_to_14_mps(at))})
+    context = context_of(recording(road, [ego], step_s=0.1), ("1", "2"))
+    low, _ = ego_signals(context).bounds["speed"]
+    beyond = context.limit_mps == 14.0
+    assert (low[beyond] > 14.0 * 3.6).any() == is_faster
 
 
 def test_who_is_slower_than_the_threshold_stands_and_who_is_hardly_faster_may():

@@ -48,10 +48,25 @@ def own_speed(context: DriveContext) -> tuple[Floats, Floats]:
     A simulated driver keeps a limit exactly, except for the rounding of both.
     """
     speed, error = context.ego.speed[0], context.ego.speed_error[0]
+    if context.tolerances.stated_mps is None:
+        error = error + _braked_since_the_mean(context)
     if (context.tolerances.stated_mps or np.inf) <= _AT_LIMIT_MPS:
         at_limit = np.abs(speed - context.limit_mps) <= _AT_LIMIT_MPS
         speed, error = np.where(at_limit, context.limit_mps, speed), np.where(at_limit, 0.0, error)
     return np.where(moves(context), (speed, error), 0.0)  # type: ignore[return-value]
+
+
+def _braked_since_the_mean(context: DriveContext) -> Floats:
+    """How much slower (m/s) ego may be than its mean speed, where a lower limit has just begun.
+
+    The mean over ``smoothing_s`` includes the time before, in which ego braked for it.
+    """
+    half = context.thresholds.smoothing_s / 2
+    limit, steps = context.limit_mps, round(half / context.recording.step_s)
+    is_lower = limit < context.spans.most_of_last(limit, steps)
+    braking = np.maximum(-context.ego.acceleration[0], 0.0)
+    slower: Floats = np.where(is_lower, braking * half / 2, 0.0)
+    return slower
 
 
 @once
