@@ -195,7 +195,7 @@ def _constant(context: DriveContext, flags: list[bool]) -> Flags:
 
 
 def in_the_road(context: DriveContext) -> SignalColumns:
-    """Whether people are on a lane; unknown at the outermost edges of ego's, where they may wait.
+    """Whether people are on a lane; unknown at the outermost edges there, where they may wait.
 
     Unknown, too, for riders on a cycle lane: it may be a path beside the road.
     """
@@ -203,8 +203,10 @@ def in_the_road(context: DriveContext) -> SignalColumns:
     if len(rows := users.nonzero()[0]):
         error = context.tolerances.place_m + np.abs(context.map_offset_m)
         least = np.maximum(context.thresholds.changed_m, error)
-        lanes, others = context.existing_lanes, context.extents.part(rows, slice(None))
-        for edge in (lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)):
+        others, there = context.extents.part(rows, slice(None)), context.there[rows]
+        # Where they are, not where ego is: in a junction there may be fewer lanes beside it
+        lanes = np.where(there.any(axis=2, keepdims=True), there, context.existing_lanes)
+        for edge in (lanes.argmax(axis=2), lanes.shape[2] - lanes[..., ::-1].argmax(axis=2)):
             low, high = others.from_bound(edge)
             unsure[rows] |= np.abs(low + high) / 2 <= least
     if CYCLE_LANE in map_contents(context).types:
