@@ -324,16 +324,28 @@ def test_people_wait_at_the_outer_edges_of_lanes_which_are_at_2_m_and_6_m(y, tol
     assert told == ("?" if unknown else "FT"[int(signals.about["in_the_road"][0, 0])])
 
 
-@pytest.mark.parametrize(("y", "told"), [(-6.1, "F"), (-5.9, "?"), (-2.1, "T"), (1.9, "?")])
-def test_people_wait_at_the_edges_of_the_lanes_beside_them_not_beside_ego(y, told):
+@pytest.mark.parametrize(
+    ("x", "y", "told"),
+    [
+        (130, -6.1, "F"),
+        (130, -5.9, "?"),
+        (130, -2.1, "T"),
+        (130, 1.9, "?"),
+        # On a way that only another road has, before the same edge
+        (95, -5.9, "?"),
+        (95, -4.0, "T"),
+    ],
+)
+def test_people_wait_at_the_edges_of_the_lanes_beside_them_not_beside_ego(x, y, told):
     road = [
         straight(1, 0, 100, successors=(2,)),
         straight(2, 100, 200, predecessors=(1,), right_of=3),
         straight(3, 100, 200, -4, left_of=2),
+        straight(4, 60, 100, -4, successors=(3,)),
     ]
-    walker = steady(9, 130, y, speed=0, kind="pedestrian", length=0.4, width=0.4)
+    walker = steady(9, x, y, speed=0, kind="pedestrian", length=0.4, width=0.4)
     signals = participant_signals(
-        context_of(recording(road, [steady(7, 50, 0), walker]), ("1", "2"))
+        context_of(recording(road, [steady(7, 30, 0), walker]), ("1", "2"))
     )
     unknown = signals.unknown["in_the_road"][0, 0]
     assert told == ("?" if unknown else "FT"[int(signals.about["in_the_road"][0, 0])])

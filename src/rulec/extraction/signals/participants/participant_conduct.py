@@ -203,12 +203,14 @@ def in_the_road(context: DriveContext) -> SignalColumns:
     if len(rows := users.nonzero()[0]):
         error = context.tolerances.place_m + np.abs(context.map_offset_m)
         least = np.maximum(context.thresholds.changed_m, error)
-        others, there = context.extents.part(rows, slice(None)), context.there[rows]
-        # Where they are, not where ego is: in a junction there may be fewer lanes beside it
-        lanes = np.where(there.any(axis=2, keepdims=True), there, context.existing_lanes)
-        for edge in (lanes.argmax(axis=2), lanes.shape[2] - lanes[..., ::-1].argmax(axis=2)):
-            low, high = others.from_bound(edge)
-            unsure[rows] |= np.abs(low + high) / 2 <= least
+        others, near = context.extents.part(rows, slice(None)), context.thresholds.side_road_m
+        # Where they are, not where ego is: in a junction there are fewer lanes than around it
+        for place in (others.s - near, others.s, others.s + near):
+            there = context.road.lanes.existing_at(place)
+            ends = there.argmax(axis=2), there.shape[2] - there[..., ::-1].argmax(axis=2)
+            for edge in ends:
+                low, high = others.from_bound(edge)
+                unsure[rows] |= there.any(axis=2) & (np.abs(low + high) / 2 <= least)
     if CYCLE_LANE in map_contents(context).types:
         rides = context.tracks.of_type("light_rider")[:, None] & context.tracks.on_lane
         unsure |= those_on_lanes(context, CYCLE_LANE, rides)
