@@ -53,6 +53,17 @@ def test_neighbours_by_index_from_the_kerb_on(tmp_path):
     assert (found[":x_0_0"].left_of, found["in_2"].left_of) == (":x_0_1", None)
 
 
+@pytest.mark.parametrize(("word", "solid"), [("changeLeft", "left"), ("changeRight", "right")])
+@pytest.mark.parametrize("side", ["right", "left"])
+def test_who_may_not_change_lanes_to_a_side_has_a_solid_line_there(tmp_path, side, word, solid):
+    """In a left-hand net, too, where lanes are counted from the left, left is left."""
+    text = ROAD_NET.replace('<lane id="in_1" ', f'<lane id="in_1" {word}="authority" ')
+    text = text.replace("<net ", f'<net lefthand="{str(side == "left").lower()}" ')
+    marks = lanelets(tmp_path, text)["in_1"]
+    told = {"left": marks.left_mark, "right": marks.right_mark}
+    assert told == {"left": "broken", "right": "broken"} | {solid: "solid"}
+
+
 def test_borders_lie_half_a_width_beside_the_middle(tmp_path):
     found = lanelets(tmp_path)
     assert found["in_1"].left.tolist() == [[0, pytest.approx(-3.2)], [200, pytest.approx(-3.2)]]

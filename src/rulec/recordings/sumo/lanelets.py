@@ -113,8 +113,8 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
             limit_mps=limits.get(lane.id),
             lights=tuple(lights.get(lane.id, ())),
             lights_to=ways.get(lane.id, {}),
-            left_mark=_mark(lane, towards_left, there),
-            right_mark=_mark(lane, -towards_left, there),
+            left_mark=_mark(lane, towards_left, there, lane.marks[0]),
+            right_mark=_mark(lane, -towards_left, there, lane.marks[1]),
             stop_line=np.stack((left[-1], right[-1])) if links[lane.id] else None,
             junction=junction if junction in junctions else "",
             foes=own.foes if own else None,
@@ -189,12 +189,11 @@ def _unrounded(limit_mps: float) -> float:
     return round(kmh) / _KMH if abs(kmh - round(kmh)) <= _ROUNDED_KMH else limit_mps
 
 
-def _mark(lane: NetLane, step: int, there: set[str]) -> LaneMark | None:
-    """The mark between two lanes of an edge: solid where changing across it is forbidden."""
+def _mark(lane: NetLane, step: int, there: set[str], forbidden: bool) -> LaneMark | None:
+    """The mark between two lanes of an edge: solid where changing across it is ``forbidden``."""
     if lane.edge.function or _neighbour(lane, step, there) is None:
         return None
-    # ``marks`` are to the left and right as SUMO has them, by rising and falling index
-    return "solid" if lane.marks[0 if step > 0 else 1] else "broken"
+    return "solid" if forbidden else "broken"
 
 
 def junction_of(lane: NetLane) -> str:
