@@ -196,7 +196,7 @@ def _meets_another(
         for x in passages.through[passage.junction]
         if x.row not in rows and junction.meeting(passage.way, x.way) is not None
     ]
-    soon = column + round(_AHEAD_S / context.recording.step_s)
+    soon = column + round(context.thresholds.held_up_s / context.recording.step_s)
     return any(first <= soon and last >= column for first, last in (*strays, *crossing))
 
 
