@@ -74,6 +74,17 @@ def test_who_waits_where_no_jam_may_be_is_not_told_to_be_in_one(beside, ahead, t
         assert found.unknown[word][0] == (not told)
 
 
+@pytest.mark.parametrize(
+    ("x", "y", "told"), [(45, 0.0, False), (105, 0.0, True), (-45, 0.0, True), (45, 4.0, True)]
+)
+def test_those_behind_a_cycle_may_be_in_no_jam(x, y, told):
+    bodies = [steady(7, 0, 0, speed=5), *line(5, 3), steady(30, 10, 4.0, speed=5)]
+    cycle = steady(40, x, y, speed=5, kind="bicycle")
+    found = flow_signals(context_of(recording(lanes(2), [*bodies, cycle]), ("1",)))
+    assert found.world["congested"][0]
+    assert found.unknown["congested"][0] == (not told)
+
+
 def test_traffic_that_has_been_slow_for_less_than_10_s_may_be_no_jam():
     """All go at 10 m/s for 2 s, and then at 1 m/s, 11 s long."""
     along_m = np.cumsum([0.0] + [5.0] * 4 + [0.5] * 22)

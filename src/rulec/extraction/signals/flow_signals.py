@@ -41,7 +41,8 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     Vehicles that queue to leave, beside lanes that flow or are empty, are no jam of the road: slow
     vehicles have to be on at least half of its lanes. Unknown if, without those in junctions, they
     are on no more than half, since they may wait to turn there; if no vehicle is ahead of ego, as
-    the others may be waiting for ego; and for the first ``_JAM_S`` of slow traffic.
+    the others may be waiting for ego; if a cycle is, as all may be behind it; and for the first
+    ``_JAM_S`` of slow traffic.
     """
     around, limits, states = vehicles_around(context), context.thresholds, context.states
     existing = travel_lanes_first(context)
@@ -69,6 +70,7 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     moot = np.zeros(states, dtype=bool)
     if congested.any():
         moot = np.isinf(gap_in_lane(context, relations.BEHIND)) | _comes_up(context, congested)
+        moot |= _is_behind_cycle(context)
     unknown = congested & (part | moot)
     return SignalColumns(
         {"congested": congested, "CONGESTED": congested, "walking_pace_flow": walking},
@@ -87,6 +89,16 @@ def _in_junctions(context: DriveContext, around: VehiclesAround, chosen: NDArray
     for start, end in context.road.junctions:
         inside |= (s_max > start) & (s_min < end)
     return inside
+
+
+def _is_behind_cycle(context: DriveContext) -> Flags:
+    """Mask of states in which a cycle is ahead in ego's lane, within ``flow_reach_m``."""
+    rows = context.tracks.of_type("light_rider").nonzero()[0]
+    in_lane = context.extents.lane[rows] == context.ego_lane
+    ahead = context.relevant[rows] & (relations.station(context)[rows] == relations.BEHIND)
+    near = relations.gap(context)[rows] <= context.thresholds.flow_reach_m
+    found: Flags = (in_lane & ahead & near & context.on_lanes[rows]).any(axis=0)
+    return found
 
 
 def _comes_up(context: DriveContext, slow: Flags) -> Flags:
