@@ -200,17 +200,21 @@ def in_the_road(context: DriveContext) -> SignalColumns:
     Unknown, too, for riders on a cycle lane: it may be a path beside the road.
     """
     unsure, users = np.zeros_like(context.relevant), context.tracks.of_type("vulnerable_user")
-    if len(rows := users.nonzero()[0]):
+    on_lane = context.tracks.on_lane & users[:, None]
+    if len(rows := on_lane.any(axis=1).nonzero()[0]):
         error = context.tolerances.place_m + np.abs(context.map_offset_m)
-        least = np.maximum(context.thresholds.changed_m, error)
-        others, near = context.extents.part(rows, slice(None)), context.thresholds.side_road_m
+        own, states = on_lane[rows].nonzero()
+        least = np.maximum(context.thresholds.changed_m, error)[states]
+        people = context.extents.part(rows, slice(None)).at(own[None], states[None])
+        near, at_edge = context.thresholds.side_road_m, np.zeros((1, len(own)), dtype=bool)
         # Where they are, not where ego is: in a junction there are fewer lanes than around it
-        for place in (others.s - near, others.s, others.s + near):
+        for place in (people.s - near, people.s, people.s + near):
             there = context.road.lanes.existing_at(place)
             ends = there.argmax(axis=2), there.shape[2] - there[..., ::-1].argmax(axis=2)
             for edge in ends:
-                low, high = others.from_bound(edge)
-                unsure[rows] |= there.any(axis=2) & (np.abs(low + high) / 2 <= least)
+                low, high = people.from_bound(edge)
+                at_edge |= there.any(axis=2) & (np.abs(low + high) / 2 <= least)
+        unsure[rows[own], states] = at_edge[0]
     if CYCLE_LANE in map_contents(context).types:
         rides = context.tracks.of_type("light_rider")[:, None] & context.tracks.on_lane
         unsure |= those_on_lanes(context, CYCLE_LANE, rides)

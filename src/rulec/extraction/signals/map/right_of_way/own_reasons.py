@@ -82,7 +82,7 @@ def slows_for_itself(
     """
     first, slowest = _slowing(context, rows[1], *columns)
     acceleration = context.surroundings.passages.tracks.acceleration[rows[1], first : slowest + 1]
-    hardest = -float(np.nanmin(acceleration, initial=0.0))
+    hardest = -float(np.fmin.reduce(acceleration, initial=0.0))
     braking = _Braking(rows, first, slowest, max(_EXPLAINS * hardest, _PREPARES_MPS2))
     return (
         _slows_for_bend(context, braking)
@@ -124,9 +124,9 @@ def _slows_for_bend(context: DriveContext, braking: _Braking) -> bool:
     bends = across >= _BENDS_MPS2
     if not bends.any():
         return False
-    sharpest = (across / speed[slowest : slowest + len(across)] ** 2)[bends].max()
+    sharpest = (across[bends] / speed[slowest : slowest + len(across)][bends] ** 2).max()
     before = max(first - round(_JUST_S / context.recording.step_s), 0)
-    taken = np.nanmax(_across(context, row, before, first), initial=0.0)
+    taken = np.fmax.reduce(_across(context, row, before, first), initial=0.0)
     return bool(sharpest * speed[first] ** 2 > taken)
 
 
