@@ -163,7 +163,8 @@ NO_LANES = frozenset({"sidewalk", CROSSWALK, "border", "parking", "restricted_ar
 
 ALL_STOP = "STOP_4_WAY"
 STOP_SIGNS = frozenset({"STOP", ALL_STOP})
-REGULATING = STOP_SIGNS | {"YIELD", "PRIORITY", "RIGHT_OF_WAY"}
+GIVE_WAY_SIGNS = STOP_SIGNS | {"YIELD"}
+REGULATING = GIVE_WAY_SIGNS | {"PRIORITY", "RIGHT_OF_WAY"}
 """Signs that regulate priority."""
 
 CYCLES_TOO = "cyclesAllowed"

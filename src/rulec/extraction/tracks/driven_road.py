@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.tracks.matching.driven_route import pieces_of
 from rulec.extraction.tracks.tracks import Floats
-from rulec.recordings.recording import STOP_SIGNS, Lanelet, Points, Recording, is_lane
+from rulec.recordings.recording import GIVE_WAY_SIGNS, Lanelet, Points, Recording, is_lane
 from rulec.scenario.recorded.lane_coordinates import (
     Lanes,
     borders_along,
@@ -52,8 +52,6 @@ The crossing lanelets, which define junctions there, are often only the middle o
 
 _WAY_M = 30.0
 """Longest way through a junction that only joins others; roads that lead there are longer."""
-
-_GIVES_WAY = STOP_SIGNS | {"YIELD"}
 
 _CROSSING_ANGLE = radians(30.0)
 """Ways that meet at a smaller angle run into each other, as where lanes join or part."""
@@ -303,7 +301,7 @@ def _signed_joins(lanes: Sequence[Lanelet]) -> Iterator[tuple[Lanelet, ...]]:
             joining[after].append(lanelet)
     for ways in joining.values():
         before = [known[x] for way in ways for x in way.predecessors if x in known]
-        if len(ways) > 1 and any(_GIVES_WAY & x.signs for x in (*ways, *before)):
+        if len(ways) > 1 and any(GIVE_WAY_SIGNS & x.signs for x in (*ways, *before)):
             parting = {x for one in before for x in one.successors if x in short}
             yield (*ways, *(short[x] for x in sorted(parting)))
 

@@ -21,6 +21,8 @@ from rulec.recordings.recording import (
     ALL_STOP,
     REGULATING,
     Lanelet,
+    Light,
+    ObservedLight,
     Points,
     Recording,
     is_there,
@@ -291,6 +293,15 @@ def _may_be_regulated(recording: Recording, ways: tuple[JunctionWay, ...]) -> bo
     return any(
         entry.untold_signs & REGULATING or not all(map(is_there, entry.lights)) for entry in entries
     )
+
+
+def entry_lights(
+    recording: Recording, way: JunctionWay
+) -> Iterator[tuple[Lanelet, tuple[Light | ObservedLight, ...]]]:
+    """Each lanelet right before a way, with its light for the way, or all of its lights."""
+    for entry in (recording.lanelets[x] for x in way.entries if x in recording.lanelets):
+        own = entry.lights_to.get(way.lanelets[0].id)
+        yield entry, (own,) if own else entry.lights
 
 
 def approaches(recording: Recording, way: JunctionWay) -> list[Lanelet]:

@@ -18,7 +18,7 @@ from rulec.recordings.lanelet2.map_lanelets import MapLanelet, lanes
 from rulec.recordings.lanelet2.osm_file import OsmFile, OsmRelation
 from rulec.recordings.lanelet2.signs import sign_of
 from rulec.recordings.lanelet2.topology import Topology
-from rulec.recordings.recording import ObservedLight, Points
+from rulec.recordings.recording import GIVE_WAY_SIGNS, ObservedLight, Points
 
 MOST_MEMBERS = 1_000
 """The most members of one regulatory element."""
@@ -29,7 +29,6 @@ _ON_LINE_M = 0.5
 _SHORTEST_M = 0.5
 """A line that covers less than this of a lane is used as it is."""
 
-_GIVES_WAY = frozenset({"YIELD", "STOP", "STOP_4_WAY"})
 _GOES_FIRST = frozenset({"PRIORITY", "RIGHT_OF_WAY"})
 _YES = ("yes", "true", "1")
 
@@ -124,11 +123,11 @@ class _Element:
         limits = [sign.limit_mps for sign in self.signs if sign.limit_mps is not None]
         rules[entry.id].limits += limits
         names = {sign.name for sign in self.signs}
-        rules[entry.id].signs |= names - _GIVES_WAY
-        if names & _GIVES_WAY:
+        rules[entry.id].signs |= names - GIVE_WAY_SIGNS
+        if names & GIVE_WAY_SIGNS:
             line = nearest_line(entry, self.lines)
             for name, _ in approaches(self.survey, entry, line):
-                rules[name].signs |= names & _GIVES_WAY
+                rules[name].signs |= names & GIVE_WAY_SIGNS
                 _draw(self.survey.entries[name], rules[name], line)
 
 
@@ -220,7 +219,7 @@ def _right_of_way_signs(
     """
     signs = {sign.name for sign in _signs(survey.file, element)}
     lines = [x for x in map(survey.line, element.refs("ref_line", "way")) if x is not None]
-    for role, own in (("yield", _GIVES_WAY), ("right_of_way", _GOES_FIRST)):
+    for role, own in (("yield", GIVE_WAY_SIGNS), ("right_of_way", _GOES_FIRST)):
         for name in element.refs(role, "relation"):
             if name not in survey.entries:
                 continue

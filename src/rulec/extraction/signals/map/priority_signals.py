@@ -20,7 +20,6 @@ from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.right_of_way.conflicts import (
     ARRIVALS,
     FROM_SIDES,
-    SLOWEST_MPS,
     Encounter,
     arrivals,
     first_column,
@@ -31,6 +30,7 @@ from rulec.extraction.signals.map.right_of_way.oncoming_priority import (
     is_settled,
     turns_far,
 )
+from rulec.extraction.signals.map.right_of_way.own_reasons import SLOWEST_MPS
 from rulec.extraction.signals.map.roundabout_signals import without_junction
 from rulec.extraction.signals.signal_columns import (
     SignalColumn,

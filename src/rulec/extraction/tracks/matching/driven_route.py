@@ -134,10 +134,12 @@ def _led_over(
     """
     lanelets = recording.lanelets
     before, after = rows[0].entered, rows[-1].left
-    if not lanelets[route[0]].predecessors and lanelets[before].predecessors:
-        route = (before, *route) if before not in route[:2] else route
-    if not lanelets[route[-1]].successors and lanelets[after].successors:
-        route = (*route, after) if after not in route[-2:] else route
+    begins = not lanelets[route[0]].predecessors and lanelets[before].predecessors
+    if begins and before not in route[:2]:
+        route = (before, *route)
+    ends = not lanelets[route[-1]].successors and lanelets[after].successors
+    if ends and after not in route[-2:]:
+        route = (*route, after)
     return route
 
 

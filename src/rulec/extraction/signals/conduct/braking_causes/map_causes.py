@@ -26,7 +26,7 @@ from rulec.extraction.signals.map.stop_lines import ends_at_line, stop_line
 from rulec.extraction.signals.map.zone_signals import crossings_lit
 from rulec.extraction.signals.measured_numbers import moves, own_front
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import STOP_SIGNS
+from rulec.recordings.recording import GIVE_WAY_SIGNS, STOP_SIGNS
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.plain_arrays import distinct, zero_if_nan
 
@@ -45,7 +45,6 @@ _TURNS_MPS = 4.0
 _SEES_GREEN_S = 1.0
 """A vehicle may still brake for a light this long (s) after it has turned green."""
 
-_GIVES_WAY = STOP_SIGNS | {"YIELD"}
 _GO, _STOP, _UNTOLD = 1, 2, 3
 _TELLS = {"green_light": _GO, "red_light": _STOP, "amber_light": _STOP, "no_light": 0}
 
@@ -120,7 +119,7 @@ def _goes_first(context: DriveContext, start: float) -> tuple[bool, bool]:
     road = context.road
     before, inside = road.piece(np.array([start - _HAIR_M, start + _HAIR_M])).tolist()
     entry, way = (road.lanelet(piece, road.own_lanes[piece]) for piece in (before, inside))
-    first = way.first is not None and not way.first and not entry.signs & _GIVES_WAY
+    first = way.first is not None and not way.first and not entry.signs & GIVE_WAY_SIGNS
     return first, bool(entry.lights)
 
 

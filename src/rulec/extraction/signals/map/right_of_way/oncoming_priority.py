@@ -7,11 +7,15 @@ from math import cos, radians, sin
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.junction_passages import Passage
-from rulec.extraction.tracks.junctions import JunctionWay, all_have_to_stop, approaches
-from rulec.recordings.recording import ALL_STOP, STOP_SIGNS, Points, Recording
+from rulec.extraction.tracks.junctions import (
+    JunctionWay,
+    all_have_to_stop,
+    approaches,
+    entry_lights,
+)
+from rulec.recordings.recording import ALL_STOP, GIVE_WAY_SIGNS, Points, Recording
 
-_GIVES_WAY = STOP_SIGNS | {"YIELD"}
-_ONE_GIVES_WAY = _GIVES_WAY - {ALL_STOP}
+_ONE_GIVES_WAY = GIVE_WAY_SIGNS - {ALL_STOP}
 """Where all have to stop, the participant that came first goes first."""
 
 _CLEARED_S = 2.0
@@ -56,7 +60,7 @@ def goes_first(recording: Recording, own: JunctionWay, other: JunctionWay) -> bo
     if first is not None:
         return bool(first & other.names)
     its, mine = (
-        any(entry.signs & _GIVES_WAY for entry in approaches(recording, way))
+        any(entry.signs & GIVE_WAY_SIGNS for entry in approaches(recording, way))
         for way in (other, own)
     )
     return mine or not its
@@ -89,15 +93,13 @@ def _shown(context: DriveContext, other: Passage) -> Iterator[str | None]:
     Otherwise during all of the time in which it may have crossed it.
     """
     passages = context.surroundings.passages
-    way, lanelets = passages.way(other), context.recording.lanelets
     since = round(_CLEARED_S / context.recording.step_s)
-    for entry in (lanelets[name] for name in way.entries if name in lanelets):
+    for entry, lights in entry_lights(context.recording, passages.way(other)):
         crossed = _crossed(context, other, entry.stop_line)
         columns = range(other.first - since, other.first + 1)
         if crossed is not None:
             columns = range(crossed - 1, crossed + 1)
-        own = entry.lights_to.get(way.lanelets[0].id)
-        for light in (own,) if own else entry.lights:
+        for light in lights:
             yield from (light.colour_at(passages.tracks.first + column) for column in columns)
 
 

@@ -18,18 +18,19 @@ import shapely
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import turns_far
 from rulec.extraction.tracks.junction_passages import Passage
-from rulec.extraction.tracks.junctions import Junction, JunctionWay, approaches
+from rulec.extraction.tracks.junctions import Junction, JunctionWay, approaches, entry_lights
 from rulec.extraction.tracks.tracks import Floats
-from rulec.recordings.recording import STOP_SIGNS
+from rulec.recordings.recording import GIVE_WAY_SIGNS, STOP_SIGNS
 from rulec.scenario.recorded.reference_line import turn
 
-_GIVES_WAY = STOP_SIGNS | {"YIELD"}
+SLOWEST_MPS = 1.0
+"""A slower vehicle waits; one standing in a junction as its track ends goes on this fast."""
 
 _BENDS_MPS2 = 2.0
 """A vehicle in a bend with this usual lateral acceleration may be slow because of the bend."""
 
-_BRIEFLY_S = 1.0
-"""Turns are means over half of this time (s)."""
+_TURNS_S = 0.5
+"""Turns are means over this time (s)."""
 
 _AS_FAST = 0.9
 """Speeds that differ by less are the same."""
@@ -40,9 +41,6 @@ slow for something else."""
 
 _JUST_S = 6.0
 """Bends driven this long before show which speeds a driver takes them at."""
-
-_STANDS_MPS = 1.0
-"""A vehicle this slow waits."""
 
 _PREPARES_MPS2 = 0.5
 """Who would need less than this to stop at a place does not brake for it yet."""
@@ -104,7 +102,7 @@ def _slowing(context: DriveContext, row: int, first: int, last: int) -> tuple[in
 def _across(context: DriveContext, row: int, first: int, last: int) -> Floats:
     """A participant's lateral acceleration (m/s²) from its turns, in each of some columns."""
     tracks, step_s = context.surroundings.passages.tracks, context.recording.step_s
-    steps = max(round(_BRIEFLY_S / 2 / step_s), 1)
+    steps = max(round(_TURNS_S / step_s), 1)
     heading = np.unwrap(tracks.heading[row, first : last + steps + 1])
     turns = np.abs(heading[steps:] - heading[:-steps]) / steps / step_s
     across: Floats = turns * tracks.speed[row, first : first + len(turns)]
@@ -133,13 +131,14 @@ def _slows_for_bend(context: DriveContext, braking: _Braking) -> bool:
 def _slows_at_line(context: DriveContext, braking: _Braking) -> bool:
     """Whether a participant that brakes may have to give way at a line, or has to wait beyond it.
 
-    One that could not stop at the line any more as it began to brake did not brake for the line.
-    Nor did one that is slowest beyond it; but that one may stand there for somebody else.
+    One that could not stop at the line any more as it began to brake, and does not stand there, did
+    not brake for the line. Nor did one that is slowest beyond it; but that one may stand there for
+    somebody else.
     """
     passages, row = context.surroundings.passages, braking.rows[1]
     first, slowest = braking.first, braking.slowest
     travelled, speed = passages.travelled[row], passages.tracks.speed[row]
-    stands = speed[slowest] < _STANDS_MPS
+    stands = speed[slowest] < SLOWEST_MPS
     for passage in passages.of_row.get(row, ()):
         line = travelled[passage.first] - passages.lengths[row] / 2
         left = line - travelled[first]
@@ -204,7 +203,7 @@ def _may_have_to_wait(context: DriveContext, passage: Passage, columns: tuple[in
     """Whether a sign or the order of the ways may tell a participant to give way at a junction."""
     way, recording = context.surroundings.passages.way(passage), context.recording
     entries = approaches(recording, way)
-    may_give_way = any((entry.signs | entry.untold_signs) & _GIVES_WAY for entry in entries)
+    may_give_way = any((entry.signs | entry.untold_signs) & GIVE_WAY_SIGNS for entry in entries)
     if may_give_way or turns_far(context, passage):
         return True
     # Where lights are green they order the ways, and not what the map says without them
@@ -229,10 +228,9 @@ def _lets_near_side_go(context: DriveContext, passage: Passage) -> bool:
 
 def _shown(context: DriveContext, way: JunctionWay, columns: tuple[int, int]) -> Iterator[str]:
     """What the lights at a way's entry show in some columns."""
-    lanelets, begin = context.recording.lanelets, context.surroundings.passages.tracks.first
-    for entry in (lanelets[name] for name in way.entries if name in lanelets):
-        own = entry.lights_to.get(way.lanelets[0].id)
-        for light in (own,) if own else entry.lights:
+    begin = context.surroundings.passages.tracks.first
+    for _, lights in entry_lights(context.recording, way):
+        for light in lights:
             yield from (light.colour_at(begin + k) for k in range(columns[0], columns[1] + 1))
 
 
@@ -252,8 +250,8 @@ def _has_to_brake_for(context: DriveContext, braking: _Braking, column: int) -> 
     places = shapely.points(tracks.x[there, column], tracks.y[there, column])
     near = shapely.dwithin(places, way, _IN_WAY_M)
     others, ahead = there[near], shapely.line_locate_point(way, places[near])
-    near = (ahead > 0) & (others != row) & (others != ego)
-    others, ahead = others[near], ahead[near]
+    in_way = (ahead > 0) & (others != row) & (others != ego)
+    others, ahead = others[in_way], ahead[in_way]
     heading = tracks.heading[row, column]
     along = tracks.vx[others, column] * np.cos(heading)
     along += tracks.vy[others, column] * np.sin(heading)
