@@ -20,6 +20,7 @@ from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Recording, Side
+from rulec.scenario.recorded.route import ways_on
 from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
 from rulec.trace.plain_arrays import distinct, medians
@@ -174,6 +175,26 @@ class DriveContext:
         different = distinct(codes)
         places = tuple([divmod(code, width) for code in different.tolist()])
         return places, different.searchsorted(codes)
+
+    @cached_property
+    def own_way_end(self) -> Floats:
+        """Where (m) along the road ego's lane next divides beyond its last place, by state.
+
+        Which of the ways ego takes there is not recorded. Infinity if none is known.
+        """
+        last = self.spans.begins + self.spans.lengths - 1
+        middle, lanes = self.ego_extents.s[0, last], self.ego_lane[last]
+        places, number = self.places_at(middle, lanes)
+        ends = np.array([self._divides_after(*place) for place in places])[number]
+        return self.spans.spread(ends)
+
+    def _divides_after(self, piece: int, lane: int) -> float:
+        if not self.wrong_way:
+            for own in range(piece, len(self.road.rows)):
+                here = self.road.lanelet(own, lane)
+                if len(ways_on(self.recording.lanelets, here)) > 1:
+                    return float(self.road.borders[own + 1])
+        return np.inf
 
     @cached_property
     def existing_lanes(self) -> Flags:

@@ -10,6 +10,7 @@ import pytest
 
 from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.line_signals import line_signals
+from rulec.extraction.signals.relations import ahead_in_lane
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import Light
@@ -185,3 +186,32 @@ def test_a_turn_behind_a_way_that_is_straight_on_is_one():
     found = at_junctions(context_of(recording(lanes, [ego]), ("1", "2", "3", "6")))
     assert found.world["turn"].tolist() == ["straight_on", "turn_far", "turn_far", "straight_on"]
     assert not found.unknown["turn"].any()
+
+
+def is_sure_of_lane(xs, other, lanes=None):
+    """By state, whether another one at a place ahead is surely in ego's lane."""
+    there = vehicle(8, dict.fromkeys(range(len(xs)), (other, 0)))
+    ego = vehicle(7, {k: (x, 0) for k, x in enumerate(xs)})
+    context = context_of(recording(lanes or road(), [ego, there]), ("1", "2", "5"))
+    measured, surely, perhaps = ahead_in_lane(context)
+    assert measured.all()
+    assert perhaps.all()
+    return surely[0].tolist()
+
+
+def test_who_is_ahead_beyond_the_junction_may_be_on_another_way_than_ego():
+    assert is_sure_of_lane([60, 75, 90], 140) == [False] * 3
+    assert is_sure_of_lane([60, 75, 90], 96) == [True] * 3  # Its rear is still before it
+
+
+def test_ego_is_known_to_follow_whom_it_follows_through_the_junction():
+    assert is_sure_of_lane([60, 75, 115], 140) == [True] * 3
+    assert is_sure_of_lane([60, 75, 90], 140, road(turns=False)) == [True] * 3
+
+
+def test_a_way_back_is_no_other_way():
+    *others, last = road(turns=False)
+    first, *others = others
+    back = straight(9, 100, -200, y=4.0)
+    lanes = [replace(first, successors=("2", "9")), *others, last, back]
+    assert is_sure_of_lane([60, 75, 90], 140, lanes) == [True] * 3

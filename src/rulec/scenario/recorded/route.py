@@ -157,15 +157,8 @@ def _straight_on(
     while reach < REACH_M:
         here = lanelets[way[-1]]
         leaving = _end_heading(here, backwards)
-        options = [
-            lanelets[number]
-            for number in (here.predecessors if backwards else here.successors)
-            if number in lanelets
-            and (again or number not in seen)
-            and is_lane(lanelets[number])
-            # A road does not turn back on itself, though vehicles may turn around at its end
-            and not turns_back(here, lanelets[number], backwards=backwards)
-        ]
+        onward = ways_on(lanelets, here, backwards=backwards)
+        options = [lanelet for lanelet in onward if again or lanelet.id not in seen]
         if not options:
             break
         turns = {x.id: abs(turn(leaving, _heading_ahead(x, backwards))) for x in options}
@@ -174,6 +167,23 @@ def _straight_on(
         seen.add(chosen.id)
         reach += max(lanelet_length(chosen), _SHORTEST_M)
     return way
+
+
+def ways_on(
+    lanelets: Mapping[str, Lanelet], here: Lanelet, *, backwards: bool = False
+) -> list[Lanelet]:
+    """The lanes into which a lanelet leads, except back beside it.
+
+    A road does not turn back on itself, though vehicles may turn around at its end. ``backwards``:
+    the lanes that lead into it.
+    """
+    return [
+        lanelets[number]
+        for number in (here.predecessors if backwards else here.successors)
+        if number in lanelets
+        and is_lane(lanelets[number])
+        and not turns_back(here, lanelets[number], backwards=backwards)
+    ]
 
 
 def turns_back(before: Lanelet, lanelet: Lanelet, *, backwards: bool = False) -> bool:
