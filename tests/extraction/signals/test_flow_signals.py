@@ -85,6 +85,23 @@ def test_those_behind_a_cycle_may_be_in_no_jam(x, y, told):
     assert found.unknown["congested"][0] == (not told)
 
 
+@pytest.mark.parametrize(
+    ("lead_mps", "beside", "told"),
+    [(7, False, False), (0, False, True), (7, True, True)],
+    ids=["a tractor leads", "one stands ahead", "two lanes"],
+)
+def test_a_line_behind_one_that_drives_freely_may_be_no_jam(lead_mps, beside, told):
+    """Three follow the first one; those ahead of it are 96 m and more away."""
+    ego, leader = steady(7, 0, 0, speed=7), steady(30, 50, 0, speed=lead_mps)
+    others = [steady(31, 10, 4.0, speed=7)] if beside else []
+    far = [steady(40 + k, x, 0, speed=7) for k, x in enumerate((150, 165))]
+    bodies = [ego, *line(7, 2, start=20.0), leader, *others, *far]
+    found = flow_signals(context_of(recording(lanes(2 if beside else 1), bodies), ("1",)))
+    for word in ("congested", "CONGESTED"):
+        assert found.world[word][0]
+        assert found.unknown[word][0] == (not told)
+
+
 def test_traffic_that_has_been_slow_for_less_than_10_s_may_be_no_jam():
     """All go at 10 m/s for 2 s, and then at 1 m/s, 11 s long."""
     along_m = np.cumsum([0.0] + [5.0] * 4 + [0.5] * 22)

@@ -5,6 +5,8 @@ All of them count the vehicles that go ego's way on its lanes, including ego, as
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
@@ -20,12 +22,14 @@ from rulec.extraction.signals.queues import (
     VehiclesAround,
     dense_lines,
     gap_in_lane,
+    longest_gaps,
     queues_by_lane,
     vehicles_around,
 )
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Flags
+from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import medians_hold
 
 TIMES_AS_FAST = 2.0
@@ -41,8 +45,8 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     Vehicles that queue to leave, beside lanes that flow or are empty, are no jam of the road: slow
     vehicles have to be on at least half of its lanes. Unknown if, without those in junctions, they
     are on no more than half, since they may wait to turn there; if no vehicle is ahead of ego, as
-    the others may be waiting for ego; if a cycle is, as all may be behind it; and for the first
-    ``_JAM_S`` of slow traffic.
+    the others may be waiting for ego; if a cycle is, or a single line is led freely, as all may be
+    behind a slow vehicle; and for the first ``_JAM_S`` of slow traffic.
     """
     around, limits, states = vehicles_around(context), context.thresholds, context.states
     existing = travel_lanes_first(context)
@@ -70,7 +74,7 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     moot = np.zeros(states, dtype=bool)
     if congested.any():
         moot = np.isinf(gap_in_lane(context, relations.BEHIND)) | _comes_up(context, congested)
-        moot |= _is_behind_cycle(context)
+        moot |= _is_behind_cycle(context) | _is_line_led_freely(context, congested)
     unknown = congested & (part | moot)
     return SignalColumns(
         {"congested": congested, "CONGESTED": congested, "walking_pace_flow": walking},
@@ -98,6 +102,40 @@ def _is_behind_cycle(context: DriveContext) -> Flags:
     ahead = context.relevant[rows] & (relations.station(context)[rows] == relations.BEHIND)
     near = relations.gap(context)[rows] <= context.thresholds.flow_reach_m
     found: Flags = (in_lane & ahead & near & context.on_lanes[rows]).any(axis=0)
+    return found
+
+
+def _is_line_led_freely(context: DriveContext, slow: Flags) -> Flags:
+    """Mask of ``slow`` states with all traffic in ego's lane, behind one that drives freely there.
+
+    Such as a tractor: nobody is close ahead of the first vehicle in the line that ego is in.
+    """
+    own, others, around = context.ego_extents, context.extents, vehicles_around(context)
+    found = np.zeros(context.states, dtype=bool)
+    lines = slow & (((around.counts > 0) & travel_lanes_first(context)).sum(axis=0) <= 1)
+    if not lines.any():
+        return found
+    ahead = context.driving_along & (others.lane == context.ego_lane)
+    cells = Cells.at(ahead & (relations.station(context) == relations.BEHIND) & lines)
+    egos = lines.nonzero()[0]
+
+    def of_all(of_ego: NDArray[Any], of_others: NDArray[Any]) -> NDArray[Any]:
+        return np.concatenate((of_ego[0, egos], cells.of(of_others)))
+
+    states = np.concatenate((egos, cells.columns))
+    s_min, s_max, speed, speed_error = (
+        of_all(own.s_min, others.s_min),
+        of_all(own.s_max, others.s_max),
+        of_all(own.along, others.along),
+        of_all(context.ego.speed_error, context.tracks.speed_error),
+    )
+    order = np.lexsort((s_min, states))
+    after = np.append(order[1:], order[0])
+    gaps = np.where(states[after] == states[order], s_min[after] - s_max[order], np.inf)
+    apart = gaps > longest_gaps(context, speed[order], speed_error[order])[LOOSE]
+    leads = order[apart]
+    state, first = np.unique(states[leads], return_index=True)
+    found[state] = speed[leads[first]] * KMH >= context.thresholds.standing_kmh
     return found
 
 
