@@ -42,10 +42,10 @@ Austria: § 26a(2) of the StVO binds in built-up areas alone; so does New South 
 its r. 164 wants who is beside a tram at a stop to wait, and its r. 160(2) nobody to pass one on
 its right. California: § 21756 wants who comes up behind a streetcar at its stop to wait behind it,
 and lets nobody past a safety zone faster than 10 mph; § 21655.1 keeps lanes for buses free.
-India: regulation 12(1)(f) of 2017 lets one turn left at red. Italy: who gets past on the right without leaving its lane does not overtake, by
-the highway police, Cass. civ. 4820/1979 and art. 346(1) of the regulation, which none of these
-had read. Japan: art. 18(3) on
-passing cycles is in force since 2026-04-01.
+India: regulation 12(1)(f) of 2017 lets one turn left at red. Italy: who gets past on the right
+without leaving its lane does not overtake, by the highway police, Cass. civ. 4820/1979 and art.
+346(1) of the regulation, which none of these had read. Japan: art. 18(3) on passing cycles is in
+force since 2026-04-01.
 """
 
 
