@@ -78,6 +78,20 @@ def test_a_drive_that_ends_before_the_only_way_which_turns():
     assert turns(*on, *onto, (114, 24), (114, 34))[-3] == "turn_far"
 
 
+def test_a_drive_that_ends_in_a_junction_where_its_own_lane_leads_nowhere():
+    """The map misses the way on from its lane: the road it is placed on turns beside it."""
+    lanes = [
+        straight(1, -200, 100, left_of="8"),
+        straight(8, -200, 100, y=3.5, right_of="1", successors=(3,)),
+        lanelet(3, arc(100, 17.5, 14, -90, 0), predecessors=(8,), successors=(6,), **INSIDE),
+        lanelet(6, [(114, 17.5), (114, 200)], predecessors=(3,)),
+    ]
+    found = recording(lanes, [vehicle(7, {k: (x, 0) for k, x in enumerate((80, 94, 97, 103))})])
+    signals = at_junctions(context_of(found, ("8", "3", "6")))
+    assert signals.world["turn"][-1] == "turn_far"
+    assert signals.unknown["turn"].tolist() == [False, True, True, True]
+
+
 def test_a_drive_that_ends_before_the_junction():
     # Fronts are 2 m ahead; the zone begins at 95
     assert told("turn", (80, 90, 94, 97)) == ["straight_on", "straight_on", "?", "?"]

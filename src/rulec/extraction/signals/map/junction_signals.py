@@ -139,7 +139,8 @@ def way_not_known(context: DriveContext) -> Flags:
 def _ways_part(context: DriveContext, start: float, columns: slice) -> bool:
     """Whether ways lead to different sides from the lane on which ego reaches a junction.
 
-    Also if the only ways turn: an ego that has not driven in may have reached its destination.
+    Also if the only ways turn: an ego that has not driven in may have reached its destination. And
+    if none begins there, as where the map misses a link: its road is then that of another lane.
     """
     piece = max(int(context.road.piece(np.array(start - 1e-6))), 0)
     near = int(np.abs(context.ego_extents.s_max[0, columns] - start).argmin())
@@ -151,7 +152,7 @@ def _ways_part(context: DriveContext, start: float, columns: slice) -> bool:
         if entry.id in way.entries
     ]
     turned = [0.0, *(way.turned for way in ways)]
-    return bool(max(turned) - min(turned) > np.radians(context.thresholds.turned_deg))
+    return not ways or bool(max(turned) - min(turned) > np.radians(context.thresholds.turned_deg))
 
 
 def _on_known_way(context: DriveContext, stretch: tuple[float, float], number: int) -> bool:
