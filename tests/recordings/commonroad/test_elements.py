@@ -333,6 +333,23 @@ def test_what_means_nothing(read, before, after, says):
     assert found.place.line in range(line - 6, line + 3)
 
 
+@pytest.mark.parametrize(
+    ("users", "others"),
+    [
+        ("", set()),
+        ("<userOneWay>bus</userOneWay><userOneWay>bicycle</userOneWay>", {"cyclesAllowed"}),
+        ("<userOneWay>taxi</userOneWay>", {"taxisAllowed"}),
+        ("<userBidirectional>bicycle</userBidirectional>", {"cyclesAllowed"}),
+    ],
+)
+def test_who_else_may_use_a_bus_lane(read, users, others):
+    def types(kind):
+        return read((RIGHT, f"{RIGHT}<laneletType>{kind}</laneletType>{users}")).lanelets["1"].types
+
+    assert types("busLane") == {"busLane"} | others
+    assert types("urban") == {"urban"}
+
+
 def test_signs_beside_the_carriageway_hold_on_it_nobody_knows_where(read):
     """As in a map of rounD's: signs to give way are nearer to a sidewalk than to the lane."""
     sign = "<trafficSignElement><trafficSignID>{}</trafficSignID></trafficSignElement>"

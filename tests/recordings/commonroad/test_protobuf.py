@@ -180,6 +180,12 @@ def test_a_lanelet_by_hand(tmp_path):
     assert (lanelet.predecessors, lanelet.types) == (("1", "2"), {"urban", "sidewalk"})
 
 
+def test_who_else_may_use_a_bus_lane(tmp_path):
+    lanelet = written(tmp_path, LEFT, RIGHT, whole(11, 8), whole(12, 6), whole(13, 9))
+    types = read_recording(lanelet).lanelets["7"].types
+    assert types == {"busLane", "cyclesAllowed", "taxisAllowed"}
+
+
 @pytest.mark.parametrize(
     ("number", "mark"),
     [(0, "broken"), (1, "solid"), (2, None), (3, None), (5, None), (9, "solid"), (11, "none")],

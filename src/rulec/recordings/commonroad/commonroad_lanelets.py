@@ -36,6 +36,8 @@ urban country highway driveWay mainCarriageWay accessRamp exitRamp shoulder busL
 bicycleLane sidewalk crosswalk interstate intersection border parking restricted restricted_area
 unknown
 """
+_USERS_TOO = MappingProxyType({"bicycle": recording.CYCLES_TOO, "taxi": recording.TAXIS_TOO})
+"""Users that a bus lane may name besides buses -> its type."""
 _FEWEST_POINTS = 2
 
 
@@ -75,8 +77,11 @@ def read_lanelet(tree: Tree) -> LaneletEntry:
 
 
 def _types(tree: Tree) -> Iterator[str]:
-    for kind in tree.all("laneletType"):
-        yield kind.one_of(_TYPES.split())
+    kinds = [kind.one_of(_TYPES.split()) for kind in tree.all("laneletType")]
+    yield from kinds
+    if "busLane" in kinds:
+        users = [*tree.all("userOneWay"), *tree.all("userBidirectional")]
+        yield from [_USERS_TOO[user.text] for user in users if user.text in _USERS_TOO]
     for bound, broad in (
         ("leftBound", recording.BROAD_LEFT),
         ("rightBound", recording.BROAD_RIGHT),

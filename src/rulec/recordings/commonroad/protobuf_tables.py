@@ -50,6 +50,7 @@ _LANELETS = (
 )
 _LANELET_TYPES = _words(f"{_LANELETS} restricted_area unknown")
 _LANELET_TYPES_2020 = _words(f"{_LANELETS} unknown")
+_USERS = _words("vehicle car truck bus priorityVehicle motorcycle bicycle pedestrian train taxi")
 _DIRECTIONS = _words("same opposite")
 _OBSTACLES = _words(
     "unknown car truck bus bicycle pedestrian priorityVehicle parkedVehicle constructionZone "
@@ -208,6 +209,8 @@ _LANELET_2020: Table = {
     9: Field("adjacentRight@drivingDir", _DIRECTIONS),
     10: Field("stopLine", _POLYGON),
     11: Field("laneletType", _LANELET_TYPES_2020, many=True),
+    12: Field("userOneWay", _USERS, many=True),
+    13: Field("userBidirectional", _USERS, many=True),
     **_refs("trafficSignRef", "trafficLightRef", first=14),
 }
 _INCOMING_2020 = _refs("successorsRight", "successorsStraight", "successorsLeft", first=3)
@@ -306,6 +309,8 @@ MAP: Table = {
             11: Field("adjacentRight@drivingDir", _DIRECTIONS),
             12: Field("stopLine", "uint"),
             13: Field("laneletType", _LANELET_TYPES, many=True),
+            14: Field("userOneWay", _USERS, many=True),
+            15: Field("userBidirectional", _USERS, many=True),
             **_refs("trafficSignRef", "trafficLightRef", first=16),
         },
         many=True,
