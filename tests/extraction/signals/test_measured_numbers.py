@@ -72,6 +72,25 @@ def test_who_brakes_until_a_lower_limit_begins_keeps_it(at, is_faster):
     assert (low[beyond] > 14.0 * 3.6).any() == is_faster
 
 
+@pytest.mark.parametrize("step_s", [0.1, 0.2, 0.3])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_stop_or_peak_that_is_shorter_than_the_mean(sign, step_s):
+    """From or to 30 m/s, for no longer than a moment at 3 s, with 4 m/s² and 2 m/s²."""
+    times = np.arange(0, 6.01, step_s)
+    gained = np.where(times < 3, 4, 2) * sign
+    from_s, least = times - 3, 0 if sign > 0 else 30
+    xs = 90 + least * from_s + np.where(times < 3, -1, 1) * gained * from_s**2 / 2
+    ego = vehicle(7, {k: (x, 0.0) for k, x in enumerate(xs.tolist())})
+    found = replace(recording(lanes(2), [ego], step_s=step_s), form="tracks")
+    low, high = ego_signals(context_of(found)).bounds["speed"]
+    true = (least + np.abs(from_s) * gained) * 3.6
+    assert (low <= true + 0.01).all()
+    assert (true - 0.01 <= high).all()
+    # A second away it drives evenly
+    even = np.abs(np.abs(from_s) - 1.3) < 0.2
+    assert (high[even] - low[even] < 0.8).all()
+
+
 def test_who_is_slower_than_the_threshold_stands_and_who_is_hardly_faster_may():
     assert speeds(0.2)[1] == (0.0, 0.0)
     assert speeds(0.4)[1] == (0.0, 2.52)

@@ -5,6 +5,8 @@ Quotients are bounded by those of their parts (interval arithmetic), sums by ind
 
 from __future__ import annotations
 
+from math import ceil
+
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
@@ -29,6 +31,8 @@ _CORNER_M = 0.2
 
 _STRAIGHT_RAD = 0.1
 """Largest angle to the road behind ego's rear at which ego has not begun to turn."""
+
+_HAIR = 1e-6
 
 _AT_LIMIT_MPS = 0.01
 """Limits are written to a hundredth: a simulated speed this close to a limit equals it."""
@@ -73,9 +77,31 @@ def _braked_since_the_mean(context: DriveContext) -> Floats:
 def speed_bounds(context: DriveContext) -> Bounds:
     """The bounds of ego's speed (km/h); from 0 if ego may be slow enough to stand."""
     speed, error = own_speed(context)
-    low = (speed - error) * KMH
+    differs = _differs_from_mean(context)
+    low = (speed - np.maximum(error, -differs)) * KMH
     may_stand = (low < context.thresholds.standing_kmh) & (error > 0)
-    return rounded_outward(np.where(may_stand, 0.0, low), (speed + error) * KMH)
+    return rounded_outward(
+        np.where(may_stand, 0.0, low), (speed + np.maximum(error, differs)) * KMH
+    )
+
+
+def _differs_from_mean(context: DriveContext) -> Floats:
+    """How much faster (m/s) ego may be for a moment than its mean speed, or slower, if negative.
+
+    The mean over ``smoothing_s`` shows neither a short stop nor a short peak. It is off by no more
+    than it is from the middle of those half of that time before and after, if ego slows down and
+    then gains speed, or the reverse.
+    """
+    speed, zero = context.ego.speed[0], np.zeros(context.states)
+    if context.tolerances.stated_mps is not None:
+        return zero
+    steps = ceil(context.thresholds.smoothing_s / 2 / context.recording.step_s - _HAIR)
+    columns, spans = context.spans.columns, context.spans
+    # At the ends of a drive means are over less time
+    inside = (columns - 2 * steps >= spans.first) & (columns + 2 * steps < spans.end)
+    inside &= moves(context)
+    before, after = (np.roll(speed, way) for way in (steps, -steps))
+    return np.where(inside, speed - (before + after) / 2, zero)
 
 
 def gap_bounds(context: DriveContext) -> Bounds:
