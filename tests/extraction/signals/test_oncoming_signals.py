@@ -126,6 +126,28 @@ def test_where_all_have_to_stop_ego_does_not_wait_for_who_comes_later(reaches_s,
     assert told(at(reaches_s))[0].any()
 
 
+def stopping(at_s):
+    """The middle of one that stands for a second from a time on, its front a metre before."""
+    since = TIMES - at_s
+    return 79 + np.where(since < 0, 10 * since, 1.5 * np.maximum(since - 1, 0) ** 2)
+
+
+@pytest.mark.parametrize(
+    ("signs", "known"), [(frozenset(), False), (frozenset({"STOP"}), True)], ids=["none", "some"]
+)
+def test_a_map_without_any_stop_sign_does_not_show_who_has_to_stop(signs, known):
+    """It enters 2.8 s after ego, and may have stopped as all have to; signs are elsewhere."""
+    road = [*crossroads(), straight(12, 300, 400, signs=signs)]
+    conflict, unknown = told(stopping(4.0), road)
+    assert conflict.any() == known
+    assert unknown.any() == (not known)
+    # Where there are lights they are not all told to stop
+    light = {"lights": (Light(0, (("green", 10),)),)}
+    assert told(stopping(4.0), crossroads(its_entry=light))[0].any()
+    # Who does not stop has no sign
+    assert told(at(5.5), road)[0].any()
+
+
 @pytest.mark.parametrize("reaches_s", [2.0, 9.5], ids=["ego lets it pass", "it is far away"])
 def test_ego_turns_behind_or_long_before_one(reaches_s):
     conflict, unknown = told(at(reaches_s))

@@ -30,7 +30,7 @@ from rulec.extraction.signals.map.right_of_way.oncoming_priority import (
     is_settled,
     turns_far,
 )
-from rulec.extraction.signals.map.right_of_way.own_reasons import SLOWEST_MPS
+from rulec.extraction.signals.map.right_of_way.own_reasons import SLOWEST_MPS, may_have_to_stop
 from rulec.extraction.signals.map.roundabout_signals import without_junction
 from rulec.extraction.signals.signal_columns import (
     SignalColumn,
@@ -241,6 +241,7 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
             and own.sure
             and other.sure
             and settled is not None
+            and not (_ONCOMING in kinds and may_have_to_stop(context, own, other))
             and not _turned_in_later(context, own, other)
             and _is_seen(passages.tracks.present[other.row], first + shift, latest),
             other=other,
