@@ -46,6 +46,20 @@ def test_all_that_can_be_said(tmp_path):
     assert roads.side == "left"
 
 
+def test_a_junction_none_of_whose_ways_names_any_other_is_not_known_to_have_no_conflicts(tmp_path):
+    rows = ("a,0,0,i,,", "a,9,0,i,,", "b,0,5,i,,", "b,9,5,i,,", "c,20,0,j,d,", "c,29,0,j,d,")
+    more = ("d,20,5,j,c,c", "d,29,5,j,c,c", "e,20,9,j,,", "e,29,9,j,,")
+    roads = lanes(tmp_path, "lane,x,y,junction,foes,first", *rows, *more)
+    told = {name: (lane.foes, lane.first) for name, lane in roads.lanelets.items()}
+    assert told == {
+        "a": (None, None),
+        "b": (None, None),
+        "c": ({"d"}, frozenset()),
+        "d": ({"c"}, {"c"}),
+        "e": (frozenset(), frozenset()),
+    }
+
+
 def test_lanes_whose_ends_meet_follow_each_other(tmp_path):
     """``c`` begins at the end of ``a``, but leads back."""
     points = ("a,0,0", "a,50,0", "b,50.2,0", "b,90,5", "c,50,0.2", "c,0,3")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast, get_args
 
@@ -121,6 +122,7 @@ class _LaneTable:
             lanelet = self._lanelet(rows)
             lanelets[lanelet.id] = lanelet
         self._check_references(lanelets)
+        lanelets = _with_orders_that_are_told(lanelets)
         remarks = [unread_remark(self.named.unread, LANE_COLUMNS)]
         if self.named.number("width") is None:
             remarks.append(f"lanes are taken to be {USUAL_WIDTH_M:g} m wide")
@@ -244,3 +246,15 @@ class _LaneTable:
                         )
                         help_text = did_you_mean(name, lanelets)
                         raise self.columns.wrong(row, why, "expected ids of lanes", help_text)
+
+
+def _with_orders_that_are_told(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
+    """The lanelets, without ``foes`` and ``first`` where no way of a junction names any.
+
+    An empty cell among cells with names says that there are none; empty cells only say nothing.
+    """
+    told = {lanelet.junction for lanelet in lanelets.values() if lanelet.foes or lanelet.first}
+    return {
+        name: lanelet if lanelet.junction in told else replace(lanelet, foes=None, first=None)
+        for name, lanelet in lanelets.items()
+    }
