@@ -41,6 +41,13 @@ def test_who_is_in_a_junction_after_its_way_has_ended(end):
     assert passages.occupied(passage, (9.0, 12.0)) == pytest.approx((2.0, 5.5))
 
 
+def test_who_drives_on_along_a_way_that_is_much_shorter_than_the_junction():
+    """Ways of a large junction may be drawn only where they cross others, here from x = 3 to 5."""
+    across = lanelet(2, [(0, -20), (0, 20)], width=16.0, **INSIDE)
+    passages, passage = passage_of_a_car(straight(1, 3, 5, **INSIDE), across)
+    assert passages.occupied(passage, (-2.0, 2.0)) == pytest.approx((4.0, 8.0))
+
+
 @pytest.mark.parametrize("seen_from", [0, 3], ids=["before", "in the junction"])
 def test_the_direction_in_which_one_comes_that_turns_round_at_once(seen_from):
     """It has turned by 57° when its middle is in the junction; its front was there before that."""

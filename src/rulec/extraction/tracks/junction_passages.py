@@ -1,8 +1,9 @@
 """Passages: which participants went through which junction, on which way, and when.
 
 A participant's way is, of those that begin in its direction, the one whose middle line is nearest
-to its places on average. Its place on the way is the arc length of its middle; its body extends
-half its length to either side. Before the way begins, the place is the negative distance to it.
+to its places on average; if all are far, the one whose line is, led straight on at its ends. Its
+place on the way is the arc length of its middle; its body extends half its length to either side.
+Before the way begins, the place is the negative distance to it.
 """
 
 from __future__ import annotations
@@ -17,7 +18,14 @@ import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.junctions import Interval, Junction, JunctionWay, junctions_of
+from rulec.extraction.tracks.junctions import (
+    Interval,
+    Junction,
+    JunctionWay,
+    junctions_of,
+    places_along,
+    prolonged,
+)
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Recording
@@ -32,9 +40,6 @@ _SURE_M = 0.4
 """A way is certain if every way that parts from it is farther away by at least this (m)."""
 
 _LARGEST_TURN = np.pi / 3
-
-_NO_WAY_M = 1e-9
-"""Corners of a line that are nearer to each other than this (m) give it no direction."""
 
 _ALIKE = 0.5
 """Ways whose turns differ by less than this (rad) lead to the same road."""
@@ -192,25 +197,10 @@ class JunctionPassages:
         row = self.tracks.present[passage.row]
         own = slice(passage.first, last + 1)
         places = shapely.points(self.tracks.x[passage.row, own], self.tracks.y[passage.row, own])
-        inside = np.maximum.accumulate(_along(line, places))
+        inside = np.maximum.accumulate(places_along(line, places))
         end = last + 1 + int((~np.append(row[last + 1 :], False)).argmax())
         beyond = self.travelled[passage.row, last + 1 : end] - self.travelled[passage.row, last]
         return np.concatenate((inside, inside[-1] + beyond))
-
-
-def _along(line: shapely.LineString, places: NDArray[np.object_]) -> Floats:
-    """Arc lengths (m) along a line beside places: below 0 before its start, beyond its end above.
-
-    A junction covers all of its ways, and some begin within it.
-    """
-    points, corners = shapely.get_coordinates(places), shapely.get_coordinates(line)
-    along: Floats = shapely.line_locate_point(line, places)
-    for end, before, beyond in ((0, 1, -1), (-1, -2, 1)):
-        ahead = corners[end] - corners[before]
-        away = (points - corners[end]) @ (ahead / max(float(np.hypot(*ahead)), _NO_WAY_M))
-        at_end = along <= 0 if beyond < 0 else along >= line.length
-        along = np.where(at_end, along + beyond * np.maximum(away, 0.0), along)
-    return along
 
 
 def _gets_to(places: Floats, place: float) -> float | None:
@@ -353,12 +343,22 @@ def _passage(
     away = np.full(len(ways), np.inf)
     present = tracks.present[row]
     whole = first > 0 and last + 1 < len(present) and bool(present[first - 1] and present[last + 1])
-    for number, way in enumerate(ways):
-        if way.on_rails == on_rails and abs(turn(way.headings[0], begins)) < _LARGEST_TURN:
-            fits = not whole or abs(turn(way.headings[1], ends)) < _LARGEST_TURN
-            away[number] = shapely.distance(way.line, points).mean() if fits else np.inf
-    best = int(np.argmin(away)) if len(away) else 0
-    if not len(away) or not away[best] <= _FARTHEST_M:
+    fitting = [
+        number
+        for number, way in enumerate(ways)
+        if way.on_rails == on_rails
+        and abs(turn(way.headings[0], begins)) < _LARGEST_TURN
+        and (not whole or abs(turn(way.headings[1], ends)) < _LARGEST_TURN)
+    ]
+    for longer in (False, True):
+        for number in fitting:
+            line = ways[number].line
+            line = prolonged(line, points) if longer else line
+            away[number] = shapely.distance(line, points).mean()
+        best = int(np.argmin(away)) if len(away) else 0
+        if fitting and away[best] <= _FARTHEST_M:
+            break
+    else:
         return None
     close: NDArray[intp] = (away < away[best] + _SURE_M).nonzero()[0]
     sure = whole or all(_is_alike(ways[k], ways[best], points[-1]) for k in close.tolist())

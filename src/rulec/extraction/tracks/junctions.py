@@ -10,6 +10,7 @@ from itertools import pairwise, takewhile
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_road import (
     TURN_REACH_M,
@@ -37,6 +38,10 @@ _SIDE_M = 0.4
 """Bodies keep this far (m) inside their lanes, so that ways side by side do not conflict."""
 
 _SHORT_M = 30.0
+
+_NO_WAY_M = 1e-9
+"""Corners of a line that are nearer to each other than this (m) give it no direction."""
+
 _TURNED = np.radians(45.0)
 
 Interval = tuple[float, float]
@@ -310,3 +315,35 @@ def approaches(recording: Recording, way: JunctionWay) -> list[Lanelet]:
     near = [known[x] for x in way.entries if x in known]
     short = [x for x in near if np.hypot(*np.diff(x.centre, axis=0).T).sum() < _SHORT_M]
     return near + [known[x] for entry in short for x in entry.predecessors if x in known]
+
+
+def places_along(line: shapely.LineString, places: NDArray[np.object_]) -> NDArray[np.float64]:
+    """Arc lengths (m) along a line beside places: below 0 before its start, beyond its end above.
+
+    A junction covers all of its ways, and some begin within it.
+    """
+    points, corners = shapely.get_coordinates(places), shapely.get_coordinates(line)
+    along: NDArray[np.float64] = shapely.line_locate_point(line, places)
+    for end, before, beyond in ((0, 1, -1), (-1, -2, 1)):
+        ahead = corners[end] - corners[before]
+        away = (points - corners[end]) @ (ahead / max(float(np.hypot(*ahead)), _NO_WAY_M))
+        at_end = along <= 0 if beyond < 0 else along >= line.length
+        along = np.where(at_end, along + beyond * np.maximum(away, 0.0), along)
+    return along
+
+
+def prolonged(line: shapely.LineString, places: NDArray[np.object_]) -> shapely.LineString:
+    """A line, with straight pieces at both ends for places before and beyond it.
+
+    A junction covers all of its ways: who drives on along one that is shorter does not leave it.
+    """
+    along, corners = places_along(line, places), shapely.get_coordinates(line)
+    ends = []
+    for end, before, more in (
+        (0, 1, -float(along.min())),
+        (-1, -2, float(along.max()) - line.length),
+    ):
+        ahead = corners[end] - corners[before]
+        length = max(float(np.hypot(*ahead)), _NO_WAY_M)
+        ends.append(corners[end] + ahead / length * max(more, 0.0))
+    return shapely.LineString(np.vstack((ends[0], corners, ends[1])))
