@@ -130,6 +130,8 @@ def test_only_when_one_goes_over_the_middle_is_in_doubt(ys, expected, side):
         # At the middle for longer than 2 s before it goes, and never going
         ((1.6, 1.6, 1.6, 1.6, 1.6, 1.6, 3, 4), "FFTTTTFF"),
         ((0, 1.6, 1.6, 1.6, 1.6, 1.6, 1.6, 0), "FFFFFFFF"),
+        # Over the middle between two states, as where these are a second apart
+        ((0, 0, 0, 4, 4, 4, 0, 0), "FFFTFFTF"),
     ],
 )
 def test_who_goes_over_the_middle_is_in_two_lanes(ys, expected, side):

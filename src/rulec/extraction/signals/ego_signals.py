@@ -10,7 +10,11 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
-from rulec.extraction.signals.conduct.manoeuvre_signals import goes_over_the_middle
+from rulec.extraction.signals.conduct.manoeuvre_signals import (
+    on_both_halves,
+    oncoming_side,
+    sides_beyond_far_edge,
+)
 from rulec.extraction.signals.ego_lanelets import room_beside, travel_lanes_at, travel_lanes_first
 from rulec.extraction.signals.map.junction_signals import lies_askew_in_turn
 from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
@@ -175,9 +179,32 @@ def _straddling(context: DriveContext) -> SignalColumns:
         if askew.any():
             # For as long as it lies across the mark without interruption before
             unknown |= straddling & (spans.next_state(askew) < spans.next_state(~straddling))
-    over = goes_over_the_middle(context)
+    over = _goes_over_the_middle(context)
     straddling, unknown = straddling | over, unknown & ~over
     return SignalColumns({"straddling": straddling}, unknown={"straddling": unknown})
+
+
+def _goes_over_the_middle(context: DriveContext) -> Flags:
+    """Mask of states in which ego is on both halves of a road, on its way to the other or back.
+
+    Up to ``passed_s`` before or after it is on the other half, not while it keeps to the edge; and
+    in the first state wholly on one half after one wholly on the other: it was on both in between.
+    """
+    there, _ = oncoming_side(context)
+    if not there.any():
+        return np.zeros(context.states, dtype=bool)
+    spans, on_both = context.spans, on_both_halves(context)
+    within = round(context.thresholds.passed_s / context.recording.step_s)
+    stays, at = on_both | there, spans.columns
+    before, after = spans.latest(there), spans.next_state(there)
+    goes = (after < spans.next_state(~stays)) & (after - at <= within)
+    comes = (before > spans.latest(~stays)) & (at - before <= within)
+    over: Flags = on_both & (goes | comes)
+    low, high = (rows[0] for rows in sides_beyond_far_edge(context, context.ego_extents))
+    least = context.thresholds.touching_m
+    far, near = there & (low >= -least), high <= least
+    over[1:] |= ~spans.begins_here[1:] & ((far[1:] & near[:-1]) | (near[1:] & far[:-1]))
+    return over
 
 
 def _in_two_lanes(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Flags]:

@@ -175,24 +175,6 @@ def comes_back_over_middle(context: DriveContext) -> Flags:
     return back
 
 
-def goes_over_the_middle(context: DriveContext) -> Flags:
-    """Mask of states in which ego is on both halves of a road, on its way to the other or back.
-
-    Up to ``passed_s`` before or after it is on the other half, not while it keeps to the edge.
-    """
-    there, _ = oncoming_side(context)
-    if not there.any():
-        return np.zeros(context.states, dtype=bool)
-    spans, on_both = context.spans, on_both_halves(context)
-    within = round(context.thresholds.passed_s / context.recording.step_s)
-    stays, at = on_both | there, spans.columns
-    before, after = spans.latest(there), spans.next_state(there)
-    goes = (after < spans.next_state(~stays)) & (after - at <= within)
-    comes = (before > spans.latest(~stays)) & (at - before <= within)
-    over: Flags = on_both & (goes | comes)
-    return over
-
-
 @once
 def on_both_halves(context: DriveContext) -> Flags:
     """Mask of states in which ego's body is on both sides of the far edge of its lanes."""
