@@ -261,6 +261,19 @@ def test_one_that_would_have_come_at_once_was_held_up():
     assert found.world["conflict_from_right"][3]
 
 
+@pytest.mark.parametrize(("brakes_s", "perhaps"), [(2, True), (3, False)])
+def test_one_that_stops_for_ego_and_waits_longer_may_have_been_held_up(brakes_s, perhaps):
+    """It comes 4.5 s after ego has left, for it stops from 10 m/s within 5 m.
+
+    At 2 s, as ego gets there, it is 9 m before the place; or it has 5 m left when ego is gone.
+    """
+    times, gone = [0, brakes_s, brakes_s + 1, 6.5, 7], -12 if perhaps else -8
+    places = [gone - 10 * brakes_s, gone, -7 if perhaps else -3.5, -7 if perhaps else -3.5, -3]
+    found = signals(NORTH, lambda t: np.interp(t, times, places), np.pi / 2)
+    assert not found.world["conflict_from_right"].any()
+    assert found.unknown["conflict_from_right"].any() == perhaps
+
+
 @pytest.mark.parametrize(
     ("way", "conflict"),
     [(3.0, True), (4.25, False), (5.0, False)],

@@ -207,7 +207,8 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
     """Participants that are in ego's way at a junction, or may be."""
     passages, shift = context.surroundings.passages, first_column(context)
     span = approach(context, own)
-    latest = own.last + round(context.thresholds.held_up_s / context.recording.step_s)
+    # One that ego has stopped may wait for longer than ego has held it up
+    latest = own.last + round(context.thresholds.preparing_s / context.recording.step_s)
     for other in passages.through[own.junction]:
         if other.row == own.row or other.last < span.start + shift:
             continue

@@ -4,7 +4,8 @@ A participant is in conflict with ego if ego gets there first although the other
 within ``yielding_s`` after ego, or does come within ``held_up_s`` although it would have been there
 that soon; and if ego drives into the side of one that is there. A participant that ego lets pass is
 not in conflict, unless it runs into ego. One that comes more than ``_LATE_S`` after ego has got
-there and has had to stand there is only perhaps in conflict.
+there and has had to stand there is only perhaps in conflict; likewise one that brakes hard for ego
+and then comes later than ``held_up_s``: how long it waits does not show why it braked.
 """
 
 from __future__ import annotations
@@ -192,15 +193,14 @@ def _held_up(
         )
         waits = _stands(context, other, drives_in) or own_reason
         return first, drove_on and not late and not waits
-    if late_s >= limits.held_up_s:
-        return None
     travelled = passages.travelled[other.row]
     way = np.interp(at, np.arange(len(travelled)), travelled) - travelled[columns]
     speed = np.maximum(passages.tracks.speed[other.row, columns], 0.1)
     soon = columns + way / speed / step_s - until < limits.yielding_s / step_s
     # A vehicle that speeds up when ego is already in the junction was not held up by ego's driving
     # in
-    if not (soon[decides] and soon[-1]):
+    waits_longer = late_s >= limits.held_up_s
+    if waits_longer or not (soon[decides] and soon[-1]):
         before = max(decides - round(_SEES_S / step_s), 0)
         braked = soon[before] and _brakes_for(context, other, (first + before, int(until)), comes)
         if not braked:
@@ -210,7 +210,9 @@ def _held_up(
     elif not _slows_down(context, other, first + decides, int(until)):
         return None
     own_reason = _slows_for_itself(context, ego, other, first + decides, comes)
-    return int(columns[soon.argmax()]), leaves is not None and not own_reason
+    if waits_longer and own_reason:
+        return None
+    return int(columns[soon.argmax()]), not (leaves is None or own_reason or waits_longer)
 
 
 def _slows_for_itself(
