@@ -45,9 +45,8 @@ its right. California: § 21756 wants who comes up behind a streetcar at its sto
 and lets nobody past a safety zone faster than 10 mph; § 21655.1 keeps lanes for buses free.
 India: regulation 12(1)(f) of 2017 lets one turn left at red. Italy: who gets past on the right
 without leaving its lane does not overtake, by the highway police, Cass. civ. 4820/1979 and art.
-346(1) of the regulation, which none of these had read. Korea:
-art. 38(1) wants a signal of who drives onto a roundabout. Japan: art. 18(3) on passing cycles is in
-force since 2026-04-01.
+346(1) of the regulation, which none of these had read. Japan: art. 18(3) on passing cycles is in
+force since 2026-04-01. Korea: art. 38(1) wants a signal from whoever drives onto a roundabout.
 """
 
 

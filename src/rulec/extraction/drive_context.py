@@ -177,18 +177,18 @@ class DriveContext:
         return places, different.searchsorted(codes)
 
     @cached_property
-    def own_way_end(self) -> Floats:
-        """Where (m) along the road ego's lane next divides beyond its last place, by state.
+    def route_known_until(self) -> Floats:
+        """Up to where (m) along the road ego's route is known, by state of its drive.
 
-        Which of the ways ego takes there is not recorded. Infinity if none is known.
+        To the first fork of ego's lane that its drive does not reach; infinity without one.
         """
         last = self.spans.begins + self.spans.lengths - 1
         middle, lanes = self.ego_extents.s[0, last], self.ego_lane[last]
         places, number = self.places_at(middle, lanes)
-        ends = np.array([self._divides_after(*place) for place in places])[number]
+        ends = np.array([self._next_fork(*place) for place in places])[number]
         return self.spans.spread(ends)
 
-    def _divides_after(self, piece: int, lane: int) -> float:
+    def _next_fork(self, piece: int, lane: int) -> float:
         if not self.wrong_way:
             for own in range(piece, len(self.road.rows)):
                 here = self.road.lanelet(own, lane)

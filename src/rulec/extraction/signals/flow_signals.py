@@ -45,8 +45,8 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     Vehicles that queue to leave, beside lanes that flow or are empty, are no jam of the road: slow
     vehicles have to be on at least half of its lanes. Unknown if, without those in junctions, they
     are on no more than half, since they may wait to turn there; if no vehicle is ahead of ego, as
-    the others may be waiting for ego; if a cycle is, or a single line is led freely, as all may be
-    behind a slow vehicle; and for the first ``_JAM_S`` of slow traffic.
+    the others may be waiting for ego; if a cycle is, or all are in one line whose leader drives
+    freely, as all may be behind that one; and for the first ``_JAM_S`` of slow traffic.
     """
     around, limits, states = vehicles_around(context), context.thresholds, context.states
     existing = travel_lanes_first(context)
@@ -74,7 +74,7 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     moot = np.zeros(states, dtype=bool)
     if congested.any():
         moot = np.isinf(gap_in_lane(context, relations.BEHIND)) | _comes_up(context, congested)
-        moot |= _is_behind_cycle(context) | _is_line_led_freely(context, congested)
+        moot |= _is_behind_cycle(context) | _is_behind_moving_bottleneck(context, congested)
     unknown = congested & (part | moot)
     return SignalColumns(
         {"congested": congested, "CONGESTED": congested, "walking_pace_flow": walking},
@@ -105,19 +105,19 @@ def _is_behind_cycle(context: DriveContext) -> Flags:
     return found
 
 
-def _is_line_led_freely(context: DriveContext, slow: Flags) -> Flags:
-    """Mask of ``slow`` states with all traffic in ego's lane, behind one that drives freely there.
+def _is_behind_moving_bottleneck(context: DriveContext, slow: Flags) -> Flags:
+    """Mask of ``slow`` states with all traffic in ego's lane, behind a leader that drives freely.
 
-    Such as a tractor: nobody is close ahead of the first vehicle in the line that ego is in.
+    A leader such as a tractor: the first of ego's line, with nobody close ahead of it.
     """
     own, others, around = context.ego_extents, context.extents, vehicles_around(context)
     found = np.zeros(context.states, dtype=bool)
-    lines = slow & (((around.counts > 0) & travel_lanes_first(context)).sum(axis=0) <= 1)
-    if not lines.any():
+    one_line = slow & (((around.counts > 0) & travel_lanes_first(context)).sum(axis=0) <= 1)
+    if not one_line.any():
         return found
     ahead = context.driving_along & (others.lane == context.ego_lane)
-    cells = Cells.at(ahead & (relations.station(context) == relations.BEHIND) & lines)
-    egos = lines.nonzero()[0]
+    cells = Cells.at(ahead & (relations.station(context) == relations.BEHIND) & one_line)
+    egos = one_line.nonzero()[0]
 
     def of_all(of_ego: NDArray[Any], of_others: NDArray[Any]) -> NDArray[Any]:
         return np.concatenate((of_ego[0, egos], cells.of(of_others)))
@@ -133,9 +133,9 @@ def _is_line_led_freely(context: DriveContext, slow: Flags) -> Flags:
     after = np.append(order[1:], order[0])
     gaps = np.where(states[after] == states[order], s_min[after] - s_max[order], np.inf)
     apart = gaps > longest_gaps(context, speed[order], speed_error[order])[LOOSE]
-    leads = order[apart]
-    state, first = np.unique(states[leads], return_index=True)
-    found[state] = speed[leads[first]] * KMH >= context.thresholds.standing_kmh
+    leaders = order[apart]
+    state, nearest = np.unique(states[leaders], return_index=True)
+    found[state] = speed[leaders[nearest]] * KMH >= context.thresholds.standing_kmh
     return found
 
 

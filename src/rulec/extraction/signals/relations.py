@@ -96,7 +96,7 @@ def laterals(context: DriveContext) -> Laterals:
     """``lateral`` within tolerances: others farther in and out, and the map where it may be.
 
     This covers all that lies in between. A participant ahead in ego's lane but hardly in its way
-    may as well be at its side, and so may one beyond a place where ego may take another way.
+    may as well be at its side, and so may one where ego's route is not known any more.
     """
     place, offset = context.tolerances.place_m, context.map_offset_m
     cells, beside = known_places(context), _beside_lane(context)
@@ -106,8 +106,8 @@ def laterals(context: DriveContext) -> Laterals:
     at_side = behind[~_in_the_way(context, cells.part(behind), beside.clear.take(behind))]
     doubtful, perhaps = np.zeros(len(codes), dtype=bool), codes == SAME_LANE
     doubtful[at_side] = True
-    # No relation beyond the end of ego's own way is that of the way which ego takes there
-    doubtful |= cells.of(context.extents.s_min) > cells.of(context.own_way_end)
+    # Beyond a fork that it does not reach, ego may take the other road
+    doubtful |= cells.of(context.extents.s_min) > cells.of(context.route_known_until)
     surely = perhaps & ~doubtful
     wavers = beside.wavering(both, place)
     tries = [(wavers, beside.part(wavers), [own.take(wavers) for own in both])]

@@ -22,9 +22,9 @@ from rulec.extraction.tracks.junctions import (
     Interval,
     Junction,
     JunctionWay,
+    extended,
     junctions_of,
     places_along,
-    prolonged,
 )
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.polylines import places_in
@@ -353,7 +353,7 @@ def _passage(
     for longer in (False, True):
         for number in fitting:
             line = ways[number].line
-            line = prolonged(line, points) if longer else line
+            line = extended(line, points) if longer else line
             away[number] = shapely.distance(line, points).mean()
         best = int(np.argmin(away)) if len(away) else 0
         if fitting and away[best] <= _FARTHEST_M:

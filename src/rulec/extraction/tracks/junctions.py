@@ -332,7 +332,7 @@ def places_along(line: shapely.LineString, places: NDArray[np.object_]) -> NDArr
     return along
 
 
-def prolonged(line: shapely.LineString, places: NDArray[np.object_]) -> shapely.LineString:
+def extended(line: shapely.LineString, places: NDArray[np.object_]) -> shapely.LineString:
     """A line, with straight pieces at both ends for places before and beyond it.
 
     A junction covers all of its ways: who drives on along one that is shorter does not leave it.

@@ -122,7 +122,7 @@ class _LaneTable:
             lanelet = self._lanelet(rows)
             lanelets[lanelet.id] = lanelet
         self._check_references(lanelets)
-        lanelets = _with_orders_that_are_told(lanelets)
+        lanelets = _with_known_priorities(lanelets)
         remarks = [unread_remark(self.named.unread, LANE_COLUMNS)]
         if self.named.number("width") is None:
             remarks.append(f"lanes are taken to be {USUAL_WIDTH_M:g} m wide")
@@ -248,13 +248,13 @@ class _LaneTable:
                         raise self.columns.wrong(row, why, "expected ids of lanes", help_text)
 
 
-def _with_orders_that_are_told(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
+def _with_known_priorities(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
     """The lanelets, without ``foes`` and ``first`` where no way of a junction names any.
 
     An empty cell among cells with names says that there are none; empty cells only say nothing.
     """
-    told = {lanelet.junction for lanelet in lanelets.values() if lanelet.foes or lanelet.first}
+    known = {lanelet.junction for lanelet in lanelets.values() if lanelet.foes or lanelet.first}
     return {
-        name: lanelet if lanelet.junction in told else replace(lanelet, foes=None, first=None)
+        name: lanelet if lanelet.junction in known else replace(lanelet, foes=None, first=None)
         for name, lanelet in lanelets.items()
     }

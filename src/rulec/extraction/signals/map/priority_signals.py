@@ -20,17 +20,19 @@ from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.right_of_way.conflicts import (
     ARRIVALS,
     FROM_SIDES,
+    LONGEST_WAIT_S,
     Encounter,
     arrivals,
     first_column,
     in_conflict,
 )
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import (
+    SLOWEST_MPS,
     gives_way_to,
     is_settled,
+    may_have_to_stop,
     turns_far,
 )
-from rulec.extraction.signals.map.right_of_way.own_reasons import SLOWEST_MPS, may_have_to_stop
 from rulec.extraction.signals.map.roundabout_signals import without_junction
 from rulec.extraction.signals.signal_columns import (
     SignalColumn,
@@ -207,12 +209,14 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
     """Participants that are in ego's way at a junction, or may be."""
     passages, shift = context.surroundings.passages, first_column(context)
     span = approach(context, own)
-    # One that ego has stopped may wait for longer than ego has held it up
-    latest = own.last + round(context.thresholds.preparing_s / context.recording.step_s)
+    waits, latest = (
+        own.last + round(seconds / context.recording.step_s)
+        for seconds in (LONGEST_WAIT_S, context.thresholds.held_up_s)
+    )
     for other in passages.through[own.junction]:
         if other.row == own.row or other.last < span.start + shift:
             continue
-        if other.first > latest and passages.front_enters(other) > latest:
+        if other.first > waits and passages.front_enters(other) > waits:
             continue
         met = passages.junctions[own.junction].meeting(own.way, other.way)
         if met is None:

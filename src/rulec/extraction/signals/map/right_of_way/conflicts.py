@@ -19,13 +19,17 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.right_of_way.bodies import collide, gap_s
-from rulec.extraction.signals.map.right_of_way.own_reasons import SLOWEST_MPS, slows_for_itself
+from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS
+from rulec.extraction.signals.map.right_of_way.own_reasons import slows_for_itself
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.tracks import Flags
 
 FROM_SIDES = ("conflict_from_left", "conflict_from_right")
 ARRIVALS = ("arrived_together", "other_arrived_first", "other_in_junction")
+
+LONGEST_WAIT_S = 10.0
+"""A vehicle that ego has made stop may wait for this long before it goes on."""
 
 _DRIVES_MPS = 3.0
 """A vehicle that drives more slowly in a junction may wait there."""

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from math import cos, radians, sin
 
 from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.junctions import (
     JunctionWay,
@@ -13,10 +14,23 @@ from rulec.extraction.tracks.junctions import (
     approaches,
     entry_lights,
 )
-from rulec.recordings.recording import ALL_STOP, GIVE_WAY_SIGNS, Points, Recording
+from rulec.recordings.recording import (
+    ALL_STOP,
+    GIVE_WAY_SIGNS,
+    STOP_SIGNS,
+    Points,
+    Recording,
+    is_there,
+)
 
 _ONE_GIVES_WAY = GIVE_WAY_SIGNS - {ALL_STOP}
 """Where all have to stop, the participant that came first goes first."""
+
+SLOWEST_MPS = 1.0
+"""A slower vehicle waits; one standing in a junction as its track ends goes on this fast."""
+
+_STOPPED_S = 10.0
+"""Who stood so short a time before entering a junction may have had to stop at its line."""
 
 _CLEARED_S = 2.0
 """A light that has been red for this long as a vehicle enters the junction was red before."""
@@ -113,3 +127,21 @@ def _crossed(context: DriveContext, other: Passage, line: Points | None) -> int 
     way = (tracks.x[other.row, until] - x) * ahead[0] + (tracks.y[other.row, until] - y) * ahead[1]
     before = (way + half < 0).nonzero()[0]
     return int(before[-1]) + 1 if len(before) else None
+
+
+def may_have_to_stop(context: DriveContext, own: Passage, other: Passage) -> bool:
+    """Whether an oncoming participant may have entered later because all have to stop, as it did.
+
+    A map without any stop sign does not show that there are none; where lights are, nobody has to.
+    """
+    passages, step_s = context.surroundings.passages, context.recording.step_s
+    if (other.first - own.first) * step_s <= context.thresholds.together_s:
+        return False
+    if all_have_to_stop(context.recording, passages.junctions[own.junction]) is False:
+        stop_signs = STOP_SIGNS & (context.recording.complete | map_contents(context).signs)
+        by_entry = entry_lights(context.recording, passages.way(other))
+        if stop_signs or any(is_there(light) for _, lights in by_entry for light in lights):
+            return False
+    since = max(other.first - round(_STOPPED_S / step_s), 0)
+    waits = passages.tracks.speed[other.row, since : other.first + 1] < SLOWEST_MPS
+    return bool(waits.any())

@@ -16,22 +16,12 @@ import numpy as np
 import shapely
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.signals.map.right_of_way.oncoming_priority import turns_far
+from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS, turns_far
 from rulec.extraction.tracks.junction_passages import Passage
-from rulec.extraction.tracks.junctions import (
-    Junction,
-    JunctionWay,
-    all_have_to_stop,
-    approaches,
-    entry_lights,
-)
+from rulec.extraction.tracks.junctions import Junction, JunctionWay, approaches, entry_lights
 from rulec.extraction.tracks.tracks import Floats
-from rulec.recordings.recording import GIVE_WAY_SIGNS, STOP_SIGNS, is_there
+from rulec.recordings.recording import GIVE_WAY_SIGNS, STOP_SIGNS
 from rulec.scenario.recorded.reference_line import turn
-
-SLOWEST_MPS = 1.0
-"""A slower vehicle waits; one standing in a junction as its track ends goes on this fast."""
 
 _BENDS_MPS2 = 2.0
 """A vehicle in a bend with this usual lateral acceleration may be slow because of the bend."""
@@ -60,9 +50,6 @@ _AT_LINE_M = 1.0
 
 _IN_WAY_M = 1.5
 """Somebody whose middle is nearer than this to the way that a vehicle will drive is in its way."""
-
-_STOPPED_S = 10.0
-"""Who stood so short a time before entering a junction may have had to stop at its line."""
 
 _AHEAD_S = 6.0
 """Somebody farther ahead by time is no reason to brake yet."""
@@ -280,25 +267,3 @@ def _way_ahead(context: DriveContext, row: int, column: int) -> shapely.LineStri
     if len(ahead) < 2:
         return None
     return shapely.LineString(np.column_stack((tracks.x[row, ahead], tracks.y[row, ahead])))
-
-
-def may_have_to_stop(context: DriveContext, own: Passage, other: Passage) -> bool:
-    """Whether an oncoming participant may have entered later because all have to stop, as it did.
-
-    A map without any stop sign does not show that there are none; where lights are, nobody has to.
-    """
-    passages, step_s = context.surroundings.passages, context.recording.step_s
-    if (other.first - own.first) * step_s <= context.thresholds.together_s:
-        return False
-    if all_have_to_stop(context.recording, passages.junctions[own.junction]) is False:
-        told = STOP_SIGNS & (context.recording.complete | map_contents(context).signs)
-        lights = [
-            light
-            for _, each in entry_lights(context.recording, passages.way(other))
-            for light in each
-        ]
-        if told or any(map(is_there, lights)):
-            return False
-    since = max(other.first - round(_STOPPED_S / step_s), 0)
-    waits = passages.tracks.speed[other.row, since : other.first + 1] < SLOWEST_MPS
-    return bool(waits.any())
