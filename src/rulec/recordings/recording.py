@@ -173,6 +173,9 @@ CYCLES_TOO = "cyclesAllowed"
 TAXIS_TOO = "taxisAllowed"
 """The type of a bus lane that taxis may use as well."""
 
+BUSES_ONLY = "busesOnly"
+"""The type of a bus lane whose users the map names: nobody but those uses it."""
+
 STRAIGHT_ON = "straightOn"
 """The type of a path through a junction that the map calls straight on, even if it bends."""
 

@@ -142,15 +142,21 @@ def test_surfaces_by_ego_s_middle():
 @pytest.mark.parametrize(
     ("kind", "allowed", "last"),
     [
+        ("bicycle", "", "?"),
+        ("taxi", "", "?"),
+        ("car", "", "bus_lane"),
+        ("bicycle", "busesOnly", "bus_lane"),
+        ("taxi", "busesOnly", "bus_lane"),
         ("bicycle", "cyclesAllowed", "carriageway"),
         ("car", "cyclesAllowed", "bus_lane"),
-        ("taxi", "cyclesAllowed", "bus_lane"),
+        ("taxi", "busesOnly cyclesAllowed", "bus_lane"),
         ("taxi", "taxisAllowed", "carriageway"),
         ("car", "taxisAllowed", "bus_lane"),
     ],
 )
 def test_a_lane_for_buses_that_others_may_use(kind, allowed, last):
-    shared = straight(2, 100, 200, types=frozenset({"busLane", allowed}), predecessors=(1,))
+    types = frozenset({"busLane", *allowed.split()})
+    shared = straight(2, 100, 200, types=types, predecessors=(1,))
     ego = vehicle(7, {0: (97.0, 0.0), 1: (103.0, 0.0)}, kind, length=1.6, width=0.6)
     assert surfaces(ego, [LANES[0], shared]) == ["carriageway", last]
 

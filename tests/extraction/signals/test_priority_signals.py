@@ -246,6 +246,39 @@ def test_a_conflict_is_one_of_a_single_junction():
     assert from_right[9]
 
 
+@pytest.mark.parametrize(("stops_at", "ends", "perhaps"), [(-7, 9, True), (-40, 9, False)])
+def test_one_that_stops_for_ego_and_is_not_recorded_further_may_have_been_held_up(
+    stops_at, ends, perhaps
+):
+    """At 2 s, as ego gets there, it is 10 m/s fast and 9 m before the place, or 42 m."""
+    times, places = [0, 2, 3], [stops_at - 25, stops_at - 5, stops_at]
+    ego = vehicle(7, {k: (-20 + 5 * k, 0) for k in STEPS}, speed=10)
+    at = {k: (0, np.interp(k / 2, times, places)) for k in range(ends)}
+    drives, stands = (vehicle(8, at, speed=mps, heading=np.pi / 2) for mps in (10, 0))
+    states = {k: (drives if k < 5 else stands).states[k] for k in at}
+    other = replace(drives, states=states)
+    found = replace(recording([*EAST, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
+    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    assert not told.world["conflict_from_right"].any()
+    assert told.unknown["conflict_from_right"].any() == perhaps
+
+
+@pytest.mark.parametrize(("aside_m", "x", "perhaps"), [(0, 70, False), (4, 70, True), (4, 0, True)])
+def test_nobody_knows_whose_way_crosses_that_of_ego_on_no_way(aside_m, x, perhaps):
+    """Its junction is 12 m wide, and ego drives that far beside the middle of its only way."""
+    road = [replace(one, **straight_sides(one, 6.0)) for one in EAST]
+    ego = vehicle(7, {k: (-20 + 5 * k, -aside_m) for k in STEPS}, speed=10)
+    other = vehicle(8, dict.fromkeys(STEPS, (x, 30)), speed=0)
+    found = replace(recording([*road, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
+    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    assert told.unknown["conflict_from_right"].any() == (perhaps and x == 0)
+    assert told.unknown["unregulated_junction"].any() == perhaps
+
+
+def straight_sides(one, half_m):
+    return {name: one.centre + (0, way * half_m) for name, way in (("left", 1), ("right", -1))}
+
+
 @pytest.mark.parametrize(("creeps_mps", "known"), [(0.0, False), (2.0, True)])
 def test_one_that_stands_when_ego_drives_in_may_wait_for_others(creeps_mps, known):
     """It moves off when ego leaves the junction at 2.5 s, and comes less than a second later."""

@@ -337,9 +337,13 @@ def test_what_means_nothing(read, before, after, says):
     ("users", "others"),
     [
         ("", set()),
-        ("<userOneWay>bus</userOneWay><userOneWay>bicycle</userOneWay>", {"cyclesAllowed"}),
-        ("<userOneWay>taxi</userOneWay>", {"taxisAllowed"}),
-        ("<userBidirectional>bicycle</userBidirectional>", {"cyclesAllowed"}),
+        ("<userOneWay>bus</userOneWay>", {"busesOnly"}),
+        (
+            "<userOneWay>bus</userOneWay><userOneWay>bicycle</userOneWay>",
+            {"busesOnly", "cyclesAllowed"},
+        ),
+        ("<userOneWay>taxi</userOneWay>", {"busesOnly", "taxisAllowed"}),
+        ("<userBidirectional>bicycle</userBidirectional>", {"busesOnly", "cyclesAllowed"}),
     ],
 )
 def test_who_else_may_use_a_bus_lane(read, users, others):

@@ -183,7 +183,7 @@ def test_a_lanelet_by_hand(tmp_path):
 def test_who_else_may_use_a_bus_lane(tmp_path):
     lanelet = written(tmp_path, LEFT, RIGHT, whole(11, 8), whole(12, 6), whole(13, 9))
     types = read_recording(lanelet).lanelets["7"].types
-    assert types == {"busLane", "cyclesAllowed", "taxisAllowed"}
+    assert types == {"busLane", "busesOnly", "cyclesAllowed", "taxisAllowed"}
 
 
 @pytest.mark.parametrize(

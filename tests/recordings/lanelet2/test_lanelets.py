@@ -122,14 +122,14 @@ def test_walkers_go_both_ways_on_one_lanelet(tmp_path):
         ({"participant__vehicle": "yes"}, {"urban"}),
         ({"participant__bicycle": "yes"}, {"bicycleLane", "urban"}),
         ({"participant__bicycle": "yes", "participant__pedestrian": "yes"}, {"sidewalk", "urban"}),
-        ({"participant__vehicle__bus": "yes"}, {"busLane", "urban"}),
+        ({"participant__vehicle__bus": "yes"}, {"busLane", "busesOnly", "urban"}),
         (
             {"participant__vehicle__bus": "yes", "participant__bicycle": "yes"},
-            {"busLane", "cyclesAllowed", "urban"},
+            {"busLane", "busesOnly", "cyclesAllowed", "urban"},
         ),
         (
             {"participant__vehicle__bus": "yes", "participant__vehicle__taxi": "yes"},
-            {"busLane", "taxisAllowed", "urban"},
+            {"busLane", "busesOnly", "taxisAllowed", "urban"},
         ),
         ({"participant__vehicle__emergency": "yes"}, {"restricted_area", "urban"}),
         ({"participant__vehicle": "no"}, {"restricted_area", "urban"}),

@@ -117,8 +117,9 @@ def test_a_lane_for_buses_by_access(tmp_path):
     lanes = section(*(lane(-number, more=more) for number, more in kinds))
     found = lanelets(tmp_path, road(1, lanes))
     types = [found[f"1.0.-{number}"].types for number in range(1, 6)]
-    assert types[:4] == [{"busLane"}, {"busLane"}, set(), {"busLane", "cyclesAllowed"}]
-    assert types[4] == {"busLane", "taxisAllowed"}
+    buses = {"busLane", "busesOnly"}
+    assert types[:4] == [buses, buses, set(), buses | {"cyclesAllowed"}]
+    assert types[4] == buses | {"taxisAllowed"}
 
 
 def test_a_lane_for_both_directions(tmp_path):

@@ -13,6 +13,7 @@ from rulec.scenario.recorded.reference_line import without_repeats
 from support.builders.sumo_files import ROAD_NET
 
 THROUGH = "mainCarriageWay"
+BUSES = ("busLane", "busesOnly")
 
 
 def lanelets(tmp_path, text=ROAD_NET, step_s=0.5):
@@ -87,9 +88,9 @@ def test_a_walking_area_is_an_outline(tmp_path):
         ({"allow": "pedestrian"}, {"sidewalk"}),
         ({"allow": "pedestrian bicycle"}, {"sidewalk"}),
         ({"allow": "bicycle"}, {"bicycleLane"}),
-        ({"allow": "bus taxi bicycle"}, {"busLane", "cyclesAllowed", "taxisAllowed", THROUGH}),
-        ({"allow": "bus taxi"}, {"busLane", "taxisAllowed", THROUGH}),
-        ({"allow": "bus"}, {"busLane", THROUGH}),
+        ({"allow": "bus taxi bicycle"}, {*BUSES, "cyclesAllowed", "taxisAllowed", THROUGH}),
+        ({"allow": "bus taxi"}, {*BUSES, "taxisAllowed", THROUGH}),
+        ({"allow": "bus"}, {*BUSES, THROUGH}),
         ({"allow": "emergency authority"}, {"shoulder", THROUGH}),
         ({"allow": "emergency passenger"}, {THROUGH}),
         ({"allow": "bus passenger"}, {THROUGH}),

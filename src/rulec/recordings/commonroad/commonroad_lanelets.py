@@ -81,6 +81,7 @@ def _types(tree: Tree) -> Iterator[str]:
     yield from kinds
     if "busLane" in kinds:
         users = [*tree.all("userOneWay"), *tree.all("userBidirectional")]
+        yield from [recording.BUSES_ONLY] if users else []
         yield from [_USERS_TOO[user.text] for user in users if user.text in _USERS_TOO]
     for bound, broad in (
         ("leftBound", recording.BROAD_LEFT),

@@ -12,7 +12,7 @@ from math import isfinite
 from types import MappingProxyType
 
 from rulec.recordings.encodings.speed_units import KMH, SPEED_UNITS
-from rulec.recordings.recording import CYCLES_TOO, TAXIS_TOO, LaneMark
+from rulec.recordings.recording import BUSES_ONLY, CYCLES_TOO, TAXIS_TOO, LaneMark
 
 _Tags = Mapping[str, str]
 
@@ -64,7 +64,7 @@ def _participants(tags: _Tags) -> set[str] | None:
 def _types_for(allowed: set[str]) -> Iterator[str]:
     motorized = {user for user in allowed if user.partition(":")[0] == "vehicle"}
     if motorized and motorized <= _BUSES:
-        yield "busLane" if "vehicle:bus" in motorized else "restricted_area"
+        yield from ("busLane", BUSES_ONLY) if "vehicle:bus" in motorized else ("restricted_area",)
         if "bicycle" in allowed:
             yield CYCLES_TOO
         if "vehicle:taxi" in motorized:

@@ -13,7 +13,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.recordings.polylines import parallel_line
-from rulec.recordings.recording import CYCLES_TOO, STRAIGHT_ON, TAXIS_TOO, Lanelet, Points
+from rulec.recordings.recording import BUSES_ONLY, CYCLES_TOO, STRAIGHT_ON, TAXIS_TOO, Lanelet, Points
 
 USUAL_WIDTH_M = 3.5
 """The default width (m) of a lane, which is that of most rural roads and motorways."""
@@ -29,7 +29,7 @@ LANE_TYPES = frozenset(
         *("mainCarriageWay", "accessRamp", "exitRamp", "shoulder", "busLane", "busStop"),
         *("bicycleLane", "sidewalk", "crosswalk", "directed", "intersection", "unregulated"),
         *("roundabout", "level_crossing", "rail", "tunnel", "parking", "border"),
-        *("restricted_area", CYCLES_TOO, TAXIS_TOO, STRAIGHT_ON, "unknown"),
+        *("restricted_area", BUSES_ONLY, CYCLES_TOO, TAXIS_TOO, STRAIGHT_ON, "unknown"),
     )
 )
 """Types of lanelets that rules refer to, and others that maps contain."""

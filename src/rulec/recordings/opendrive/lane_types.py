@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from rulec.recordings.opendrive.content.elements import Lane, LaneSection, MapRoad, record_at
-from rulec.recordings.recording import CYCLES_TOO, TAXIS_TOO
+from rulec.recordings.recording import BUSES_ONLY, CYCLES_TOO, TAXIS_TOO
 
 _DRIVING: tuple[str, ...] = ()
 LANE_TYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
@@ -59,7 +59,7 @@ def lane_types(section: LaneSection, lane: Lane, s: float) -> tuple[str, ...]:
         return types
     if allowed & _BUSES and allowed <= _BUSES | _RIDERS:
         cycles = (CYCLES_TOO,) if allowed & _RIDERS else ()
-        return ("busLane", *cycles, *((TAXIS_TOO,) if "taxi" in allowed else ()))
+        return ("busLane", BUSES_ONLY, *cycles, *((TAXIS_TOO,) if "taxi" in allowed else ()))
     if allowed <= _WALKERS:
         return ("sidewalk",)
     return ("bicycleLane",) if allowed <= _WALKERS | _RIDERS else types

@@ -13,6 +13,7 @@ import numpy as np
 
 from rulec.recordings.polylines import interpolated, parallel_line, without_repeats
 from rulec.recordings.recording import (
+    BUSES_ONLY,
     CYCLES_TOO,
     STRAIGHT_ON,
     TAXIS_TOO,
@@ -247,7 +248,7 @@ def _types(
     elif permitted <= _WALKERS | _RIDERS:
         yield "sidewalk" if permitted & _WALKERS else "bicycleLane"
     elif _is_for_buses(permitted) and all(map(_is_for_buses, onward)):
-        yield "busLane"
+        yield from ("busLane", BUSES_ONLY)
         if permitted & _RIDERS:
             yield CYCLES_TOO
         if "taxi" in permitted:

@@ -28,7 +28,14 @@ from rulec.extraction.signals.signal_columns import (
 )
 from rulec.extraction.signals.signal_passes import SignalPasses, once_a_recording
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import CROSSWALK, CYCLES_TOO, STOP_SIGNS, TAXIS_TOO, Lanelet
+from rulec.recordings.recording import (
+    BUSES_ONLY,
+    CROSSWALK,
+    CYCLES_TOO,
+    STOP_SIGNS,
+    TAXIS_TOO,
+    Lanelet,
+)
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.plain_arrays import distinct
 
@@ -217,6 +224,7 @@ def _surface(context: DriveContext) -> SignalColumns:
         others.append(_below_middle(context, middle, context.steady_lane))
     unknown = np.logical_or.reduce([other != surfaces for other in others])
     on_it, surely, perhaps = _on_crossing(context)
+    unknown |= _may_share(context) & (surfaces == "bus_lane")
     surfaces[on_it] = "crossing"
     unknown = (unknown | perhaps) & ~surely
     return SignalColumns(
@@ -245,15 +253,30 @@ def _below_middle(context: DriveContext, middle: Floats, lane: NDArray[intp]) ->
         surfaces[(middle > start) & (middle < end)] = "junction"
     if kinds := _kinds(context):
         own = lanelets_at(context, middle, lane)
-        cycles = context.spans.spread(context.ego.of_type("cyclist"))
-        may = cycles & own.flags(_is_of(CYCLES_TOO))
-        taxis = context.spans.spread(
-            [participant.type == "taxi" for participant in context.ego.participants]
-        )
-        may |= taxis & own.flags(_is_of(TAXIS_TOO))
+        cycles, taxis = _cycles_and_taxis(context)
+        may = (cycles & own.flags(_is_of(CYCLES_TOO))) | (taxis & own.flags(_is_of(TAXIS_TOO)))
         for kind in kinds:
             surfaces[own.flags(_is_of(kind)) & ~may] = _SURFACES[kind]
     return surfaces
+
+
+def _cycles_and_taxis(context: DriveContext) -> tuple[Flags, Flags]:
+    """Masks of states in which ego is a cycle or a taxi, which some lanes for buses are for, too."""
+    taxis = [participant.type == "taxi" for participant in context.ego.participants]
+    return context.spans.spread(context.ego.of_type("cyclist")), context.spans.spread(taxis)
+
+
+def _may_share(context: DriveContext) -> Flags:
+    """Mask of states in which ego is on a lane for buses and the map does not say whether it may.
+
+    Many lanes for buses are for cycles or taxis as well, and few maps name their users.
+    """
+    if "busLane" not in _kinds(context):
+        return np.zeros(context.states, dtype=bool)
+    unnamed = own_lanelets(context).flags(
+        lambda lanelet: "busLane" in lanelet.types and BUSES_ONLY not in lanelet.types
+    )
+    return unnamed & np.logical_or(*_cycles_and_taxis(context))
 
 
 def _kinds(context: DriveContext) -> list[str]:

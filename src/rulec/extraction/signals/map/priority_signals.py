@@ -62,7 +62,7 @@ def drive_by_drive(
 
     @wraps(signals_of)
     def found(context: DriveContext) -> SignalColumns:
-        if context.is_one or not own_passages(context):
+        if context.is_one or not (own_passages(context) or _strays(context)):
             return signals_of(context)
         drives = range(context.spans.n_drives)
         return end_to_end([signals_of(context.one(number)) for number in drives])
@@ -76,6 +76,8 @@ def _conflicts(context: DriveContext) -> SignalColumns:
         {name: np.zeros(context.states, dtype=bool) for name in _CONFLICTS} for _ in range(3)
     )
     whom, encounters = {name: nobody(context.states) for name in _CONFLICTS}, []
+    trains = context.surroundings.tracks.of_type("rail_vehicle").any()
+    possible = [name for name in _CONFLICTS if trains or name != _RAIL]
     for passage in own_passages(context):
         for met in _encounters(context, passage):
             encounters.append(met)
@@ -90,8 +92,11 @@ def _conflicts(context: DriveContext) -> SignalColumns:
             if side != _ONCOMING or turns_far(context, passage):
                 strangers[side][approach(context, passage)] = True
         if not passage.sure:
-            for name in _CONFLICTS:
+            for name in possible:
                 strangers[name][approach(context, passage)] = True
+    if _may_meet(context):
+        for name in possible:
+            strangers[name] |= astray(context)
     not_told = {x: (unknown[x] | strangers[x]) & ~conflicts[x] for x in _CONFLICTS}
     when = arrivals(context, encounters, strangers)
     not_told[_RING] |= without_junction(context) & ~conflicts[_RING]
@@ -113,6 +118,50 @@ def passages_of(context: DriveContext, number: int) -> tuple[Passage, ...]:
     columns = context.steps[context.spans.slices[number]] - context.own.tracks.first
     passages = context.own.passages.of_row.get(int(context.ego.rows[number]), ())
     return tuple(x for x in passages if x.last >= columns[0] and x.first <= columns[-1])
+
+
+@once
+def _strays(context: DriveContext) -> tuple[tuple[int, int, int], ...]:
+    """Ego's stays in junctions on none of their ways: the junction, first and last column."""
+    rows, tracks = context.ego.rows.tolist(), context.own.tracks
+    steps = [context.steps[own] - tracks.first for own in context.spans.slices]
+    return tuple(
+        (junction, first, last)
+        for junction, found in context.own.passages.astray.items()
+        for row, first, last in found
+        for own, columns in zip(rows, steps, strict=True)
+        if row == own and last >= columns[0] and first <= columns[-1]
+    )
+
+
+def astray(context: DriveContext) -> Flags:
+    """Mask of the states of a drive in which ego nears, or is in, a junction on no way of it.
+
+    Whose ways cross its own is not known then. Only at the junctions of ego's road: it may drive
+    over others on a bridge.
+    """
+    found, along = np.zeros(context.states, dtype=bool), context.ego_extents.s[0]
+    for _, *stay in _strays(context):
+        first, last = np.clip(np.array(stay) - first_column(context), 0, context.states - 1)
+        low, high = along[first : last + 1].min(), along[first : last + 1].max()
+        if any(low < end and start < high for start, end in context.road.junctions):
+            near = (along >= low - context.thresholds.approach_m) & (along <= high)
+            found |= near & (context.spans.columns <= last)
+    return found
+
+
+def _may_meet(context: DriveContext) -> bool:
+    """Whether others are near a junction while ego is there on none of its ways, or soon after."""
+    passages, row = context.surroundings.passages, int(context.ego.rows[0])
+    tracks, limits = passages.tracks, context.thresholds
+    longest = round(limits.held_up_s / context.recording.step_s)
+    for junction, first, last in _strays(context):
+        columns = slice(max(first - longest, 0), last + longest + 1)
+        there = tracks.present[:, columns] & (np.arange(len(tracks.present)) != row)[:, None]
+        places = shapely.points(tracks.x[:, columns][there], tracks.y[:, columns][there])
+        if shapely.dwithin(passages.junctions[junction].area, places, limits.approach_m).any():
+            return True
+    return False
 
 
 def approach(context: DriveContext, passage: Passage) -> slice:
@@ -165,13 +214,15 @@ def _roads(context: DriveContext) -> SignalColumns:
     """What the map says about the junction that ego nears or is in."""
     columns = {name: np.zeros(context.states, dtype=bool) for name in _ROADS}
     unregulated, own, others, priority = _ROADS
-    unknown = {name: np.zeros(context.states, dtype=bool) for name in (unregulated, priority)}
+    unknown = {name: astray(context) for name in _ROADS}
     for passage in own_passages(context):
         junction, span = (
             context.surroundings.passages.junctions[passage.junction],
             _until_out(context, passage),
         )
         columns[unregulated][span] = junction.regulated is False
+        for name in _ROADS:
+            unknown[name][span] = False
         unknown[unregulated][span] = junction.regulated is None
         columns[own][span], columns[others][span] = _ending_roads(junction, passage)
         entries = approaches(context.recording, context.surroundings.passages.way(passage))
@@ -259,12 +310,9 @@ def _turned_in_later(context: DriveContext, own: Passage, other: Passage) -> boo
     """Whether a vehicle turned into the road to the junction after ego had driven in already.
 
     Where links are short, it is unknown whether one still before the junction at their other end
-    will come. An ego that waits within the junction drives in where it moves off.
+    will come.
     """
-    passages = context.surroundings.passages
-    speed = passages.tracks.speed[own.row, own.first : own.last + 1]
-    waits = (speed < SLOWEST_MPS).nonzero()[0]
-    drives_in = own.first + int(waits[-1]) if len(waits) else passages.front_enters(own)
+    passages, drives_in = context.surroundings.passages, _drives_in(context, own)
     least = np.radians(context.thresholds.turned_deg)
     return any(
         drives_in < passages.front_enters(before) < other.first
@@ -272,6 +320,14 @@ def _turned_in_later(context: DriveContext, own: Passage, other: Passage) -> boo
         for before in passages.of_row[other.row]
         if before.junction != own.junction
     )
+
+
+def _drives_in(context: DriveContext, own: Passage) -> int:
+    """The column in which ego drives in: where it moves off, if it waits within the junction."""
+    passages = context.surroundings.passages
+    speed = passages.tracks.speed[own.row, own.first : own.last + 1]
+    waits = (speed < SLOWEST_MPS).nonzero()[0]
+    return own.first + int(waits[-1]) if len(waits) else passages.front_enters(own)
 
 
 def _is_seen(present: Flags, first: int, last: int) -> bool:
@@ -304,12 +360,11 @@ def _side(angle: float) -> str:
 def _might_come(context: DriveContext, own: Passage) -> Iterator[str]:
     """The sides from which participants may come whose way through the junction is unknown.
 
-    Those on no way of the map, or whose track ends before the junction. In a simulation, one that
-    is gone before the end has arrived somewhere.
+    Those on no way of the map, or whose track ends before the junction, be it that they stop there
+    for ego. In a simulation, one that is gone before the end has arrived somewhere.
     """
     passages, shift = context.surroundings.passages, first_column(context)
     tracks, step_s = passages.tracks, context.recording.step_s
-    area = passages.junctions[own.junction].area
     through = {x.row for x in passages.through[own.junction]}
     latest = _leaves_at_latest(context, own) + context.thresholds.yielding_s / step_s
     for row, first, last in passages.astray.get(own.junction, ()):
@@ -317,22 +372,35 @@ def _might_come(context: DriveContext, own: Passage) -> Iterator[str]:
             through.add(row)
             yield _side(float(np.degrees(turn(own.heading, tracks.heading[row, first]))))
     rows, ends, back = _lost_from_sight(context)
+    drives_in, longest = _drives_in(context, own), context.thresholds.held_up_s / step_s
     # A participant with a known way is in the junction on that way, unless it was unseen there
-    in_time = (ends >= shift) & (ends <= latest) & (back > own.first)
+    in_time = (ends >= shift) & (ends <= latest + longest) & (back > own.first)
     for row, end, seen in zip(*(x[in_time].tolist() for x in (rows, ends, back)), strict=True):
         if row == own.row or (row in through and seen == _NEVER):
             continue
-        x, y = float(tracks.x[row, end]), float(tracks.y[row, end])
-        place = shapely.Point(x, y)
-        away = float(shapely.distance(area, place))
-        arrives = end + away / max(float(tracks.speed[row, end]), 0.1) / step_s
-        if not own.first <= arrives <= min(latest, seen):
-            continue
-        near = shapely.shortest_line(place, area).coords[-1]
-        towards = float(np.arctan2(near[1] - y, near[0] - x))
-        heading = float(tracks.heading[row, end])
-        if away == 0.0 or abs(turn(towards, heading)) < np.pi / 3:
-            yield _side(float(np.degrees(turn(own.heading, heading))))
+        times = own.first, min(latest, seen)
+        columns = [column for column in {end, drives_in} if column <= min(end, latest)]
+        if any(_would_come(context, own, row, column, times) for column in columns):
+            yield _side(float(np.degrees(turn(own.heading, float(tracks.heading[row, end])))))
+
+
+def _would_come(
+    context: DriveContext, own: Passage, row: int, column: int, times: tuple[float, float]
+) -> bool:
+    """Whether a participant, at its speed in a column, gets to ego's junction between two times."""
+    passages = context.surroundings.passages
+    tracks, area = passages.tracks, passages.junctions[own.junction].area
+    if not tracks.present[row, column]:
+        return False
+    x, y = float(tracks.x[row, column]), float(tracks.y[row, column])
+    place = shapely.Point(x, y)
+    away = float(shapely.distance(area, place))
+    speed = max(float(tracks.speed[row, column]), 0.1)
+    if not times[0] <= column + away / speed / context.recording.step_s <= times[1]:
+        return False
+    near = shapely.shortest_line(place, area).coords[-1]
+    towards = float(np.arctan2(near[1] - y, near[0] - x))
+    return away == 0.0 or abs(turn(towards, float(tracks.heading[row, column]))) < np.pi / 3
 
 
 @once_a_recording
