@@ -128,10 +128,12 @@ def test_only_when_one_goes_over_the_middle_is_in_doubt(ys, expected, side):
         # Of 2 m of width 0.3 m have to be on either side of the middle of the road, at y = 2
         ((0, 1.2, 1.6, 2.4, 3.6, 3.6, 2.1, 0), "FFTTFFTF"),
         # At the middle for longer than 2 s before it goes, and never going
-        ((1.6, 1.6, 1.6, 1.6, 1.6, 1.6, 3, 4), "FFTTTTFF"),
+        ((1.6, 1.6, 1.6, 1.6, 1.6, 1.6, 3, 4), "FFTTTTTF"),
         ((0, 1.6, 1.6, 1.6, 1.6, 1.6, 1.6, 0), "FFFFFFFF"),
         # Over the middle between two states, as where these are a second apart
         ((0, 0, 0, 4, 4, 4, 0, 0), "FFFTFFTF"),
+        # Half over it in one state, and wholly in the next
+        ((0, 1.6, 4, 4, 2.6, 0, 0, 0), "FTTFTTFF"),
     ],
 )
 def test_who_goes_over_the_middle_is_in_two_lanes(ys, expected, side):

@@ -9,7 +9,7 @@ import pytest
 from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.tracks.junctions import approaches, junctions_of
-from rulec.recordings.recording import Recording
+from rulec.recordings.recording import Recording, TrackState
 from rulec.recordings.sumo.lanelets import net_lanelets
 from rulec.recordings.sumo.net import read_net
 from rulec.scenario.recorded.reference_line import turn
@@ -244,6 +244,28 @@ def test_a_conflict_is_one_of_a_single_junction():
     from_right = signals.world["conflict_from_right"]
     assert not from_right[:4].any()
     assert from_right[9]
+
+
+@pytest.mark.parametrize(("turns", "perhaps"), [((0, 2), True), ((4, 6), False), ((6, 9), False)])
+def test_one_that_brakes_where_its_road_bends_may_do_so_for_the_bend(turns, perhaps):
+    """It stops from 10 m/s at 2.5 s, and comes 4.5 s after ego has left.
+
+    It turns by 0.5 rad before it brakes, as it does, or afterwards.
+    """
+    times, places = [0, 2, 3, 6.5, 7], [-32, -12, -7, -7, -3]
+    ego = vehicle(7, {k: (-20 + 5 * k, 0) for k in STEPS}, speed=10)
+    other = vehicle(8, {k: (0, np.interp(k / 2, times, places)) for k in STEPS}, heading=np.pi / 2)
+    speeds = [10.0] * 5 + [0.0] * 8 + [8.0] * 3
+    headings = np.pi / 2 + np.interp(STEPS, turns, [-0.25, 0.25])
+    states = {
+        k: TrackState(s.x, s.y, headings[k], speeds[k], -6.0 if k in (4, 5) else 0.0)
+        for k, s in other.states.items()
+    }
+    bodies = [ego, replace(other, states=states)]
+    found = replace(recording([*EAST, *NORTH], bodies), complete=frozenset({"YIELD"}))
+    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    assert not told.world["conflict_from_right"].any()
+    assert told.unknown["conflict_from_right"].any() == perhaps
 
 
 @pytest.mark.parametrize(("stops_at", "ends", "perhaps"), [(-7, 9, True), (-40, 9, False)])

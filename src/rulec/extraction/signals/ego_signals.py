@@ -188,7 +188,7 @@ def _goes_over_the_middle(context: DriveContext) -> Flags:
     """Mask of states in which ego is on both halves of a road, on its way to the other or back.
 
     Up to ``passed_s`` before or after it is on the other half, not while it keeps to the edge; and
-    in the first state wholly on one half after one wholly on the other: it was on both in between.
+    in the first state wholly on one half after its middle was on the other: it was on both in between.
     """
     there, _ = oncoming_side(context)
     if not there.any():
@@ -203,7 +203,7 @@ def _goes_over_the_middle(context: DriveContext) -> Flags:
     low, high = (rows[0] for rows in sides_beyond_far_edge(context, context.ego_extents))
     least = context.thresholds.touching_m
     far, near = there & (low >= -least), high <= least
-    over[1:] |= ~spans.begins_here[1:] & ((far[1:] & near[:-1]) | (near[1:] & far[:-1]))
+    over[1:] |= ~spans.begins_here[1:] & ((far[1:] & ~there[:-1]) | (near[1:] & there[:-1]))
     return over
 
 

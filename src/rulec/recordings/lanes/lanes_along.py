@@ -13,7 +13,14 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.recordings.polylines import parallel_line
-from rulec.recordings.recording import BUSES_ONLY, CYCLES_TOO, STRAIGHT_ON, TAXIS_TOO, Lanelet, Points
+from rulec.recordings.recording import (
+    BUSES_ONLY,
+    CYCLES_TOO,
+    STRAIGHT_ON,
+    TAXIS_TOO,
+    Lanelet,
+    Points,
+)
 
 USUAL_WIDTH_M = 3.5
 """The default width (m) of a lane, which is that of most rural roads and motorways."""

@@ -245,16 +245,20 @@ def _is_train(context: DriveContext, own: Passage, other: Passage) -> bool:
 def _brakes_for(
     context: DriveContext, other: Passage, columns: tuple[int, int], comes: int
 ) -> bool:
-    """Whether a vehicle that goes straight on brakes harder than ``disturbing_mps2`` then."""
+    """Whether a vehicle that goes straight on brakes harder than ``disturbing_mps2`` then.
+
+    Straight on from where it brakes: one that drives onto a ring turns aside and back.
+    """
     tracks = context.surroundings.passages.tracks
     begin, end = columns
-    # One that drives onto a ring turns aside and back
-    heading = tracks.heading[other.row, begin : max(comes, begin) + 1]
-    heading = np.unwrap(heading[~np.isnan(heading)])
     there = other.row, slice(begin, end + 1)
-    hardest = np.nanmin(tracks.acceleration[there] + tracks.acceleration_error[there])
-    straight = np.ptp(heading) < _STRAIGHT_RAD
-    return bool(straight and hardest < -context.thresholds.disturbing_mps2)
+    least = -context.thresholds.disturbing_mps2
+    hard = (tracks.acceleration[there] + tracks.acceleration_error[there] < least).nonzero()[0]
+    if not len(hard):
+        return False
+    brakes = begin + int(hard[0])
+    heading = tracks.heading[other.row, brakes : max(comes, brakes) + 1]
+    return bool(np.ptp(np.unwrap(heading[~np.isnan(heading)])) < _STRAIGHT_RAD)
 
 
 def _stood(context: DriveContext, own: Passage, first: int, last: float) -> bool:
