@@ -188,7 +188,7 @@ def _goes_over_the_middle(context: DriveContext) -> Flags:
     """Mask of states in which ego is on both halves of a road, on its way to the other or back.
 
     Up to ``passed_s`` before or after it is on the other half, not while it keeps to the edge; and
-    in the first state wholly on one half after its middle was on the other: it was on both in between.
+    in the first state wholly on one half after its middle was on the other.
     """
     there, _ = oncoming_side(context)
     if not there.any():
