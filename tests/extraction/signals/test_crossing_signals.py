@@ -283,6 +283,15 @@ def test_one_in_the_side_road_while_ego_goes_by():
     assert side_road([2 - y for y in CROSSES])[9] == "T"
 
 
+def test_one_that_comes_to_the_road_while_ego_turns():
+    """It stands 4 m from the road until state 10, and goes then at 2 m/s."""
+    comes = [-6.0] * 10 + [-6.0 + k for k in range(30)]
+    assert side_road(comes)[7:10] == "FTT"
+    assert side_road(comes, stops_at=64.0)[9] == "F"
+    # It stops at the kerb and is gone before ego comes by, or walks off along the pavement
+    assert side_road([-6.0] * 40)[9] == "F"
+
+
 def test_one_on_a_crossing_that_is_drawn_within_the_junction():
     """The junction ends at x = 8, and the crossing is from 4 to 8 m."""
     crossing = lanelet(9, [(6, -10), (6, 10)], width=4.0, types=frozenset({"crosswalk"}))

@@ -17,7 +17,12 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.map.map_signals import crossings_told, next_crossing
-from rulec.extraction.signals.map.zone_signals import crossings_lit, in_side_road, side_road
+from rulec.extraction.signals.map.zone_signals import (
+    crossings_lit,
+    in_side_road,
+    in_turn,
+    side_road,
+)
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.lane_sets import is_in
@@ -112,7 +117,8 @@ def _nearest_to_crossing(context: DriveContext) -> SignalColumns:
 def _crosses_side_road(context: DriveContext) -> SignalColumns:
     """Pedestrians that use the road into which ego turns without being let across by ego.
 
-    An ego that waits in the junction until they are across has entered it lawfully.
+    An ego that waits in the junction until they are across has entered it lawfully. Who drives into
+    it and then takes the way of one that steps onto the road meanwhile does so from then on.
     """
     rows, (crosses, unsure) = _pedestrians(context), np.zeros((2, *context.relevant.shape), bool)
     start, end = side_road(context)
@@ -120,7 +126,8 @@ def _crosses_side_road(context: DriveContext) -> SignalColumns:
         uses = _crossing_uses(context, (start, end), context.tracks.on_lane) > 0
         if (some := uses.any(axis=1)).any():
             rows, uses = rows[some], uses[some]
-            taken, open_end = _takes_way(context, rows)
+            taken, open_end, past = _takes_way(context, rows)
+            uses |= in_turn(context) & (context.spans.next_state(uses) < past)
             crosses[rows], unsure[rows] = uses & taken, uses & open_end
     return SignalColumns(
         about={"crosses_side_road": crosses},
@@ -129,8 +136,10 @@ def _crosses_side_road(context: DriveContext) -> SignalColumns:
     )
 
 
-def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags]:
+def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags, NDArray[intp]]:
     """Masks, for ``rows``, of pedestrians whose way ego takes, and where that is unknown.
+
+    Also the next states in which ego is past them.
 
     They are on the lanes of ego's direction, and not past its own, while ego goes by or up to
     ``entering_s`` later; or they stood until it was gone, and went then. Not those behind whom ego
@@ -170,7 +179,7 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     # As on the other half of a wide road, where it may stand because of others
     far = np.take_along_axis(_comes_s(context, rows) > limits.held_up_s, goes, axis=1)
     unsure = waits_yet | (taken & (stays | (far & ~in_way))) | (~let_go & ~taken & unseen)
-    return taken, ~reached | unsure
+    return taken, ~reached | unsure, goes
 
 
 def _waited_for(

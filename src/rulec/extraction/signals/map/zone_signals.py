@@ -91,6 +91,15 @@ def _turns(context: DriveContext) -> list[tuple[float, float]]:
     return [x for x in context.road.junctions if turn_at(context, *x) != "straight_on"]
 
 
+def in_turn(context: DriveContext) -> Flags:
+    """Mask of states in which ego has driven into a junction at which it turns, and is not out."""
+    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
+    inside = np.zeros(context.states, dtype=bool)
+    for low, high in _turns(context):
+        inside |= (front >= low) & (rear < high)
+    return inside
+
+
 def in_side_road(context: DriveContext, rows: NDArray[intp]) -> Flags:
     """Mask, for ``rows``, of pedestrians on the lanes of ego's direction, not before it turns.
 
