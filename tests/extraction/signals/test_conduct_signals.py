@@ -597,6 +597,14 @@ def test_who_turns_across_the_way_of_a_rider_beside_it():
     assert "?" not in turns_before(75, 5)
 
 
+@pytest.mark.parametrize(("y", "told"), [(-2.5, "T"), (-1.5, "?"), (-1.0, "F")])
+def test_who_hardly_clears_egos_side_may_ride_beside_or_behind_it(y, told):
+    """Ego reaches to y = -1, and the rider is 1 m wide: clear of it by 1 m, just so, or not."""
+    found = turns_before(75, 5, y=y)
+    assert (told in found) if told != "F" else set(found) == {"F"}
+    assert "T" not in found or told == "T"
+
+
 def test_who_rides_behind_one_that_turns_back_is_not_beside_it():
     """Ego has turned by 7° when it is first seen in the junction: to that, 25 m behind is aside."""
     turn = [(x, y) for x, y, _ in arc(100, 4, 4, -90, 30)]

@@ -66,7 +66,7 @@ def _conflict(
     clear = to_left if towards > 0 else to_right
     behind = float(_in_frame(context, own.row, origin, heading)[0][begin] - along[begin])
     half = float(passages.lengths[own.row]) / 2
-    beside = place < clear <= _ASIDE_M and -half <= behind <= _BEHIND_M
+    beside = -place <= clear <= _ASIDE_M and -half <= behind <= _BEHIND_M
     if not beside or abs(float(angle[begin])) > _STRAIGHT_RAD:
         return None
     crosses = _crossed(context, own, begin, (*origin, heading), float(left[begin]))
@@ -91,7 +91,7 @@ def _conflict(
     known = bool(len(arrived)) and leaves < tracks.present.shape[1] - 1
     if known and (arrived[0] - leaves) * step_s >= limits.held_up_s:
         return None
-    return max(enters - shift, 0), last, known
+    return max(enters - shift, 0), last, known and clear > place
 
 
 def _came(context: DriveContext, own: Passage, begin: int) -> int:

@@ -261,7 +261,7 @@ def _below_middle(context: DriveContext, middle: Floats, lane: NDArray[intp]) ->
 
 
 def _cycles_and_taxis(context: DriveContext) -> tuple[Flags, Flags]:
-    """Masks of states in which ego is a cycle or a taxi: some lanes for buses are for these, too."""
+    """Masks of states in which ego is a cycle or a taxi, whom some lanes for buses are for, too."""
     taxis = [participant.type == "taxi" for participant in context.ego.participants]
     return context.spans.spread(context.ego.of_type("cyclist")), context.spans.spread(taxis)
 
