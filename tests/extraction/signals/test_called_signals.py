@@ -89,6 +89,9 @@ def test_whose_lane_ego_is_in_decides_whether_it_is_in_the_way():
     # In the lane beside it may pass: ego may have left it that lane, or a law want more
     assert cleared(ambulance(-20, y=4.0))[0] == "?"
     assert near(ambulance(-20, y=4.0))[0] == "True"
+    # It reaches into ego's lane, 0.4 m clear of ego's side, or 0.2 m
+    assert cleared(ambulance(-20, y=2.4))[0] == "?"
+    assert cleared(ambulance(-20, y=2.2))[0] == "False"
     # Two of them, one in ego's lane
     second = replace(ambulance(-30), id="9")
     assert cleared(ambulance(-20, y=4.0), second)[0] == "False"

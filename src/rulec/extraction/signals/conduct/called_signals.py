@@ -69,15 +69,17 @@ def _surely_near(context: DriveContext) -> Flags:
 def _way_cleared(context: DriveContext) -> SignalColumns:
     """Whether ego stands, or is at an edge of its lane.
 
-    Unknown where the vehicles that are near have another lane: they may not need ego's, and laws
-    may still want ego at the edge.
+    Unknown where the vehicles that are near have another lane or are clear of ego sideways: they
+    get past, and laws may still want ego at the edge.
     """
     still = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
     cleared = still | _at_edge(context)
     near = _surely_near(context)
     if not near.any():
         return SignalColumns({"way_cleared": cleared})
-    in_way = near & (context.in_ego_lane | (relations.way_across(context) < 0))
+    clear = relations.way_across(context)
+    in_way = near & context.in_ego_lane & (clear < context.thresholds.touching_m)
+    in_way |= near & (clear < 0)
     return SignalColumns(
         {"way_cleared": cleared},
         unknown={"way_cleared": near.any(axis=0) & ~in_way.any(axis=0) & ~cleared},
