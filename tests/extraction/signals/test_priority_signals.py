@@ -298,7 +298,9 @@ def test_nobody_knows_whose_way_crosses_that_of_ego_on_no_way(aside_m, x, perhap
 
 
 def straight_sides(one, half_m):
-    return {name: one.centre + (0, way * half_m) for name, way in (("left", 1), ("right", -1))}
+    return {
+        name: np.add(one.centre, (0, way * half_m)) for name, way in (("left", 1), ("right", -1))
+    }
 
 
 @pytest.mark.parametrize(("creeps_mps", "known"), [(0.0, False), (2.0, True)])
