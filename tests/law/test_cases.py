@@ -29,6 +29,7 @@ FOUND_SINCE = {
     ("X5", "jp"): ["allowed"],
     ("X6", "jp"): ["allowed"],
     ("L29", "jp"): ["allowed"],
+    ("RF44", "pl"): ["forbidden", "art. 28(3) p. 3"],
     **{
         (case, "it"): ["allowed"]
         for case in (
@@ -47,6 +48,7 @@ India: regulation 12(1)(f) of 2017 lets one turn left at red. Italy: who gets pa
 without leaving its lane does not overtake, by the highway police, Cass. civ. 4820/1979 and art.
 346(1) of the regulation, which none of these had read. Japan: art. 18(3) on passing cycles is in
 force since 2026-04-01. Korea: art. 38(1) wants a signal from whoever drives onto a roundabout.
+Poland: art. 28(3) lets no vehicle be overtaken on a level crossing, and a cycle is one.
 """
 
 
