@@ -26,6 +26,7 @@ from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.tracks import Flags
 
 FROM_SIDES = ("conflict_from_left", "conflict_from_right")
+ONCOMING = "in_way_of_oncoming"
 ARRIVALS = ("arrived_together", "other_arrived_first", "other_in_junction")
 
 LONGEST_WAIT_S = 10.0
@@ -83,6 +84,21 @@ class Encounter:
 def first_column(context: DriveContext) -> int:
     """The column of the drive's first state."""
     return int(context.columns[0])
+
+
+def side_of(angle: float) -> str:
+    """The word for a direction (degrees to the left of ego's) of arrival; empty for ego's own."""
+    if abs(angle) < 30.0:
+        return ""
+    return ONCOMING if abs(angle) > 135.0 else FROM_SIDES[0] if angle < 0 else FROM_SIDES[1]
+
+
+def drives_in(context: DriveContext, own: Passage) -> int:
+    """The column in which ego drives in: where it moves off, if it waits within the junction."""
+    passages = context.surroundings.passages
+    speed = passages.tracks.speed[own.row, own.first : own.last + 1]
+    waits = (speed < SLOWEST_MPS).nonzero()[0]
+    return own.first + int(waits[-1]) if len(waits) else passages.front_enters(own)
 
 
 def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int, bool] | None:
