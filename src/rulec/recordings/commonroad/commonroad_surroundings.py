@@ -79,6 +79,26 @@ def junctions(
     return inside
 
 
+def leading_away(
+    inside: Mapping[str, str], lanelets: Mapping[str, recording.Lanelet]
+) -> frozenset[str]:
+    """The lanelets marked as an intersection that are the road behind one of the file's.
+
+    Several ways through the intersection have become one there, which nothing crosses. Maps made by
+    hand mark such roads over their whole length.
+    """
+    marked = [
+        lanelet
+        for lanelet in lanelets.values()
+        if "intersection" in lanelet.types
+        and lanelet.id not in inside
+        and len(lanelet.predecessors) > 1
+        and inside.keys() >= set(lanelet.predecessors)
+    ]
+    crossed = _crossed(list(lanelets.values())) if marked else set()
+    return frozenset(lanelet.id for lanelet in marked) - crossed
+
+
 def _crossed_after(
     start: str, lanelets: Mapping[str, recording.Lanelet], crossed: Set[str]
 ) -> set[str]:

@@ -20,6 +20,7 @@ from rulec.recordings.commonroad.commonroad_participants import (
 from rulec.recordings.commonroad.commonroad_surroundings import (
     Intersection,
     junctions,
+    leading_away,
     read_intersection,
     read_light,
     read_weather,
@@ -165,6 +166,8 @@ def _lanelets(content: Content) -> dict[str, recording.Lanelet]:
             f"those of the lanelets {named(disordered)}"
         )
     inside = junctions(content.intersections.values(), plain)
+    for number in leading_away(inside, plain):
+        plain[number] = replace(plain[number], types=plain[number].types - {"intersection"})
     lights = {number: light for number, light in content.lights.items() if light is not None}
     lanelets = {
         number: complete(
