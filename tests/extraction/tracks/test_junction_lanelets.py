@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.tracks.driven_road import junction_lanelets
+from rulec.extraction.tracks.junction_lanelets import junction_lanelets
 from rulec.extraction.tracks.junctions import junctions_of
 from support.builders.recordings import lanelet, recording, straight
 
@@ -40,6 +40,39 @@ def test_ways_that_do_not_meet_or_are_no_lanes_make_no_junction():
 def test_where_a_map_marks_junctions_only_those_count():
     marked = straight(3, 60, 80, types=frozenset({"intersection"}))
     assert junction_lanelets(recording([ALONG, across(2, 90), marked])) == {"3"}
+
+
+@pytest.mark.parametrize(
+    ("far", "beside", "inside"),
+    [(8, False, True), (8, True, True), (60, False, False)],
+    ids=("a corner", "from a lane of its own", "a slip road"),
+)
+def test_a_turn_that_crosses_nobody_is_in_the_junction_beside_which_it_leads(far, beside, inside):
+    """To the near side, from the road along the x axis to that along the y axis."""
+    turn_from = 5 if beside else 1
+    lanes = [
+        lanelet(1, [(-200, 0), (-far, 0)], successors=(7,) if beside else (7, 3), right_of=5),
+        lanelet(5, [(-200, -4), (-far, -4)], successors=(3,) if beside else (), left_of=1),
+        lanelet(7, [(-far, 0), (-6, 0)], predecessors=(1,), successors=(2,)),
+        lanelet(2, [(-6, 0), (90, 0)], predecessors=(7,)),
+        lanelet(3, [(-far, -4), (0, -far)], predecessors=(turn_from,), successors=(4,)),
+        lanelet(4, [(0, -far), (0, -90)], predecessors=(3, 8)),
+        lanelet(6, [(0, 90), (0, -6)], successors=(8,)),
+        lanelet(8, [(0, -6), (0, -far)], predecessors=(6,), successors=(4,)),
+    ]
+    found = junction_lanelets(recording(lanes))
+    assert found == {"2", "6", *({"3"} if inside else ())}
+
+
+def test_a_turn_is_found_though_only_one_of_two_lanelets_names_the_other():
+    lanes = [
+        lanelet(1, [(-90, 0), (-8, 0)], successors=(2, 3)),
+        lanelet(2, [(-8, 0), (90, 0)]),
+        lanelet(3, [(-8, 0), (-2, -2), (0, -8)]),
+        lanelet(4, [(0, -8), (0, -90)], predecessors=(3, 6)),
+        lanelet(6, [(0, 90), (0, -8)]),
+    ]
+    assert junction_lanelets(recording(lanes)) == {"2", "3", "6"}
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from rulec.extraction.context_arrays import drive_context
-from rulec.extraction.tracks.driven_road import DrivenRoads, junction_lanelets
+from rulec.extraction.tracks.driven_road import DrivenRoads
+from rulec.extraction.tracks.junction_lanelets import junction_lanelets
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.road_extents import road_extents
 from rulec.extraction.tracks.road_places import RoadPlaces

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
 from itertools import groupby
-from math import radians
 
 import numpy as np
 import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.extraction.tracks.junction_lanelets import marks_junctions
 from rulec.extraction.tracks.matching.driven_route import pieces_of
 from rulec.extraction.tracks.tracks import Floats
-from rulec.recordings.recording import GIVE_WAY_SIGNS, Lanelet, Points, Recording, is_lane
+from rulec.recordings.recording import Lanelet, Points, Recording
 from rulec.scenario.recorded.lane_coordinates import (
     Lanes,
     borders_along,
@@ -30,8 +29,6 @@ from rulec.scenario.recorded.reference_line import (
     turn,
 )
 from rulec.scenario.recorded.route import (
-    directions_beside,
-    lanelet_length,
     lanes_beside,
     roads_beyond,
 )
@@ -49,12 +46,6 @@ TURN_REACH_M = 10.0
 
 The crossing lanelets, which define junctions there, are often only the middle of a turn.
 """
-
-_WAY_M = 30.0
-"""Longest way through a junction that only joins others; roads that lead there are longer."""
-
-_CROSSING_ANGLE = radians(30.0)
-"""Ways that meet at a smaller angle run into each other, as where lanes join or part."""
 
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
@@ -269,71 +260,3 @@ def runs_along(borders: Floats, flags: Sequence[bool]) -> Iterator[tuple[float, 
         if flag:
             run = list(pieces)
             yield float(borders[run[0]]), float(borders[run[-1] + 1])
-
-
-def marks_junctions(recording: Recording) -> bool:
-    """Whether a recording's map marks junctions, or states that all are marked."""
-    lanes = filter(is_lane, recording.lanelets.values())
-    return "junctions" in recording.complete or any("intersection" in x.types for x in lanes)
-
-
-def junction_lanelets(recording: Recording) -> frozenset[str]:
-    """The ids of the lanelets in junctions: marked by the map, crossing, or joining behind a sign.
-
-    Where the map marks any junction, or states that all are marked, only marked ones count.
-    """
-    lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
-    if not lanes or marks_junctions(recording):
-        return frozenset(lanelet.id for lanelet in lanes if "intersection" in lanelet.types)
-    pairs = [pair for pair in _crossing_pairs(lanes) if not any(map(_is_level_crossing, pair))]
-    return frozenset(lanelet.id for pair in (*pairs, *_signed_joins(lanes)) for lanelet in pair)
-
-
-def _signed_joins(lanes: Sequence[Lanelet]) -> Iterator[tuple[Lanelet, ...]]:
-    """Short lanelets that join, as onto a ring, where a sign makes one of them give way.
-
-    Includes short ones that part from them: traffic that leaves there is in nobody's way.
-    """
-    short = {x.id: x for x in lanes if x.successors and lanelet_length(x) <= _WAY_M}
-    known, joining = {lanelet.id: lanelet for lanelet in lanes}, defaultdict(list)
-    for lanelet in short.values():
-        for after in lanelet.successors:
-            joining[after].append(lanelet)
-    for ways in joining.values():
-        before = [known[x] for way in ways for x in way.predecessors if x in known]
-        if len(ways) > 1 and any(GIVE_WAY_SIGNS & x.signs for x in (*ways, *before)):
-            parting = {x for one in before for x in one.successors if x in short}
-            yield (*ways, *(short[x] for x in sorted(parting)))
-
-
-def level_crossing_lanelets(recording: Recording) -> frozenset[str]:
-    """The ids of the lanelets that cross at level crossings, where no junctions are marked.
-
-    A level crossing is not a junction: a different rule says what cars must not block there.
-    """
-    lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
-    if marks_junctions(recording) or not any(map(_is_level_crossing, lanes)):
-        return frozenset()
-    pairs = [pair for pair in _crossing_pairs(lanes) if any(map(_is_level_crossing, pair))]
-    return frozenset(lanelet.id for pair in pairs for lanelet in pair)
-
-
-def _is_level_crossing(lanelet: Lanelet) -> bool:
-    return "level_crossing" in lanelet.types
-
-
-def _crossing_pairs(lanes: Sequence[Lanelet]) -> Iterator[tuple[Lanelet, Lanelet]]:
-    """The pairs of lanelets whose middle lines cross at an angle above ``_CROSSING_ANGLE``."""
-    lines = [shapely.LineString(lanelet.centre) for lanelet in lanes]
-    firsts, seconds = shapely.STRtree(lines).query(lines, predicate="crosses")
-    for first, second in zip(firsts.tolist(), seconds.tolist(), strict=True):
-        meeting = shapely.intersection(lines[first], lines[second])
-        if first < second and _angle(lanes[first], lanes[second], meeting) > _CROSSING_ANGLE:
-            yield lanes[first], lanes[second]
-
-
-def _angle(first: Lanelet, second: Lanelet, meeting: shapely.Geometry) -> float:
-    """The angle (rad) between two lanelets where they meet, at most a right angle."""
-    place = np.array([shapely.point_on_surface(meeting)])
-    turn = directions_beside(first, place)[0] - directions_beside(second, place)[0]
-    return float(abs(np.arctan(np.tan(turn))))

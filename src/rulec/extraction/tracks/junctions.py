@@ -12,8 +12,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.driven_road import (
-    TURN_REACH_M,
+from rulec.extraction.tracks.driven_road import TURN_REACH_M
+from rulec.extraction.tracks.junction_lanelets import (
     junction_lanelets,
     level_crossing_lanelets,
     marks_junctions,
