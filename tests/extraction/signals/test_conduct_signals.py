@@ -599,7 +599,7 @@ def test_who_turns_across_the_way_of_a_rider_beside_it():
 
 @pytest.mark.parametrize(("y", "told"), [(-2.5, "T"), (-1.5, "?"), (-1.3, "?"), (-1.0, "F")])
 def test_who_hardly_clears_egos_side_may_ride_beside_or_behind_it(y, told):
-    """Ego reaches to y = -1, and the rider is 1 m wide: clear of it by 1 m, just so, hardly, or not."""
+    """Ego reaches to y = -1, and the rider is 1 m wide: clear by 1 m, just, hardly, or not."""
     found = turns_before(75, 5, y=y)
     assert (told in found) if told != "F" else set(found) == {"F"}
     assert "T" not in found or told == "T"

@@ -65,6 +65,26 @@ def test_a_crossing_beside_ego_s_lane_is_another_road_s():
     assert (start, end) == (pytest.approx(120, abs=0.1), pytest.approx(160, abs=0.1))
 
 
+def test_a_crossing_on_a_ring_is_met_on_every_round():
+    """Four quarters of a circle of 25 m, along which the road goes on, and a crossing over one."""
+    turned = np.linspace(0, np.pi / 2, 31)
+    quarters = [
+        lanelet(
+            number + 1,
+            25 * np.stack((np.cos(turned + at), np.sin(turned + at)), axis=1),
+            successors=((number + 1) % 4 + 1,),
+            predecessors=((number - 1) % 4 + 1,),
+        )
+        for number, at in enumerate(np.arange(4) * np.pi / 2)
+    ]
+    zebra = lanelet(9, [(-14, -14), (-22, -22)], types=frozenset({"crosswalk"}))
+    found = road([*quarters, zebra], ("2", "3", "4"))
+    middles = [(start + end) / 2 for start, end in found.crossings]
+    around = 50 * np.pi
+    assert len(middles) == round((found.borders[-1] - found.borders[0]) / around) >= 2
+    assert np.diff(middles) == pytest.approx(around, abs=1.0)
+
+
 def test_a_crossing_that_a_road_meets_again_as_it_comes_back():
     """A hundred metres on, beside itself: in between nobody is on the crossing."""
     around = [(100, 0), (103, 3), (103, 7), (100, 10)]

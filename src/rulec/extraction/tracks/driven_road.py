@@ -162,6 +162,7 @@ class DrivenRoads:
         recording, borders = self._recording, layout.borders
         entries = [piece[0] for piece in layout.pieces]
         count = layout.lanes.there.shape[1]
+        meets_itself = _meets_itself([recording.lanelets[number] for number in entries], borders)
         return DrivenRoad(
             rows=tuple(
                 _row(recording, number, lane, count)
@@ -172,11 +173,18 @@ class DrivenRoads:
             line=layout.line,
             lanes=layout.lanes,
             crossings=tuple(
-                crossings_along(recording, layout.line, layout.lanes, 0.0, layout.line.length)
+                crossings_along(
+                    recording,
+                    layout.line,
+                    layout.lanes,
+                    0.0,
+                    layout.line.length,
+                    meets_itself=meets_itself,
+                )
             ),
             junctions=tuple(runs_along(borders, [number in self._junctions for number in entries])),
             junctions_marked=self._marks_junctions,
-            meets_itself=_meets_itself([recording.lanelets[number] for number in entries], borders),
+            meets_itself=meets_itself,
         )
 
 

@@ -347,25 +347,41 @@ def kept_off_touched(low: _Values, high: _Values, straight: _Values) -> tuple[_V
 
 
 def crossings_along(
-    recording: Recording, line: ReferenceLine, lanes: Lanes, start: float, end: float
+    recording: Recording,
+    line: ReferenceLine,
+    lanes: Lanes,
+    start: float,
+    end: float,
+    *,
+    meets_itself: bool = False,
 ) -> Iterator[tuple[float, float]]:
     """The stretches (``s``) that crosswalks cover on the lanes, within ``start`` and ``end``.
 
     A crosswalk has to lie across the line; one beside it belongs to another road, onto which a lane
-    turns off. A road that turns round and comes back beside itself may meet one twice, far apart.
+    turns off. A road that turns round and comes back beside itself may meet one twice, far apart;
+    one that ``meets_itself``, as on a ring, meets it on every round.
     """
     for lanelet in recording.lanelets.values():
         if "crosswalk" not in lanelet.types:
             continue
         outline = np.concatenate((lanelet.right, lanelet.left[::-1], lanelet.right[:1]))
-        places = line.coordinates(densified(outline, _EDGE_EVERY_M))
+        edge = densified(outline, _EDGE_EVERY_M)
+        places = _on_every_round(line, edge) if meets_itself else line.coordinates(edge)
         left_of = lanes.from_bounds(places)
-        across = places[:, 1].min() < _BESIDE_LINE_M and places[:, 1].max() > -_BESIDE_LINE_M
         on_road = np.sort(places[(left_of[:, 0] > 0) & (left_of[:, -1] < 0), 0])
-        if not across or not len(on_road):
-            continue
         again = (np.diff(on_road) > _WIDEST_M).nonzero()[0] + 1
-        for met in np.split(on_road, again):
+        for met in np.split(on_road, again) if len(on_road) else ():
+            near = (places[:, 0] > met[0] - _WIDEST_M) & (places[:, 0] < met[-1] + _WIDEST_M)
+            aside = places[near, 1]
+            across = aside.min() < _BESIDE_LINE_M and aside.max() > -_BESIDE_LINE_M
             low, high = max(float(met[0]), start), min(float(met[-1]), end)
-            if high - low >= _NARROWEST_M:
+            if across and high - low >= _NARROWEST_M:
                 yield low, high
+
+
+def _on_every_round(line: ReferenceLine, places: Points) -> Points:
+    """Frenet coordinates of places with their feet on each stretch of a line that has some."""
+    middles = np.arange(_ABOUT_M / 2, line.length + _ABOUT_M, _ABOUT_M)
+    around, reach = middles.repeat(len(places)), np.full(len(middles) * len(places), _ABOUT_M / 2)
+    every = line.coordinates_near(np.tile(places, (len(middles), 1)), around, reach)
+    return every[~np.isnan(every[:, 0])]

@@ -119,7 +119,8 @@ def _starts(context: DriveContext, crossings: Recording) -> list[float]:
 def _stretches(context: DriveContext, crossings: Recording) -> Stretches:
     """The stretches (m) of ego's road that the crossings of a recording cover."""
     road = context.road
-    return list(crossings_along(crossings, road.line, road.lanes, 0.0, road.line.length))
+    line, again = road.line, road.meets_itself
+    return list(crossings_along(crossings, line, road.lanes, 0.0, line.length, meets_itself=again))
 
 
 def _on_crossings_before(context: DriveContext, rows: NDArray[intp]) -> Flags:
