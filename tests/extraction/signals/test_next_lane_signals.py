@@ -66,7 +66,9 @@ def test_one_whose_track_ends_may_still_be_on_the_near_lane(x, unknown):
     [
         (None, None, True),
         # 10 m at 10 m/s, if the other one is as fast; (100 - 64) / 16 m more if it is slower
-        ((15.0, 10.0), None, True),
+        ((23.0, 10.0), None, True),
+        # At less than 1.8 s it would have to brake for somebody who does
+        ((15.0, 10.0), None, "?"),
         ((13.0, 10.0), None, False),
         ((15.0, 8.0), None, False),
         # 12 m and (144 - 100) / 16 m for one behind at 12 m/s

@@ -280,6 +280,18 @@ def test_oncoming_moves_against_ego_or_waits_beside_its_lanes():
     assert not about(steady(8, 60, 4, speed=-5, heading=0.0))["oncoming"]
 
 
+def test_one_that_swerves_as_it_gets_beside_ego_still_comes():
+    """Round an island, across the road by 65° for a moment. One that never faced ego does not."""
+    swerve = np.array([(20, 4), (10.5, 4), (9.2, 6.8), (-40, 6.8)])
+    found = context(along(8, swerve, 5.0 * np.arange(4)))
+    angles = np.degrees(np.abs(found.extents.turned[0]))
+    assert np.count_nonzero(angles < 120) == 1
+    assert participant_signals(found).about["oncoming"][0].all()
+    slants = np.array([(30, 4), (24, 17)])
+    never = context(along(8, slants, 1.0 * np.arange(4)))
+    assert not participant_signals(never).about["oncoming"][0].any()
+
+
 @pytest.mark.parametrize("kind", ["car", "bicycle"])
 def test_one_that_has_come_on_another_road_waits_for_its_turn(kind):
     """It stands in a junction, facing ego: nobody follows it."""

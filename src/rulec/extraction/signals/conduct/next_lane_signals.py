@@ -48,6 +48,9 @@ _CHANGE_S = 4.0
 _SOON_AGAIN = 2.0
 """A move back is of no use if ego has to come out within this many times ``catching_up_s``."""
 
+_AT_EASE_S = 1.8
+"""Drivers are told to keep this far behind others: half the speedometer, in metres (§ 4 StVO)."""
+
 _STANDING_CAMERAS = frozenset(
     {
         "CommonRoad scenario",
@@ -150,11 +153,11 @@ def _goes_back(context: DriveContext) -> Flags:
 def _of_no_use(context: DriveContext) -> Flags:
     """Mask of states in which it is unknown whether ego has to use the next lane to the kerb.
 
-    A slower vehicle is on it that ego would reach within twice ``catching_up_s``; it begins or ends
-    near ego while others go on, as beside a ramp; it becomes a shoulder or bus lane within
-    ``preparing_s``; it is full except for a gap; ego is in a slow queue itself, with others on the
-    next lane, too; or drivers choose their lanes before a junction or a ring, which is unknown
-    beyond the map's end.
+    A slower vehicle is on it that ego would reach within twice ``catching_up_s``, or one at less
+    than ``_AT_EASE_S``; it begins or ends near ego while others go on, as beside a ramp; it becomes
+    a shoulder or bus lane within ``preparing_s``; it is full except for a gap; ego is in a slow
+    queue itself, with others on the next lane, too; or drivers choose their lanes before a junction
+    or a ring, which is unknown beyond the map's end.
     """
     lane, there = _next_lane(context, context.side)
     states = context.spans.columns
@@ -176,11 +179,13 @@ def _of_no_use(context: DriveContext) -> Flags:
 
 
 def _slower_ahead(context: DriveContext, lane: NDArray[intp], states: NDArray[intp]) -> Flags:
-    """Mask of those states in which ego would soon have to leave a lane again to overtake."""
+    """Mask of those states in which ego would soon have to leave a lane again, or brake there."""
     cells = _on_lane(context, lane, states)
     gap, station = relations.gap(context)[cells], relations.station(context)[cells]
-    faster = context.ego_extents.along[0, cells[1]] - context.extents.along[cells]
+    own = context.ego_extents.along[0, cells[1]]
+    faster = own - context.extents.along[cells]
     soon = gap <= faster * (_SOON_AGAIN * context.thresholds.catching_up_s)
+    soon |= gap < own * _AT_EASE_S
     found = np.zeros(context.states, dtype=bool)
     found[cells[1][(station == relations.BEHIND) & soon]] = True
     return found

@@ -42,11 +42,26 @@ def oncoming(context: DriveContext) -> SignalColumns:
 def comes_towards(context: DriveContext) -> Flags:
     """Mask of participants that move against ego's direction, or wait on lanes of that way."""
     along = context.extents.along
-    faces: Flags = np.abs(context.extents.turned) > _FACES_RAD
+    faces = _faces(context)
     comes = faces & (along * -KMH >= context.thresholds.standing_kmh)
     others = Cells.at(faces & ~comes)
     comes.ravel()[others.places] = _waits_elsewhere(context, others)
     return comes
+
+
+def _faces(context: DriveContext) -> Flags:
+    """Mask of participants that face ego, or did and have not turned as far as across the road.
+
+    So that one that swerves as ego gets beside it, as round an island, does not go ego's way.
+    """
+    turned = np.abs(context.extents.turned)
+    faces: Flags = turned > _FACES_RAD
+    leans = (turned > np.pi / 2) & ~faces
+    rows = (leans.any(axis=1) & faces.any(axis=1)).nonzero()[0]
+    if len(rows):
+        latest, against = context.spans.latest, turned[rows] > np.pi / 2
+        faces[rows] |= against & (latest(faces[rows]) > latest(~against))
+    return faces
 
 
 def _waits_elsewhere(context: DriveContext, cells: Cells) -> Flags:
