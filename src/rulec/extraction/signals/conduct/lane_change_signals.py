@@ -38,6 +38,9 @@ _JUMP_MPS = 5.0
 _JUMP_S = 0.5
 """Changes of lanes this long (s) before or after a jump are due to it."""
 
+_ABRUPT_MPS, _ABRUPT_S = 2.5, 2.0
+"""Who changes lanes faster than anybody drives began to at most this long (s) before."""
+
 _JUST_STOOD_S = 1.0
 """A vehicle that stood this recently (s) has not driven over a mark since: it drifted there."""
 
@@ -239,7 +242,8 @@ def _indicator(context: DriveContext) -> SignalColumns:
     Both sides at once are no indication, like hazard lights; if a file states that hazard lights
     are off then, it contradicts itself, and both sides are unknown in the whole drive. A vehicle
     that changes lanes has indicated it if it did up to the state before, or while it lay across the
-    mark; if it jumps at that time, or off the road's edge, that is unknown.
+    mark; if it jumps at that time, or off the road's edge, that is unknown. So is whether it did
+    before a change that takes one step, as in simulators, in which nobody can announce it.
     """
     egos = context.ego.participants
     if not context.spans.agreed([ego.lamps and ego.shows >= _INDICATORS for ego in egos]):
@@ -259,12 +263,15 @@ def _indicator(context: DriveContext) -> SignalColumns:
     is_dark = np.array([lamps is not None and not lamps & _INDICATORS for lamps in steps])
     changes = (_changes(context) & is_dark).nonzero()[0]
     codes[changes] = [_shown_across(context, codes, change) for change in changes.tolist()]
-    spans, jumps = context.spans, _jumps_across(context)
+    spans, jumps = context.spans, _jumps_across(context, _JUMP_MPS)
     # A jump may end short of the mark, or begin just behind it
     about = spans.within(jumps, round(_JUMP_S / context.recording.step_s), around=True)
     unknown[changes] |= (codes[changes] == 0) & about[changes]
     off_the_edge = jumps & ~_changes(context)
     unknown |= is_dark & (off_the_edge | spans.after(off_the_edge))
+    abrupt = _jumps_across(context, _ABRUPT_MPS) & _changes(context)
+    abrupt = spans.within(abrupt, round(_ABRUPT_S / context.recording.step_s))
+    unknown |= is_dark & abrupt & ~_changes(context)
     return SignalColumns(
         {"indicator": codes},
         unknown={"indicator": unknown},
@@ -287,11 +294,11 @@ def _shown_across(context: DriveContext, codes: NDArray[intp], change: int) -> i
     return int(codes[since + lit[-1]]) if len(lit) else 0
 
 
-def _jumps_across(context: DriveContext) -> Flags:
-    """Mask of states into which ego has jumped sideways from the state before."""
+def _jumps_across(context: DriveContext, faster_mps: float) -> Flags:
+    """Mask of states into which ego has moved sideways faster than that from the state before."""
     left_of = context.ego_extents.left_of[0]
     moved = np.abs(left_of - context.spans.before(left_of.T).T).min(axis=1)
-    jumps: Flags = moved > _JUMP_MPS * context.recording.step_s
+    jumps: Flags = moved > faster_mps * context.recording.step_s
     return jumps
 
 
