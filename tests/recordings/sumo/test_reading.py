@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec import read_recording
-from rulec.extraction.tracks.junction_lanelets import junction_lanelets
 from rulec.recordings.sumo.vehicle_types import CLASSES, read_vehicle_types, vehicle_type
 from rulec.recordings.track import rectangles
+from rulec.scenario.recorded.junction_lanelets import junction_lanelets
 from support.builders.sumo_files import body, data, moment, written
 
 

@@ -6,13 +6,13 @@ import numpy as np
 
 from rulec.extraction.context_arrays import drive_context
 from rulec.extraction.tracks.driven_road import DrivenRoads
-from rulec.extraction.tracks.junction_lanelets import junction_lanelets
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.road_extents import road_extents
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
+from rulec.scenario.recorded.junction_lanelets import junction_lanelets
 from support.builders.recordings import vehicle
 
 EGO = "7"

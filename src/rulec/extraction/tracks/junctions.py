@@ -13,11 +13,6 @@ import shapely
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_road import TURN_REACH_M
-from rulec.extraction.tracks.junction_lanelets import (
-    junction_lanelets,
-    level_crossing_lanelets,
-    marks_junctions,
-)
 from rulec.recordings.recording import (
     ALL_STOP,
     REGULATING,
@@ -27,6 +22,11 @@ from rulec.recordings.recording import (
     Points,
     Recording,
     is_there,
+)
+from rulec.scenario.recorded.junction_lanelets import (
+    junction_lanelets,
+    level_crossing_lanelets,
+    marks_junctions,
 )
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import lanelet_area

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from rulec.extraction.tracks.driven_road import DrivenRoad, DrivenRoads
-from rulec.extraction.tracks.junction_lanelets import junction_lanelets
 from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
 from rulec.recordings.recording import Recording
+from rulec.scenario.recorded.junction_lanelets import junction_lanelets
 
 
 class LaidOutMap:

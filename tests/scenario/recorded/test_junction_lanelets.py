@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.tracks.junction_lanelets import junction_lanelets
 from rulec.extraction.tracks.junctions import junctions_of
+from rulec.scenario.recorded.junction_lanelets import junction_lanelets
 from support.builders.recordings import lanelet, recording, straight
 
 
