@@ -261,17 +261,18 @@ def _indicator(context: DriveContext) -> SignalColumns:
     unknown = both & context.spans.any(both & np.array(no_hazards))
     unknown |= np.array([lamps is None for lamps in steps])
     is_dark = np.array([lamps is not None and not lamps & _INDICATORS for lamps in steps])
-    changes = (_changes(context) & is_dark).nonzero()[0]
+    spans, changed, across_mps = context.spans, _changes(context), _speed_across(context)
+    changes = (changed & is_dark).nonzero()[0]
     codes[changes] = [_shown_across(context, codes, change) for change in changes.tolist()]
-    spans, jumps = context.spans, _jumps_across(context, _JUMP_MPS)
+    jumps = across_mps > _JUMP_MPS
     # A jump may end short of the mark, or begin just behind it
     about = spans.within(jumps, round(_JUMP_S / context.recording.step_s), around=True)
     unknown[changes] |= (codes[changes] == 0) & about[changes]
-    off_the_edge = jumps & ~_changes(context)
+    off_the_edge = jumps & ~changed
     unknown |= is_dark & (off_the_edge | spans.after(off_the_edge))
-    abrupt = _jumps_across(context, _ABRUPT_MPS) & _changes(context)
+    abrupt = changed & (across_mps > _ABRUPT_MPS)
     abrupt = spans.within(abrupt, round(_ABRUPT_S / context.recording.step_s))
-    unknown |= is_dark & abrupt & ~_changes(context)
+    unknown |= is_dark & abrupt & ~changed
     return SignalColumns(
         {"indicator": codes},
         unknown={"indicator": unknown},
@@ -294,12 +295,12 @@ def _shown_across(context: DriveContext, codes: NDArray[intp], change: int) -> i
     return int(codes[since + lit[-1]]) if len(lit) else 0
 
 
-def _jumps_across(context: DriveContext, faster_mps: float) -> Flags:
-    """Mask of states into which ego has moved sideways faster than that from the state before."""
+def _speed_across(context: DriveContext) -> Floats:
+    """How fast (m/s) ego has moved sideways from the state before, by state."""
     left_of = context.ego_extents.left_of[0]
     moved = np.abs(left_of - context.spans.before(left_of.T).T).min(axis=1)
-    jumps: Flags = moved > faster_mps * context.recording.step_s
-    return jumps
+    across: Floats = moved / context.recording.step_s
+    return across
 
 
 def _disturbed(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Flags]:
