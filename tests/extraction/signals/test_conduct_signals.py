@@ -23,12 +23,12 @@ SIMULATED = ("arrivals", "light", "YIELD")
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
 
 
-def told(group, word, road, *bodies, side="right", complete=(), route=("1",)):
+def told(group, word, road, *bodies, side="right", complete=(), route=("1",), **thresholds):
     """A word's first row, or its values, each as T or F, or ? where it is unknown."""
     found = replace(recording(road, bodies), complete=frozenset(complete))
     if side == "left":
         found = mirrored_recording(found)
-    signals = group(context_of(found, route, side))
+    signals = group(context_of(found, route, side, **thresholds))
     column = signals.values(word)
     unknown = signals.unknown.get(word, np.zeros(column.shape, dtype=bool))
     column, unknown = (x[0] if x.ndim == 2 else x for x in (column, unknown))
@@ -581,14 +581,23 @@ def crossroads():
     ]
 
 
-def turns_before(start, mps, steps=40, kind="bicycle", y=-2.5):
+def turns_before(start, mps, steps=40, kind="bicycle", y=-2.5, **thresholds):
     """Ego turns right at 5 m/s, its middle at the junction at 4 s; a rider goes straight on."""
     turn = [(x, y) for x, y, _ in arc(100, -14, 14, 0, 90)][::-1]
     ego = along(7, np.array([(0, 0), *turn, (114, -200)]), 80 + 2.5 * np.arange(steps))
     rider = vehicle(8, {k: (start + mps * k / 2, y) for k in range(steps)}, kind, length=2, width=1)
+    route = ("1", "3", "5")
     return told(
-        turning_conflicts, "turns_in_way_of", crossroads(), ego, rider, route=("1", "3", "5")
+        turning_conflicts, "turns_in_way_of", crossroads(), ego, rider, route=route, **thresholds
     )
+
+
+def test_who_seems_to_ride_behind_may_ride_beside_it_where_places_are_in_error():
+    """It laps ego's side by 0.3 m."""
+    assert set(turns_before(75, 5, y=-1.2)) == {"F"}
+    found = turns_before(75, 5, y=-1.2, place_error_m=0.2)
+    assert "?" in found
+    assert "T" not in found
 
 
 def test_who_turns_across_the_way_of_a_rider_beside_it():

@@ -22,7 +22,7 @@ _BEHIND_M, _ASIDE_M = 30.0, 8.0
 """A participant that goes on beside ego is at most this far behind it or aside when ego turns."""
 
 _LAPS_M = 0.25
-"""One that is behind ego by at most this much of its width may be beside it: roads bend."""
+"""One that laps ego's side by at most this much may ride beside it: roads bend."""
 
 _BEFORE_M = 8.0
 _STRAIGHT_RAD = np.radians(30.0)
@@ -69,7 +69,7 @@ def _conflict(
     clear = to_left if towards > 0 else to_right
     behind = float(_in_frame(context, own.row, origin, heading)[0][begin] - along[begin])
     half = float(passages.lengths[own.row]) / 2
-    beside = -_LAPS_M <= clear <= _ASIDE_M and -half <= behind <= _BEHIND_M
+    beside = -max(place, _LAPS_M) <= clear <= _ASIDE_M and -half <= behind <= _BEHIND_M
     if not beside or abs(float(angle[begin])) > _STRAIGHT_RAD:
         return None
     crosses = _crossed(context, own, begin, (*origin, heading), float(left[begin]))
