@@ -103,6 +103,9 @@ UNARY_OPERATORS: Final = (
 OF_ONE_STATE: Final = frozenset(("not", "and", "or", "implies", "iff", "xor"))
 """The operators that are not temporal."""
 
+LOOKS_BACK: Final = frozenset(("once", "historically", "previously", "weak previously", "since"))
+"""The temporal operators of the past, which the first state has none of."""
+
 BINDS_NARROWLY: Final = frozenset(("always", "never", "eventually"))
 """The operators that readers often take to apply to everything that follows."""
 

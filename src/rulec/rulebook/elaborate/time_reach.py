@@ -9,13 +9,12 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from rulec.diagnostics import Diagnostic
 from rulec.rulebook.elaborate import time_reach_messages as say
-from rulec.rulebook.elaborate.elaboration_messages import short
 from rulec.rulebook.elaborate.reach_of_until import until_warnings
 from rulec.rulebook.names.referenced_names import atoms_in, parts_of
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.rulebook_overlay import Overlay
 from rulec.syntax import tree
-from rulec.syntax.keywords import BINDS_NARROWLY, JOINS_ALIKE, OF_ONE_STATE
+from rulec.syntax.keywords import BINDS_NARROWLY, JOINS_ALIKE, LOOKS_BACK, OF_ONE_STATE
 
 
 def requirement_warnings(
@@ -24,8 +23,32 @@ def requirement_warnings(
     """Warnings for the parts of a requirement that apply to the first state only."""
     parts = [*_conjuncts(node)]
     for part in parts:
-        if not _speaks_of_time(part, overlay.definitions) and _changes(part, symbols, overlay):
-            yield say.first_state_only(part, short(part), alone=len(parts) == 1)
+        asked_once = _asked_once(part, overlay.definitions)
+        if asked_once is not None and _changes(asked_once, symbols, overlay):
+            yield say.first_state_only(part, asked_once, alone=len(parts) == 1)
+
+
+def _asked_once(
+    node: tree.Formula, definitions: Mapping[str, tree.DefineItem]
+) -> tree.Formula | None:
+    """The part of a requirement that is evaluated in the first state and in no other.
+
+    It is all of a formula without an operator that looks ahead, the condition of a duty, or what a
+    forbidden sequence begins with.
+    """
+    if not _looks_ahead(node, definitions):
+        return node
+    match node:
+        case tree.Infix("implies", left, right) if not _looks_ahead(left, definitions):
+            # `congested implies always p` is about whole traces, by how they begin.
+            return None if all(map(_is_of_all_states, _conjuncts(right))) else left
+        case tree.Prefix("not", tree.Infix("then", left, _)):
+            return left
+    return None
+
+
+def _is_of_all_states(node: tree.Formula) -> bool:
+    return isinstance(node, tree.Prefix) and node.operator in {"always", "never"}
 
 
 def operator_warnings(node: tree.Formula, overlay: Overlay) -> Iterator[Diagnostic]:
@@ -73,7 +96,7 @@ def _narrow(
             if operator in BINDS_NARROWLY and behind and not grouped:
                 nearest = behind[0]
                 joins = nearest.operator in JOINS_ALIKE
-                alike = joins and _speaks_of_time(nearest.right, definitions)
+                alike = joins and _looks_ahead(nearest.right, definitions)
                 # `then` has a warning of its own, and `eventually p implies q` reads as it is.
                 if not alike and nearest.operator != "then" and (joins or operator != "eventually"):
                     until = _reach(node, behind, definitions)
@@ -94,18 +117,21 @@ def _reach(
     end = prefix.span.end
     for operation in behind:
         alike = operation.operator in JOINS_ALIKE
-        if alike and _speaks_of_time(operation.right, definitions):
+        if alike and _looks_ahead(operation.right, definitions):
             break
         end = operation.span.end
     return end
 
 
-def _speaks_of_time(node: tree.Formula, definitions: Mapping[str, tree.DefineItem]) -> bool:
-    """Whether a formula has a temporal operator, also in the definitions that it uses."""
+def _looks_ahead(node: tree.Formula, definitions: Mapping[str, tree.DefineItem]) -> bool:
+    """Whether a formula has an operator about later states, also in definitions that it uses."""
     pending, seen = [node], set[str]()
     while pending:
         part = pending.pop()
-        if isinstance(part, tree.Prefix | tree.Infix) and part.operator not in OF_ONE_STATE:
+        if (
+            isinstance(part, tree.Prefix | tree.Infix)
+            and part.operator not in OF_ONE_STATE | LOOKS_BACK
+        ):
             return True
         if isinstance(part, tree.AtomUse):
             names = {part.name.text, *(argument.text for argument in part.arguments)} - seen

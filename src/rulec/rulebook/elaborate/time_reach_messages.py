@@ -12,8 +12,11 @@ FIRST_STATE_ONLY = Code(
     title="a rule requires something only in the first state",
     why="Without a temporal operator such as `always` or `never`, a formula is only about the "
     "first state of a trace: a vehicle that starts slowly satisfies `require speed <= limit`. "
-    "`rulec check --fix` puts `always` before it. If you mean the first state, write `always "
-    "(previously true or p)`, which requires `p` only in the state that has none before it.",
+    "The same holds for a condition outside of it: `require red_light implies eventually halted` "
+    "is only about a light that is red as the trace begins. Operators of the past do not help, "
+    "since the first state has no past. `rulec check --fix` puts `always`, or `never` in place "
+    "of `not`, before it. If you mean the first state, write `always (previously true or p)`, "
+    "which requires `p` only in the state that has none before it.",
     bad="rulebook example\nquantity speed in km/h default 0\n"
     "hard rule r { require speed <= 50 km/h }\n",
     good="rulebook example\nquantity speed in km/h default 0\n"
@@ -45,20 +48,25 @@ TWO_READINGS = Code(
 )
 
 
-def first_state_only(node: tree.Formula, reads: str, *, alone: bool) -> Diagnostic:
-    """A requirement, or a part of one if not ``alone``, without a temporal operator."""
+def first_state_only(node: tree.Formula, asked_once: tree.Formula, *, alone: bool) -> Diagnostic:
+    """A requirement, or a part of one if not ``alone``, with a part outside of every `always`.
+
+    ``asked_once`` is that part, or the whole.
+    """
     text = node.span.text
     bare = isinstance(node, tree.AtomUse | tree.Aggregate)
-    if isinstance(node, tree.Prefix):
-        # The only operator that is not one of time is `not`.
+    if isinstance(node, tree.Prefix) and node.operator == "not":
         wider = f"never {text[len(node.sign) :].lstrip()}"
     else:
         wider = f"always {text}" if bare else f"always ({text})"
     asker = "the rule asks" if alone else "this part of the rule asks"
+    asked = "for" if asked_once is node else "whether there is"
     return FIRST_STATE_ONLY.at(
         node.span,
-        f"{asker} for `{reads}` in the first state only",
-        expected="nothing here speaks of later states",
+        f"{asker} {asked} `{short(asked_once)}` in the first state only",
+        expected="nothing here speaks of later states"
+        if asked_once is node
+        else "no operator of time is about the whole of this",
         help=f"write `{wider if len(wider) <= 60 else f'{wider[:59]}…'}` to speak of all states",
         severity="warning",
         fix=Fix(node.span.place, wider),
