@@ -158,23 +158,29 @@ def test_ego_turns_behind_or_long_before_one(reaches_s):
 @pytest.mark.parametrize(
     ("reaches_s", "mps", "conflict"),
     [
-        # It is on ego's way from about 3.7 to 5.3 s, and ego on its way from 4.6 s on
-        (3.5, 10.0, True),
+        # It is on ego's way from about 3.7 to 5.3 s, and ego on its way from 4.6 s on: 0.6 m behind
+        (3.5, 10.0, ""),
+        # 0.47 m behind
+        (3.7, 10.0, "open"),
+        # From 5.0 s on ego's front is in its rear
+        (4.1, 10.0, "sure"),
         # It is there all the time and slow, as one that may wait; but ego runs into it
-        (2.0, 2.0, True),
+        (2.0, 2.0, "sure"),
     ],
 )
-def test_ego_drives_into_the_side_of_one_that_was_there_first(reaches_s, mps, conflict):
-    told_of, unknown = told(at(reaches_s, mps))
-    assert told_of.any() == conflict
-    assert not unknown.any()
+def test_ego_drives_into_the_side_of_one_that_was_there_first_or_behind_it(
+    reaches_s, mps, conflict
+):
+    found, unknown = told(at(reaches_s, mps))
+    assert (found.any(), unknown.any()) == (conflict == "sure", conflict == "open")
 
 
-def test_who_brakes_may_stop_short_of_one_that_was_there_first():
-    """As above, but at 2 m/s from 4.5 s on, as ego gets to its way, for a second."""
-    conflict, unknown = told(at(3.5), ego=np.interp(TIMES, [0, 4.5, 5.5, 14], [32, 54.5, 56.5, 99]))
-    assert not conflict.any()
-    assert unknown.any()
+@pytest.mark.parametrize(("place_m", "conflict"), [(56.5, False), (57.5, True)])
+def test_who_brakes_may_stop_short_of_one_that_was_there_first(place_m, conflict):
+    """It brakes from 4.5 s on for a second, and stays 0.7 or 0.51 m behind it."""
+    ego = np.interp(TIMES, [0, 4.5, 5.5, 14], [32, 54.5, place_m, 99])
+    found, unknown = told(at(3.9), ego=ego)
+    assert (found.any(), unknown.any()) == (False, conflict)
 
 
 def test_who_rolls_on_in_front_of_one_does_not_let_it_pass():
@@ -224,11 +230,12 @@ def test_who_creeps_on_behind_one_that_does_not_brake_lets_it_pass(place_m, conf
     assert (found.any(), unknown.any()) == (conflict, False)
 
 
-def test_of_who_creeps_behind_one_that_is_all_but_past_nobody_knows_that_it_hinders_it():
+def test_who_creeps_behind_one_that_is_all_but_past_does_not_hinder_it():
+    """The bodies stay 0.9 m apart."""
     creeps = np.interp(TIMES, [0, 4.5, 7.5, 9, 13.75], [32, 53, 56.4, 61, 95])
     found, unknown = told(at(5.2), ego=creeps)
     assert not found.any()
-    assert unknown.any()
+    assert not unknown.any()
 
 
 def test_one_that_has_to_give_way_by_its_sign():

@@ -47,6 +47,9 @@ _NEAR = 0.7
 _GRAZES_M = 0.15
 """Boxes that overlap by no more do not show that bodies do, since bodies have rounded corners."""
 
+_CLEAR_M = 0.5
+"""A body this far (m) from another one, beyond the tolerance of places, is clear of it."""
+
 _BEHIND_S = 0.3
 """A vehicle that reaches a place this short a time before another has left it passes behind it."""
 
@@ -155,7 +158,8 @@ def _runs_into(
 
     If the ways join, ego drives in behind it. If ego brakes meanwhile, it may see the vehicle and
     stop short of it, on lanes that are narrower than on the map; if it creeps on behind, it does
-    not touch it. A slow vehicle may wait there, unless ego runs into it.
+    not touch it. A slow vehicle may wait there, unless ego runs into it. One behind which ego
+    passes is not in conflict: where ways cross at a slant the place is longer than bodies.
     """
     passages = context.surroundings.passages
     (own, enters), (other, passed) = ego, foe
@@ -173,9 +177,15 @@ def _runs_into(
     inside = (until - enters) * context.recording.step_s > _BEHIND_S
     if not (drive and inside):
         return None
-    creeps = slowest[0] < _DRIVES_MPS and not collide(context, own, other, there, _GRAZES_M)
-    sure = not creeps and not _slows_down(context, own, enters, until)
-    return max(int(present[0]), first_column(context)), sure
+    first = max(int(present[0]), first_column(context))
+    if not collide(context, own, other, there, _GRAZES_M):
+        behind = gap_s(context, (own, other), (enters, until)) >= context.thresholds.yielding_s
+        near_m = _CLEAR_M + 2 * context.tolerances.place_m
+        if behind and not collide(context, own, other, there, -near_m):
+            return None
+        if behind or slowest[0] < _DRIVES_MPS:
+            return first, False
+    return first, not _slows_down(context, own, enters, until)
 
 
 def _column(when: float | None) -> int | None:
