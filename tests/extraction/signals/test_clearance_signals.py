@@ -141,6 +141,14 @@ def test_who_walks_along_in_ego_s_lane_leaves_no_room(start, step, blocked):
     assert signals(two_ways(), ego(mps=2), walker)["obstructed"][0] == str(blocked)
 
 
+@pytest.mark.parametrize(("x", "blocked"), [(-57.0, True), (-65.0, False)])
+def test_who_is_fast_needs_time_to_get_back_from_one_that_walks(x, blocked):
+    """At 15 m/s ego may go on for 60 m beyond; 2.25 m lie between rear and middle."""
+    places = {k: (x + 0.7 * k, -1.7) for k in range(4)}
+    walker = vehicle(9, places, "pedestrian", length=0.5, width=0.5, speed=1.4)
+    assert signals(two_ways(), ego(mps=15), walker)["obstructed"][0] == str(blocked)
+
+
 def test_one_that_moves_is_no_obstacle():
     assert signals(two_ways(), ego(), steady(9, 20, 0, 5))["obstructed"] == ["False"] * 4
 

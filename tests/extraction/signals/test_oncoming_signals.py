@@ -183,6 +183,14 @@ def test_who_brakes_may_stop_short_of_one_that_was_there_first(place_m, conflict
     assert (found.any(), unknown.any()) == (False, conflict)
 
 
+@pytest.mark.parametrize(("place_m", "meet"), [(88, True), (93, False)])
+def test_where_ways_join_who_drives_in_behind_one_may_run_into_it(place_m, meet):
+    """It turns into the same road, and is so far along 6 s on: then ego is in its rear, or not."""
+    way = np.interp(TIMES, [0, 3.5, 6, 14], [52, 82, place_m, place_m + 37])
+    found, unknown = told(way, turn="near")
+    assert (found.any(), unknown.any()) == (False, meet)
+
+
 def test_who_rolls_on_in_front_of_one_does_not_let_it_pass():
     # It comes at about 5.0 s and has passed at 6.6 s, while ego is on its way from 4.6 to 7.2 s
     conflict, _ = told(at(4.8))

@@ -156,14 +156,14 @@ def _obstructed(context: DriveContext) -> Flags:
 def _near_obstacle(context: DriveContext, cells: Cells) -> Flags:
     """Mask of cells of standing or walking participants that ego goes round now.
 
-    For pedestrians, and for participants that never move, ego goes out earlier.
+    For pedestrians, and for participants that never move, ego goes out earlier; from pedestrians,
+    who are passed at full speed, it also needs that long to get back.
     """
     gap, along = cells.of(relations.gap(context)), context.ego_extents.along[0]
     near: Flags = gap <= context.thresholds.obstacle_m
-    reach = along[cells.columns] * context.thresholds.parting_s
-    early = ~near & (gap <= reach) & (cells.of(relations.station(context)) == relations.BEHIND)
-    walks = context.tracks.of_type("pedestrian")[cells.rows]
-    near |= early & walks
+    early = ~near & (gap <= along[cells.columns] * context.thresholds.parting_s)
+    near |= early & context.tracks.of_type("pedestrian")[cells.rows]
+    early &= cells.of(relations.station(context)) == relations.BEHIND
     early &= cells.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
     rows, never_moves = distinct(cells.rows[early]), np.zeros(len(context.relevant), dtype=bool)
     never_moves[rows] = context.stays[rows]

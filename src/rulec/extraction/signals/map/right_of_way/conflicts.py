@@ -156,18 +156,21 @@ def _runs_into(
 ) -> tuple[int, bool] | None:
     """``in_conflict`` for a vehicle that got there first, into whose side ego drives.
 
-    If the ways join, ego drives in behind it. If ego brakes meanwhile, it may see the vehicle and
-    stop short of it, on lanes that are narrower than on the map; if it creeps on behind, it does
-    not touch it. A slow vehicle may wait there, unless ego runs into it. One behind which ego
-    passes is not in conflict: where ways cross at a slant the place is longer than bodies.
+    If the ways join, ego drives in behind it; if bodies meet nevertheless, it is not sure who ran
+    into whom. If ego brakes meanwhile, it may see the vehicle and stop short of it, on lanes that
+    are narrower than on the map; if it creeps on behind, it does not touch it. A slow vehicle may
+    wait there, unless ego runs into it. One behind which ego passes is not in conflict: where ways
+    cross at a slant the place is longer than bodies.
     """
     passages = context.surroundings.passages
     (own, enters), (other, passed) = ego, foe
     ways = passages.way(own), passages.way(other)
-    if ways[0].names & ways[1].names or ways[0].exits & ways[1].exits:
-        return None
     present = passages.tracks.present[other.row].nonzero()[0]
+    first = max(int(present[0]), first_column(context))
     until = int(present[-1]) + 1 if passed is None else passed
+    if ways[0].names & ways[1].names or ways[0].exits & ways[1].exits:
+        meet = collide(context, own, other, slice(enters, until), _GRAZES_M)
+        return (first, False) if meet else None
     slowest = passages.tracks.speed[[own.row, other.row], enters:until].min(axis=1, initial=np.inf)
     there = slice(enters, until)
     drive = bool((slowest > (SLOWEST_MPS, _DRIVES_MPS)).all()) or (
@@ -177,7 +180,6 @@ def _runs_into(
     inside = (until - enters) * context.recording.step_s > _BEHIND_S
     if not (drive and inside):
         return None
-    first = max(int(present[0]), first_column(context))
     if not collide(context, own, other, there, _GRAZES_M):
         behind = gap_s(context, (own, other), (enters, until)) >= context.thresholds.yielding_s
         near_m = _CLEAR_M + 2 * context.tolerances.place_m
