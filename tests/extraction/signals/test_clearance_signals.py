@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.clearance_signals import clearance_signals
-from support.builders.drive_contexts import steady, told_on_both_sides
+from support.builders.drive_contexts import along, steady, told_on_both_sides
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
 STEP_S = 0.5
@@ -54,6 +54,25 @@ def test_a_fast_one_s_way_is_known_from_who_came():
     assert meets[0] == "False"
     # Who has passed is in nobody's way
     assert meets[-1] == "?"
+
+
+@pytest.mark.parametrize(
+    ("x", "slows_to_mps", "clear"),
+    [(320, 20.0, "False"), (320, 2.0, "?"), (580, 20.0, "True"), (580, 2.0, "True")],
+)
+def test_one_that_brakes_may_do_so_for_ego(x, slows_to_mps, clear):
+    """Ego is over the middle from 2.5 to 15.5 s; they would meet at 11 or 19 s.
+
+    From 4 to 7.6 s the other one brakes by 5 m/s², and then is 45 m away when ego is back.
+    """
+    times = np.arange(0, 20, STEP_S)
+    out_and_back = [(0.0, 0.0), (20.0, 0.0), (40.0, 4.0), (140.0, 4.0), (160.0, 0.0), (600.0, 0.0)]
+    speeds = np.interp(times, [0, 4, 7.6, 20], [20, 20, slows_to_mps, slows_to_mps])
+    driven = np.concatenate(([0.0], np.cumsum((speeds[1:] + speeds[:-1]) / 2 * STEP_S)))
+    passes = along(7, np.array(out_and_back), 10 * times)
+    comes = along(8, np.array([(600.0, 4.0), (0.0, 4.0)]), 600 - x + driven)
+    found = signals(two_ways(), passes, comes)["oncoming_clear"]
+    assert found[round(3 / STEP_S)] == clear
 
 
 def test_one_that_appears_midway():

@@ -55,8 +55,9 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     It does where ego need not leave the lanes of its direction, in the far one of which it may
     already be. Otherwise no oncoming vehicle may meet ego within ``overtaking_s`` at both current
     speeds, or actually meet it within that time; nor, however much later, while ego is still on its
-    way over the other half, or within ``yielding_s`` of that. Unknown where the drive ends before
-    and ego is so fast that a vehicle may come from beyond ``near_m``.
+    way over the other half, or within ``yielding_s`` of that. Unknown where one may brake that
+    would have met ego there, or where the drive ends before and ego is so fast that a vehicle may
+    come from beyond ``near_m``.
     """
     limits = context.thresholds
     own_lanes = (travel_lanes(context).sum(axis=1) > 1) & ~_beyond_own_lanes(context)
@@ -84,7 +85,35 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     meets[columns[left_s < limits.overtaking_s]] = True
     soon[columns[left_s < limits.yielding_s]] = True
     meets |= context.spans.within(met, steps) | _meets_beyond_middle(context, met | soon)
-    return alone | ~meets, ~alone & ~meets & ends & ~far_enough
+    unknown = ends & ~far_enough | _may_brake_for_ego(context, cells)
+    return alone | ~meets, ~alone & ~meets & unknown
+
+
+def _may_brake_for_ego(context: DriveContext, cells: Cells) -> Flags:
+    """Mask of states in which ego is on its way over the other half and may make a vehicle brake.
+
+    One of those in ``cells``, who come, may then brake harder than ``disturbing_mps2``, and at its
+    fastest speed in that stretch would meet ego there or within ``yielding_s`` of it.
+    """
+    limits, tracks, spans = context.thresholds, context.tracks, context.spans
+    least = -limits.disturbing_mps2
+    hard = cells.of(tracks.acceleration) - cells.of(tracks.acceleration_error) < least
+    hard &= cells.of(relations.station(context)) == relations.BEHIND
+    braked = np.zeros(context.states, dtype=bool)
+    if not hard.any():
+        return braked
+    there, _ = oncoming_side(context)
+    away = there | on_both_halves(context)
+    back, since = spans.next_state(~away), spans.latest(~away)
+    until_s = (back - np.arange(context.states)) * context.recording.step_s + limits.yielding_s
+    cells = cells.part((hard & (spans.latest(there) > since)[cells.columns]).nonzero()[0])
+    gaps = cells.of(relations.gap(context))
+    for row, column, gap in zip(cells.rows, cells.columns, gaps, strict=True):
+        fastest = -context.extents.along[row, since[column] + 1 : column + 1].min()
+        closing = max(context.ego_extents.along[0, column] + fastest, 0.1)
+        braked[column] |= gap / closing < until_s[column]
+    flags: Flags = away & (spans.next_state(braked) < back)
+    return flags
 
 
 def _meets_beyond_middle(context: DriveContext, meets: Flags) -> Flags:
