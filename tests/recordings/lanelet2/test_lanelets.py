@@ -52,6 +52,28 @@ def test_points_that_repeat_are_one(tmp_path):
     assert lanelets_of(file, tmp_path)[name].left.tolist() == [[0, 2], [50, 2]]
 
 
+@pytest.mark.parametrize(
+    ("begins", "goes_on", "said"),
+    [
+        ((50.1, 0.1), False, True),
+        ((50.1, 0.1), True, True),
+        ((50.0, 0.0), False, False),
+        ((50.4, 0), False, False),
+    ],
+)
+def test_lanelets_that_nearly_meet_are_named(tmp_path, begins, goes_on, said):
+    """The second one begins a tenth of a metre beside, and nothing leads to it."""
+    file = MapFile()
+    x, y = begins
+    first = file.lanelet(file.line((0, 2), (50, 2)), file.line((0, -2), (50, -2)))
+    second = file.lanelet(file.line((x, y + 2), (x + 40, 2)), file.line((x, y - 2), (x + 40, -2)))
+    if goes_on:
+        file.lanelet(file.line((50, 2), (90, 9)), file.line((50, -2), (90, 5)))
+    remarks = " ".join(read_map(file.write(tmp_path), 0.1).remarks)
+    assert (f"`{first}` and `{second}`" in remarks) == said
+    assert ("share no nodes" in remarks) == said
+
+
 def test_what_shares_two_nodes_follows(tmp_path):
     file = MapFile()
     bounds = [(file.line((x, 2), (x + 50, 2)), file.line((x, -2), (x + 50, -2))) for x in (0, 50)]

@@ -10,7 +10,7 @@ from rulec.recordings.lanelet2.map_frame import places_of
 from rulec.recordings.lanelet2.map_lanelets import MapLanelet, map_lanelets
 from rulec.recordings.lanelet2.osm_file import LANELET2, read_osm
 from rulec.recordings.lanelet2.regulations import LaneRules, Surveyed, regulations, remarks_on
-from rulec.recordings.lanelet2.topology import country_in, side_of, topology
+from rulec.recordings.lanelet2.topology import country_in, nearly_connected, side_of, topology
 from rulec.recordings.recording import Lanelet, ObservedLight
 from rulec.recordings.road_map import RoadMap
 
@@ -41,6 +41,7 @@ def read_lanelet2(path: Path) -> RoadMap:
     country = country_in(entries.values())
     side = side_of(entries, country)
     remarks = [places.remark, *_left_out(left_out), *remarks_on(rules.values())]
+    remarks += _loose_ends(nearly_connected(entries, survey.topology))
     if side is None:
         remarks.append("the map does not give the side of traffic")
     return RoadMap(
@@ -90,6 +91,19 @@ def _single(lights: Mapping[str, list[ObservedLight]]) -> dict[str, ObservedLigh
 
 def _left_out(names: list[str]) -> Iterator[str]:
     if names:
-        more = f", and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-        some = ", ".join(f"`{name}`" for name in names[:_NAMED])
-        yield f"lanelets without a left and a right bound are left out: {some}{more}"
+        some = _some([f"`{name}`" for name in names])
+        yield f"lanelets without a left and a right bound are left out: {some}"
+
+
+def _loose_ends(pairs: list[tuple[str, str]]) -> Iterator[str]:
+    if pairs:
+        some = _some([f"`{own}` and `{other}`" for own, other in pairs])
+        yield (
+            "lanelets end where others begin, but share no nodes with them, so that no way leads "
+            f"from one to the other: {some}"
+        )
+
+
+def _some(names: list[str]) -> str:
+    more = f", and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+    return ", ".join(names[:_NAMED]) + more

@@ -9,6 +9,9 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+import shapely
+
 from rulec.recordings.commonroad.countries import side_in
 from rulec.recordings.lanelet2.map_lanelets import MapLanelet
 from rulec.recordings.lanelet2.osm_file import OsmFile
@@ -17,6 +20,9 @@ from rulec.recordings.recording import Side
 
 MOST_AT_ONE_PLACE = 100
 """The most lanelets that begin, or end, at the same two nodes."""
+
+NEARLY_M = 0.25
+"""Nodes so near each other were probably meant to be one."""
 
 _NOT_FOR_CARS = frozenset({"bicycleLane"})
 
@@ -55,6 +61,28 @@ def topology(file: OsmFile, entries: Mapping[str, MapLanelet]) -> Topology:
     left_of = {x.id: by_right[x.left_bound] for x in lanes if x.left_bound in by_right}
     right_of = {x.id: by_left[x.right_bound] for x in lanes if x.right_bound in by_left}
     return Topology(follow, before, left_of, right_of)
+
+
+def nearly_connected(entries: Mapping[str, MapLanelet], around: Topology) -> list[tuple[str, str]]:
+    """Lanelets that end ``NEARLY_M`` or less from where another begins, but do not lead on to it.
+
+    Only pairs of which one leads nowhere, or comes from nowhere: others fork or join elsewhere.
+    """
+    lanes = [entry for entry in entries.values() if entry.is_lane]
+    if not lanes:
+        return []
+    ends, starts = (np.array([[x.left[at], x.right[at]] for x in lanes]) for at in (-1, 0))
+    tree = shapely.STRtree(shapely.points(starts[:, 0]))
+    near = tree.query(shapely.points(ends[:, 0]), predicate="dwithin", distance=NEARLY_M)
+    apart_m = np.hypot(*np.moveaxis(ends[near[0], 1] - starts[near[1], 1], -1, 0))
+    pairs = [(lanes[end], lanes[start]) for end, start in near.T[apart_m <= NEARLY_M].tolist()]
+    return [
+        (own.id, other.id)
+        for own, other in pairs
+        if own is not other
+        and other.id not in around.successors[own.id]
+        and not (around.successors[own.id] and around.predecessors[other.id])
+    ]
 
 
 def _others(own: str, names: Iterable[str]) -> tuple[str, ...]:
