@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from math import nextafter
 
 import pytest
 
@@ -10,6 +11,7 @@ from rulec.api.rulebook_compilation import machines
 from rulec.automata import compiler, step_compilation
 from rulec.automata.compiler_jobs import Failed
 from rulec.automata.step_compilation import StepCompiler
+from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Bound, Unary, UnaryOperator
 from rulec.monitoring.verdict import NotJudged, Verdict
@@ -89,6 +91,23 @@ def test_a_step_is_the_decimal_that_is_written():
     rules = compile_rulebook(BOOK, step_s=0.1)
     assert rules.rules[0].step_s == Fraction(1, 10)
     assert isinstance(verify(trace("p", 0.1), rules), Verdict)
+
+
+@pytest.mark.parametrize("base", [0.5, 0.1, 0.04])
+def test_a_step_that_is_nearly_another_is_not_that_one(base):
+    """However near it is: the decimal that a float stands for is taken, not one around it."""
+    nearly = [base * (1 + share) for share in (1e-12, 1e-9, 1e-6, 1e-5, 2e-5, 5e-5, 1e-4)]
+    for step_s in (*nearly, nextafter(base, 0), nextafter(base, 9), 2 * base - nearly[1]):
+        assert exact_step(step_s) == Fraction(repr(step_s)) != Fraction(repr(base))
+    assert exact_step(base) == Fraction(repr(base))
+
+
+@pytest.mark.parametrize("rate", [3, 7, 24, 30, 60, 120, 999])
+def test_the_float_nearest_to_a_frame_rates_step_is_that_step(rate):
+    """As recordings and their traces have it; but not what is written with fewer digits."""
+    assert exact_step(1 / rate) == Fraction(1, rate)
+    assert exact_step(1001 / (1000 * rate)) == Fraction(1001, 1000 * rate)
+    assert exact_step(round(1 / rate, 9)) == Fraction(f"{1 / rate:.9f}")
 
 
 @pytest.mark.parametrize(

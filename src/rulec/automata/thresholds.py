@@ -19,6 +19,10 @@ EXACT_IN_FLOATS = 1 << 53
 """Whole numbers up to this size are exact as floats, and equal their own decimals."""
 
 
+_MOST_FRAMES = 1000
+"""The most frames per second of a rate whose step a float may stand for."""
+
+
 def exact(value: Fraction | float) -> Fraction:
     """The exact value of a number as written: 0.1 is one tenth, not the float nearest to it."""
     if type(value) is WrittenNumber:
@@ -28,20 +32,18 @@ def exact(value: Fraction | float) -> Fraction:
 
 @lru_cache(maxsize=1 << 8)
 def exact_step(step_s: Fraction | float) -> Fraction:
-    """The exact step (s) that a number stands for.
+    """The exact step (s) that a number stands for: as written.
 
-    Steps of frame rates often have no finite decimal. A float with five or more digits that rounds
-    the step of a whole number of frames per 1 s, or per 1.001 s as in video, stands for that step.
+    Steps of frame rates often have no finite decimal. The float that is nearest to the step of 1 to
+    1000 frames per second, or a thousand of those in 1001 s as in video, stands for that step.
     """
     step = exact(step_s)
-    digits = str(step_s).partition("e")[0].replace(".", "").lstrip("0")
-    if not isinstance(step_s, float) or len(digits) < 5 or step <= 0:
+    if not isinstance(step_s, float) or step <= 0:
         return step
     for frames in (Fraction(1), Fraction(1000, 1001)):
         rate = round(1 / step / frames)
-        near = 1 / (rate * frames) if rate else step
-        if abs(near - step) <= step / 10 ** (len(digits) - 1):
-            return near
+        if 1 <= rate <= _MOST_FRAMES and float(1 / (rate * frames)) == float(step):
+            return 1 / (rate * frames)
     return step
 
 

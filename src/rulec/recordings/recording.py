@@ -13,6 +13,7 @@ from typing import Literal, NamedTuple
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.recordings.frame_steps import frame_step
 from rulec.value_display import short_repr
 
 Points = NDArray[float64]
@@ -298,7 +299,7 @@ class WholeRecording:
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """A recording: one time step takes ``step_s`` seconds.
+    """A recording: one time step takes ``step_s`` seconds, not rounded if of a frame rate.
 
     ``form`` is the name of its format. ``side`` is the side of traffic, None if unknown;
     ``country`` is its code (ISO 3166) or empty. ``complete`` names kinds of things, such as signs,
@@ -325,6 +326,9 @@ class Recording:
     rounding: Rounding | None = None
     ego: str = ""
     whole: WholeRecording | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "step_s", frame_step(self.step_s))
 
     @property
     def ids(self) -> frozenset[str]:
