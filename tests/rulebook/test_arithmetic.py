@@ -27,14 +27,16 @@ UNITS = {
     "length": {"m": Fraction(1), "km": Fraction(1000), "cm": Fraction(1, 100)},
     "time": {"s": Fraction(1), "min": Fraction(60), "ms": Fraction(1, 1000)},
     "speed": {"m/s": Fraction(1), "km/h": Fraction(1000, 3600), "cm/min": Fraction(1, 6000)},
-    "number": {"": Fraction(1), "%": Fraction(1, 100)},
+    "number": {"": Fraction(1)},
+    "share": {"%": Fraction(1, 100), "permille": Fraction(1, 1000)},
 }
 QUANTITIES = {
     "gap": ("length", "m"),
     "way": ("length", "km"),
     "speed": ("speed", "km/h"),
     "wind": ("speed", "m/s"),
-    "grade": ("number", "%"),
+    "ratio": ("number", ""),
+    "grade": ("share", "%"),
     "rest": ("time", "min"),
 }
 PARAMETERS = {
@@ -49,7 +51,9 @@ PARAMETERS = {
 }
 BOOK = (
     "rulebook r signal wet, dark default false\n"
-    + "\n".join(f"quantity {name} in {unit} default 0" for name, (_, unit) in QUANTITIES.items())
+    + "\n".join(
+        f"quantity {name} in {unit or 'm/m'} default 0" for name, (_, unit) in QUANTITIES.items()
+    )
     + "\n"
     + "\n".join(f"param {name} : {kind} = {said}" for name, (kind, said, _) in PARAMETERS.items())
 )
@@ -347,3 +351,66 @@ def test_an_hour_of_another_language_in_an_example():
     with pytest.raises(RulecError) as problem:
         parse_rulebook(text)
     assert problem.value.diagnostics[0].help == "an hour is `h`: did you mean `km/h`?"
+
+
+SHARES = """rulebook a
+quantity slope in %% default 0
+quantity alcohol in permille default 0
+quantity ratio in m/m default 0
+signal wet default false
+param steep = 8
+param flat = 8 %%
+type car
+hard rule r { require always (%s) %s }
+"""
+
+
+@pytest.mark.parametrize(
+    ("formula", "said"),
+    [
+        ("slope > 8", "`8` has no unit and `slope` is in %: they cannot be compared"),
+        ("8 < slope", "write the unit, such as `8 %`"),
+        ("slope > -8", "write the unit, such as `-8 %`"),
+        ("alcohol <= 0.2", "write the unit, such as `0.2 permille`"),
+        ("slope + 1 > 8 %", "`1` has no unit and `slope` is in %: they cannot be added"),
+        ("slope - alcohol > 3 - 1", "write the unit, %"),
+        ("2 * slope > 2 * 4", "write the unit, %"),
+        ("slope / 2 > 4", "write the unit, %"),
+        ("slope > (8 if wet else 6)", "write the unit, %"),
+        ("(slope if wet else 8) > 3 %", "they cannot be one number"),
+        ("slope > steep", "write its unit where it is declared, such as `param steep = 3 %`"),
+    ],
+)
+def test_a_share_is_not_compared_with_a_bare_number(formula, said):
+    """`slope > 8` would be 800 %, of a quantity whose numbers in traces are per cent."""
+    with pytest.raises(RulecError) as problem:
+        parse_rulebook(SHARES % (formula, ""))
+    (found,) = problem.value.diagnostics
+    assert found.code == "R0312"
+    assert said in f"{found.message}. {found.help}"
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        *("slope > 8 %", "slope > 0", "slope > -0", "slope > flat", "slope > 8 permille"),
+        *("slope > 2 * 4 %", "2 * slope > 8 %", "slope > (8 % if wet else 0)", "slope + 0 > 8 %"),
+        *("slope / 1 % > 8", "slope / 2 % > flat / 1 %", "ratio > 8", "ratio + 1 > 800 %"),
+        *("slope > alcohol", "count c: car (c = c) > 1", "flat < 0.5", "slope > ratio"),
+    ],
+)
+def test_what_has_no_unit_or_needs_none(formula):
+    parse_rulebook(SHARES % (formula, ""))
+
+
+@pytest.mark.parametrize("unit", ["%", "permille"])
+def test_a_share_in_an_example_has_its_unit(unit):
+    name = {"%": "slope", "permille": "alcohol"}[unit]
+    for number in ("9", "-9", "0.5"):
+        with pytest.raises(RulecError) as problem:
+            parse_rulebook(SHARES % (f"{name} <= 8 %", f"accept {{ {name} = {number} }}"))
+        (found,) = problem.value.diagnostics
+        assert (found.code, found.expected) == ("R0312", f"expected a number in {unit}")
+        assert found.help == f"write the unit, such as `{number} {unit}`"
+    good = f"accept {{ {name} = 0; {name} = 8 {unit} }} accept {{ ratio = 3 }}"
+    parse_rulebook(SHARES % (f"{name} <= 8 %", good))

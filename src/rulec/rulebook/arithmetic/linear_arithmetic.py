@@ -13,7 +13,7 @@ from itertools import islice, product
 
 from rulec.logic import formula as ltl
 from rulec.logic.linear_comparison import comparison
-from rulec.vocabulary.dimensions import Dimension
+from rulec.vocabulary.dimensions import NUMBER, Dimension, Unit
 
 MOST_CASES = 64
 """The most cases in one comparison; more could not be checked by reading."""
@@ -31,7 +31,8 @@ class Linear:
     """A sum of coefficients times terms, and a constant, in base units.
 
     ``dimension`` is None for a bare 0, which fits any dimension. ``text`` is how a rulebook would
-    write it, ``binding`` the precedence of its outermost operator.
+    write it, ``binding`` the precedence of its outermost operator. ``share`` is the unit of a
+    number without dimension, such as `%`; empty if written without a unit, None if neither is so.
     """
 
     coefficients: Mapping[ltl.Term, Fraction]
@@ -39,6 +40,7 @@ class Linear:
     dimension: Dimension | None
     text: str
     binding: int = PRIMARY
+    share: str | None = None
 
     def __post_init__(self) -> None:
         """Raises TooManyCasesError."""
@@ -79,6 +81,17 @@ class NumberByCases:
         return any(linear.coefficients for _, linear in self.cases)
 
     @property
+    def is_bare(self) -> bool:
+        """Whether it is the same in all states and written without a unit, and not 0."""
+        return any(linear.share == "" and not linear.coefficients for _, linear in self.cases)
+
+    @property
+    def share(self) -> str:
+        """The unit, such as `%`, of quantities without dimension; empty if it has none."""
+        shares = (linear.share for _, linear in self.cases if linear.coefficients)
+        return next(filter(None, shares), "")
+
+    @property
     def text(self) -> str:
         """The number as a rulebook would write it."""
         if len(self.cases) == 1:
@@ -90,14 +103,27 @@ class TooManyCasesError(Exception):
     """An expression has too many cases or is too large."""
 
 
-def constant(value: Fraction, dimension: Dimension | None, text: str) -> NumberByCases:
+def share_of(unit: Unit) -> str | None:
+    """What ``Linear`` has as the share of a number in a unit: `8 %` is not what `8` is."""
+    return unit.text if unit.dimension == NUMBER and unit.factor != 1 else None
+
+
+def constant(
+    value: Fraction, dimension: Dimension | None, text: str, share: str | None = None
+) -> NumberByCases:
     """A number that is the same in all states."""
-    return NumberByCases((((), Linear({}, value, dimension, text)),))
+    return NumberByCases((((), Linear({}, value, dimension, text, share=share)),))
 
 
-def measured(term: ltl.Term, factor: Fraction, dimension: Dimension, text: str) -> NumberByCases:
-    """A number that a state gives, in units of ``factor`` base units."""
-    return NumberByCases((((), Linear({term: factor}, Fraction(0), dimension, text)),))
+def measured(term: ltl.Term, unit: Unit, text: str) -> NumberByCases:
+    """A number that a state gives in a unit."""
+    linear = Linear({term: unit.factor}, Fraction(0), unit.dimension, text, share=share_of(unit))
+    return NumberByCases((((), linear),))
+
+
+def counted(term: ltl.Term, text: str) -> NumberByCases:
+    """A number of objects."""
+    return NumberByCases((((), Linear({term: Fraction(1)}, Fraction(0), NUMBER, text)),))
 
 
 def combined(
@@ -157,7 +183,14 @@ def added(left: Linear, right: Linear, sign: int = 1) -> Linear:
         right.dimension if left.dimension is None else left.dimension,
         f"{left.within(SUM)} {'+' if sign > 0 else '-'} {right.within(PRODUCT)}",
         SUM,
+        _share_of_sum(left, right),
     )
+
+
+def _share_of_sum(left: Linear, right: Linear) -> str | None:
+    if left.dimension is None or right.dimension is None:
+        return left.share if right.dimension is None else right.share
+    return left.share if left.share == right.share or (left.share and right.share) else None
 
 
 def multiplied(left: Linear, right: Linear) -> Linear:
@@ -170,7 +203,9 @@ def divided(linear: Linear, divisor: Linear) -> Linear:
     """The quotient by a constant other than 0."""
     text = f"{linear.within(PRODUCT)} / {divisor.within(SIGN)}"
     dimension = None if divisor.dimension is None else divisor.dimension**-1
-    return _times(linear, Linear({}, 1 / divisor.constant, dimension, ""), text)
+    # A number of percents is none of them: `slope / 1 %`.
+    share = "" if divisor.share == "" else None
+    return _times(linear, Linear({}, 1 / divisor.constant, dimension, "", share=share), text)
 
 
 def _times(linear: Linear, factor: Linear, text: str) -> Linear:
@@ -180,7 +215,9 @@ def _times(linear: Linear, factor: Linear, text: str) -> Linear:
         dimension = linear.dimension * factor.dimension
     by = factor.constant
     terms = {} if bare else {term: value * by for term, value in linear.coefficients.items() if by}
-    return Linear(terms, linear.constant * by, dimension, text, PRODUCT)
+    # Twice a share is one, a share of a share is not.
+    share = factor.share if linear.share == "" else linear.share if factor.share == "" else None
+    return Linear(terms, linear.constant * by, dimension, text, PRODUCT, share)
 
 
 def opposite(number: NumberByCases) -> NumberByCases:
@@ -191,7 +228,7 @@ def opposite(number: NumberByCases) -> NumberByCases:
 def _opposite(linear: Linear) -> Linear:
     terms = {term: -coefficient for term, coefficient in linear.coefficients.items()}
     text = f"-{linear.within(SIGN)}"
-    return Linear(terms, -linear.constant, linear.dimension, text, SIGN)
+    return Linear(terms, -linear.constant, linear.dimension, text, SIGN, linear.share)
 
 
 def compared(left: NumberByCases, relation: ltl.Relation, right: NumberByCases) -> ltl.Formula:

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Literal
 
 from rulec.logic.formula import Bound
-from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases, constant
+from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases, constant, share_of
 from rulec.rulebook.elaborate import bound_messages
 from rulec.rulebook.elaborate.elaboration_messages import point_of_thousands, too_long
 from rulec.rulebook.elaborate.scope import Evaluate, Scope
@@ -35,12 +35,15 @@ def literal(node: tree.NumberLiteral, scope: Scope) -> NumberByCases | None:
     if _IN_THOUSANDS.fullmatch(node.text):
         scope.report(point_of_thousands(node))
     if not node.unit:
-        return constant(value, None if value == 0 else DIMENSIONS["number"], node.text)
+        if value == 0:
+            return constant(value, None, node.text)
+        return constant(value, DIMENSIONS["number"], node.text, share="")
     unit = scope.symbols.unit(node.unit)
     if unit is None:
         scope.report(unknown_unit(node.unit, node.span))
         return None
-    return constant(value * unit.factor, unit.dimension, f"{node.text} {node.unit}")
+    text = f"{node.text} {node.unit}"
+    return constant(value * unit.factor, unit.dimension, text, share_of(unit))
 
 
 def exact_value(node: tree.NumberLiteral, scope: Scope) -> Fraction | None:

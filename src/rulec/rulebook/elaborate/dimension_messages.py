@@ -24,13 +24,8 @@ def two_dimensions(
     right: NumberByCases,
     scope: Scope,
 ) -> Diagnostic:
-    if isinstance(node, tree.Conditional):
-        first, second, sign = node.value, node.otherwise, "or"
-    else:
-        first, second = node.left, node.right
-        sign = node.relation if isinstance(node, tree.Compare) else node.operator
+    first, second, verb = _sides(node)
     first_kind, second_kind = kind_of(left.dimension), kind_of(right.dimension)
-    verb = {"+": "added", "-": "subtracted", "or": "one number"}.get(sign, "compared")
     return MIXED_DIMENSIONS.at(
         second.span,
         f"`{short(first)}` is {first_kind} and `{short(second)}` {second_kind}: "
@@ -39,6 +34,36 @@ def two_dimensions(
         help=_help(node, (first, left), (second, right), scope),
         labels=(Label(first.span.place, f"this is {first_kind}"), *origins(scope, first, second)),
     )
+
+
+def bare_beside_share(
+    node: tree.Compare | tree.Arithmetic | tree.Conditional,
+    left: NumberByCases,
+    share: str,
+    scope: Scope,
+) -> Diagnostic:
+    """The error for a number without a unit beside one in a unit such as `%`, the ``share``."""
+    first, second, verb = _sides(node)
+    bare, other = (first, second) if left.is_bare else (second, first)
+    return MIXED_DIMENSIONS.at(
+        bare.span,
+        f"`{short(bare)}` has no unit and `{short(other)}` is in {share}: they cannot be {verb}",
+        expected="this has no unit",
+        help=_unit_help(bare, other, scope)
+        or _parameter_help(bare, kind_of(None), other, scope)
+        or f"write the unit, {share}",
+        labels=(Label(other.span.place, f"this is in {share}"), *origins(scope, first, second)),
+    )
+
+
+def _sides(
+    node: tree.Compare | tree.Arithmetic | tree.Conditional,
+) -> tuple[tree.Formula, tree.Formula, str]:
+    """What stands on both sides, and what cannot be done with numbers of two kinds."""
+    if isinstance(node, tree.Conditional):
+        return node.value, node.otherwise, "one number"
+    sign = node.relation if isinstance(node, tree.Compare) else node.operator
+    return node.left, node.right, {"+": "added", "-": "subtracted"}.get(sign, "compared")
 
 
 def _help(node: tree.Formula, left: _Side, right: _Side, scope: Scope) -> str:
@@ -59,7 +84,8 @@ def _help(node: tree.Formula, left: _Side, right: _Side, scope: Scope) -> str:
 
 def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
     unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
-    bare = isinstance(node, tree.NumberLiteral) and not node.unit
+    number = node.operand if isinstance(node, tree.Minus) else node
+    bare = isinstance(number, tree.NumberLiteral) and not number.unit
     return f"write the unit, such as `{short(node)} {unit}`" if bare and unit else ""
 
 

@@ -14,7 +14,7 @@ from rulec.rulebook.arithmetic.size_limits import exceeded_limit
 from rulec.rulebook.elaborate import constant_messages
 from rulec.rulebook.elaborate import elaboration_messages as say
 from rulec.rulebook.elaborate.amounts import bound_of, literal
-from rulec.rulebook.elaborate.dimension_messages import two_dimensions
+from rulec.rulebook.elaborate.dimension_messages import bare_beside_share, two_dimensions
 from rulec.rulebook.elaborate.macro_expansion import expand_macro, parameter_value
 from rulec.rulebook.elaborate.rule_messages import unused_variable
 from rulec.rulebook.elaborate.scope import AnyArgument, BoundVariable, Scope
@@ -134,7 +134,7 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
     unit = scope.symbols.unit_of(result.name)
     if unit is None:
         return None
-    return numbers.measured(result, unit.factor, unit.dimension, term_text(result))
+    return numbers.measured(result, unit, term_text(result))
 
 
 def _prefix(node: tree.Prefix, scope: Scope) -> ltl.Formula | None:
@@ -216,7 +216,14 @@ def _fit(
     right: NumberByCases,
     scope: Scope,
 ) -> bool:
-    """Whether two numbers have the same dimension; if not, report it."""
+    """Whether two numbers have the same dimension; if not, report it.
+
+    Beside a share, such as a quantity in %, a number without a unit is of another kind.
+    """
+    share = (left.is_bare and right.share) or (right.is_bare and left.share)
+    if share:
+        scope.report(bare_beside_share(node, left, share, scope))
+        return False
     if left.dimension is None or right.dimension in (None, left.dimension):
         return True
     scope.report(two_dimensions(node, left, right, scope))
@@ -292,7 +299,7 @@ def _aggregate(node: tree.Aggregate, scope: Scope) -> ltl.Formula | NumberByCase
         return None
     every = node.kind == "every"
     term = ltl.Count(actual, known_type, negated(_checked(body)) if every else _checked(body))
-    count = numbers.measured(term, Fraction(1), DIMENSIONS["number"], term_text(term))
+    count = numbers.counted(term, term_text(term))
     if node.kind == "count":
         return count
     comparison = numbers.compared(count, "<" if every else ">=", _ONE)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from rulec.diagnostics import Span
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import required_inputs
+from rulec.rulebook.arithmetic.linear_arithmetic import share_of
 from rulec.rulebook.elaborate.amounts import literal
 from rulec.rulebook.elaborate.scope import BoundVariable, Scope
 from rulec.rulebook.names.declaration_messages import twice
@@ -111,6 +112,9 @@ def _number(fact: tree.StateLiteral, quantity: ltl.QuantityTerm, scope: Scope) -
         return None
     if given.dimension not in (None, unit.dimension):
         scope.report(say.other_dimension(fact, quantity, given, unit))
+        return None
+    if given.is_bare and share_of(unit):
+        scope.report(say.without_unit(fact, quantity, unit))
         return None
     try:
         value = number_of(given.cases[0][1].constant / unit.factor)

@@ -149,6 +149,17 @@ def other_dimension(
     )
 
 
+def without_unit(fact: tree.StateLiteral, term: QuantityTerm, unit: Unit) -> Diagnostic:
+    """The error for a number without a unit, for a quantity in a unit such as `%`."""
+    assert fact.value is not None, "only a value may lack its unit"
+    return MIXED_DIMENSIONS.at(
+        fact.value.span,
+        f"`{term_text(term)}` is in {unit.text} and `{print_formula(fact.value)}` has no unit",
+        expected=f"expected a number in {unit.text}",
+        help=f"write the unit, such as `{print_formula(fact.value)} {unit.text}`",
+    )
+
+
 def too_large(fact: tree.StateLiteral, term: QuantityTerm, unit: Unit) -> Diagnostic:
     assert fact.value is not None, "only a value can be too large"
     return NUMBER_TOO_LARGE.at(
