@@ -89,7 +89,7 @@ def test_every_kind_is_tested():
 
 def test_what_is_there(path):
     one = audited(path, "2024-06-01")
-    assert (one.rulebook, one.law, one.at) == ("village", "", "2024-06-01")
+    assert (one.rulebook, one.law, one.at) == ("village", "Island Act", "2024-06-01")
     # kept, changed, softer, agreed, own; two examples each of kept and changed, one of agreed and
     # of own. Verified is what island says of agreed, not what mainland says of kept; changed has an
     # article of island's, agreed is confirmed, own is its own.

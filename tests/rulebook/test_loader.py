@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from rulec.diagnostics import RulecError, named
+from rulec.logic.printing import formula_text
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.rulebook.loader import (
@@ -211,3 +212,29 @@ def test_only_a_folder_of_the_files_name_has_others_beside_it(tmp_path):
     other = write(tmp_path / "mine" / "other.rules", "rulebook other\nextends vienna\n")
     assert [rule.name for rule in load_rulebook(own).rules] == ["r"]
     assert len(load_rulebook(other).rules) > 1  # the book that ships
+
+
+BASE_OF_A_DAY = """rulebook day_base
+law "Road act" as of 2010-01-01
+quantity pace in km/h default 0
+param top = 60 km/h in force until 2012-06-30
+param top = 80 km/h in force from 2012-07-01
+hard rule r { require always pace <= top accept { pace = 60 km/h } reject { pace = 61 km/h } }
+"""
+
+
+@pytest.mark.parametrize(
+    ("law", "day", "limit"),
+    [("", "2010-01-01", 60), ('law "Depot" as of 2015-01-01', "2015-01-01", 80)],
+)
+def test_a_variant_is_the_law_of_the_day_of_its_nearest_base_that_names_one(
+    tmp_path, law, day, limit
+):
+    """A depot's book that changes nothing forbids what its base forbids, on its day."""
+    write(tmp_path / "day_base.rules", BASE_OF_A_DAY)
+    write(tmp_path / "depot.rules", "rulebook depot\nextends day_base\n")
+    variant = write(tmp_path / "variant.rules", f"rulebook variant\nextends depot\n{law}\n")
+    book = load_rulebook(variant, [tmp_path])
+    assert (book.at, book.as_of) == (day, day)
+    assert f"pace <= {limit} km/h" in formula_text(book.rules[0].formula)
+    assert load_rulebook(variant, [tmp_path], "2013-01-01").at == "2013-01-01"

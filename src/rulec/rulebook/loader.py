@@ -12,6 +12,7 @@ from rulec.rulebook.allowances import judged_allowances
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import vocabulary_for_rulebook
 from rulec.rulebook.files.referenced_files import Book, ReferencedFiles, source_file
+from rulec.rulebook.overlay.rulebook_overlay import law_line
 from rulec.rulebook.resolve import resolve, resolve_vocabulary
 from rulec.rulebook.rulebook_model import Rulebook, SourceFile, Traffic
 from rulec.rulebook.rules.cited_rules import with_provisions
@@ -94,7 +95,7 @@ def read_rulebook(
             ``search_path`` and then among the rulebooks that ship with rulec; or a path, which
             contains a ``/`` or ends in ``.rules``.
         search_path: folders of rulebooks and vocabularies.
-        at: the day (ISO) whose law it is; if empty, that of its `law` line or else today.
+        at: the day (ISO) whose law it is; if empty, that of its law or else today.
         traffic: read it as one for this side, whatever it says itself.
 
     Raises RulecError: with every mistake in the rulebook, in those that it extends, and in the
@@ -180,7 +181,7 @@ def diagnose(
         data: its content.
         path: where it is, so that vocabularies beside it are found; None if that is nowhere.
         search_path: folders of rulebooks and vocabularies.
-        at: the day (ISO) whose law it is; if empty, that of its `law` line or else today.
+        at: the day (ISO) whose law it is; if empty, that of its law or else today.
     """
     try:
         source = decode(name, data)
@@ -212,8 +213,11 @@ def trees_of(file: RulebookFile, own: tree.File, mistakes: Sequence[Diagnostic])
 
 
 def day_of(trees: Trees, at: str = "") -> str:
-    """The day (ISO) whose law applies: the requested one, that of the law, or today."""
-    law = trees.books[-1].law
+    """The day (ISO) whose law applies: the requested one, that of the law, or today.
+
+    Without a `law` line, the law is that of the nearest base that has one.
+    """
+    law = law_line(trees.books)
     return at or (law.as_of if law else "") or date.today().isoformat()  # noqa: DTZ011
 
 

@@ -115,7 +115,4 @@ def _word(vocabulary: str, folders: Sequence[Path]) -> str:
 def _resolved(program: Source, trees: Trees | None, folders: Sequence[Path], at: str) -> Rulebook:
     if trees is None:
         return parse_rulebook(program.text, program.name, folders, at)
-    extended = with_book(trees, program, folders)
-    # The law is that of the rulebook's day.
-    law = trees.books[-1].law
-    return resolve_trees(extended, at or (law.as_of if law else "")).rulebook
+    return resolve_trees(with_book(trees, program, folders), at).rulebook

@@ -13,7 +13,14 @@ from rulec.rulebook.names.referenced_names import names_used
 from rulec.rulebook.names.symbol_table import SymbolTable, symbol_table
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.rulebook.overlay.priorities import pre_order
-from rulec.rulebook.overlay.rulebook_overlay import Overlay, RuleEntry, in_force, overlay, own_law
+from rulec.rulebook.overlay.rulebook_overlay import (
+    Overlay,
+    RuleEntry,
+    in_force,
+    law_line,
+    overlay,
+    own_law,
+)
 from rulec.rulebook.rulebook_model import (
     Axiom,
     Provision,
@@ -161,7 +168,7 @@ def with_rules(
     """
     file, laid, at = books[-1], names.constants.overlay, names.constants.at
     mistakes = list(names.mistakes)
-    own = own_law(books)
+    own, law = own_law(books), law_line(books)
     rules: list[Rule | None] = []
     contradictions: list[Diagnostic] = []
     not_in_force: list[str] = []
@@ -187,8 +194,8 @@ def with_rules(
         vocabulary=names.vocabulary,
         rules=tuple(good),
         title=file.title.text.value if file.title else "",
-        law=file.law.text.value if file.law else "",
-        as_of=file.law.as_of if file.law else "",
+        law=law.text.value if law else "",
+        as_of=law.as_of if law else "",
         sources=sources,
         semantics=semantics[-1] if semantics else "stutter",
         traffic=names.constants.traffic,

@@ -321,6 +321,11 @@ def own_law(chain: Sequence[tree.File]) -> Sequence[tree.File]:
     return chain[named[-1] if named else -1 :]
 
 
+def law_line(chain: Sequence[tree.File]) -> tree.LawLine | None:
+    """The line of the law that the last rulebook of a chain is: its own or its nearest base's."""
+    return own_law(chain)[0].law
+
+
 def in_force(dates: tree.InForce | None, day: str) -> bool:
     """Whether a day (ISO) lies within dates, the last one included."""
     if dates is None:
