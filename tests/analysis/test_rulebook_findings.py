@@ -313,6 +313,19 @@ def test_weaker_than_what_is_extended(tmp_path):
     assert [one.place.file for one in found[2].labels] == [str(tmp_path / "base.rules")]
 
 
+def test_of_what_type_the_objects_are_that_a_weaker_rule_leaves_out(tmp_path):
+    (tmp_path / "base.rules").write_text(
+        "rulebook base\nuse road\nhard rule r (v: vehicle) { require never beside(v) }\n"
+    )
+    path = tmp_path / "example.rules"
+    path.write_text("rulebook example\nextends base\noverride rule r (v: truck) { }\n")
+    (only,) = analyze(path)
+    assert only.code == "R0806"
+    assert only.notes == (
+        "`base` forbids, for `v: vehicle` where this rule has `v: truck`: { beside(v) }",
+    )
+
+
 def test_what_is_extended_is_for_the_same_side_of_traffic(tmp_path):
     (tmp_path / "base.rules").write_text(
         "rulebook base\nuse road\ntraffic right\n"

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
-from rulec.rulebook.loader import load_rulebook, parse_rulebook
+from rulec.rulebook.loader import diagnose, load_rulebook, parse_rulebook
 
 DAYS = ["2000-01-01", "2010-01-01", "2020-01-01"]
 WORDS = """
@@ -297,3 +297,34 @@ def test_a_rule_of_another_name_is_no_slip(name, way_out, tmp_path):
         load_rulebook(path)
     (found,) = problem.value.diagnostics
     assert found.help == way_out
+
+
+@pytest.mark.parametrize(
+    ("change", "now", "was"),
+    [
+        ("override rule r (v: car, w: vehicle)", "`v: car`", "`v: vehicle`"),
+        ("override rule r (w: any, v: vehicle)", "`w: any`", "`w: vehicle`"),
+        ("override rule r (v: car, w: car)", "`v: car`, `w: car`", "`v: vehicle`, `w: vehicle`"),
+    ],
+)
+def test_an_override_about_objects_of_another_type_is_told_both(change, now, was, tmp_path):
+    """To cite an article is not to exempt trucks: a narrower or wider type is told apart."""
+    (tmp_path / "base.rules").write_text(
+        "rulebook base\ntype any type vehicle: any type car: vehicle\n"
+        "signal near(o: any), far(o: any) default false\n"
+        "hard rule r (v: vehicle, w: vehicle) { require never (near(v) and far(w)) }\n"
+    )
+
+    def warnings(text):
+        data = f"rulebook own\nextends base\n{text}\n".encode()
+        found = diagnose("own.rules", data, tmp_path / "own.rules").findings
+        return [one for one in found if one.code == "R0262"]
+
+    (found,) = warnings(change + ' { cite "s. 1" }')
+    assert found.severity == "warning"
+    assert found.message == f"`r` is about {now} here, and was about {was}"
+    assert f"leave the variables out to keep {was}" in found.help
+    assert not warnings('override rule r { cite "s. 1" }')
+    assert not warnings('override rule r (v: vehicle, w: vehicle) { cite "s. 1" }')
+    assert not warnings('override rule r (v: car, w: car) { says "Anew." }')
+    assert not warnings("override rule r (v: car, w: car) { require never near(v) }")

@@ -18,7 +18,7 @@ from rulec.analysis.lint.questions import ComparedRules, Question, RuleAnswers, 
 from rulec.analysis.lint.related_rules import RelatedRules
 from rulec.analysis.shared_compilation import AnalyzedRule, at_one_step, compile_shared
 from rulec.analysis.trace_display import trace_note
-from rulec.diagnostics import Diagnostic, Label, Span
+from rulec.diagnostics import Diagnostic, Label, Span, named
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import Rule, Rulebook
@@ -29,6 +29,7 @@ from rulec.rulebook.rules.antecedents import (
     has_constant,
     occurrence,
 )
+from rulec.trace import Trace
 from rulec.witnesses.undecided import UndecidedError
 
 
@@ -243,6 +244,18 @@ def _inherited(diagnostic: Diagnostic, extends: Span | None) -> Diagnostic:
     return replace(diagnostic, place=extends.place, labels=(rule, *diagnostic.labels))
 
 
+def _types_of(trace: Trace, own: AnalyzedRule, inherited: AnalyzedRule) -> str:
+    """The types of a trace's objects, if two rules are about objects of different types."""
+    now, before = (
+        [f"{variable.name}: {variable.type}" for variable in one.rule.variables]
+        for one in (own, inherited)
+    )
+    if now == before or not trace.objects:
+        return ""
+    objects = named([f"{name}: {kind}" for name, kind in trace.objects.items()])
+    return f", for {objects} where this rule has {named(now)}" if now else f", for {objects}"
+
+
 def _weaker(
     rule: Rule,
     own: AnalyzedRule,
@@ -264,7 +277,9 @@ def _weaker(
     notes = [
         note
         for trace in comparison.second_forbids
-        for note in trace_note(f"`{base.name}` forbids", trace, (own, inherited))
+        for note in trace_note(
+            f"`{base.name}` forbids{_types_of(trace, own, inherited)}", trace, (own, inherited)
+        )
     ]
     return finding_messages.WEAKER_THAN_BASE.at(
         rule.span,

@@ -10,7 +10,7 @@ from rulec.diagnostics.code import Code
 from rulec.rulebook.names.atom_messages import NUMBER_OR_FORMULA, UNKNOWN_VARIABLE, WRONG_ARITY
 from rulec.rulebook.names.declaration_messages import DECLARED_TWICE
 from rulec.syntax import tree
-from rulec.syntax.tree_printer import print_parameters
+from rulec.syntax.tree_printer import print_parameter, print_parameters
 
 RULE_TWICE = Code(
     "R0205",
@@ -53,6 +53,18 @@ IDLE_OVERRIDE = Code(
     "missing, or the rule is this rulebook's own law unchanged, which `confirm rule` states.",
     bad="rulebook example\nextends vienna\noverride rule keep_near_side { }\n",
     good='rulebook example\nextends vienna\nconfirm rule keep_near_side { cite "s. 1" }\n',
+)
+
+OTHER_TYPES = Code(
+    "R0262",
+    title="an override is about objects of another type",
+    why="Variables in an override replace those that are inherited. If one has another type there, "
+    "the rule no longer applies to the same road users: about each car, it forbids nothing of "
+    "trucks. Leave the variables out to keep the inherited types. If the law is about the other "
+    "type, say by `says` or `require` what the rule is now.",
+    bad="rulebook example\nextends vienna\n"
+    'override rule following_distance (v: car) { cite "s. 1" }\n',
+    good='rulebook example\nextends vienna\noverride rule following_distance { cite "s. 1" }\n',
 )
 
 INHERITED_ALREADY = Code(
@@ -291,6 +303,22 @@ def idle_override(item: tree.RuleItem) -> Diagnostic:
         expected="all of it is as it is inherited",
         help="say what is different; where it is law as it is, write "
         f'`confirm rule {name} {{ cite "…" }}`; or leave it out',
+        severity="warning",
+    )
+
+
+def other_types(
+    item: tree.RuleItem, changed: Sequence[tuple[tree.Parameter, tree.Parameter]]
+) -> Diagnostic:
+    """An override with variables of other types than the inherited ones, each with both."""
+    now = [print_parameter(after) for _, after in changed]
+    before = [print_parameter(known) for known, _ in changed]
+    return OTHER_TYPES.at(
+        changed[0][1].span,
+        f"`{item.name.text}` is about {named(now)} here, and was about {named(before)}",
+        expected="another type",
+        help=f"leave the variables out to keep {named(before)}; or say what the rule is now",
+        labels=tuple(Label(known.span.place, "inherited from here") for known, _ in changed),
         severity="warning",
     )
 

@@ -49,6 +49,24 @@ def lost_variables(base: tree.RuleItem, over: tree.RuleItem) -> list[tree.Parame
     ]
 
 
+def changed_types(
+    base: tree.RuleItem, over: tree.RuleItem
+) -> list[tuple[tree.Parameter, tree.Parameter]]:
+    """Variables to which an override gives another type: as inherited, and as they are now.
+
+    An override that says anew what the rule is may be about others.
+    """
+    if over.require is not None or over.says is not None:
+        return []
+    known = {variable.name.text: variable for variable in base.variables}
+    pairs = ((known.get(after.name.text), after) for after in over.variables)
+    return [
+        (before, after)
+        for before, after in pairs
+        if before and before.type and after.type and before.type.text != after.type.text
+    ]
+
+
 def _replaces_exceptions(over: tree.RuleItem) -> bool:
     return not all(exception.also for exception in over.unless)
 

@@ -12,7 +12,12 @@ from dataclasses import dataclass, field, replace
 from rulec.diagnostics import Diagnostic, Span
 from rulec.rulebook.names.declaration_messages import twice
 from rulec.rulebook.overlay import overlay_messages as say
-from rulec.rulebook.overlay.rule_override import lost_exceptions, lost_variables, merged
+from rulec.rulebook.overlay.rule_override import (
+    changed_types,
+    lost_exceptions,
+    lost_variables,
+    merged,
+)
 from rulec.rulebook.rulebook_model import Remark
 from rulec.syntax import tree
 
@@ -251,6 +256,9 @@ class Overlay:
         # Who says in words what the rule is now has said what its exceptions are.
         if gone and item.says is None and not item.confirm:
             self.mistakes.append(say.lost_exceptions(item, gone))
+        changed = changed_types(base.item, item)
+        if changed:
+            self.mistakes.append(say.other_types(item, changed))
         lost = lost_variables(base.item, item)
         if lost:
             self.mistakes.append(say.lost_variables(item, lost))
