@@ -145,3 +145,35 @@ def test_a_rule_that_is_too_large_for_a_step_says_for_which(tmp_path, capsys):
     err = capsys.readouterr().err
     assert "one of its bounds has more than 10,000 steps for steps of 0.01 s\n" in err
     assert "longer steps mean fewer: for a recording, every fifth state may be enough\n" in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "read"),
+    [
+        (["a.json", "-o", "."], "a.json"),
+        (["./a.json", "-o", "."], "a.json"),
+        (["a.json", "-o", "../here"], "a.json"),
+        (["a/a.json", "b.json", "-o", "."], "a/a.json"),
+    ],
+)
+def test_a_compiled_rulebook_is_not_written_over_itself(
+    arguments, read, tmp_path, monkeypatch, capsys
+):
+    """An answer never replaces a file that is read, however that is named."""
+    (tmp_path / "here" / "a").mkdir(parents=True)
+    monkeypatch.chdir(tmp_path / "here")
+    for name in "ab":
+        Path(f"{name}.rules").write_text(
+            f"rulebook {name}\nsignal p default false\nhard rule r {{ require never p }}\n"
+        )
+        assert main(["compile", f"{name}.rules", "-o", "."]) == 0
+    Path("a/a.json").write_bytes(Path("a.json").read_bytes())
+    kept = Path(read).stat()
+    capsys.readouterr()
+    assert main(["compile", *arguments]) == 2
+    assert "error[R0735]" in capsys.readouterr().err
+    after = Path(read).stat()
+    assert (after.st_ino, after.st_mtime_ns) == (kept.st_ino, kept.st_mtime_ns)
+    # Whatever else is written replaces none.
+    assert main(["compile", "a.json", "--emit", "c", "-o", "."]) == 0
+    assert main(["compile", "a.json", "b.json", "-o", "elsewhere"]) == 0

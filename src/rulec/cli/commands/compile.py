@@ -108,10 +108,6 @@ def command(
     _refuse_file(output)
     # Checked first, since compiling may take minutes.
     refuse_unwritable(Path(output), is_folder=True)
-    for rulebook in rulebooks:
-        if "/" in rulebook and Path(rulebook).suffix in _WRITTEN:
-            # Output files are named after rules, which are not known yet.
-            refuse_overwriting([Output(str(Path(output, Path(rulebook).name)), "")], [rulebook])
     session = open_session(at)
     step_s = steps_s[0] if steps_s else None
     books = rulebooks_named(rulebooks)
@@ -119,6 +115,11 @@ def command(
     folders = {book: Path(output, name) for name, book in told_apart(books).items()}
     if books == rulebooks and len(books) == 1:
         folders = dict.fromkeys(books, Path(output))
+    if emit == "automata":
+        # Output files are named after rulebooks and rules, which are not known yet.
+        files = [Path(folder, Path(book).name) for book, folder in folders.items()]
+        compiled_files = [Output(str(file), "") for file in files if file.suffix in _WRITTEN]
+        refuse_overwriting(compiled_files, books)
     written = 0
     for book, folder in folders.items():
         with errors_told():
