@@ -271,6 +271,15 @@ def no_input(problem: OSError) -> RulecError:
     )
 
 
+def no_temporary_files(folder: str, problem: OSError) -> RulecError:
+    """The error (R0723) about the folder for temporary files."""
+    return REFUSED_BY_SYSTEM.error(
+        SourceLocation(folder),
+        f"temporary files cannot be written to this folder: {reason_in_words(problem)}",
+        help="free space in it, or name another folder in the environment variable `TMPDIR`",
+    )
+
+
 def refused(problem: OSError, *, is_gone: bool) -> Diagnostic:
     """The message for an operating system error that has no message of its own.
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import replace
-from errno import EACCES, EEXIST, EISDIR, ENOTDIR, EROFS
+from errno import EACCES, EDQUOT, EEXIST, EISDIR, ENOENT, ENOSPC, ENOTDIR, EROFS
 from io import SEEK_CUR, SEEK_END, BufferedReader, RawIOBase
 from pathlib import Path
 from typing import IO, Any, Final, cast
@@ -20,6 +20,7 @@ from rulec.file_messages import (
     NOT_UTF8,
     TOO_LONG_TO_READ,
     UNREADABLE_FILE,
+    no_temporary_files,
     not_the_same,
     not_utf8,
     reason_in_words,
@@ -379,6 +380,28 @@ def without_null(source: Source) -> Source:
             help="give a file of plain text in UTF-8",
         )
     return source
+
+
+TEMPORARY: Final = "rulec-"
+"""How names of folders for temporary files begin."""
+
+_NO_ROOM = (ENOSPC, EDQUOT, ENOENT)
+"""Errors of writing, which name no file, and that of a temporary folder that is nowhere."""
+
+
+@contextmanager
+def temporary_files() -> Iterator[None]:
+    """While temporary files are written, and nothing else.
+
+    Raises RulecError R0723 if there is no room for them, or no folder.
+    """
+    try:
+        yield
+    except OSError as problem:
+        name = problem.filename
+        if problem.errno not in _NO_ROOM if name is None else f"/{TEMPORARY}" not in str(name):
+            raise
+        raise no_temporary_files(os.environ.get("TMPDIR") or "/tmp", problem) from None
 
 
 @contextmanager

@@ -1,15 +1,18 @@
 """`verify --engine c` finds what Python's engines find, and says who judged."""
 
+import errno
 import json
 import shutil
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 from hypothesis import Phase, given, settings
 
 import rulec
 from rulec.cli.main import main
+from rulec.files import temporary_files
 from support.builders.rulebooks import compile_here
 from support.generators.blurred_traces import blurred
 from support.generators.random_rulebooks import rulebook
@@ -75,6 +78,38 @@ def test_it_takes_no_other_engine_in_silence(files, command, code, capsys, monke
     shown = capsys.readouterr()
     assert f"error[{code}]" in shown.err
     assert "violated" not in shown.out.replace("0 violated", "")
+
+
+def test_a_full_temporary_folder_is_named(files, capsys, monkeypatch, tmp_path):
+    """It is not standard output that is full."""
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr(Path, "write_text", full)
+    assert main([*files, "--engine", "c"]) == 2
+    shown = capsys.readouterr().err
+    assert "error[R0723]: temporary files cannot be written to this folder: no space" in shown
+    assert str(tmp_path) in shown
+    assert "`TMPDIR`" in shown
+
+
+@pytest.mark.parametrize(
+    ("problem", "is_ours"),
+    [
+        (OSError(errno.ENOSPC, "No space left on device"), True),
+        (OSError(errno.EDQUOT, "Disk quota exceeded"), True),
+        (FileNotFoundError(errno.ENOENT, "No usable temporary directory found"), True),
+        (OSError(errno.ENOSPC, "No space left on device", "/tmp/rulec-abc"), True),
+        (OSError(errno.ENOENT, "No such file or directory", "cc"), False),
+        (OSError(errno.EAGAIN, "Resource temporarily unavailable"), False),
+    ],
+)
+def test_only_what_is_about_temporary_files_is_said_of_them(problem, is_ours):
+    with pytest.raises(rulec.RulecError if is_ours else OSError) as caught, temporary_files():
+        raise problem
+    assert (caught.value is problem) is not is_ours
 
 
 @needs_a_compiler

@@ -6,14 +6,14 @@ import io
 import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import IO, Any, cast
 
 import click
 
 from rulec.file_messages import no_input
-from rulec.files import STANDARD_INPUT_COPY, opened
+from rulec.files import STANDARD_INPUT_COPY, TEMPORARY, opened, temporary_files
 
 STANDARD_INPUT = "-"
 
@@ -130,8 +130,10 @@ def copied() -> Iterator[Path]:
     import shutil
     from tempfile import TemporaryDirectory
 
-    with TemporaryDirectory(prefix="rulec-") as folder:
-        copy = Path(folder, "standard input")
-        with copy.open("wb") as stream:
-            shutil.copyfileobj(standard_input(), stream)
+    with ExitStack() as stack:
+        with temporary_files():
+            folder = stack.enter_context(TemporaryDirectory(prefix=TEMPORARY))
+            copy = Path(folder, "standard input")
+            with copy.open("wb") as stream:
+                shutil.copyfileobj(standard_input(), stream)
         yield copy

@@ -21,6 +21,7 @@ from rulec.code_generation.code_messages import (
 )
 from rulec.code_generation.monitor_layout import VERDICTS, MonitorLayout
 from rulec.code_generation.written_names import prefix_of
+from rulec.files import TEMPORARY, temporary_files
 from rulec.monitoring.online.four_valued import FourValued, RunningVerdict, within
 from rulec.trace import State
 from rulec.vocabulary import Declaration, Enumeration, Quantity
@@ -85,7 +86,8 @@ class CLibrary:
 
     ``source`` defaults to that of the layout.
 
-    Raises RulecError R0751 if there is no compiler, R0752 if it fails.
+    Raises RulecError R0751 if there is no compiler, R0752 if it fails, R0723 if there is no room
+    for temporary files.
     """
 
     language = "C"
@@ -96,7 +98,7 @@ class CLibrary:
         self.layout = layout
         self._level = "-O2" if optimised else "-O0"
         self._prefix = prefix_of(layout.rulebook.name)
-        with tempfile.TemporaryDirectory(prefix="rulec-") as folder:
+        with temporary_files(), tempfile.TemporaryDirectory(prefix=TEMPORARY) as folder:
             self._library = loaded(self._compiled(Path(folder), source), self.command)
         self.object_type, self.input_type = structures(layout)
         self.call("state_size").restype = ctypes.c_size_t
