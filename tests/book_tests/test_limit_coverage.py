@@ -8,7 +8,7 @@ from rulec import compile_rulebook
 from rulec.book_tests.example_coverage import coverage
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.book_tests.limit_coverage import grain
-from rulec.report.tests.example_text import missing_example
+from rulec.report.tests.example_text import missing_example, missing_examples
 from rulec.rulebook.loader import parse_rulebook
 
 HEAD = "rulebook test\nuse road\n"
@@ -91,3 +91,25 @@ def test_the_examples_that_are_proposed_come_out_and_are_close():
     assert [rule.n_limits for rule in again] == [rule.n_limits for rule in found]
     assert "time_headway(v) = 1.4 s" in text
     assert "time_headway(v) = 1.5 s" in text
+
+
+SIGNS = """\
+hard rule A {
+  require always (
+    speed <= (limit if limit < 1000 km/h else 50 km/h) or motorway and limit >= 1000 km/h
+  )
+  EXAMPLES
+}
+"""
+
+
+def test_a_number_moved_to_its_limit_keeps_its_relation_to_others():
+    book, _, (found,) = run(SIGNS.replace("EXAMPLES", ""))
+    texts = {one.comparison.text for one in found.missing_limits}
+    # Whether a limit is told is no limit to be close to: 999 km/h stands on no sign.
+    assert texts == {"speed <= limit", "speed <= 50 km/h"}
+    proposed = missing_examples(found, book.vocabulary)
+    assert not any("999" in example or "#" in example for example in proposed)
+    _, outcome, (again,) = run(SIGNS.replace("EXAMPLES", "\n".join(proposed)))
+    assert [one.number for one in outcome.outcomes if not one.passed] == []
+    assert (again.missing_limits, again.missing_edges) == ((), ())

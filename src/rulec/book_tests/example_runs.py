@@ -147,6 +147,16 @@ def _outcome(
     )
 
 
+def word_of(
+    rule: Rule, machine: CompiledRule, compiled: CompiledRulebook, example: Example
+) -> tuple[int, ...] | None:
+    """The states of an example as letter classes; None if one of them cannot be."""
+    try:
+        return _outcome(rule, machine, compiled, example, 1).word
+    except RulecError:
+        return None
+
+
 def _no_state(rule: Rule, example: Example, error: ImpossibleStateError) -> RulecError:
     (diagnostic,) = error.diagnostics
     spans = example.state_spans

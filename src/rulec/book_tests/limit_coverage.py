@@ -12,12 +12,15 @@ from typing import TypeGuard
 from rulec.automata.alphabet import letters_with
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
 from rulec.automata.thresholds import exact
-from rulec.logic.formula import Comparison, Formula, QuantityTerm, atoms_of
+from rulec.logic.formula import Comparison, Formula, QuantityTerm, Term, atoms_of
 from rulec.logic.kleene import ObjectBinding, PartialState, Unknown, weighted_sum
 from rulec.logic.linear_comparison import stands
 from rulec.rulebook.rulebook_model import ExampleState
 from rulec.vocabulary import Vocabulary
-from rulec.witnesses.coverage_witness import can_be
+from rulec.witnesses.coverage_witness import asks_whether_told, can_be, go_together
+from rulec.witnesses.fourier_motzkin import LinearBound
+from rulec.witnesses.letter_functions import counts_read, digits_of
+from rulec.witnesses.state_synthesis import numbers_beside
 
 _MOST_PLACES = 2
 """Limits with more decimals result from converting units; close to them means within 1."""
@@ -31,13 +34,17 @@ class LimitSide:
     holds: bool
 
 
-def sides_of(formula: Formula) -> tuple[LimitSide, ...]:
-    """Both sides of every limit in a formula; counts of objects have none."""
+def sides_of(formula: Formula, vocabulary: Vocabulary) -> tuple[LimitSide, ...]:
+    """Both sides of every limit in a formula; counts of objects have none.
+
+    Nor has ``limit < 1000 km/h`` if 1000 is the default: it only asks whether a limit is told.
+    """
     return tuple(
         LimitSide(atom, holds)
         for atom in dict.fromkeys(atoms_of(formula))
         if isinstance(atom, Comparison)
         and all(isinstance(term, QuantityTerm) for _, term in atom.terms)
+        and not asks_whether_told(atom, vocabulary)
         for holds in (True, False)
     )
 
@@ -68,26 +75,43 @@ def _stands_at(number: Fraction, side: LimitSide) -> bool:
 
 
 def close_state(
-    says: ExampleState, side: LimitSide, machine: MealyMonitor, vocabulary: Vocabulary
+    says: ExampleState,
+    side: LimitSide,
+    letter: int,
+    machine: MealyMonitor,
+    vocabulary: Vocabulary,
 ) -> ExampleState | None:
-    """The state with its number moved close to a limit on one side; None if impossible."""
+    """The state of a letter with its numbers moved close to a limit on one side.
+
+    All that its rule reads keeps its digit. None if that is impossible.
+    """
     limit, terms = side.comparison.limit, side.comparison.terms
-    numbers = dict(says)
+    pairs = zip(machine.reads, digits_of(letter, machine.reads), strict=True)
+    numbers = [
+        (read, digit)
+        for read, digit in pairs
+        if isinstance(read, NumberRead) and not counts_read([read])
+    ]
+    sums: dict[Term, Fraction] = {term: factor for factor, term in terms}
+    less = {term: -factor for term, factor in sums.items()}
+    close = [LinearBound(sums, limit + grain(limit)), LinearBound(less, grain(limit) - limit)]
+    wanted: dict[QuantityTerm, Fraction] = {}
     if len(terms) == 1:
-        ((_, term),) = terms
+        ((factor, term),) = terms
         assert isinstance(term, QuantityTerm), "sides have no other terms"
-        (read,) = (read for read in machine.reads if _reads(read, side))
-        before = numbers.get((term.name, term.arguments))
-        for number in (limit, limit - grain(limit), limit + grain(limit)):
-            if (
-                before is not None
-                and (number >= 0 or limit < 0)
-                and _stands_at(number, side)
-                and read.digit(number) == read.digit(exact(float(before)))
-            ):
-                numbers[term.name, term.arguments] = float(number)
-                break
-    return numbers if _is_near(numbers, side, vocabulary) else None
+        nearest = (limit, limit - grain(limit), limit + grain(limit))
+        number = next((number for number in nearest if _stands_at(number, side)), limit)
+        wanted[term] = number / factor
+    for term in {term: None for read, _ in numbers for _, term in read.terms}:
+        before = says.get((term.name, term.arguments)) if isinstance(term, QuantityTerm) else None
+        if isinstance(term, QuantityTerm) and before is not None:
+            wanted.setdefault(term, exact(float(before)))
+    chosen = numbers_beside(numbers, close, wanted)
+    if chosen is None:
+        return None
+    moved = {(term.name, term.arguments): number for term, number in chosen.items()}
+    state = {**says, **moved}
+    return state if _is_near(state, side, vocabulary) else None
 
 
 def _is_near(says: ExampleState, side: LimitSide, vocabulary: Vocabulary) -> bool:
@@ -117,6 +141,7 @@ def deciding_edges(
     reads = machine.reads
     (place,) = (place for place, read in enumerate(reads) if _reads(read, side))
     negative = side.comparison.limit < 0
+    fit = go_together(machine)
     stride, size = prod(read.size for read in reads[:place]), reads[place].size
 
     @cache
@@ -136,5 +161,5 @@ def deciding_edges(
                 continue
             state = told_apart(here, machine.letters[beyond], sources(letter))
             wanted = (can_be(machine, symbol, below_zero=negative) for symbol in (letter, beyond))
-            if state is not None and all(wanted):
+            if state is not None and all(wanted) and fit(digits_of(letter, reads)):
                 yield state, letter

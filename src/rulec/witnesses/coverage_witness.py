@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
 from itertools import compress
 from math import inf
 from typing import TypeAlias
 
 from rulec.automata.alphabet import letters_with, propositions_of
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
-from rulec.automata.thresholds import scale
+from rulec.automata.thresholds import exact, scale
 from rulec.logic.formula import Comparison, Formula, Proposition, QuantityTerm, atoms_of
 from rulec.logic.free_names import variables_of
 from rulec.logic.kleene import holds
@@ -29,10 +31,15 @@ from rulec.witnesses.letter_functions import (
 )
 from rulec.witnesses.state_synthesis import (
     NumberDigits,
+    apart,
+    are_consistent,
     default_digit,
     numbers_near_thresholds,
     values_of,
 )
+
+_USUAL_PART = 10
+"""A number that is told is usually this part of the default that says that it is not."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +48,29 @@ class CoverageWitness:
 
     says: ExampleState
     besides: tuple[str, ...] = ()
+
+
+def asks_whether_told(comparison: Comparison, vocabulary: Vocabulary) -> bool:
+    """Whether a comparison such as ``limit < 1000 km/h`` only asks whether a number is told.
+
+    Its limit is the default, which larger than all that is usual stands for none.
+    """
+    match comparison:
+        case Comparison(((1, QuantityTerm(name)),), "<" | ">=", limit) if limit > 0:
+            default = vocabulary.declarations[name].default
+            return isinstance(default, int | float) and exact(default) == limit
+    return False
+
+
+def asked_whether_told(formula: Formula, vocabulary: Vocabulary) -> Mapping[QuantityTerm, Fraction]:
+    """The quantities of which a formula asks whether they are told, each with its default."""
+    return {
+        term: atom.limit
+        for atom in atoms_of(formula)
+        if isinstance(atom, Comparison) and asks_whether_told(atom, vocabulary)
+        for _, term in atom.terms
+        if isinstance(term, QuantityTerm)
+    }
 
 
 def is_possible(read: Read | NumberRead, digit: int) -> bool:
@@ -61,6 +91,33 @@ def can_be(monitor: MealyMonitor, letter: int, *, below_zero: bool = False) -> b
     )
 
 
+def go_together(monitor: MealyMonitor) -> Callable[[Digits], bool]:
+    """A test of whether the numbers of a letter with these digits can have them all at once.
+
+    False only if that is certain: counts of objects are not examined.
+    """
+    sums = {
+        place: read
+        for place, read in enumerate(monitor.reads)
+        if isinstance(read, NumberRead) and not counts_read([read])
+    }
+    places = list(sums)
+    groups = [
+        [places[number] for number in group]
+        for group in apart(list(sums.values()))
+        if len(group) > 1
+    ]
+
+    @cache
+    def exists(number: int, own: Digits) -> bool:
+        return are_consistent([*zip([sums[place] for place in groups[number]], own, strict=True)])
+
+    return lambda digits: all(
+        exists(number, tuple([digits[place] for place in group]))
+        for number, group in enumerate(groups)
+    )
+
+
 LettersByConstants: TypeAlias = Mapping[Digits, Mapping[int, int]]
 """The first letter of each letter class, by the digits of what is constant in a trace."""
 
@@ -71,6 +128,7 @@ def possible_letters(monitor: MealyMonitor, vocabulary: Vocabulary) -> LettersBy
     All letters of a trace have the same constants; constants with default values come first.
     """
     constant = constant_reads(monitor.reads, vocabulary)
+    fit = go_together(monitor)
     first: dict[Digits, dict[int, int]] = {}
     natural: dict[Digits, dict[int, int]] = {}
     for letter, (letter_class, digits) in enumerate(
@@ -79,7 +137,7 @@ def possible_letters(monitor: MealyMonitor, vocabulary: Vocabulary) -> LettersBy
         constants = tuple(compress(digits, constant))
         if letter_class == IMPOSSIBLE or letter_class in natural.get(constants, ()):
             continue
-        if all(map(is_possible, monitor.reads, digits)):
+        if all(map(is_possible, monitor.reads, digits)) and fit(digits):
             first.setdefault(constants, {}).setdefault(letter_class, letter)
             if all(map(is_natural, monitor.reads, digits)):
                 natural.setdefault(constants, {})[letter_class] = letter
@@ -133,7 +191,12 @@ def coverage_witness(
     numbers = [(read, digit) for read, digit in digits if isinstance(read, NumberRead)]
     # Quantities compared by themselves have less choice than those that are also in sums.
     numbers.sort(key=lambda pair: len(pair[0].terms))
-    chosen, left = _choose([pair for pair in numbers if not counts_read(pair[:1])], vocabulary)
+    usual = {
+        term: default / _USUAL_PART
+        for term, default in asked_whether_told(formula, vocabulary).items()
+    }
+    sums = [pair for pair in numbers if not counts_read(pair[:1])]
+    chosen, left = _choose(sums, vocabulary, usual)
     says.update({(term.name, term.arguments): number for term, number in chosen.items()})
     letters = letters_with(monitor.reads, propositions_of(formula))
     texts = [
@@ -166,17 +229,17 @@ def coverage_witness(
 
 
 def _choose(
-    numbers: NumberDigits, vocabulary: Vocabulary
+    numbers: NumberDigits, vocabulary: Vocabulary, usual: Mapping[QuantityTerm, Fraction]
 ) -> tuple[dict[QuantityTerm, float], list[NumberRead]]:
     """Numbers with these digits, and the sums for which none were chosen."""
-    chosen = numbers_near_thresholds(numbers, vocabulary)
+    chosen = numbers_near_thresholds(numbers, vocabulary, usual)
     if chosen is not None:
         return chosen, []
     chosen = {}
     good: list[tuple[NumberRead, int]] = []
     left: list[NumberRead] = []
     for number in numbers:
-        more = numbers_near_thresholds([*good, number], vocabulary)
+        more = numbers_near_thresholds([*good, number], vocabulary, usual)
         if more is None:
             left.append(number[0])
         else:

@@ -122,7 +122,7 @@ class NumberSolver:
         self._reads = reads
         self._parts = [
             (places, tuple([(term, given[term]) for term in _terms_of([reads[k] for k in places])]))
-            for places in _apart(reads)
+            for places in apart(reads)
         ]
         self._solved: dict[tuple[int, bool, tuple[int, ...]], Mapping[Term, Fraction] | None] = {}
 
@@ -157,7 +157,7 @@ def _terms_of(reads: Sequence[NumberRead]) -> list[Term]:
     return sorted(terms, key=lambda term: isinstance(term, Count))
 
 
-def _apart(reads: Sequence[NumberRead]) -> list[list[int]]:
+def apart(reads: Sequence[NumberRead]) -> list[list[int]]:
     """The indices of sums in groups that share no term."""
     groups: list[tuple[set[Term], list[int]]] = []
     for place, read in enumerate(reads):
@@ -197,12 +197,15 @@ def _part_solved(
 
 
 def numbers_near_thresholds(
-    number_digits: NumberDigits, vocabulary: Vocabulary
+    number_digits: NumberDigits,
+    vocabulary: Vocabulary,
+    usual: Mapping[QuantityTerm, Fraction] | None = None,
 ) -> dict[QuantityTerm, float] | None:
     """Numbers of quantities with these digits, close to the thresholds, for tests.
 
     In a sum of several quantities one is close, the others have their defaults or are zero, unless
-    they are compared by themselves. None if there are none, or none that floats can represent.
+    they are compared by themselves; those with a ``usual`` number have this one where possible.
+    None if there are none, or none that floats can represent.
     """
     system, quantities, _ = _linear_system(number_digits, {})
     preferred: dict[Term, Fraction] = {}
@@ -217,6 +220,7 @@ def numbers_near_thresholds(
         listed += new
         order += [*new[1:], *new[:1]]
     near = frozenset(quantities) - preferred.keys()
+    preferred |= {term: number for term, number in (usual or {}).items() if term in quantities}
     solution = solve(system, order[::-1], preferred, near_bounds=near)
     if solution and min(solution.values()) < 0:
         natural = solve([*system, *_natural(quantities)], order[::-1], preferred, near_bounds=near)
@@ -224,6 +228,36 @@ def numbers_near_thresholds(
     if solution is None or not all(map(_is_float, solution.values())):
         return None
     return {term: float(solution[term]) for term in listed}
+
+
+def numbers_beside(
+    number_digits: NumberDigits,
+    bounds: Sequence[LinearBound],
+    wanted: Mapping[QuantityTerm, Fraction],
+) -> dict[QuantityTerm, float] | None:
+    """Numbers of quantities with these digits that also keep to the ``bounds``.
+
+    As many as possible are the ``wanted`` ones, and they are not negative if possible. None if
+    there are none, or none that floats can represent.
+    """
+    system, quantities, _ = _linear_system(number_digits, {})
+    order = list(dict.fromkeys([*wanted, *quantities]))
+    near = frozenset(quantities)
+    liked: dict[Term, Fraction] = dict(wanted.items())
+    for more in (_natural(quantities), []):
+        solutions = [
+            solution
+            for unknowns in (order[::-1], order)
+            if (solution := solve([*system, *bounds, *more], unknowns, liked, near_bounds=near))
+            and all(map(_is_float, solution.values()))
+        ]
+        if solutions:
+            fewest = min(
+                solutions,
+                key=lambda solution: sum(solution[term] != wanted[term] for term in wanted),
+            )
+            return {term: float(fewest[term]) for term in quantities}
+    return None
 
 
 def _natural(quantities: Iterable[QuantityTerm]) -> list[LinearBound]:

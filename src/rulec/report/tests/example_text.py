@@ -7,7 +7,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from rulec.automata.thresholds import exact
-from rulec.book_tests.example_coverage import RuleCoverage, UncoveredEdge, asked_of, percent
+from rulec.book_tests.example_coverage import (
+    RuleCoverage,
+    UncoveredEdge,
+    asked_of,
+    percent,
+    stated,
+)
 from rulec.book_tests.example_runs import (
     ExampleOutcome,
     ExampleRun,
@@ -181,7 +187,7 @@ def missing_example(edge: UncoveredEdge, vocabulary: Vocabulary) -> str:
     """An example that would take an edge, in the rule language.
 
     Values equal to their defaults are omitted, except numbers. What cannot be written as facts is
-    added in a comment.
+    said in words; the whole is a comment then, since without that it has perhaps another verdict.
     """
     states = "; ".join(
         " and ".join(_facts(state.says, vocabulary)) or "true" for state in edge.states
@@ -191,18 +197,18 @@ def missing_example(edge: UncoveredEdge, vocabulary: Vocabulary) -> str:
         for number, state in enumerate(edge.states)
         if state.besides
     )
-    example = f"{'accept' if edge.accepted else 'reject'} {{ {states} }}"
-    return f"{example}  # where {besides}" if besides else example
+    objects = ", ".join(f"{one.name}: {one.type}" for one in edge.objects)
+    head = f"{'accept' if edge.accepted else 'reject'}{f' ({objects})' if objects else ''}"
+    example = f"{head} {{ {states} }}"
+    return f"# {example} where {besides}" if besides else example
 
 
 def _facts(state: ExampleState, vocabulary: Vocabulary) -> Iterator[str]:
-    for (name, variables), value in state.items():
+    for (name, variables), value in stated(state, vocabulary).items():
         declaration = vocabulary.declarations[name]
         if isinstance(declaration, Quantity):
             number = number_in_words(exact(float(value)))
             yield f"{Atom(name, variables)} = {number} {declaration.unit}"
-        elif value == declaration.default:
-            continue
         elif isinstance(value, str):
             yield str(Atom(name, variables, value))
         else:
