@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 import rulec
+from rulec.analysis.audit.source_audit import audit_source
+from rulec.extraction.tellable_types import told_types
+from rulec.extraction.tellable_words import TELLABLE_WORDS
 
 T = np.arange(40) / 10
 
@@ -23,9 +26,10 @@ def verdict(kind, book):
 
 
 @pytest.mark.parametrize(
-    ("kind", "lacking"), [("bus", ["school_bus"]), ("vehicle", ["school_bus"]), ("car", [])]
+    ("kind", "lacking"),
+    [("bus", ["school_bus"]), ("vehicle", ["school_bus"]), ("car", ["school_bus"])],
 )
-def test_a_bus_may_be_a_school_bus(kind, lacking):
+def test_no_recording_tells_school_buses(kind, lacking):
     untold = [one.untold for one in verdict(kind, "us-ca").not_judged if one.rule == "school_bus"]
     assert [name for names in untold for name in names if name == "school_bus"] == lacking
 
@@ -33,3 +37,44 @@ def test_a_bus_may_be_a_school_bus(kind, lacking):
 def test_where_a_law_speaks_of_all_buses_it_makes_no_difference():
     untold = [name for one in verdict("bus", "de").not_judged for name in one.untold]
     assert "school_bus" not in untold
+
+
+MOOSE = """\
+rulebook wild
+use road
+type moose is road_user
+type pickup is truck
+hard rule brake (o: OF) { require never (gap(o) < 20 m and speed > 30 km/h and behind(o)) }
+"""
+
+
+@pytest.mark.parametrize(
+    ("of", "lacking"),
+    [
+        *(("moose", ["moose"]), ("horse_rider", ["horse_rider"]), ("pickup", ["pickup"])),
+        *(("truck", []), ("vehicle", []), ("vulnerable_user", []), ("road_user", [])),
+    ],
+)
+def test_a_rule_about_what_recordings_never_tell_is_not_kept(of, lacking):
+    book = rulec.compile(rulec.parse_rulebook(MOOSE.replace("OF", of)))
+    untold = [name for one in verdict("car", book).not_judged for name in one.untold]
+    assert untold == lacking
+    words = TELLABLE_WORDS["commonroad"] | told_types("commonroad", book.vocabulary)
+    (audited,) = audit_source(book, "commonroad", words).rules
+    assert (list(audited.lacking), audited.basis == "nothing") == (lacking, bool(lacking))
+
+
+@pytest.mark.parametrize(
+    ("source", "told", "untold"),
+    [
+        ("Waymo scenario", {"vehicle", "cyclist", "light_rider"}, {"truck", "car", "train"}),
+        ("highD tracks", {"car", "truck", "road_user"}, {"pedestrian", "vulnerable_user", "bus"}),
+        ("SUMO data", {"bus", "emergency_vehicle", "rail_vehicle"}, {"tram", "moped"}),
+        ("tracks as a table", {"cyclist", "motorcycle"}, {"scooter_rider", "school_bus"}),
+    ],
+)
+def test_formats_tell_apart_some_types(source, told, untold):
+    words = rulec.parse_rulebook(MOOSE.replace("OF", "vehicle")).vocabulary
+    found = told_types(source, words)
+    assert told <= found
+    assert not untold & found

@@ -188,6 +188,7 @@ class RulebookQuestions(RulebookVerbs):
         """
         from rulec.analysis.audit.source_audit import audit_source
         from rulec.extraction.selection import RequestedDrives, selected_drives
+        from rulec.extraction.tellable_types import told_types
         from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
         from rulec.recordings.recording_files import read_recording
         from rulec.recordings.recording_format import RecordingSource
@@ -195,13 +196,15 @@ class RulebookQuestions(RulebookVerbs):
 
         rulebook = self.compile(reference)
         told, lacking = TELLABLE_WORDS.get(str(source)), frozenset[str]()
+        form = str(source)
         if told is None:
             recording = read_recording(where or RecordingSource(Path(source)))
             drives = selected_drives(recording, RequestedDrives(), str(source), rulebook.traffic)
-            told = told_words(drives)
+            told, form = told_words(drives), recording.form
             types = (lanelet.types for lanelet in recording.lanelets.values())
             lacking = values_lacking(frozenset().union(*types))
         words = with_told_values(told, rulebook.vocabulary, lacking)
+        words |= told_types(form, rulebook.vocabulary)
         return audit_source(rulebook, str(source), words)
 
     def tree(self, reference: str | Path) -> BookLineage:

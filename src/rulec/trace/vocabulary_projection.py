@@ -45,9 +45,6 @@ UNTOLD_VALUES: Mapping[str, frozenset[str]] = {
 }
 """Enumeration -> values that no format provides: where another is recorded, it may be these."""
 
-UNTOLD_TYPES = frozenset({"school_bus", "maintenance_vehicle", "moped", "horse_rider"})
-"""Types that no format provides; an object recorded as a supertype may be of one of these."""
-
 _Signal = PartialValue | Mapping[str, PartialValue]
 
 
@@ -60,17 +57,6 @@ def known_types(objects: Mapping[str, Sequence[str]], vocabulary: Vocabulary) ->
     """The type of each object that has one declared in the vocabulary."""
     types = {name: known_type(own, vocabulary) for name, own in objects.items()}
     return {name: own for name, own in types.items() if own is not None}
-
-
-def told_types(types: Iterable[str], vocabulary: Vocabulary) -> frozenset[str]:
-    """The vocabulary's types that are certain for objects of ``types``; empty if all are."""
-    doubtful = {
-        name
-        for name in UNTOLD_TYPES & vocabulary.types.keys()
-        for own in {*types} - {name}
-        if vocabulary.is_subtype(name, own)
-    }
-    return frozenset(vocabulary.types.keys() - doubtful if doubtful else ())
 
 
 def is_about(declaration: Declaration, own_type: str | None, vocabulary: Vocabulary) -> bool:

@@ -11,7 +11,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.logic.free_names import names_in
 from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
-from rulec.monitoring.uncertainty.untold_names import untold_names
+from rulec.monitoring.uncertainty.untold_names import untold_names, untold_types
 from rulec.value_display import Rows, short_repr
 
 Basis: TypeAlias = Literal["evidence", "presumption", "nothing"]
@@ -23,8 +23,8 @@ class RuleBasis:
     """The basis of verdicts on a rule.
 
     ``presumed`` are the names that it reads and that get their value by presumption, ``untold`` all
-    others that it reads and the source does not provide, ``lacking`` those of them without which it
-    cannot be judged.
+    others that it reads and the source does not provide, ``lacking`` those of them, and the types
+    of its variables, without which it cannot be judged.
     """
 
     rule: str
@@ -74,7 +74,7 @@ def _bases(
     rulebook: CompiledRulebook, told: frozenset[str], prefixes: Mapping[str, OutcomeMachine | None]
 ) -> Iterator[RuleBasis]:
     vocabulary = rulebook.vocabulary
-    unknown = untold_names(vocabulary, told)
+    unknown, types = untold_names(vocabulary, told), untold_types(vocabulary, told)
     for rule in rulebook.rules:
         read = _names_read(rule, rulebook)
         presumed = tuple(
@@ -82,6 +82,7 @@ def _bases(
         )
         untold = tuple(name for name in read if name in unknown)
         lacking = uncertain_machine(rule, prefixes.get(rule.name)).untold(unknown)
+        lacking += tuple([variable.type for variable in rule.variables if variable.type in types])
         basis: Basis = "nothing" if lacking else "presumption" if presumed else "evidence"
         yield RuleBasis(
             rule.name, rule.strength, basis, presumed=presumed, untold=untold, lacking=lacking

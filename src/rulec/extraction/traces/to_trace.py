@@ -44,6 +44,7 @@ from rulec.extraction.signals.signal_columns import (
     known_only,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.tellable_types import told_types
 from rulec.extraction.traces.recorded_drive import DecidedBy, Drive, DrivePlaces
 from rulec.extraction.traces.signal_arrays import (
     WrittenPresences,
@@ -60,7 +61,6 @@ from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_model import Ending
 from rulec.trace.vocabulary_projection import (
     known_type,
-    told_types,
     values_lacking,
     with_told_values,
 )
@@ -164,19 +164,15 @@ def to_traces(
         if vocabulary is not None:
             lacking = values_lacking(map_contents(context).types)
             told |= with_told_values(told - writer.assumed.keys(), vocabulary, lacking)
+            told |= told_types(context.recording.form, vocabulary)
     kind_of = [kind[0] if vocabulary is None else known_type(kind, vocabulary) for kind in types]
     present, objects = _objects(context, kind_of)
     parts = signal_parts(chosen, present, spans, defaults=writer.defaults)
     step_s = context.recording.step_s
     ends: Ending = "complete" if writer.defaults else "cut"
-    told_of = [told] * len(objects)
-    if told is not None and vocabulary is not None:
-        told_of = _with_types(told, objects, vocabulary)
     arrays = [
-        TraceArrays(name, step_s, columns.stop - columns.start, own, ends=ends, told=known, **part)
-        for name, columns, own, known, part in zip(
-            names, spans.slices, objects, told_of, parts, strict=True
-        )
+        TraceArrays(name, step_s, columns.stop - columns.start, own, ends=ends, told=told, **part)
+        for name, columns, own, part in zip(names, spans.slices, objects, parts, strict=True)
     ]
     starts = [round(start * step_s, 9) for start in context.steps[spans.begins].tolist()]
     if writer.bare:
@@ -197,15 +193,6 @@ def to_traces(
             egos, starts, arrays, decided_by, spans.slices, strict=True
         )
     ]
-
-
-def _with_types(
-    told: frozenset[str], objects: Sequence[Mapping[str, str]], vocabulary: Vocabulary
-) -> list[frozenset[str] | None]:
-    """The names told in each drive, with those that depend on types that its objects have."""
-    types = [frozenset(own.values()) for own in objects]
-    known = {own: told | told_types(own, vocabulary) for own in set(types)}
-    return [known[own] for own in types]
 
 
 def _objects(

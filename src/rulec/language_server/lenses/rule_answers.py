@@ -60,6 +60,7 @@ def example_answer(book: Rulebook, rule: Rule) -> ExampleAnswer:
     from rulec.analysis.audit.source_audit import audit_source
     from rulec.book_tests.example_coverage import coverage
     from rulec.book_tests.example_runs import run_rulebook_examples
+    from rulec.extraction.tellable_types import told_types
     from rulec.extraction.tellable_words import TELLABLE_WORDS
     from rulec.report.tests.example_text import missing_examples
     from rulec.trace.vocabulary_projection import with_told_values
@@ -68,6 +69,7 @@ def example_answer(book: Rulebook, rule: Rule) -> ExampleAnswer:
     run = run_rulebook_examples(replace(book, rules=(rule,)), compiled)
     seen = coverage(run) if rule.examples else ()
     words = with_told_values(TELLABLE_WORDS[COMMONROAD], compiled.vocabulary)
+    words |= told_types(COMMONROAD, compiled.vocabulary)
     audited = audit_source(compiled, COMMONROAD, words)
     return ExampleAnswer(
         sum(outcome.passed for outcome in run.outcomes),
