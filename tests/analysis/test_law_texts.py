@@ -84,6 +84,24 @@ Article 4 crossings.
         ("3:31, 3:7 p. 4", ["3:31", "3:7 no. 4"], ()),
         ("reg. 4, 5 (1989)", ["reg. 4", "reg. 5"], ()),
         ("§ 4(1), case law", ["§ 4(1)"], ("case law",)),
+        ("§ 7 nr. 2 bokstav a", ["§ 7 no. 2a"], ()),
+        ("§ 7 NR 2", ["§ 7 no. 2"], ()),
+        ("§7, stk. 2, nr. 3, litra a, 2. pkt.", ["§ 7(2) no. 3a s. 2"], ()),
+        ("§ 7 stk. 2 og 3", ["§ 7(2)", "§ 7(3)"], ()),
+        ("§ 7 første ledd", ["§ 7(1)"], ()),
+        ("§ 7 a nr. 2", ["§ 7a no. 2"], ()),
+        ("3 kap. 15 § andra stycket 2", ["3:15(2) no. 2"], ()),
+        ("7 a § 2 mom.", ["§ 7a(2)"], ()),
+        ("artikel 7, eerste lid, onder a", ["artikel 7(1)a"], ()),
+        ("§ 5 Abs. 3 Nr. 1 Buchst. a und § 6", ["§ 5(3) no. 1a", "§ 6"], ()),
+        ("§ 53 Abs 1 Z 24", ["§ 53(1) no. 24"], ()),
+        ("article R. 412-6 al. 2", ["article R412-6(2)"], ()),
+        ("art. 19 comma 2 lett. b) e 40", ["art. 19 no. 2b", "art. 40"], ()),
+        ("artículo 7 apartado 2 letra b) y 8", ["artículo 7(2)b", "artículo 8"], ()),
+        ("art. 17 ust. 1 pkt 2 lit. a", ["art. 17(1) no. 2a"], ()),
+        ("§ 17 odst. 1 písm. a) a § 18", ["§ 17(1)a", "§ 18"], ()),
+        ("art. 22bis para. 2", ["art. 22bis(2)"], ()),
+        ("vtrl. § 6(1)", [], ("vtrl. § 6(1)",)),
         ("Convention Art. 10(3); § 7(3a)", ["§ 7(3a)"], ("Convention Art. 10(3)",)),
     ],
 )
@@ -181,6 +199,31 @@ def test_articles_are_covered_by_the_rules_that_cite_them_or_a_part_of_them():
         "Customs": ("covered", ("room_of_lorries",), ""),
     }
     assert list(unlisted(BOOK)) == [("other", "§ 7")]
+
+
+SECOND_LAW = parse_rulebook(
+    'rulebook country\nlaw "Act"\nsignal p\n'
+    'provisions "https://example.org" { "§ 7" "Way"; "VRV 4" "Speed" to do }\n'
+    'hard rule first { cite "§ 7 nr. 2" require p }\n'
+    'hard rule both { cite "vtrl. § 6(1), §7, a custom" require p }\n'
+    'hard rule longer { cite "VRV 41(2)" require p }\n'
+)
+
+
+def test_a_cite_whose_article_is_not_found_in_the_list_is_said_to_be_so():
+    assert list(unlisted(SECOND_LAW)) == [("both", "vtrl. § 6(1)"), ("longer", "VRV 41(2)")]
+    states = {one.number: (one.state, one.rules) for one in provisions_of(SECOND_LAW)}
+    assert states == {"§ 7": ("covered", ("first", "both")), "VRV 4": ("to do", ())}
+
+
+def test_a_cite_of_another_law_is_said_to_be_taken_for_one():
+    checks = check_cites(SECOND_LAW, law_text(Source("act.md", "### § 7 Way\n\n2. Give way.\n")))
+    notes = {one.place: one.note for one in checks if one.rule == "both"}
+    assert notes == {
+        "§ 7": "",
+        "vtrl. § 6(1)": "`vtrl.` before the article is taken for another law",
+        "a custom": "it names no article to look up",
+    }
 
 
 MANY = 200_000

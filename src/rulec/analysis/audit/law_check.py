@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from typing import Literal
 
-from rulec.analysis.audit.citations import Reference, each_reference, references_in
+from rulec.analysis.audit.citations import Reference, each_reference, references_in, unread_note
 from rulec.analysis.audit.law_text import LawText
 from rulec.diagnostics.diagnostic import at
 from rulec.resource_limits import CITES
@@ -64,7 +64,7 @@ def _of_rule(rule: str, cite: str, law: LawText, law_now: LawText | None) -> Ite
             else:
                 yield CiteCheck(rule, place, "found")
     for piece in references_in(cite)[1]:
-        yield CiteCheck(rule, piece, "unread", "it names no article to look up")
+        yield CiteCheck(rule, piece, "unread", unread_note(piece))
 
 
 def _looked_for(cite: str, law: LawText) -> Iterator[Reference]:

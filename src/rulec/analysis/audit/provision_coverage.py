@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from rulec.analysis.audit.citations import Reference, article_listed, covers, each_reference
-from rulec.rulebook.rulebook_model import Certainty, Provision, Rule, Rulebook
+from rulec.analysis.audit.citations import Listed, cited_entries, listed_places, unlisted_places
+from rulec.rulebook.rulebook_model import Certainty, Rule, Rulebook
 from rulec.value_display import short_repr
 
 ProvisionState = Literal["covered", "silent", "not machine-readable", "to do"]
@@ -38,9 +37,9 @@ class ListedProvision:
 def provisions_of(rulebook: Rulebook) -> tuple[ListedProvision, ...]:
     """The articles that a rulebook lists, in their order."""
     citing: dict[str, list[str]] = {}
-    listed = _listed(rulebook.provisions)
+    listed = _listed(rulebook)
     for rule in _own(rulebook):
-        for number in dict.fromkeys(_cited(rule, listed)):
+        for number in dict.fromkeys(cited_entries(rule.cite, listed)):
             citing.setdefault(number, []).append(rule.name)
     return tuple(
         ListedProvision(
@@ -59,52 +58,15 @@ def provisions_of(rulebook: Rulebook) -> tuple[ListedProvision, ...]:
 
 def unlisted(rulebook: Rulebook) -> Iterator[tuple[str, str]]:
     """Rules with citations that are missing from the rulebook's list of articles, if it has one."""
-    listed = _listed(rulebook.provisions)
-    articles = {reference.kind for _, reference in listed if reference is not None}
+    listed = _listed(rulebook)
     for rule in _own(rulebook) if listed else ():
-        if any(number in rule.cite for number, reference in listed if reference is None):
-            continue
-        for reference in each_reference(rule.cite, _known(listed)):
-            if reference.kind in articles and not _covering(reference, listed):
-                yield rule.name, str(reference)
+        for place in unlisted_places(rule.cite, listed):
+            yield rule.name, place
 
 
 def _own(rulebook: Rulebook) -> list[Rule]:
     return [rule for rule in rulebook.rules if not rule.inherited_from]
 
 
-Listed = Sequence[tuple[str, Reference | None]]
-"""The articles as listed, with the place that each text names; None for a name of its own."""
-
-
-def _listed(provisions: Sequence[Provision]) -> Listed:
-    return [(article.number, article_listed(article.number)) for article in provisions]
-
-
-def _known(listed: Listed) -> frozenset[tuple[str, str]]:
-    return frozenset(
-        (reference.kind, reference.number) for _, reference in listed if reference is not None
-    )
-
-
-def _cited(rule: Rule, listed: Listed) -> Iterator[str]:
-    yield from (number for number, reference in listed if reference is None and number in rule.cite)
-    of_its_year = [entry for entry in listed if _year(entry[0]) in rule.cite]
-    for reference in each_reference(rule.cite, _known(listed)):
-        yield from _covering(reference, of_its_year)[:1]
-
-
-def _year(number: str) -> str:
-    """The year after an article's number, as in `reg. 6 (1989)`; empty if there is none."""
-    match = re.search(r"\((?:19|20)\d\d\)$", number)
-    return match[0] if match else ""
-
-
-def _covering(cited: Reference, listed: Listed) -> list[str]:
-    """The listed articles that contain a cited place, the most specific first."""
-    fitting = [
-        (len(reference.parts), number)
-        for number, reference in listed
-        if reference is not None and covers(reference, cited)
-    ]
-    return [number for _, number in sorted(fitting, key=lambda entry: -entry[0])]
+def _listed(rulebook: Rulebook) -> Listed:
+    return listed_places(article.number for article in rulebook.provisions)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rulec.analysis.audit.citations import cited_entries, listed_places
 from rulec.diagnostics import Span
 from rulec.language_server.names.document_names import DocumentNames
 from rulec.language_server.names.name_occurrences import NamedSymbol, Occurrence
@@ -127,16 +128,14 @@ def _rule(names: DocumentNames, name: str) -> Iterator[str]:
 
 
 def _heading(names: DocumentNames, cite: str) -> str:
-    """The heading of the article that a provision begins with."""
-    best = ""
-    heading = ""
-    for _, item in names.chain.names.constants.overlay.provisions:
-        for entry in item.entries:
-            number = entry.number.value
-            behind = cite.removeprefix(number)[:1]
-            if cite.startswith(number) and not behind.isalnum() and len(number) > len(best):
-                best, heading = number, entry.heading.value
-    return heading
+    """The heading of the first article that a rule cites."""
+    headings = {
+        entry.number.value: entry.heading.value
+        for _, item in names.chain.names.constants.overlay.provisions
+        for entry in item.entries
+    }
+    found = next(cited_entries(cite, listed_places(headings)), "")
+    return headings.get(found, "")
 
 
 def _parameter(names: DocumentNames, symbol: NamedSymbol) -> Iterator[str]:
