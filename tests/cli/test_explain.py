@@ -92,7 +92,12 @@ def test_several_codes(capsys):
     _, out, _ = explain(capsys, "R0602", "R0101", "--output-format", "markdown")
     assert out.count("\n# R0101: ") == 1
     assert out.startswith("# R0602: ")
-    assert explain(capsys, "R0602", "R9999")[:2] == (2, "")
+    status, out, err = explain(capsys, "R9999", "R0602", "speling")
+    assert (status, out[:6]) == (2, "R0602:")
+    assert [line[:45] for line in err.splitlines()] == [
+        "rulec: there is no code and no word `R9999`; ",
+        "rulec: there is no code and no word `speling`",
+    ]
 
 
 def test_markdown_of_one_code(capsys):
@@ -192,3 +197,36 @@ def test_a_word_that_is_misspelt(capsys):
     status, out, err = explain(capsys, "besides")
     assert (status, out) == (2, "")
     assert "did you mean the word `beside`?" in err
+
+
+def test_a_definition_and_a_parameter_of_a_rulebook(capsys):
+    status, out, err = explain(capsys, "passes_stopped")
+    assert (status, err) == (0, "")
+    assert out.startswith("passes_stopped: a definition of the rulebook `schemas`\n\n    define ")
+    assert "\n      then in_front_of(o)\n\nS4: the other one has stopped" in out
+    assert "schemas/schemas.rules, line " in " ".join(out.split())
+    _, out, _ = explain(capsys, "heavy_mass", "passes_stopped", "--json")
+    heavy, *_, passes = json.loads(out)
+    assert heavy["declaration"].startswith("param heavy_mass : mass = ")
+    assert (passes["word"], passes["declared_in"]) == ("passes_stopped", "rulebook schemas")
+
+
+def test_a_definition_that_is_misspelt(capsys):
+    status, _, err = explain(capsys, "pases_stopped")
+    assert status == 2
+    assert "did you mean `passes_stopped`, which a rulebook defines?" in err
+
+
+def test_words_beside_the_file_are_found_without_settings(tmp_path, monkeypatch, capsys):
+    (tmp_path / "vocabulary").mkdir()
+    yard = "vocabulary yard {\n  signal horn  # It sounds.\n}\n"
+    (tmp_path / "vocabulary" / "yard.rules").write_text(yard)
+    book = "rulebook own\nuse yard\n# Loud.\ndefine loud = horn\nparam quiet : speed = 5 km/h\n"
+    (tmp_path / "own.rules").write_text(book)
+    (tmp_path / "broken.rules").write_text("vocabulary broken {\n  signal horn")
+    monkeypatch.chdir(tmp_path)
+    status, out, _ = explain(capsys, "horn", "loud", "quiet")
+    assert status == 0
+    assert "horn: a word of the vocabulary `yard`\n" in out
+    assert "    define loud = horn\n\nLoud.\n\nIt stands in own.rules, line 4.\n" in out
+    assert "quiet: a parameter of the rulebook `own`\n" in out

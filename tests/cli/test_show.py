@@ -89,6 +89,17 @@ def test_of_several_rules_of_that_word_each_is_named(tmp_path, capsys):
     assert said in capsys.readouterr().err
 
 
+def test_a_rulebook_without_rules(capsys):
+    assert main(["show", "schemas"]) == 0
+    said = "schemas has no rules; `rulec explain NAME` explains what it defines\n"
+    assert capsys.readouterr().out == said
+    assert main(["show", "schemas", "passes_stopped"]) == 2
+    hint = "it is a definition or a parameter, which `rulec explain passes_stopped` explains\n"
+    assert f"schemas has no rule `passes_stopped`; {hint}" in capsys.readouterr().err
+    assert main(["show", "schemas", "zz"]) == 2
+    assert "schemas has no rule `zz`; it has no rules\n" in capsys.readouterr().err
+
+
 def test_nothing_can_satisfy_it(tmp_path, capsys):
     path = tmp_path / "one.rules"
     path.write_text("rulebook alone signal p hard rule r { require p and not p }")

@@ -9,12 +9,14 @@ from pathlib import Path
 
 from rulec.diagnostics import RulecError
 from rulec.rulebook.files import search_path as search
-from rulec.rulebook.files.words_in_files import vocabularies_with
+from rulec.rulebook.files.words_in_files import definitions_of_rulebooks, vocabularies_with
 from rulec.rulebook.loader import Trees, find, parse_all
 from rulec.rulebook.names.constant_and_presumed import mark_constant_and_presumed
 from rulec.rulebook.names.symbol_table import SymbolTable, symbol_table
 from rulec.syntax import decode, tree
 from rulec.syntax.caching.tree_cache import parsed
+
+Defined = tree.DefineItem | tree.ParamItem | tree.OptionItem
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,17 +30,41 @@ class FoundWord:
 
 
 def find_word(name: str, search_path: Sequence[Path] = ()) -> list[FoundWord]:
-    """The vocabularies that declare a word; if there are none, the rulebooks that do."""
-    return [*_in_vocabularies(name, search_path)] or [*_in_rulebooks(name, search_path)]
+    """The vocabularies that declare a word; if there are none, the rulebooks that do.
+
+    A definition, a parameter or an option of a rulebook is found, too.
+    """
+    return (
+        [*_in_vocabularies(name, search_path)]
+        or [*_definitions(name, search_path)]
+        or [*_in_rulebooks(name, search_path)]
+    )
+
+
+def definition_in(file: tree.File, name: str) -> Defined | None:
+    """The definition, parameter or option of a name in a rulebook's own text."""
+    return next(
+        (item for item in file.items if isinstance(item, Defined) and item.name.text == name), None
+    )
+
+
+def _definitions(name: str, search_path: Sequence[Path]) -> Iterator[FoundWord]:
+    for path, names in definitions_of_rulebooks(search_path).items():
+        if name in names:
+            with suppress(RulecError):
+                file = parsed(decode(str(path), search.read_bytes(path)))[0]
+                if definition_in(file, name) is not None:
+                    yield FoundWord(name, file, (), SymbolTable())
 
 
 def _in_vocabularies(name: str, search_path: Sequence[Path]) -> Iterator[FoundWord]:
     named = vocabularies_with(name, search_path)
     for path in search.available_vocabularies(search_path):
         if path.stem in named:
-            file = parsed(decode(str(path), search.read_bytes(path)))[0]
-            if _declares(file, name):
-                yield FoundWord(name, file, (file,), _symbols((file,)))
+            with suppress(RulecError):
+                file = parsed(decode(str(path), search.read_bytes(path)))[0]
+                if _declares(file, name):
+                    yield FoundWord(name, file, (file,), _symbols((file,)))
 
 
 def _in_rulebooks(name: str, search_path: Sequence[Path]) -> Iterator[FoundWord]:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_codes
 from rulec.cli.options.verb_class import Verb
@@ -14,6 +16,7 @@ from rulec.cli.output import put_answer
 from rulec.diagnostics import nearest_name
 from rulec.diagnostics.code import Code
 from rulec.report.findings import code_registry
+from rulec.report.text.console import print_remark
 from rulec.report.text.terminal_text import first_of
 from rulec.settings import search_path
 
@@ -23,6 +26,9 @@ if TYPE_CHECKING:
 _ALIKE = 0.75
 """As for names in formulas: less similar words are seldom slips, such as `trikk` for `truck`."""
 
+_SLIP = 3
+"""The most letters by which a misspelt definition is longer or shorter."""
+
 
 @click.command(cls=Verb)
 @click.argument("names", nargs=-1, metavar="[CODE|WORD]...", shell_complete=complete_codes)
@@ -31,16 +37,20 @@ _ALIKE = 0.75
     endings_of("full", "json", "markdown"),
     "the explanation: text, JSON, or Markdown (with --all the page docs/codes.md)",
 )
-def command(names: tuple[str, ...], every: bool, to: Output) -> None:
+def command(names: tuple[str, ...], every: bool, to: Output) -> int:
     """Explain each CODE, such as R0104: what it means, with a bad example and its correction.
 
     For a WORD of a vocabulary, such as `gap`, show how it is declared, what it means, and which
-    recordings provide it.
+    recordings provide it; for a definition or a parameter of a rulebook, its text and its place.
+    Vocabularies and rulebooks in the working folder are searched, too.
     """
     if every == bool(names):
         raise click.UsageError("give a code, or --all")
     by_name = {name: code_registry.code_named(name.upper()) for name in names}
     words = {name: _words(name) for name, code in by_name.items() if code is None}
+    unknown = [name for name, found in words.items() if not found]
+    if unknown and len(unknown) == len(by_name):
+        raise click.UsageError("\n".join(map(_unknown, unknown)))
     codes = [code for code in by_name.values() if code is not None]
     codes = list(dict.fromkeys(codes)) if names else [*code_registry.all_codes().values()]
     found_words = [word for words_of_name in words.values() for word in words_of_name]
@@ -58,16 +68,25 @@ def command(names: tuple[str, ...], every: bool, to: Output) -> None:
         case _:
             text = "\n\n\n".join([*map(code_registry.as_text, codes), *_texts(found_words, "text")])
     put_answer(text, to)
+    for name in unknown:
+        print_remark(f"rulec: {_unknown(name)}")
+    return ExitStatus.after(answered=not unknown, failed=False)
 
 
 def _words(name: str) -> Sequence[FoundWord]:
     # Late import, only for names that are not codes: parsing vocabularies (60 ms).
     from rulec.rulebook.word_search import find_word
 
-    words = find_word(name, search_path())
-    if not words:
-        raise click.UsageError(f"there is no code and no word `{name}`; {_way_out(name)}")
-    return words
+    return find_word(name, _places())
+
+
+def _places() -> tuple[Path, ...]:
+    """The search path and, last, the working folder, beside whose rulebooks words may lie."""
+    return (*search_path(), Path())
+
+
+def _unknown(name: str) -> str:
+    return f"there is no code and no word `{name}`; {_way_out(name)}"
 
 
 def _texts(words: Sequence[FoundWord], form: str) -> list[str]:
@@ -98,20 +117,25 @@ def _way_out(name: str) -> str:
     # Late import, only for unknown names: file search and their rules (60 ms).
     from rulec.rulebook.files.catalogue import rulebooks_with_rule
     from rulec.rulebook.files.search_path import available_rulebooks
-    from rulec.rulebook.files.words_in_files import words_of_vocabularies
+    from rulec.rulebook.files.words_in_files import definitions_of_rulebooks, words_of_vocabularies
     from rulec.rulebook.names.word_meanings import described, offer
 
+    places = _places()
     if near := nearest_name(name.upper(), code_registry.all_codes()):
         return f"did you mean `{near}`?"
-    if name in available_rulebooks(search_path()):
+    if name in available_rulebooks(places):
         return f"it is a rulebook, which `rulec show {name}` explains"
-    if books := rulebooks_with_rule(name, search_path()):
+    if books := rulebooks_with_rule(name, places):
         more = f" (also of {first_of(books[1:], 3)})" if books[1:] else ""
         return f"it is a rule, which `rulec show {books[0]} {name}` explains{more}"
-    words = words_of_vocabularies(search_path())
+    words = words_of_vocabularies(places)
     known = sorted(frozenset[str]().union(*words.values()))
     if near := nearest_name(name, known, _ALIKE):
         return f"did you mean the word `{near}`?"
+    defined = frozenset[str]().union(*definitions_of_rulebooks(places).values())
+    as_long = sorted(one for one in defined if abs(len(one) - len(name)) <= _SLIP)
+    if near := nearest_name(name, as_long, _ALIKE):
+        return f"did you mean `{near}`, which a rulebook defines?"
     return offer(name, described(known, words)) or (
         "`rulec list codes` shows all codes, and `rulec list vocabularies` the files with words"
     )

@@ -138,6 +138,8 @@ def _shown(reference: str, name: str | None, to: Output, at: str, *, several: bo
     width = width_of(to)
     if page is not None:
         return rule_page.as_text(page, book.name, book.vocabulary, width)
+    if not rules:
+        return f"{book.name} has no rules; `rulec explain NAME` explains what it defines"
     return "\n\n\n".join(
         rule_page.summary(rule, book.name, book.vocabulary, width) for rule in rules
     )
@@ -197,17 +199,20 @@ def _way_out(book: Rulebook, name: str) -> str:
     """A suggestion of the rule that may be meant, here or in another rulebook."""
     # Late import, only for unknown rules: file search and their rules (60 ms).
     from rulec.rulebook.files.catalogue import rulebooks_with_rule
+    from rulec.rulebook.files.words_in_files import definitions_of_rulebooks
 
     if near := nearest_name(name, {rule.name for rule in book.rules}):
         return f"did you mean `{near}`?"
     if name in {*book.vocabulary.declarations, *book.vocabulary.enumeration_of}:
         return "it is a word that rules read: docs/vocabulary.md says what those that ship mean"
+    if any(name in names for names in definitions_of_rulebooks(search_path()).values()):
+        return f"it is a definition or a parameter, which `rulec explain {name}` explains"
     words = {*name.casefold().split("_")}
     if longer := [f"`{rule.name}`" for rule in book.rules if words < {*rule.name.split("_")}]:
         return f"it has {first_of(longer, _MOST_NAMED)}"
     if others := rulebooks_with_rule(name, search_path()):
         return f"there is one in {first_of(others, _MOST_NAMED)}"
-    return f"it has {_names(book)}"
+    return f"it has {_names(book)}" if book.rules else "it has no rules"
 
 
 def _why_absent(book: Rulebook, name: str, reference: str) -> str:

@@ -13,7 +13,7 @@ from rulec.report.text import markdown
 from rulec.report.text.terminal_text import visible
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.names.symbol_table import SymbolTable
-from rulec.rulebook.word_search import FoundWord
+from rulec.rulebook.word_search import FoundWord, definition_in
 from rulec.syntax import tree
 from rulec.vocabulary import Declaration, Enumeration, Quantity
 
@@ -113,17 +113,19 @@ def as_text(word: FoundWord) -> str:
     """The text about a word for a terminal."""
     text = _known(word)
     paragraphs = [
-        f"{word.name}: a word of {_file_of(word)}",
+        f"{word.name}: {_kind_of(word)} of {_file_of(word)}",
         *(visible(sentence) for sentence in text.sentences),
     ]
     head, *rest = (fill(paragraph, 80, break_on_hyphens=False) for paragraph in paragraphs)
-    return "\n\n".join([head, indent(fill(text.declaration, 90), "    "), *rest])
+    lines = text.declaration
+    declaration = "\n".join(map(visible, lines.splitlines())) if "\n" in lines else fill(lines, 90)
+    return "\n\n".join([head, indent(declaration, "    "), *rest])
 
 
 def as_markdown(word: FoundWord) -> str:
     """The text about a word as Markdown."""
     text = _known(word)
-    head = f"# {markdown.escaped(word.name)}: a word of {_file_of(word)}"
+    head = f"# {markdown.escaped(word.name)}: {_kind_of(word)} of {_file_of(word)}"
     return "\n\n".join([head, *as_paragraphs(text)])
 
 
@@ -149,6 +151,11 @@ def _data(word: FoundWord) -> WordData:
 
 
 def _known(word: FoundWord) -> WordText:
+    defined = definition_in(word.file, word.name)
+    if defined is not None:
+        place = defined.span.place
+        where = f"It stands in {place.file}, line {place.line}."
+        return WordText(defined.span.text, (*described(defined.span), where))
     if word.name in word.symbols.types:
         return type_text(word.name, word.symbols)
     return word_text(word.name, word.symbols, recorded=tells_words(word.vocabularies))
@@ -156,6 +163,18 @@ def _known(word: FoundWord) -> WordText:
 
 def _file_of(word: FoundWord) -> str:
     return f"the {word.file.kind} `{word.file.name.text if word.file.name else ''}`"
+
+
+def _kind_of(word: FoundWord) -> str:
+    match definition_in(word.file, word.name):
+        case tree.DefineItem():
+            return "a definition"
+        case tree.ParamItem():
+            return "a parameter"
+        case tree.OptionItem():
+            return "an option"
+        case _:
+            return "a word"
 
 
 def _default(value: float | str | bool | None) -> str:

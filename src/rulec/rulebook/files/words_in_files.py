@@ -14,6 +14,8 @@ from rulec.syntax.keywords import RESERVED
 _NO_WORDS = re.compile(r"#[^\n]*|\([^()]*\)|\bin\s+\S+|\bdefault\s+\S+|\bvocabulary\s+\S+")
 """Comments, parameters, units, defaults, and the vocabulary's own name."""
 
+_DEFINED = re.compile(r"^[ \t]*(?:define|param|option)[ \t]+([^\W\d]\w*)", re.MULTILINE)
+
 _NAME = re.compile(r"\b[^\W\d]\w*")
 
 
@@ -30,3 +32,14 @@ def words_of_vocabularies(search_path: Sequence[Path] = ()) -> dict[str, frozens
 def vocabularies_with(name: str, search_path: Sequence[Path] = ()) -> list[str]:
     """The vocabularies that declare a word."""
     return [book for book, words in words_of_vocabularies(search_path).items() if name in words]
+
+
+def definitions_of_rulebooks(search_path: Sequence[Path] = ()) -> dict[Path, frozenset[str]]:
+    """The definitions, parameters and options that the text of each rulebook itself has."""
+    defined = {}
+    for name in search.available_rulebooks(search_path):
+        path = search.find_rulebook(name, search_path)
+        with suppress(RulecError):
+            text = search.read_bytes(path).decode(errors="replace")
+            defined[path] = frozenset(_DEFINED.findall(text))
+    return defined
