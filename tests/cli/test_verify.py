@@ -269,3 +269,23 @@ def test_a_file_whose_traces_share_an_id_is_judged_with_a_warning(verify):
     assert err.count("warning[R0512]") == 1
     assert "0.jsonl:3\n" in err
     assert "warning" not in verify([line("a", "bb"), line("b", "bb")], [line("b", "bb")])[2]
+
+
+@pytest.mark.parametrize(
+    ("state", "hint"),
+    [
+        ('{"fart": 60}', "words that may mean it: `speed` (ego's speed), `speed_difference`"),
+        ('{"light": "red"}', "words that may mean it: `red_light` (ego's light is red)"),
+    ],
+)
+def test_unknown_words_of_a_trace_get_the_suggestions_of_formulas(state, hint, tmp_path, capsys):
+    (tmp_path / "t.jsonl").write_text(f'{{"id": "t", "states": [{state}]}}\n')
+    assert main(["verify", str(tmp_path / "t.jsonl"), "-r", "de"]) == 2
+    assert hint in capsys.readouterr().err
+
+
+def test_an_assumption_on_an_unknown_word_gets_a_suggestion(tmp_path, capsys):
+    (tmp_path / "t.jsonl").write_text('{"id": "t", "states": [{"speed": 60}]}\n')
+    assert main(["verify", str(tmp_path / "t.jsonl"), "-r", "de", "--assume", "fart=50"]) == 2
+    said = "`de` does not know `fart`; words that may mean it: `speed` (ego's speed)"
+    assert said in capsys.readouterr().err

@@ -4,8 +4,9 @@ import re
 
 import pytest
 
+from rulec import Session
 from rulec.rulebook.loader import diagnose
-from rulec.rulebook.names.word_meanings import DescribedWord, offer
+from rulec.rulebook.names.word_meanings import DescribedWord, offer, suggestion
 
 WORDS = (
     DescribedWord("crossing_zone", "ego [is|is not] on or at a pedestrian crossing"),
@@ -82,3 +83,23 @@ def test_check_offers_types(said, known):
     text = f"rulebook a\nuse road\nhard rule r (o: {said}) {{ require never beside(o) }}\n"
     (mistake,) = diagnose("a.rules", text.encode()).findings
     assert mistake.help == f"did you mean `{known}`?"
+
+
+@pytest.mark.parametrize(
+    ("name", "word"),
+    [
+        *(("nærlys", "dipped_beam"), ("fjernlys", "main_beam"), ("kjørelys", "daytime_lamps")),
+        *(("tåkelys", "front_fog_lamps"), ("kollektivfelt", "bus_lane"), ("gatetun", "home_zone")),
+        *(("gågate", "pedestrian_zone"), ("gangfelt", "crossing"), ("gangfelt", "zebra")),
+        *(("fart", "speed"), ("kryss", "junction"), ("rødt", "red_light")),
+        *(("opholdsgade", "home_zone"), ("busbane", "bus_lane"), ("tågeslygte", "rear_fog_lamps")),
+        *(("nopeus", "speed"), ("suojatie", "crossing"), ("väistää", "give_way_sign")),
+        *(("rychlost", "speed"), ("přechod", "crossing"), ("křižovatka", "junction")),
+        *(("velocidade", "speed"), ("passadeira", "crossing"), ("semáforo", "red_light")),
+        *(("red", "red_light"), ("red", "red_cross")),
+    ],
+)
+def test_words_in_the_languages_of_neighbours(name, word):
+    vocabulary = Session().load_rulebook("de").vocabulary
+    known = [*vocabulary.declarations, *vocabulary.enumeration_of]
+    assert f"`{word}`" in suggestion(name, known, 0.75)

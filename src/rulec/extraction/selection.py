@@ -175,8 +175,12 @@ def assumption_options(texts: Iterable[str], vocabulary: Vocabulary) -> dict[str
         declaration = vocabulary.declarations.get(name)
         if declaration is None:
             known = [x.name for x in vocabulary.declarations.values() if not x.parameters]
-            message = f"vocabulary `{vocabulary.name}` has no `{name}`"
-            raise ValueError(hinted(message, name, known))
+            message = f"`{vocabulary.name}` does not know `{name}`"
+            # Phrases and synonyms are read from files: only for this message.
+            from rulec.rulebook.names.word_meanings import suggestion
+
+            hint = suggestion(name, known)
+            raise ValueError(f"{message}; {hint}" if hint else message)
         if declaration.parameters:
             raise ValueError(f"`{name}` is about objects; assume only words that are not")
         values[name] = _value(value, declaration)

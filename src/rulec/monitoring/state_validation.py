@@ -211,7 +211,7 @@ def _check_value(
         if expected := _misfit(value, declaration):
             way_out = _of_python(value)
             if isinstance(declaration, Enumeration) and isinstance(value, str):
-                way_out = _SIDES.get(value) or did_you_mean(value, declaration.values)
+                way_out = _SIDES.get(value) or _meant(value, declaration.values)
             if isinstance(declaration, Signal) and isinstance(value, str | int | float):
                 way_out = _TRUTHS_ELSEWHERE.get(value, "")
             if isinstance(declaration, Quantity) and isinstance(value, str):
@@ -383,4 +383,12 @@ def _unknown_name(name: str, vocabulary: Vocabulary, known: Iterable[str]) -> st
 
     if others := vocabularies_with(str(name)):
         return f"it is a word of the vocabulary `{others[0]}`: judge by a rulebook that uses that"
-    return _suggest(name, known)
+    known = [str(word) for word in known]
+    return _meant(str(name), known) or _suggest(name, known)
+
+
+def _meant(name: str, known: Sequence[str]) -> str:
+    # Phrases and synonyms are read from files: only for this message.
+    from rulec.rulebook.names.word_meanings import suggestion
+
+    return suggestion(name, known)

@@ -66,6 +66,13 @@ def phrases_in(vocabulary: str, language: str) -> Mapping[str, str]:
     return {name: phrase for name, phrase in words if isinstance(phrase, str)}
 
 
+def vocabularies_with_phrases() -> Sequence[str]:
+    """The shipped vocabularies that have phrases in English."""
+    files = _file_of("").glob("*.en.toml")
+    names = (file.name.removesuffix(".en.toml") for file in files)
+    return sorted(name for name in names if name != "titles")
+
+
 def types_in(vocabulary: str, language: str) -> Mapping[str, TypeWords]:
     """How to express the types of a shipped vocabulary; none in English, which has rules."""
     # Patterns of sentences, 10 ms: whoever asks for phrases alone does without.

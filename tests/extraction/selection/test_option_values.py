@@ -52,7 +52,7 @@ def test_values_in_their_unit_or_another(text, name, value):
         ("limit=50", "`limit` is in km/h: write the unit, such as `limit=50 km/h`"),
         ("limit=50 m", "`limit` is a number such as `50 km/h`, not `50 m`"),
         ("gap=5 m", "`gap` is about objects; assume only words that are not"),
-        ("buildup=true", "vocabulary `road` has no `buildup`"),
+        ("buildup=true", "`road` does not know `buildup`; did you mean `built_up`?"),
     ],
 )
 def test_what_is_wrong_with_an_assumption(text, message):

@@ -10,14 +10,19 @@ most of it are suggested as candidates.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import log
 from typing import Final
 from unicodedata import combining, normalize
 
-from rulec.rulebook.vocabulary_phrases import phrases_in, synonyms_of_the_field
+from rulec.diagnostics import did_you_mean
+from rulec.rulebook.vocabulary_phrases import (
+    phrases_in,
+    synonyms_of_the_field,
+    vocabularies_with_phrases,
+)
 
 _NAME, _PHRASE, _TRANSLATED = 1.0, 0.8, 0.6
 """The weights of the parts of a word's name, of its phrase, and of that in other languages."""
@@ -89,10 +94,20 @@ def offer(name: str, words: tuple[DescribedWord, ...]) -> str:
     shown = {word.name: _shown(word) for word in words}
     if best >= _MEANT and best - second >= _LEAD:
         return f"did you mean {shown[ranked[0]]}?"
-    near = [shown[word] for word in ranked if covered[word] >= _CANDIDATE]
+    # What a short name says is what it is about; longer ones are about something else, too.
+    plainest = sorted(ranked, key=lambda word: word.count("_"))
+    near = [shown[word] for word in plainest if covered[word] >= _CANDIDATE]
     if not near or (len(near) > _MOST_CANDIDATES and best < _MEANT):
         return ""
     return f"words that may mean it: {', '.join(near[:_MOST_CANDIDATES])}"
+
+
+def suggestion(name: str, known: Sequence[str], alike: float = 0.6) -> str:
+    """Help with the known word that is spelt like a name, or else with those that may mean it."""
+    with_phrases = described(known, vocabularies_with_phrases())
+    return did_you_mean(name, known, alike) or offer(
+        name, tuple(word for word in with_phrases if word.phrase)
+    )
 
 
 def _shown(word: DescribedWord) -> str:

@@ -88,7 +88,9 @@ class Kind(Generic[Record]):
         unknown = _UNKNOWN_FIELD.search(str(problem))
         if unknown is not None:
             fields = self.structure.__struct_fields__
-            help_text = did_you_mean(unknown[1], fields) or f"the fields are {named(fields)}"
+            help_text = did_you_mean(unknown[1], fields) or (
+                f"the fields are {named(fields)}; {self.example}"
+            )
             if unknown[1] == "version":
                 help_text = _answer_of_rulec(line) or help_text
         if "at `$.objects" in str(problem):
