@@ -287,5 +287,5 @@ def test_unknown_words_of_a_trace_get_the_suggestions_of_formulas(state, hint, t
 def test_an_assumption_on_an_unknown_word_gets_a_suggestion(tmp_path, capsys):
     (tmp_path / "t.jsonl").write_text('{"id": "t", "states": [{"speed": 60}]}\n')
     assert main(["verify", str(tmp_path / "t.jsonl"), "-r", "de", "--assume", "fart=50"]) == 2
-    said = "`de` does not know `fart`; words that may mean it: `speed` (ego's speed)"
+    said = "`de` does not know `fart`; did you mean `speed` (ego's speed)?"
     assert said in capsys.readouterr().err
