@@ -134,10 +134,12 @@ class _Outline:
 
 
 def alike_lines(lines: Sequence[bytes], heading_of: HeadingReader) -> Iterator[AlikeLines]:
-    """The lines that can be read together, grouped by form."""
+    """The lines that can be read together, grouped by form; blank ones are none."""
     kinds: dict[tuple[object, ...], list[_Outline]] = {}
     form: _Form | None = None
     for number, line in enumerate(lines):
+        if not line or line.isspace():
+            continue
         outline = _outlined(number, line, heading_of, form)
         if outline is None:
             continue

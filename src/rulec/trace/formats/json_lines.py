@@ -80,17 +80,22 @@ def read_chunks(
             if error is not None:
                 yield [error]
                 return
+        first = number + 1
+        number += len(lines)
+        written = [index for index, line in enumerate(lines) if line and not line.isspace()]
+        if not written:
+            continue
         chunk: list[Trace | RulecError | None] = []
-        large = {index for index, line in enumerate(lines) if _objects_in(line, most) > most}
-        alike = _alike([b"" if n in large else whole for n, whole in enumerate(lines)], together)
+        large = {index for index in written if _objects_in(lines[index], most) > most}
+        regular = (
+            [b"" if n in large else whole for n, whole in enumerate(lines)] if large else lines
+        )
+        alike = _alike(regular, together)
         known = set(chain.from_iterable(alike_lines.lines.tolist() for alike_lines in alike))
         places: dict[int, int] = {}
         with no_garbage_collection():
-            for index, line in enumerate(lines):
-                number += 1
-                place = SourceLocation(file, number)
-                if line.isspace() or not line:
-                    continue
+            for index in written:
+                line, place = lines[index], SourceLocation(file, first + index)
                 trace: Trace | RulecError | None = None
                 if index in large:
                     trace = STATES.exceeded(place)
@@ -110,7 +115,7 @@ def read_chunks(
                     chunk.append(trace)
         result += len(chunk)
         if alike:
-            yield _block(chunk, alike, lines, places, SourceLocation(file, number - len(lines)))
+            yield _block(chunk, alike, lines, places, SourceLocation(file, first - 1))
         elif chunk:
             yield cast("list[Trace | RulecError]", chunk)
     if torn is not None:
