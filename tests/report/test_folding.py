@@ -7,7 +7,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
-from rulec.logic.printing import formula_text
 from rulec.monitoring.explain.explained_parts import Part
 from rulec.report.verdicts.table_folding import fitting, folded, head, width
 from support.builders.rulebooks import always, both, implies, no
@@ -21,7 +20,7 @@ def either(left, right):
 
 def parts_of(formula, without=(), depth=0):
     """The parts of a formula; all decide but those in ``without``."""
-    found = [Part(formula, formula_text(formula), depth, (True,), False, formula not in without, 0)]
+    found = [Part(formula, depth, (True,), False, formula not in without, 0)]
     match formula:
         case Unary(_, operand):
             found += parts_of(operand, without, depth + 1)

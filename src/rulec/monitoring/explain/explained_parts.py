@@ -48,13 +48,17 @@ class Part:
     """
 
     formula: ltl.Formula
-    text: str
     depth: int
     values: tuple[bool, ...]
     changed: bool
     decides: bool
     margins: tuple[Margin | None, ...] = ()
     measured: Margin | None = None
+
+    @property
+    def text(self) -> str:
+        """The subformula in a rulebook's notation."""
+        return formula_text(self.formula)
 
 
 class Deciding(Protocol):
@@ -136,7 +140,6 @@ def parts_of(
             measured = observed.margin(written, deciding[stepped])
     yield Part(
         formula=written,
-        text=formula_text(written),
         depth=depth,
         values=tuple(truths[stepped][n] for n in observed.shown),
         changed=observed.changes(truths[stepped]),
