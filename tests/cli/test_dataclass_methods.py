@@ -167,7 +167,37 @@ def test_nothing_is_written_before_it_is_looked_up():
         assert not inspect.isfunction(module.Point.__dict__["__init__"])
     module.Point(1)
     assert inspect.isfunction(module.Point.__dict__["__init__"])
-    assert not inspect.isfunction(module.Point.__dict__["__eq__"])
+    for name in ("__eq__", "__hash__", "__repr__"):
+        assert is_unwritten(module.Point, name)
+    assert module.Point(1) == module.Point(1)
+    assert not is_unwritten(module.Point, "__eq__")
+
+
+def is_unwritten(cls, name):
+    return cls.__dict__[name].__code__.co_filename == dataclass_methods.__file__
+
+
+@pytest.mark.parametrize(
+    ("text", "use"),
+    [
+        ("_eq_text", lambda point: point(1) == point(2)),
+        ("_eq_text", lambda point: point(1) in [point(2)]),
+        ("_hash_text", lambda point: hash(point(1))),
+        ("_repr_text", lambda point: repr(point(1))),
+        ("_repr_text", lambda point: f"{[point(1)]}"),
+    ],
+)
+def test_an_interrupt_while_a_method_is_written_is_not_lost(text, use, monkeypatch):
+    """Python drops what is raised while it looks up how two objects compare."""
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(dataclass_methods, text, interrupted)
+        module = samples(dataclass, "rulec.interrupted_samples")
+    with pytest.raises(KeyboardInterrupt):
+        use(module.Point)
 
 
 PROGRAM = """

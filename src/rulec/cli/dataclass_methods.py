@@ -2,7 +2,7 @@
 
 A command imports hundreds of dataclasses and makes objects of few. Python writes and compiles six
 methods for each on import, which is a fifth of the time of a short command. Here each method is
-written on first access; from then on it is an ordinary function. The first few objects of a class
+written on first use; from then on it is an ordinary function. The first few objects of a class
 are made without its `__init__`, because writing one takes longer. Programs that import rulec as a
 library get ordinary dataclasses.
 """
@@ -62,11 +62,12 @@ def _late(
     cls: type = make(given)
     methods: dict[str, object] = {
         "__init__": _UnwrittenInit(cls, "__init__", partial(_init_text, frozen=frozen)),
-        "__repr__": _Unwritten(cls, "__repr__", _repr_text),
+        "__repr__": _of_one(_Unwritten(cls, "__repr__", _repr_text)),
     }
     if eq:
-        methods["__eq__"] = _Unwritten(cls, "__eq__", _eq_text)
-        methods["__hash__"] = _Unwritten(cls, "__hash__", _hash_text) if frozen else None
+        methods["__eq__"] = _of_two(_Unwritten(cls, "__eq__", _eq_text))
+        hashed = _of_one(_Unwritten(cls, "__hash__", _hash_text)) if frozen else None
+        methods["__hash__"] = hashed
     if frozen:
         methods["__setattr__"] = _refusing(cls, "assign to", "__setattr__")
         methods["__delattr__"] = _refusing(cls, "delete", "__delattr__")
@@ -80,14 +81,11 @@ def _late(
 
 @dataclasses.dataclass(slots=True)
 class _Unwritten:
-    """A method that is not written yet; the first access writes it."""
+    """A method that is not written yet."""
 
     cls: type
     name: str
     text: Callable[[type, dict[str, object]], str]
-
-    def __get__(self, item: object, owner: type) -> object:
-        return self.written().__get__(item, owner)
 
     def written(self) -> Any:
         """The method, which replaces this object from now on."""
@@ -102,13 +100,46 @@ class _Unwritten:
         return method
 
 
+# Python looks these methods up to compare, hash or show objects, and drops whatever is raised while
+# it does so, such as by Ctrl-C. So they are found as functions, and written when they are called.
+
+
+def _of_one(method: _Unwritten) -> Callable[[Any], Any]:
+    """A method without arguments, which the first call writes."""
+
+    def call(self: Any) -> Any:
+        return method.written()(self)
+
+    _name_after(method, call)
+    return call
+
+
+def _of_two(method: _Unwritten) -> Callable[[Any, Any], Any]:
+    """A method with one argument, which the first call writes."""
+
+    def call(self: Any, other: Any) -> Any:
+        return method.written()(self, other)
+
+    _name_after(method, call)
+    return call
+
+
+def _name_after(method: _Unwritten, call: Any) -> None:
+    call.__name__ = method.name
+    call.__qualname__ = f"{method.cls.__qualname__}.{method.name}"
+    call.__module__ = method.cls.__module__
+
+
 _FEW = 8
 """Making this many objects without an `__init__` takes as long as writing one."""
 
 
 @dataclasses.dataclass(slots=True)
 class _UnwrittenInit(_Unwritten):
-    """An `__init__` that is written once there are more than a few objects."""
+    """An `__init__` that is written once there are more than a few objects.
+
+    Whoever makes an object gets what is raised while this is looked up.
+    """
 
     n_objects: int = 0
     _fields: Sequence[dataclasses.Field[Any]] = ()
