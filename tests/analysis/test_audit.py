@@ -60,8 +60,14 @@ def found(one, kind):
         ("unstated", [("own", "")]),
         ("soft-only", [("§ 2", "softer")]),
         ("softened", [("softer", "only recommended")]),
-        ("dropped", [("taken_out", "there are no sirens")]),
-        ("silent", [("left_open", "nobody knows"), ("parking", "left to the villages")]),
+        ("dropped", [("taken_out", "by island: there are no sirens")]),
+        (
+            "silent",
+            [
+                ("left_open", "as island is: nobody knows"),
+                ("parking", "as island is: left to the villages"),
+            ],
+        ),
         ("dated", [("own", "in force from 2024-06-01")]),
         ("out-of-force", [("expired", "in force until 2000-01-01")]),
         ("to-do", [("§ 12", "Fees")]),
@@ -177,3 +183,16 @@ def test_one_rulebook_can_be_compared_with_any_other():
 def test_to_a_rulebook_without_an_older_audit_everything_is_new():
     found = compare_audits([made("x", A), made("y", A)], [made("x", A)])
     assert (found["x"].appeared, found["y"].appeared) == ((), (A,))
+
+
+def test_the_silence_of_another_book_is_said_to_be_its_own(tmp_path):
+    (tmp_path / "treaty.rules").write_text(
+        "rulebook treaty\nuse road\n"
+        'silent on zipper because "no rule"\nsilent on parking because "x"\n'
+    )
+    own = tmp_path / "land.rules"
+    own.write_text('rulebook land\nextends treaty\nsilent on parking because "our own reason"\n')
+    assert found(audited(own, ""), "silent") == [
+        ("zipper", "as treaty is: no rule"),
+        ("parking", "our own reason"),
+    ]

@@ -16,7 +16,7 @@ from rulec.analysis.audit.law_check import check_cites
 from rulec.analysis.audit.law_text import LawText
 from rulec.analysis.audit.provision_coverage import ListedProvision, provisions_of, unlisted
 from rulec.analysis.lineage.book_lineage import HARDNESS
-from rulec.analysis.lineage.rule_lineage import BookLineage
+from rulec.analysis.lineage.rule_lineage import BookLineage, LineageStep
 from rulec.logic.free_names import names_in
 from rulec.rulebook.overlay.rulebook_overlay import in_force
 from rulec.rulebook.rulebook_model import Rule, Rulebook
@@ -127,7 +127,7 @@ def audit(
             for article in articles
             if hard.isdisjoint(article.rules)
         ),
-        *_history(inherited, rulebook.at),
+        *_history(inherited, rulebook.at, rulebook.name),
         *(
             _dated(constant.name, value.since, value.until, f"{value.text} ")
             for constant in inherited.provisions
@@ -269,11 +269,19 @@ def _dated(name: str, since: str, until: str, value: str = "") -> AuditFinding:
     return AuditFinding("dated", name, value + print_in_force(tree.InForce(since, until)))
 
 
-def _history(inherited: BookLineage, at: str) -> Iterator[AuditFinding]:
+def _whose(step: LineageStep, own: str) -> str:
+    """Why there is no rule, and which book says so if it is not the book named ``own``."""
+    if step.book == own:
+        return step.because
+    whose = f"as {step.book} is" if step.deed == "silent" else f"by {step.book}"
+    return ": ".join(filter(None, (whose, step.because)))
+
+
+def _history(inherited: BookLineage, at: str, own: str) -> Iterator[AuditFinding]:
     for history in inherited.rules:
         last = history.last
         if last.deed in ("dropped", "silent"):
-            yield AuditFinding(last.deed, history.name, last.because)
+            yield AuditFinding(last.deed, history.name, _whose(last, own))
         if history.rule is None:
             continue
         softened = [
