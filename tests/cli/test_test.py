@@ -394,3 +394,23 @@ def test_a_rule_that_its_examples_do_not_exercise_gets_a_warning(tmp_path, capsy
     assert err.startswith("warning[R0408]: no example breaks rule `r`\n")
     path.write_text(source.replace("accept { p }", "accept { p } reject { not p }"))
     assert run(capsys, str(path))[::2] == (0, "")
+
+
+LARGE = """\
+rulebook large
+step 0.1 s
+signal p, q default false
+hard rule big { require always (p implies previously[4 s] q) }
+hard rule small { require never p accept { not p } reject "p" { p } }
+"""
+
+
+@pytest.mark.parametrize("pattern", ["small", "small/p", "sm*"])
+def test_a_rule_that_is_too_large_does_not_stand_in_the_way_of_others(
+    pattern, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "large.rules").write_text(LARGE)
+    status, out, err = run(capsys, "large.rules", "--rule", pattern)
+    assert (status, err) == (0, "")
+    assert "0 failed" in out

@@ -100,17 +100,27 @@ def no_machine(
         case Failed("steps"):
             why = "one of its bounds has more than 10,000 steps"
     # Whether a bound is given in seconds or steps, the number of its steps makes it large.
-    has_bounds = any(operation.bound is not None for operation in operations_of(rule.formula))
+    n_bounds = sum(operation.bound is not None for operation in operations_of(rule.formula))
+    has_bounds = n_bounds > 0
     more = "; each bound takes as many states as it has steps" if has_bounds else ""
     if has_bounds and step_s is not None:
         # A user can resample a recording to longer steps, but cannot change the law.
         why += f" for steps of {number_in_words(step_s)} s"
         more += "; longer steps mean fewer: for a recording, every fifth state may be enough"
+    help_text = (
+        "write a separate rule for each of its demands: automata of demands joined by `and` "
+        "multiply, those of separate rules do not" + more
+    )
+    if n_bounds == 1 or failed == Failed("steps"):
+        # Its demands are not what multiplies.
+        help_text = (
+            "give it a longer step or a shorter bound: each bound takes as many states as it has "
+            "steps; for a recording, every fifth state may be enough"
+        )
     return AUTOMATON_TOO_LARGE.at(
         rule.span,
         f"the automaton of rule `{rule.name}` would be too large: {why}",
-        help="write a separate rule for each of its demands: automata of demands joined by `and` "
-        "multiply, those of separate rules do not" + more,
+        help=help_text,
         notes=_provision(rule),
     )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from rulec.automata.step_compilation import StepCompiler
 from rulec.batch.batch_messages import process_lost
 from rulec.batch.jobs import Jobs
 from rulec.book_tests.example_coverage import RuleCoverage, coverage
-from rulec.book_tests.example_runs import ExampleRun, run_rulebook_examples
+from rulec.book_tests.example_runs import ExampleRun, is_chosen, run_rulebook_examples
 from rulec.diagnostics import RulecError
 from rulec.rulebook.loader import read_rulebook
 
@@ -30,10 +30,16 @@ class ExampleRequest:
 
 
 def run_examples(request: ExampleRequest, rulebook: str | Path) -> ExampleRun:
-    """Run a rulebook's examples. Raises RulecError."""
+    """Run a rulebook's examples. Raises RulecError.
+
+    With patterns only the rules that one of them matches are compiled, if there are any.
+    """
     loaded = read_rulebook(rulebook, request.folders, request.at)
-    compiled = StepCompiler(loaded.rulebook).at_own_steps()
-    return run_rulebook_examples(loaded.rulebook, compiled, loaded.warnings, request.patterns)
+    book = loaded.rulebook
+    rules = tuple(rule for rule in book.rules if is_chosen(rule, request.patterns))
+    chosen = replace(book, rules=rules) if rules else book
+    compiled = StepCompiler(book).at_own_steps(chosen.rules)
+    return run_rulebook_examples(chosen, compiled, loaded.warnings, request.patterns)
 
 
 MeasuredRun = tuple[ExampleRun, tuple[RuleCoverage, ...]]

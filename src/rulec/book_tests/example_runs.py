@@ -113,9 +113,20 @@ def run_rulebook_examples(
         _outcome(rule, machine, compiled, example, number)
         for rule, machine in zip(rulebook.rules, compiled.rules, strict=True)
         for number, example in enumerate(rule.examples, 1)
-        if _is_wanted([rule.name, f"{rule.name}/{example.label or number}"], patterns)
+        if _is_wanted(_names(rule, example, number), patterns)
     )
     return ExampleRun(rulebook, compiled, outcomes, warnings, patterns)
+
+
+def is_chosen(rule: Rule, patterns: Sequence[str]) -> bool:
+    """Whether a pattern matches a rule or one of its examples, or there is no pattern."""
+    numbered = enumerate(rule.examples, 1)
+    names = [name for number, example in numbered for name in _names(rule, example, number)]
+    return _is_wanted([rule.name, *names], patterns)
+
+
+def _names(rule: Rule, example: Example, number: int) -> list[str]:
+    return [rule.name, f"{rule.name}/{example.label or number}"]
 
 
 def _is_wanted(names: Sequence[str], patterns: Sequence[str]) -> bool:
