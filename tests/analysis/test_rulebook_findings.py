@@ -137,6 +137,15 @@ quantity speed in km/h
             ),
             ["R0803 `t` adds nothing: `r` and `s` together forbid"],
         ),
+        # What contradicts itself implies everything: only the contradiction is worth saying.
+        (
+            (
+                "hard rule r { require always speed > 0 km/h } "
+                "hard rule s { require always speed = 0 km/h } "
+                "hard rule t { require always (wet or speed > 50 km/h) }"
+            ),
+            ["R0804 `r` and `s` cannot both"],
+        ),
         ("hard rule r { require never wet } soft rule s { require never wet }", ["R0803 `s`"]),
         (
             "soft rule r { require never wet } hard rule s { require never (wet and fog) }",

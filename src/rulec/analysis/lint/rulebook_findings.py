@@ -20,6 +20,7 @@ from rulec.analysis.shared_compilation import AnalyzedRule, at_one_step, compile
 from rulec.analysis.trace_display import trace_note
 from rulec.diagnostics import Diagnostic, Label, Span, named
 from rulec.diagnostics.diagnostic import at
+from rulec.diagnostics.source_text import SourceLocation
 from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.rulebook.rules.antecedents import (
@@ -80,11 +81,16 @@ def rulebook_findings(
             diagnostics += alone
             if not alone:
                 good.append(name)
-    for name, finding in _needless(good, by_name, answers, related):
-        is_own = by_name[name].book == book.name
-        diagnostics.append(finding if is_own else _to_drop(name, finding, extends))
+    needless = [*_needless(good, by_name, answers, related)]
     hard = [name for name in good if by_name[name].strength == "hard"]
-    diagnostics += conflicts(hard, own, by_name, answers, related)
+    conflicting = [*conflicts(hard, own, by_name, answers, related)]
+    apart = [{one.place, *_labelled(one)} for one in conflicting if one.place is not None]
+    for name, finding in needless:
+        # Rules that contradict each other imply everything.
+        if not any(rules <= _labelled(finding) for rules in apart):
+            is_own = by_name[name].book == book.name
+            diagnostics.append(finding if is_own else _to_drop(name, finding, extends))
+    diagnostics += conflicting
     diagnostics += contradictions(hard, own, by_name, occurring, answers=answers, related=related)
     for number, (base, sides) in enumerate(zip(bases, of_bases, strict=True)):
         for name, side in sides.items():
@@ -208,6 +214,11 @@ def _needless(
             )
             left.remove(name)
     yield from reversed(diagnostics)
+
+
+def _labelled(finding: Diagnostic) -> Set[SourceLocation]:
+    """The places of the other rules of a finding."""
+    return {label.place for label in finding.labels}
 
 
 def _implied(rule: Rule, premises: Sequence[Rule]) -> Diagnostic:
