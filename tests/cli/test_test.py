@@ -334,7 +334,9 @@ def test_a_rulebook_answers_for_its_own_rules(capsys, tmp_path, monkeypatch):
     )
     status, out, err = run(capsys, "over.rules", "--fail-under", "100")
     assert (status, "below" in err) == (0, False)
-    assert "over A (inherited): 0 of 2 edges" in out
+    # Others have to cover what they wrote.
+    assert "over A" not in out
+    assert "over: without 1 inherited rule; --rule '*' shows them, too\n" in out
     assert "over B: 2 of 2 edges" in out
     assert "coverage 100.0 % of own rules, 50.0 % with those that are inherited\n" in out
     _, out, _ = run(capsys, "over.rules", "--coverage", "--output-format", "json")
@@ -343,6 +345,7 @@ def test_a_rulebook_answers_for_its_own_rules(capsys, tmp_path, monkeypatch):
     assert [rule["inherited"] for rule in covered["rules"]] == [True, False]
     # Where a pattern has chosen them, all that it matches count.
     status, out, err = run(capsys, "over.rules", "--fail-under", "100", "--rule", "*")
+    assert "over A (inherited): 0 of 2 edges" in out
     assert (status, "coverage 50.0 %\n" in out) == (1, True)
     assert "coverage is 50.0 %, below the 100 % asked for" in err
     status, _, err = run(capsys, "ground.rules", "over.rules", "--fail-under", "100")
@@ -414,3 +417,18 @@ def test_a_rule_that_is_too_large_does_not_stand_in_the_way_of_others(
     status, out, err = run(capsys, "large.rules", "--rule", pattern)
     assert (status, err) == (0, "")
     assert "0 failed" in out
+
+
+def test_a_long_condition_is_shown_in_part(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names = [f"a_signal_with_a_long_name_{number}" for number in range(10)]
+    several = " or ".join(f"{name}(x)" for name in names)
+    declared = ", ".join(f"{name}(x: t)" for name in names)
+    Path("long.rules").write_text(
+        f"rulebook long\ntype t\nsignal {declared} default false\n"
+        f"hard rule A {{ require never some x: t ({several}) }}\n"
+    )
+    _, out, _ = run(capsys, "long.rules", "--coverage")
+    (line,) = [line for line in out.splitlines() if "is never true" in line]
+    assert len(line) < 230
+    assert " …` is never true" in line

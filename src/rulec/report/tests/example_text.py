@@ -32,6 +32,9 @@ from rulec.vocabulary import Quantity, Vocabulary
 MOST_MISSING = 5
 """Number of a rule's missing edges shown as text; JSON has all of them."""
 
+LONGEST_CONDITION = 200
+"""The most characters of a condition that text shows; JSON has all of it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Besides:
@@ -61,10 +64,14 @@ def as_text(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]
         lines += ["", details.rstrip("\n"), ""]
     if covered is not None:
         for run, rules in zip(runs, covered, strict=True):
+            asked = asked_of(rules, run.patterns)
             lines += [
                 f"{run.rulebook.name} {line}"
-                for line in coverage_lines(rules, run.rulebook.vocabulary)
+                for line in coverage_lines(asked, run.rulebook.vocabulary)
             ]
+            if len(asked) < len(rules):
+                left_out = counted(len(rules) - len(asked), "inherited rule")
+                lines.append(f"{run.rulebook.name}: without {left_out}; --rule '*' shows them, too")
         lines.append(coverage_in_words(runs, covered))
     outcomes = [outcome for run in runs for outcome in run.outcomes]
     passed = sum(outcome.passed for outcome in outcomes)
@@ -159,17 +166,26 @@ def coverage_lines(rules: Sequence[RuleCoverage], vocabulary: Vocabulary) -> Ite
         )
         lines = [f"{rule.rule}{origin}: {edges}, {values}{limits} ({as_percent(percent([rule]))})"]
         for atom, value in rule.missing_values:
-            lines.append(f"`{formula_text(atom)}` is never {'true' if value else 'false'}")
+            text = _shortened(formula_text(atom))
+            lines.append(f"`{text}` is never {'true' if value else 'false'}")
         for limit in rule.missing_limits:
             if (limit.comparison, limit.value) not in rule.missing_values:
                 how = "true" if limit.value else "false"
                 lines.append(f"`{formula_text(limit.comparison)}` is never narrowly {how}")
         missing = missing_examples(rule, vocabulary)
-        lines += [f"missing: {example}" for example in missing[:MOST_MISSING]]
+        lines += [
+            # A comment is for reading; an example that can be pasted stays whole.
+            f"missing: {_shortened(example) if example.startswith('#') else example}"
+            for example in missing[:MOST_MISSING]
+        ]
         if len(missing) > MOST_MISSING:
             more = len(missing) - MOST_MISSING
             lines.append(f"and {more:,} more; --output-format json has them all")
         yield "\n  ".join(lines)
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= LONGEST_CONDITION else text[: LONGEST_CONDITION - 2] + " …"
 
 
 def as_percent(number: float) -> str:
