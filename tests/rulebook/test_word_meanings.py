@@ -103,3 +103,22 @@ def test_words_in_the_languages_of_neighbours(name, word):
     vocabulary = Session().load_rulebook("de").vocabulary
     known = [*vocabulary.declarations, *vocabulary.enumeration_of]
     assert f"`{word}`" in suggestion(name, known, 0.75)
+
+
+@pytest.mark.parametrize(
+    ("rule", "hint"),
+    [
+        ("(v: vehicle) { require always gap(v) >= 3 * speed }", "way in 3 s write `3 s * speed`"),
+        ("{ require never on_crossing(p) }", "such as `(p: pedestrian)`"),
+        ("(v: vehicle) { require always lane_free(v) }", "did you mean `lane_is_clear` ("),
+        ("{ require always night implies once[<= 2 sekunder] wet }", "did you mean `s`?"),
+        ("{ require always time_to_stop_line >= 2 Sekunden }", "did you mean `s`?"),
+        ("{ require always time_to_stop_line >= 2 secondes }", "did you mean `s`?"),
+        ("{ require always limit >= 2 km/t }", "did you mean `km/h`?"),
+        ("{ require always night exept wet }", "an exception is written `unless formula`"),
+    ],
+)
+def test_repairs_of_slips(rule, hint):
+    text = f"rulebook example\nuse road\ntraffic right\nhard rule r {rule}\n"
+    found = diagnose("example.rules", text.encode()).findings
+    assert [hint in finding.help for finding in found] == [True]

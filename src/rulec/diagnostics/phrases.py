@@ -11,10 +11,13 @@ _MOST_SEARCHED = 500
 """With more names the search takes too long; then only a name that differs in case is found."""
 
 
-def nearest_name(name: str, known: Iterable[str], alike: float = 0.6) -> str | None:
+def nearest_name(
+    name: str, known: Iterable[str], alike: float = 0.6, *, longer: bool = True
+) -> str | None:
     """The known name closest to ``name``, ignoring case, or None.
 
-    ``alike`` is the minimum similarity: the share of letters in common, in the same order.
+    ``alike`` is the minimum similarity: the share of letters in common, in the same order. With
+    ``longer``, the only name with all its words, and more, is also close.
     """
     by_folded: dict[str, str] = {}
     for candidate in known:
@@ -23,7 +26,9 @@ def nearest_name(name: str, known: Iterable[str], alike: float = 0.6) -> str | N
     if same is not None or len(by_folded) > _MOST_SEARCHED:
         return same
     close = _closest(name.casefold(), tuple(by_folded), alike)
-    return by_folded[close[0]] if close else _longer_name(name, by_folded)
+    if close:
+        return by_folded[close[0]]
+    return _longer_name(name, by_folded) if longer else None
 
 
 def _longer_name(name: str, by_folded: Mapping[str, str]) -> str | None:
@@ -41,9 +46,11 @@ def _closest(name: str, known: tuple[str, ...], alike: float) -> list[str]:
     return get_close_matches(name, known, n=1, cutoff=alike)
 
 
-def did_you_mean(name: str, known: Iterable[str], alike: float = 0.6) -> str:
-    """A question with the nearest known name; empty if none is close."""
-    near = nearest_name(name, known, alike)
+def did_you_mean(
+    name: str, known: Iterable[str], alike: float = 0.6, *, longer: bool = True
+) -> str:
+    """A question with the nearest known name, as above; empty if none is close."""
+    near = nearest_name(name, known, alike, longer=longer)
     return "" if near is None else f"did you mean `{near}`?"
 
 

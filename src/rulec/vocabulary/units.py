@@ -51,6 +51,29 @@ def hour_in_another_language(text: str) -> str:
     return "an hour is `h`: did you mean `km/h`?" if _KM_AN_HOUR.fullmatch(text) else ""
 
 
+_IN_OTHER_LANGUAGES = {
+    "s": "sek sekunde sekund sekunder sekunden sekunnin sekuntia secondes seconde seconden secondi "
+    "secondo segundo segundos sekunda sekundy sekund vteřina vteřiny vteřin sec secs",
+    "min": "minutt minutter minuter minuut minuten minuti minuto minutos minuta minuty minut "
+    "minuutti minuuttia",
+    "h": "time timer timme timmar stunde stunden heure heures uur uren ora ore hora horas godzina "
+    "godziny godzin hodina hodiny hodin tunti tuntia",
+    "m": "metri metro metros metr metry metrů metrów metriä mètre mètres",
+    "km": "kilometri kilometro kilometros kilometr kilometry kilometrů kilometrów kilometriä "
+    "kilomètre kilomètres",
+    "t": "tonn tonnes tonne tonnen toneladas tonelada tonnellate tona tony ton tuna tuny tun "
+    "tonnia",
+    "%": "prosent procent prozent pourcent pct percento procento procenta prosenttia",
+}
+_UNIT_MEANT = {word: unit for unit, words in _IN_OTHER_LANGUAGES.items() for word in words.split()}
+
+
+def unit_in_another_language(text: str) -> str:
+    """Help for a unit that is written out, in any language: `sekunder`, `km/t`; else empty."""
+    unit = _UNIT_MEANT.get(text.casefold())
+    return f"did you mean `{unit}`?" if unit else hour_in_another_language(text)
+
+
 def _read(text: str) -> Unit | Refusal | None:
     if len(text) > _LONGEST:
         return None

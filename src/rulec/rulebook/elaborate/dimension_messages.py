@@ -142,6 +142,9 @@ def _by_units(more: tree.Formula, less: tree.Formula, factor: str, scope: Scope)
     units = [(text, scope.symbols.unit(text)) for text in map(scope.symbols.unit_text, names)]
     if len(units) != 2 or not isinstance(less, tree.Arithmetic) or less.operator not in "*/":
         return ""
+    number = next((x for x in (less.left, less.right) if isinstance(x, tree.NumberLiteral)), None)
+    if less.operator == "*" and number is not None and not number.unit:
+        return f"for the way in {number.text} s write `{number.text} s * {names[1]}`"
     (of_more, whole), (of_less, part) = units
     if whole is None or part is None:
         return ""

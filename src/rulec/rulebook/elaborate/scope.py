@@ -216,7 +216,7 @@ class Scope:
             variables = list(self.variables)
             self.report(
                 atom_messages.unknown_variable(
-                    argument, self.symbols, variables, relations, owner=self.owner
+                    argument, self.symbols, variables, relations, owner=self.owner, wanted=wanted
                 )
             )
             return None

@@ -166,6 +166,7 @@ def _unknown(
     quantities = [item.name for item in symbols.items.values() if isinstance(item, Quantity)]
     # `nevr (p)` reads as a name with an argument
     operators = sorted(UNARY_OPERATORS) if use.arguments else []
+    spelt = [*atoms, *quantities, *others, *operators]
     glued = _glued(name, set(atoms))
     parted = _PARTED_UNIT.search(use.span.source.text, 0, use.name.span.start)
     if parted and parse_unit(f"{parted[1]}/{name}"):
@@ -179,8 +180,9 @@ def _unknown(
     else:
         way_out = (
             ("" if use.arguments else _short_form(name, symbols, list(variables)))
-            or did_you_mean(name, [*atoms, *quantities, *others, *operators], _ALIKE)
+            or did_you_mean(name, spelt, _ALIKE, longer=False)
             or _by_meaning(name, [*atoms, *quantities], symbols)
+            or did_you_mean(name, spelt, _ALIKE)
             or _of_no_object(use, quantities)
             or f"declare it, such as `{_declaration(use, variables)}`, "
             "or `use` a vocabulary that has it"
@@ -318,12 +320,14 @@ def unknown_variable(
     relations: Sequence[str],
     *,
     owner: str,
+    wanted: str | None = None,
 ) -> Diagnostic:
     """The mistake that the rule or definition ``owner`` has no such variable.
 
-    In its place a definition could take one of ``relations``.
+    In its place a definition could take one of ``relations``. A variable there would be of the type
+    ``wanted``, if known.
     """
-    kind = next(iter(symbols.types), "vehicle")
+    kind = wanted or next(iter(symbols.types), "vehicle")
     if owner == "example":
         declared = f"({name.text}: {kind})"
         way_out = f"declare it after the rule's name, or after this example's label: `{declared}`"

@@ -10,7 +10,7 @@ from rulec.diagnostics.code import Code
 from rulec.rulebook.names.word_meanings import DescribedWord, offer
 from rulec.syntax import tree
 from rulec.syntax.messages.literals import how_hours_are_written
-from rulec.vocabulary.units import hour_in_another_language, known_unit_names, unit_refusal
+from rulec.vocabulary.units import known_unit_names, unit_in_another_language, unit_refusal
 
 UNKNOWN_TYPE = Code(
     "R0201",
@@ -248,7 +248,7 @@ def unknown_unit(unit: str, span: Span, quantity: str = "") -> Diagnostic:
         way_out = "steps count in the bounds of temporal operators only, such as `next[2 steps]`"
     else:
         by_the_clock = how_hours_are_written(span.text)
-        slip = by_the_clock or hour_in_another_language(unit)
+        slip = by_the_clock or unit_in_another_language(unit)
         way_out = slip or did_you_mean(unit, known_unit_names())
         number = span.text.removesuffix(unit).strip()
         if not way_out and number and unit.isidentifier():

@@ -124,10 +124,15 @@ _CONFIRMATION: Final = 'a confirmation is written `confirm rule NAME { cite "…
 _REMOVING: Final = ("remove", "delete", "repeal", "abolish", "cancel", "skip", "disable")
 _RELATIONS: Final = ("<", "<=", "==", "!=", ">=", ">", ":", ":=")
 _EXAMPLE: Final = "an example is written `accept { … }` or `reject { … }`"
+_EXCEPT: Final = (
+    *("except", "exception", "exempt", "excepting", "excluding"),
+    *("exept", "exepct", "excpet", "ecxept", "exeption"),
+)
+"""Words for an exception, and slips in writing them."""
 _OTHER_CLAUSES: Final = {
     **dict.fromkeys(("weight", "in", "level", "priority"), _HEAD),
     **dict.fromkeys(("from", "force", "since", "valid"), IN_FORCE),
-    **dict.fromkeys(("except", "exception", "exempt"), "an exception is written `unless formula`"),
+    **dict.fromkeys(_EXCEPT, "an exception is written `unless formula`"),
     **dict.fromkeys(("if", "given", "where"), "a condition is written `when formula`"),
     **dict.fromkeys(
         ("must", "shall", "should", "ensure", "assert", "demand", "obliges"),
@@ -152,7 +157,7 @@ _OTHER_CLAUSES: Final = {
     ";": "delete the `;`",
 }
 _AS_REMEMBERED: Final = ("from", "memory", "remembered", "unsure", "uncertain", "unknown", "none")
-_NO_OPERATORS: Final = ("from", "force", "valid", "except", "exempt", "given", "where", "weight")
+_NO_OPERATORS: Final = ("from", "force", "valid", *_EXCEPT, "given", "where", "weight")
 
 
 def other_clause(word: str, others: Container[str] = ()) -> str:
