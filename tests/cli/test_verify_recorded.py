@@ -168,6 +168,14 @@ def test_what_is_no_recording(verify, tmp_path):
     assert "error[R0610]" in err
 
 
+def test_a_single_rule_is_counted_as_one(tmp_path, capsys):
+    text = "rulebook one\nuse road\nhard rule r { require always speed <= 500 km/h }\n"
+    (tmp_path / "one.rules").write_text(text)
+    book = str(tmp_path / "one.rules")
+    assert main(["verify", three_cars(tmp_path), "-r", book, "--explain", "0"]) == 0
+    assert "rules       1 rule: 1 judged" in capsys.readouterr().out.splitlines()
+
+
 def test_what_is_not_told_is_not_taken_for_its_default(verify):
     # Nothing says whether the road is in a town, so nobody can be known to be too fast
     status, out, _ = verify("--explain", "0")

@@ -306,3 +306,16 @@ def test_every_example_of_a_command_is_one():
     for verb, (example, *_) in EXAMPLES.items():
         assert example.startswith(f"rulec {verb}")
         assert verb.split()[0] in VERBS
+
+
+def test_of_many_files_in_the_folder_some_are_named_and_rulebooks_that_ship(
+    tmp_path, monkeypatch, capsys
+):
+    for number in range(9):
+        text = f"rulebook b{number}\nsignal p\nhard rule r {{ require always p }}\n"
+        (tmp_path / f"b{number}.rules").write_text(text)
+    (tmp_path / "a.rules").write_text("rulebook a\nhard rul {")
+    monkeypatch.chdir(tmp_path)
+    assert main(["check", "nobooks"]) == 2
+    said = "".join(capsys.readouterr())
+    assert "available: `./b0.rules`, `./b1.rules`, `./b2.rules`, `./b3.rules`, `at`, " in said

@@ -13,7 +13,7 @@ import rulec
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import Atom
 from rulec.logic.semantics import holds
-from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.loader import diagnose, parse_rulebook
 
 NAMES = "pqrs"  # of phases and what holds beside them; x and y are of exceptions
 ROUNDS = 9 if os.environ.get("RULEC_TEST_PROFILE") == "long" else 1
@@ -265,3 +265,13 @@ def test_who_forgot_always_is_told_of_it(require, way_out, tmp_path):
         "a.rules",
         "this is what the rule requires",
     )
+
+
+@pytest.mark.parametrize(
+    ("formula", "exception"),
+    [("p implies never q", "unless q"), ("never (p then[<= 2 s] q then r)", "unless s")],
+)
+def test_where_no_scope_fits_two_rules_are_suggested(formula, exception):
+    text = f"rulebook x\nsignal p, q, r, s\nhard rule a {{ require {formula} {exception} }}\n"
+    (finding,) = diagnose("x.rules", text.encode()).findings
+    assert (finding.code, "write two rules" in finding.help) == ("R0318", True)

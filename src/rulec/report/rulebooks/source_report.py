@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from rulec.analysis.audit.source_audit import Basis, RuleBasis, SourceAudit
+from rulec.report.text import terminal_text
 from rulec.report.text.markdown import code, table
 from rulec.report.text.terminal_text import fact_lines, styled, visible
 
@@ -19,7 +20,7 @@ def counted(audit: SourceAudit) -> str:
     """The numbers of rules in one sentence."""
     n = {basis: audit.count(basis) for basis in _TITLES}
     return (
-        f"{len(audit.rules):,} rules: {n['evidence']:,} judged on evidence, "
+        f"{terminal_text.counted(len(audit.rules), 'rule')}: {n['evidence']:,} judged on evidence, "
         f"{n['presumption']:,} with presumptions, {n['nothing']:,} cannot be judged"
     )
 

@@ -65,7 +65,7 @@ def _rule_counts(verdicts: RecordingVerdicts, tally: ViolationTally, width: int)
         )
     if never:
         parts.append(f"{len(never):,} cannot be judged from this recording")
-    yield f"rules       {len(rules):,} rules: {', '.join(parts)}"
+    yield f"rules       {counted(len(rules), 'rule')}: {', '.join(parts)}"
     yield from _unjudged(never, tally, width)
 
 

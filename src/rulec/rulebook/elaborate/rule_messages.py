@@ -84,10 +84,12 @@ UNKNOWN_PRIORITY = Code(
 UNFITTING_SCOPE = Code(
     "R0318",
     title="an exception's scope does not fit the rule",
-    why="Exceptions `at start`, `throughout`, `at some point` and `at end` refer to the time "
-    "that a rule is about, which begins with `never` or `always`. Other rules can only have "
-    "exceptions that hold `initially`. `throughout` cannot be combined with phases of bounded "
-    "length.",
+    why="An exception says when a rule does not apply. `at start`, `at some point`, `at end` and "
+    "`throughout` (which also holds if none is written) mean the time during which the rule could "
+    "be violated, which only a rule that begins with `never` or `always` has. Other rules can "
+    "have exceptions that hold `initially`, in the first state. `throughout` does not go together "
+    "with bounds of `then`, such as `then[<= 2 s]`. Where no scope fits, write two rules: one for "
+    "when the exception holds, and one for when it does not.",
     bad="rulebook example\nsignal wet, fog\n"
     "hard rule r { require eventually wet unless fog throughout }\n",
     good="rulebook example\nsignal wet, fog\n"
@@ -234,8 +236,8 @@ def unfitting_exception(problem: str, item: tree.RuleItem, *, first_state_only: 
         written = f"`{unless.scope}`" if unless.scope else "this exception"
         return UNFITTING_SCOPE.at(
             unless.span,
-            f"{written} says when the rule is not watching, and it watches no stretch of time: it "
-            "does not begin with `never` or `always`",
+            f"{written} cannot be used here: it takes out a part of the time that a rule is about, "
+            "and only rules that begin with `never` or `always` are about such a time",
             expected="expected a rule that begins with `never` or `always`"
             if first_state_only
             else "expected `initially` after it",
@@ -243,16 +245,18 @@ def unfitting_exception(problem: str, item: tree.RuleItem, *, first_state_only: 
             "only; or `initially` at the end of the exception, if that is meant"
             if first_state_only
             else "write `initially` at its end, if the first state decides; or begin the rule with "
-            "`never` or `always`; or say it in the formula, by `or`",
+            "`never` or `always`; or write two rules, one for when the exception holds and one for "
+            "when it does not",
             labels=labels,
         )
     unless = [unless for unless in item.unless if unless.scope in (None, "throughout")][-1]
     if problem == "bounded phase":
         return UNFITTING_SCOPE.at(
             unless.span,
-            "an exception cannot hold `throughout` phases whose length is bounded",
-            expected="expected another scope",
-            help="write `at start`, `at end` or `at some point`, or leave the bounds of `then` out",
+            "an exception cannot hold `throughout` where `then` has a bound, such as `[<= 2 s]`",
+            expected="expected `at start`, `at end` or `at some point` after it",
+            help="write one of these; or leave the bounds of `then` out; or write two rules, one "
+            "with the exception and one with the bounds",
             labels=labels,
         )
     return FORMULA_TOO_LARGE.at(

@@ -79,11 +79,12 @@ def meant_by(name: str, known: Sequence[str], search_path: Sequence[Path]) -> st
         return f"`{name}` is a vocabulary, in whose words rulebooks such as `de` are written"
     shipped = {path.stem for path in rules_files(rulebooks_folder())}
     # Of many names the first are shown: the reader's own are those that are not known anyway.
-    own_first = sorted(known, key=lambda known_name: known_name in shipped)
     beside = [
         f"./{path}" for path in sorted(Path().glob(f"*{SUFFIX}")) if _lead(path) == "rulebook"
     ]
-    return _by_title(name, known, search_path) or suggest(name, [*beside, *own_first])
+    own = [*beside, *(known_name for known_name in known if known_name not in shipped)]
+    that_ship = [known_name for known_name in known if known_name in shipped]
+    return _by_title(name, known, search_path) or suggest(name, [*own, *that_ship])
 
 
 def _by_name(name: str, search_path: Sequence[Path]) -> Path | None:
@@ -286,6 +287,33 @@ def suggest(name: str, known: Sequence[str]) -> str:
 
 
 def _suggest(name: str, known: Sequence[str]) -> str:
-    available = f"available: {named(known)}" if known else "none is available"
     question = did_you_mean(name, known)
+    shown = _some_of_both(known)
+    available = f"available: {named(shown)}" if shown else "none is available"
     return f"{question} ({available})" if question else available
+
+
+_MOST_OWN = 4
+"""The most files of the reader's own that are named as long as others are available."""
+
+
+def _some_of_both(known: Sequence[str]) -> list[str]:
+    """Names with the first files of the working folder that can be read, then all the others."""
+    own = [name for name in known if name.startswith("./")]
+    rest = [name for name in known if not name.startswith("./")]
+    first: list[str] = []
+    for name in own:
+        if len(first) < _MOST_OWN and _is_readable(Path(name)):
+            first.append(name)
+    return [*first, *rest]
+
+
+def _is_readable(path: Path) -> bool:
+    """Whether a file is a rulebook without mistakes in its form."""
+    # Late import: the parser, only for the message about an unknown name.
+    from rulec.syntax import decode, parse
+
+    try:
+        return not parse(decode(str(path), read_bytes(path)))[1]
+    except RulecError:
+        return False
