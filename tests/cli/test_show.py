@@ -291,3 +291,20 @@ def test_what_options_rule_out_is_not_told(capsys, tmp_path, monkeypatch):
         "  It does not count if, throughout the time that the rule is about, “q” holds.\n"
     ) in out
     assert "  It never counts, for its condition is false as options are set.\n" in out
+
+
+def test_rules_are_chosen_by_pattern_as_in_other_verbs(two, capsys):
+    assert main(["show", two, "--rule", "qui*"]) == 0
+    in_full = capsys.readouterr().out
+    assert main(["show", two, "quiet"]) == 0
+    assert capsys.readouterr().out == in_full
+    assert main(["show", two, "--rule", "qui*", "--rule", "pass_by"]) == 0
+    assert "rule quiet" in (both := capsys.readouterr().out)
+    assert "rule pass_by" in both
+    assert main(["show", two, "--rule", "quiet", "--automaton", "text"]) == 0
+    assert "state 0" in capsys.readouterr().out
+    assert main(["show", two, "--rule", "z*"]) == 2
+    assert "two has no rule like `z*`\n" in capsys.readouterr().err
+    assert main(["show", two, "qui*"]) == 2
+    said = "`qui*` is no rulebook; for rules that match it write `--rule 'qui*'`\n"
+    assert said in capsys.readouterr().err

@@ -18,7 +18,7 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rules
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, put_answer, rulebooks_named, width_of
-from rulec.diagnostics import nearest_name
+from rulec.diagnostics import named, nearest_name
 from rulec.report.text.console import print_remark
 from rulec.report.text.terminal_text import first_of
 from rulec.settings import search_path
@@ -47,10 +47,12 @@ _MOST_NAMED = 6
     "the rule: text, JSON, or its automaton for Graphviz or as a picture",
     alias="automaton",
 )
+@shared.rules_option("Show only rules that match PATTERN")
 @shared.at_option
 def command(
     rulebook: str,
     others: tuple[str, ...],
+    patterns: tuple[str, ...],
     automaton: str | None,
     to: Output,
     at: str,
@@ -58,23 +60,27 @@ def command(
     """Show a RULE of a RULEBOOK: in plain English, as a formula, as an automaton, with examples.
 
     The English sentence is generated from the formula and is unambiguous. Without RULE every rule
-    is shown briefly; a rulebook's only rule is shown in full. With several RULEBOOKs, folders or
-    patterns, the RULE is shown for each; JSON has one line each.
+    is shown briefly; the only rule of a rulebook, or the only one that matches --rule, is shown in
+    full. With several RULEBOOKs, folders or patterns, the RULE is shown for each; JSON has one line
+    each.
     """
-    books, rule = _books_and_rule((rulebook, *others))
+    if patterns:
+        books, rule = rulebooks_named((rulebook, *others)), None
+    else:
+        books, rule = _books_and_rule((rulebook, *others))
     if automaton is not None or to.form in ("dot", "svg"):
         if len(books) > 1:
             raise click.UsageError("an automaton is of one rule; give one RULEBOOK")
-        put_answer(_automaton_of(books[0], rule, to, at), to)
+        put_answer(_automaton_of(books[0], rule, patterns, to, at), to)
         return ExitStatus.OK
     if len(books) == 1:
-        put_answer(_shown(books[0], rule, to, at, several=False), to)
+        put_answer(_shown(books[0], rule, patterns, to, at, several=False), to)
         return ExitStatus.OK
     shown: list[str] = []
     missing: list[click.UsageError] = []
     for book in books:
         with errors_told(), _collected(missing):
-            text = _shown(book, rule, to, at, several=True)
+            text = _shown(book, rule, patterns, to, at, several=True)
             shown.append(text if to.form == "json" else f"{book}\n\n{text}\n")
     if missing and not shown:
         raise missing[0]
@@ -96,6 +102,10 @@ def _collected(problems: list[click.UsageError]) -> Iterator[None]:
 def _books_and_rule(arguments: Sequence[str]) -> tuple[tuple[str, ...], str | None]:
     """The rulebooks and the rule in the arguments; the last argument may be a rule."""
     *before, last = arguments
+    if before and has_magic(last) and "/" not in last and not any(Path().glob(last)):
+        raise click.UsageError(
+            f"`{last}` is no rulebook; for rules that match it write `--rule '{last}'`"
+        )
     if not before and not _is_rulebook(last):
         # Late import, only if an argument may be a rule: file search and their rules (60 ms).
         from rulec.rulebook.files.catalogue import rulebooks_with_rule
@@ -117,14 +127,23 @@ def _is_rulebook(argument: str) -> bool:
     return is_path or argument in available_rulebooks(search_path())
 
 
-def _shown(reference: str, name: str | None, to: Output, at: str, *, several: bool) -> str:
-    """A rule as text or JSON, or all rules in brief; one JSON line each if ``several``."""
+def _shown(
+    reference: str,
+    name: str | None,
+    patterns: Sequence[str],
+    to: Output,
+    at: str,
+    *,
+    several: bool,
+) -> str:
+    """A rule as text or JSON, or all that match in brief; one JSON line each if ``several``."""
     # Late import, not for --help: rules and automata (60 ms).
     from rulec.report.json_document import as_indented, as_line
     from rulec.report.rulebooks import rule_json, rule_page
     from rulec.report.rulebooks.spoken_rules import spoken_book
 
-    book, compiled = _read(reference, at)
+    whole, compiled = _read(reference, at)
+    book = _matching(whole, patterns)
     chosen = _chosen(book, name, reference)
     page = None if chosen is None else _page(book, compiled, chosen)
     spoken = spoken_book(book)
@@ -145,9 +164,25 @@ def _shown(reference: str, name: str | None, to: Output, at: str, *, several: bo
     )
 
 
-def _automaton_of(reference: str, name: str | None, to: Output, at: str) -> str:
+def _matching(book: Rulebook, patterns: Sequence[str]) -> Rulebook:
+    """The rulebook with only the rules that match one of the patterns, if there are any."""
+    if not patterns:
+        return book
+    # Late import, not for --help: comparisons of rulebooks.
+    from rulec.analysis.diff.rulebook_comparison import rules_matching
+
+    rules = tuple(rules_matching(book, patterns).values())
+    if not rules:
+        raise click.UsageError(f"{book.name} has no rule like {named(patterns)}")
+    return replace(book, rules=rules)
+
+
+def _automaton_of(
+    reference: str, name: str | None, patterns: Sequence[str], to: Output, at: str
+) -> str:
     """The automaton of a rule, in the requested format."""
-    book, compiled = _read(reference, at)
+    whole, compiled = _read(reference, at)
+    book = _matching(whole, patterns)
     chosen = _chosen(book, name, reference)
     if chosen is None:
         raise click.UsageError(f"give the RULE whose automaton to show: {_names(book)}")
