@@ -314,7 +314,6 @@ def test_of_many_files_in_the_folder_some_are_named_and_rulebooks_that_ship(
     for number in range(9):
         text = f"rulebook b{number}\nsignal p\nhard rule r {{ require always p }}\n"
         (tmp_path / f"b{number}.rules").write_text(text)
-    (tmp_path / "a.rules").write_text("rulebook a\nhard rul {")
     monkeypatch.chdir(tmp_path)
     assert main(["check", "nobooks"]) == 2
     said = "".join(capsys.readouterr())

@@ -298,22 +298,6 @@ _MOST_OWN = 4
 
 
 def _some_of_both(known: Sequence[str]) -> list[str]:
-    """Names with the first files of the working folder that can be read, then all the others."""
+    """Names with the first files of the working folder, then all the others."""
     own = [name for name in known if name.startswith("./")]
-    rest = [name for name in known if not name.startswith("./")]
-    first: list[str] = []
-    for name in own:
-        if len(first) < _MOST_OWN and _is_readable(Path(name)):
-            first.append(name)
-    return [*first, *rest]
-
-
-def _is_readable(path: Path) -> bool:
-    """Whether a file is a rulebook without mistakes in its form."""
-    # Late import: the parser, only for the message about an unknown name.
-    from rulec.syntax import decode, parse
-
-    try:
-        return not parse(decode(str(path), read_bytes(path)))[1]
-    except RulecError:
-        return False
+    return [*own[:_MOST_OWN], *(name for name in known if not name.startswith("./"))]
