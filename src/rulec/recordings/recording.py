@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.recordings.frame_steps import frame_step
+from rulec.recordings.tracks.frame_steps import frame_step
 from rulec.value_display import short_repr
 
 Points = NDArray[float64]

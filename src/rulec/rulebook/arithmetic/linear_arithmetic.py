@@ -183,7 +183,7 @@ def added(left: Linear, right: Linear, sign: int = 1) -> Linear:
         right.dimension if left.dimension is None else left.dimension,
         f"{left.within(SUM)} {'+' if sign > 0 else '-'} {right.within(PRODUCT)}",
         SUM,
-        _share_of_sum(left, right),
+        share=_share_of_sum(left, right),
     )
 
 
@@ -217,7 +217,7 @@ def _times(linear: Linear, factor: Linear, text: str) -> Linear:
     terms = {} if bare else {term: value * by for term, value in linear.coefficients.items() if by}
     # Twice a share is one, a share of a share is not.
     share = factor.share if linear.share == "" else linear.share if factor.share == "" else None
-    return Linear(terms, linear.constant * by, dimension, text, PRODUCT, share)
+    return Linear(terms, linear.constant * by, dimension, text, PRODUCT, share=share)
 
 
 def opposite(number: NumberByCases) -> NumberByCases:
@@ -228,7 +228,7 @@ def opposite(number: NumberByCases) -> NumberByCases:
 def _opposite(linear: Linear) -> Linear:
     terms = {term: -coefficient for term, coefficient in linear.coefficients.items()}
     text = f"-{linear.within(SIGN)}"
-    return Linear(terms, -linear.constant, linear.dimension, text, SIGN, linear.share)
+    return Linear(terms, -linear.constant, linear.dimension, text, SIGN, share=linear.share)
 
 
 def compared(left: NumberByCases, relation: ltl.Relation, right: NumberByCases) -> ltl.Formula:
