@@ -32,16 +32,16 @@ def test_all_that_is_proposed_comes_out_as_it_says(book, tmp_path):
         if examples:
             # Named, so that the examples that the book has are not run again.
             named = [
-                example.replace("accept", f'accept "p{number}"', 1)
+                example.replace("accept", f'accept "proposed {number}"', 1)
                 if example.startswith("accept")
-                else example.replace("reject", f'reject "p{number}"', 1)
+                else example.replace("reject", f'reject "proposed {number}"', 1)
                 for number, example in enumerate(examples)
             ]
             lines.append("\n  ".join([f"override rule {head} {{", *named]) + "\n}")
     assert len(lines) > 1
     path = tmp_path / "pasted.rules"
     path.write_text("\n".join(lines) + "\n")
-    run = rulec.test(str(path), "*/p*")
+    run = rulec.test(str(path), "*/proposed *")
     failed = [f"{one.rule.name}/{one.name}" for one in run.outcomes if not one.passed]
     assert run.outcomes
     assert failed == []
