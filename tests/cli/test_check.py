@@ -192,7 +192,7 @@ def test_fixes_are_written_and_leave_nothing_to_say(capsys, tmp_path):
         "rulebook reach\nsignal p, q, r default false\n"
         "hard rule a { require p # first\n and q }\n"
         "hard rule b { require not (p or q) }\n"
-        "hard rule c { require p implies never[<= 3 s] q and r }\n"
+        "hard rule c { require always (p implies never[<= 3 s] q and r) }\n"
         "hard rule d { require never p then q }\n"
         "hard rule e { require always p and q or never r }\n"
     )
@@ -200,7 +200,7 @@ def test_fixes_are_written_and_leave_nothing_to_say(capsys, tmp_path):
         "rulebook reach\nsignal p, q, r default false\n"
         "hard rule a { require always p # first\n and always q }\n"
         "hard rule b { require never (p or q) }\n"
-        "hard rule c { require p implies never[<= 3 s] (q and r) }\n"
+        "hard rule c { require always (p implies never[<= 3 s] (q and r)) }\n"
         "hard rule d { require never (p then q) }\n"
         "hard rule e { require always (p and q) or never r }\n"
     )

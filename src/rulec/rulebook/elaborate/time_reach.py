@@ -48,7 +48,10 @@ def _asked_once(
 
 
 def _is_of_all_states(node: tree.Formula) -> bool:
-    return isinstance(node, tree.Prefix) and node.operator in {"always", "never"}
+    match node:
+        case tree.Prefix("always" | "never", bound=None):
+            return True
+    return False
 
 
 def operator_warnings(node: tree.Formula, overlay: Overlay) -> Iterator[Diagnostic]:
