@@ -15,7 +15,7 @@ KINDS: Final = {
     "soft-only": "an article that only soft rules cite",
     "softened": "an inherited hard rule that was made soft",
     "dropped": "an inherited rule that was dropped",
-    "silent": "a topic that the rulebook, or one that it extends, deliberately leaves out",
+    "silent": "a topic that the rulebook or its base deliberately leaves out",
     "dated": "in force for a limited time only",
     "out-of-force": "not in force on the audit's day, and left out",
     "to-do": "an article that no rule cites and the rulebook does not explain",
