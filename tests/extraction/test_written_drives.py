@@ -87,7 +87,10 @@ def test_a_drive_can_be_drawn(road, tmp_path, capsys):
             ["verify", "FILE", "-r", "vienna", "--assume", "wet"],
             "not written as in `built_up=true`",
         ),
-        (["verify", "FILE", "-r", "vienna", "--assume", "wett=true"], "has no `wett`"),
+        (
+            ["verify", "FILE", "-r", "vienna", "--assume", "wett=true"],
+            "does not know `wett`; did you mean `wet`?",
+        ),
         (["verify", "FILE", "-r", "vienna", "--assume", "wet=yes"], "`wet` is `true` or `false`"),
         (
             ["verify", "FILE", "-r", "vienna", "--assume", "light=rot"],

@@ -104,7 +104,12 @@ def test_who_has_sets_for_places_has_no_track():
             'says `built_up` is `"true"`; it is true or',
             "write `true`",
         ),
-        ({"road_class": "freeway"}, "R0503", "is one of `ordinary_road`, `expressway`", ""),
+        (
+            {"road_class": "freeway"},
+            "R0503",
+            "is one of `ordinary_road`, `expressway`",
+            "did you mean `motorway` (the road is a motorway)?",
+        ),
         ({"gap": 5.0}, "R0503", "`gap`, which is about objects", "assume only what is about none"),
     ],
 )

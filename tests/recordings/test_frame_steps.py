@@ -5,7 +5,7 @@ from math import nextafter
 import pytest
 
 from rulec import build_lanelet, build_participant, build_recording
-from rulec.recordings.tracks.frame_steps import frame_step
+from rulec.recordings.recording import frame_step
 
 
 @pytest.mark.parametrize(
