@@ -73,6 +73,14 @@ def test_one_that_brakes_may_do_so_for_ego(x, slows_to_mps, clear):
     comes = along(8, np.array([(600.0, 4.0), (0.0, 4.0)]), 600 - x + driven)
     found = signals(two_ways(), passes, comes)["oncoming_clear"]
     assert found[round(3 / STEP_S)] == clear
+    # Or it appears when ego is over the middle already
+    states, outlines = (
+        {step: one for step, one in each.items() if step >= 4 / STEP_S}
+        for each in (comes.states, comes.outlines)
+    )
+    late = replace(comes, states=states, outlines=outlines)
+    found = signals(two_ways(), passes, late)["oncoming_clear"]
+    assert found[round(3 / STEP_S)] == clear
 
 
 def test_one_that_appears_midway():

@@ -109,7 +109,8 @@ def _may_brake_for_ego(context: DriveContext, cells: Cells) -> Flags:
     cells = cells.part((hard & (spans.latest(there) > since)[cells.columns]).nonzero()[0])
     gaps = cells.of(relations.gap(context))
     for row, column, gap in zip(cells.rows, cells.columns, gaps, strict=True):
-        fastest = -context.extents.along[row, since[column] + 1 : column + 1].min()
+        # It may have appeared only meanwhile
+        fastest = -np.nanmin(context.extents.along[row, since[column] + 1 : column + 1])
         closing = max(context.ego_extents.along[0, column] + fastest, 0.1)
         braked[column] |= gap / closing < until_s[column]
     flags: Flags = away & (spans.next_state(braked) < back)
