@@ -58,6 +58,7 @@ OF_PLACE = frozenset(
         "lanes",
         "lane",
         "lane_number",
+        "apart_from_far_lane",
         "marked_lanes",
         "surface",
         "driving_side",
@@ -75,7 +76,7 @@ OF_PLACE = frozenset(
 )
 """Words that depend on where ego is along the road, and in which lane."""
 
-OF_LANES = frozenset({"lanes", "lane", "lane_number", "marked_lanes"})
+OF_LANES = frozenset({"lanes", "lane", "lane_number", "apart_from_far_lane", "marked_lanes"})
 """Those of them that depend on which other lanes exist there."""
 
 AT_LINE = frozenset(

@@ -14,7 +14,7 @@ _EITHER = frozenset(
         "hazard_lights",
         *("cause_to_brake", "driving_side", "impedes_traffic", "joins_road", "nearest_to_crossing"),
         *("holds_up_oncoming", "on_shoulder", "reversing", "turns_in_way_of", "u_turn"),
-        *("lane_number", "other_arrived_first", "time_to_collision", "time_to_stop_line"),
+        *("apart_from_far_lane", "lane_number", "other_arrived_first", "time_to_collision", "time_to_stop_line"),
         *("CONGESTED", "about_to_overtake", "abreast_at_narrowing", "accelerating", "ahead_for"),
         *("arrived_together", "being_overtaken", "braking_hard", "broken_on_own_side"),
         *("built_up", "came_up_beside", "can_stop_at_once", "compulsory_roundabout"),

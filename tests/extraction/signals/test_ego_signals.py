@@ -213,6 +213,23 @@ def test_lanes_are_numbered_from_the_kerb(y, right_hand, left_hand):
     assert set(world(body, 5, side="left")["lane_number"].tolist()) == {left_hand}
 
 
+@pytest.mark.parametrize(
+    ("y", "right_hand", "left_hand"),
+    [(0, True, False), (4, True, False), (8, False, True), (12, False, True)],
+)
+def test_lanes_two_or_more_from_the_far_one_are_apart_from_it(y, right_hand, left_hand):
+    # Of four lanes the far one is the uppermost in right-hand traffic
+    body = steady(7, 0, y)
+    assert set(world(body, 4)["apart_from_far_lane"].tolist()) == {right_hand}
+    assert set(world(body, 4, side="left")["apart_from_far_lane"].tolist()) == {left_hand}
+
+
+def test_whether_the_far_lane_is_apart_is_open_beside_a_mark():
+    # 10 cm beyond the mark between the second and the third of four lanes
+    signals = ego_signals(context_of(recording(lanes(4), [steady(7, 0, 6.1)])))
+    assert signals.unknown["apart_from_far_lane"].tolist() == [True] * 4
+
+
 @pytest.mark.parametrize(("end", "unknown"), [(200, True), (800, False)])
 def test_beside_a_lane_that_ends_nobody_knows_which_one_is_at_the_kerb(end, unknown):
     road = [

@@ -133,6 +133,17 @@ def _lane_number(context: DriveContext) -> SignalColumns:
     )
 
 
+def _apart_from_far_lane(context: DriveContext) -> SignalColumns:
+    apart, other, from_beside = (
+        _from_far(context, lane) > 1
+        for lane in (context.steady_lane, context.ego_lane, context.steady_lane_from_beside)
+    )
+    return SignalColumns(
+        {"apart_from_far_lane": apart},
+        unknown={"apart_from_far_lane": (apart != other) | (apart != from_beside)},
+    )
+
+
 def _lane_count(context: DriveContext) -> SignalColumns:
     """The number of lanes, the largest at ego's rear, middle and front.
 
@@ -163,6 +174,12 @@ def _rank(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
     lanes, states = travel_lanes_first(context), context.spans.columns
     right: NDArray[intp] = lanes.cumsum(axis=0)[lane, states] - lanes[lane, states]
     return right if context.side == "right" else lanes.sum(axis=0) - 1 - right
+
+
+def _from_far(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
+    """The number of lanes from given lanes, by state, to the one farthest from the kerb."""
+    count: NDArray[intp] = travel_lanes_first(context).sum(axis=0)
+    return count - 1 - _rank(context, lane)
 
 
 def _straddling(context: DriveContext) -> SignalColumns:
@@ -255,6 +272,7 @@ ego_signals = SignalPasses(
         ("can_stop_at_once",): _stopping,
         ("lane",): _lane,
         ("lane_number",): _lane_number,
+        ("apart_from_far_lane",): _apart_from_far_lane,
         ("lanes",): _lane_count,
         ("straddling",): _straddling,
         ("lane_position",): _lane_position,
