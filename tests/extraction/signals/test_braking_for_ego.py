@@ -55,6 +55,45 @@ def test_who_brakes_hard_as_ego_comes_is_held_up_though_it_is_slow_when_ego_driv
     assert from_the_right(y) == conflict
 
 
+WIDE = [
+    straight(1, -60, -10, successors=(2,)),
+    straight(2, -10, 10, predecessors=(1,), successors=(3,), **INSIDE),
+    straight(3, 10, 190, predecessors=(2,)),
+    lanelet(4, [(0, -90), (0, -10)], successors=(5,)),
+    lanelet(5, [(0, -10), (0, 10)], predecessors=(4,), successors=(6,), **INSIDE),
+    lanelet(6, [(0, 10), (0, 90)], predecessors=(5,)),
+]
+
+
+@pytest.mark.parametrize(
+    ("begin", "times", "speeds", "conflict"),
+    [
+        (-26.0, [0.6, 3.1], [10.0, 0.0], "?"),
+        (-47.0, [0.0, 2.7, 5.2], [10.0, 10.0, 0.0], "F"),
+        (-23.0, [0.0], [2.0], "F"),
+    ],
+    ids=["for ego", "once ego is gone", "slow anyway"],
+)
+def test_one_that_still_stands_in_the_junction_at_the_end_may_have_braked_for_ego(
+    begin, times, speeds, conflict
+):
+    """Its front is 5 m before ego's way at last; ego has left that at 2.4 s of 8."""
+    y = driven(begin, times, speeds)
+    assert -10 < y[-1] < -6
+    assert from_the_right(y, roads=WIDE) == conflict
+
+
+def test_one_that_is_nearly_there_at_the_end_may_come_at_once():
+    """At 10 m/s its front is 2 m before ego's way at 2.5 s, when the recording ends."""
+    steps = range(26)
+    ego = vehicle(7, {k: (-20 + k, 0) for k in steps}, speed=10)
+    other = vehicle(8, {k: (0, -31.0 + k) for k in steps}, speed=10, heading=np.pi / 2)
+    found = replace(recording(WIDE, [ego, other], step_s=STEP_S), complete=frozenset({"YIELD"}))
+    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    assert told.unknown["conflict_from_right"].any()
+    assert not told.world["conflict_from_right"].any()
+
+
 @pytest.mark.parametrize(("begin", "conflict"), [(-4.5, "T"), (-12.0, "F")])
 def test_one_that_is_slow_is_in_the_way_if_ego_runs_into_it(begin, conflict):
     """At 1.5 m/s it has its front in ego's way, and ego drives into its side; or it is far yet."""

@@ -179,6 +179,11 @@ class JunctionPassages:
             for ends, place in ((middle + half, low), (middle - half, high))
         )
 
+    def left_to(self, passage: Passage, place: float) -> float:
+        """How far (m) its front is before a place on its way when its track ends."""
+        front = self._places(passage)[-1] + self.lengths[passage.row] / 2
+        return max(place - float(front), 0.0)
+
     def front_enters(self, passage: Passage) -> int:
         """The last column in which it was at least half its length before its place in ``first``.
 

@@ -232,7 +232,8 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
         if met is None:
             continue
         ego, foe = passages.occupied(own, met[0]), passages.occupied(other, met[1])
-        verdict = in_conflict(context, (own, *ego), (other, *foe))
+        left_m = passages.left_to(other, met[1][0]) if foe[0] is None else 0.0
+        verdict = in_conflict(context, (own, *ego), (other, *foe), left_m)
         if verdict is None:
             continue
         begins, known = verdict

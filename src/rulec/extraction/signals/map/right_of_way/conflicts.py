@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from math import ceil
+from math import ceil, sqrt
 from typing import TypeAlias
 
 import numpy as np
@@ -62,6 +62,9 @@ _STRAIGHT_RAD = 0.3
 _LATE_S = 10.0
 """A vehicle that comes this long after ego reached a place may not have been in sight before."""
 
+_SPEEDS_UP_MPS2 = 2.0
+"""So much faster a vehicle may become after its track has ended."""
+
 Passing: TypeAlias = tuple[Passage, float | None, float | None]
 """A passage, and when (in columns) it enters and leaves the place where ways meet."""
 
@@ -104,8 +107,13 @@ def drives_in(context: DriveContext, own: Passage) -> int:
     return own.first + int(waits[-1]) if len(waits) else passages.front_enters(own)
 
 
-def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int, bool] | None:
-    """The column from which another vehicle conflicts with ego, and whether surely; or None."""
+def in_conflict(
+    context: DriveContext, ego: Passing, foe: Passing, left_m: float = 0.0
+) -> tuple[int, bool] | None:
+    """The column from which another vehicle conflicts with ego, and whether surely; or None.
+
+    ``left_m``: how far the other is from the place where ways meet, if its track ends before.
+    """
     own, other = ego[0], foe[0]
     (enters, leaves), (comes, passed) = (tuple(map(_column, when[1:])) for when in (ego, foe))
     if enters is None or (passed is not None and passed <= enters):
@@ -117,7 +125,7 @@ def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int,
         return enters, False
     speed = context.surroundings.passages.tracks.speed[own.row, enters:passed]
     waits = speed.min(initial=np.inf) < SLOWEST_MPS
-    held_up = _held_up(context, (own, enters, ego[2]), other, foe[1])
+    held_up = _held_up(context, (own, enters, ego[2]), other, (foe[1], left_m))
     if held_up is not None and passed is not None and (leaves is None or passed < leaves):
         return _let_pass(context, (own, slice(enters, passed)), other, held_up, waits=waits)
     return held_up
@@ -196,20 +204,51 @@ def _column(when: float | None) -> int | None:
 
 
 def _held_up(
-    context: DriveContext, ego: tuple[Passage, int, float | None], other: Passage, at: float | None
+    context: DriveContext,
+    ego: tuple[Passage, int, float | None],
+    other: Passage,
+    there: tuple[float | None, float],
 ) -> tuple[int, bool] | None:
-    """``in_conflict`` for a vehicle that gets there later than ego, in column ``at``, or never."""
+    """``in_conflict`` for a vehicle that gets there later than ego, or not before its track ends.
+
+    ``there``: in which column, or how far (m) it still has to go at its end. It is not sure if its
+    track ends before, as it may come no sooner than it can, or later.
+    """
+    passages, (_, enters, leaves) = context.surroundings.passages, ego
+    until = passages.tracks.x.shape[1] - 1 if leaves is None else leaves
+    present, (at, left_m) = passages.tracks.present[other.row].nonzero()[0], there
+    first, end = max(int(present[0]), first_column(context)), int(present[-1])
+    if min(enters, end) < first:
+        return None
+    if at is not None:
+        return _held_up_until(context, ego, other, (first, at, until))
+    if end < until:
+        return first, False
+    speed = max(float(passages.tracks.speed[other.row, end]), 0.0)
+    soonest_s = (sqrt(speed**2 + 2 * _SPEEDS_UP_MPS2 * left_m) - speed) / _SPEEDS_UP_MPS2
+    at = end + soonest_s / context.recording.step_s
+    found = _held_up_until(context, ego, other, (first, at, until), left_m)
+    return found and (found[0], False)
+
+
+def _held_up_until(
+    context: DriveContext,
+    ego: tuple[Passage, int, float | None],
+    other: Passage,
+    times: tuple[int, float, float],
+    left_m: float = 0.0,
+) -> tuple[int, bool] | None:
+    """``in_conflict`` for a vehicle that gets there later than ego.
+
+    ``times``: the first column of the two, when the other gets there, and when ego has left;
+    ``left_m``: how far (m) the other still has to go when its track ends.
+    """
     limits, step_s = context.thresholds, context.recording.step_s
     passages = context.surroundings.passages
-    own, enters, leaves = ego
-    until = passages.tracks.x.shape[1] - 1 if leaves is None else leaves
+    (own, enters, leaves), (first, at, until) = ego, times
     present = passages.tracks.present[other.row].nonzero()[0]
-    first, last = max(int(present[0]), first_column(context)), min(enters, int(present[-1]))
-    if last < first:
-        return None
-    columns, comes = np.arange(first, last + 1), _column(at)
-    if at is None or comes is None:
-        return (first, False) if int(present[-1]) < until else None
+    last = min(enters, int(present[-1]))
+    columns, comes = np.arange(first, last + 1), ceil(at)
     decides = min(max(_decides(context, own, enters) - first, 0), last - first)
     train, late_s = _is_train(context, own, other), (at - until) * step_s
     if late_s < (limits.held_up_s if train else limits.yielding_s):
@@ -226,7 +265,7 @@ def _held_up(
         waits = _stands(context, other, drives_in) or own_reason
         return first, drove_on and not late and not waits
     travelled = passages.travelled[other.row]
-    way = np.interp(at, np.arange(len(travelled)), travelled) - travelled[columns]
+    way = np.interp(at, np.arange(len(travelled)), travelled) + left_m - travelled[columns]
     speed = np.maximum(passages.tracks.speed[other.row, columns], 0.1)
     soon = columns + way / speed / step_s - until < limits.yielding_s / step_s
     # A vehicle that speeds up when ego is already in the junction was not held up by ego's driving
