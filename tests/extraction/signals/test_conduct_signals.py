@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import rulec
 from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
 from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
@@ -724,3 +725,34 @@ def test_ego_is_on_call_while_its_blue_lights_are_on(kind, blue, expected):
         lamps = {k: frozenset({"blue_light"} if k in blue else ()) for k in range(8)}
         ego = replace(ego, shows=frozenset({"blue_light"}), lamps=lamps)
     assert told(lamp_signals, "ego_on_call", two_way(), ego) == expected
+
+
+@pytest.mark.parametrize("step_s", [0.1, 0.25, 0.5])
+def test_who_turns_round_before_an_oncoming_one_does_so_in_steps_of_any_length(step_s):
+    """Ego's drive along its own half ends as it is across: with long steps at 56° already.
+
+    The other one comes at 14 m/s, is 11 m away then, and brakes.
+    """
+    t = np.arange(0, 12 + step_s / 2, step_s)
+    begins, radius, mps = 7.2, 3.4, 15 / 3.6
+    angle = np.clip((t - begins) * mps / radius, 0, np.pi)
+    beyond = np.maximum((t - begins) * mps - np.pi * radius, 0)
+    x = np.minimum(mps * t, mps * begins) + radius * np.sin(angle) - beyond
+    y = -1.75 + radius * (1 - np.cos(angle))
+    ego = rulec.build_participant("ego", "car", t, x, y, step_s=step_s, heading=angle)
+    speed = np.clip(14 - 4.5 * (t - 7.0), 2, 14)
+    braked = np.clip(t - 7.0, 0, 12 / 4.5)
+    driven = 14 * np.minimum(t, 7.0) + 14 * braked - 2.25 * braked**2
+    driven += 2 * np.maximum(t - 7.0 - 12 / 4.5, 0)
+    other = rulec.build_participant(
+        "o", "car", t, 30 + 25 + 98 - driven, 0 * t + 1.75, step_s=step_s, speed=speed
+    )
+    road = [
+        rulec.build_lanelet("E", [(-20, -1.75), (300, -1.75)]),
+        rulec.build_lanelet("W", [(300, 1.75), (-20, 1.75)]),
+    ]
+    made = rulec.build_recording(road, [ego, other], step_s=step_s, side="right", ego="ego")
+    violated = {
+        name for row in rulec.verify_recording(made, "fr").rows() for name in row["violated"]
+    }
+    assert "joining_road" in violated

@@ -272,10 +272,24 @@ def u_turns(context: DriveContext) -> Flags:
     """
     turns = swings_round(context)
     if turns.any():
-        leaves_road = np.abs(context.ego_extents.turned[0]) >= 2 * _ACROSS_RAD
-        turns = turns & context.spans.any(turns & leaves_road)
+        turns = turns & context.spans.any(turns & _leaves_road(context))
         turns &= ~context.spans.any(_touches_junction(context, turns))
     return turns
+
+
+def _leaves_road(context: DriveContext) -> Flags:
+    """Mask of states in which ego is well across its road, or will be in the next one.
+
+    Its drive along this road may end before that one.
+    """
+    turned, tracks = context.ego_extents.turned[0], context.own.tracks
+    leaves: Flags = np.abs(turned) >= 2 * _ACROSS_RAD
+    columns = context.steps - tracks.first
+    for row, part in zip(context.ego.rows.tolist(), context.spans.slices, strict=True):
+        last = part.stop - 1
+        heading = tracks.heading[row, columns[last] : columns[last] + 2]
+        leaves[last] |= abs(turned[last] + turn(heading[0], heading[-1])) >= 2 * _ACROSS_RAD
+    return leaves
 
 
 def swings_round(context: DriveContext) -> Flags:
