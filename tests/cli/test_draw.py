@@ -157,7 +157,7 @@ def test_to_standard_output(capfd):
         ),
         (
             ["trace", "docs/samples/traces.jsonl", *RULES, "--rule", "S*"],
-            "esterle2019 has no rule like `S*`.",
+            "esterle2019 has no rule like `S*`",
         ),
         (["trace", "/dev/null", *RULES], "there is no trace in this file"),
     ],

@@ -289,3 +289,28 @@ def test_an_assumption_on_an_unknown_word_gets_a_suggestion(tmp_path, capsys):
     assert main(["verify", str(tmp_path / "t.jsonl"), "-r", "de", "--assume", "fart=50"]) == 2
     said = "`de` does not know `fart`; did you mean `speed` (ego's speed)?"
     assert said in capsys.readouterr().err
+
+
+def test_only_some_rules(verify):
+    # R1 forbids it
+    options = ["--json", "--rule", "R2", "--rule", "R3"]
+    status, out, err = verify([line("t1", "brrf")], options=options)
+    assert (status, err) == (0, "")
+    assert json.loads(out)["violations"] == []
+    status, out, err = verify([line("t1", "brrf")], options=["--json", "--rule", "R[12]"])
+    assert (status, err) == (1, "")
+    assert [found["rule"] for found in json.loads(out)["violations"]] == ["R1"]
+
+
+def test_a_pattern_that_no_rule_matches(verify):
+    status, out, err = verify([line("t1", "brrf")], options=["--rule", "R1", "--rule", "S1"])
+    assert (status, out) == (2, "")
+    assert "--rule: esterle2019 has no rule like `S1`" in err
+
+
+def test_exposure_is_of_all_rules(verify, tmp_path):
+    options = ["--rule", "R1", "--exposure", "-o", str(tmp_path / "f.jsonl")]
+    status, _, err = verify([line("t1", "brrf")], options=options)
+    assert status == 2
+    assert "leave out --rule" in err
+    assert not (tmp_path / "f.jsonl").exists()

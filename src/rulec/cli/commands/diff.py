@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Sequence
-from fnmatch import fnmatchcase
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,6 +14,7 @@ import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.rule_choice import refuse_unmatched
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import (
     errors_told,
@@ -146,7 +146,7 @@ def _difference(
     named = []
     if question.paired or question.patterns:
         named = [load_rulebook(name, search_path(), at) for name in rulebooks]
-        _refuse_unmatched(question.patterns, named)
+        refuse_unmatched(question.patterns, named)
     with progress("comparing", None) as tell:
         first, second = rulebooks
         return rulec.Session(search_path(), at, warn).diff(
@@ -237,7 +237,7 @@ def _matrix(
         with errors_told():
             read.append(read_rulebook(name, search_path(), pairs.at))
     books = [loaded.rulebook for loaded in read]
-    _refuse_unmatched(pairs.patterns, books)
+    refuse_unmatched(pairs.patterns, books)
     # Treaties before the rulebooks that extend them, so that the treaty is law A.
     books.sort(key=lambda book: len(book.extends))
     alone = []
@@ -253,18 +253,6 @@ def _matrix(
     paths = [path for loaded in read for path in loaded.paths]
     text = matrix_report.render(matrix, pairs.form)
     return text, alone, is_complete, matrix.is_uniform, paths
-
-
-def _refuse_unmatched(patterns: Sequence[str], books: Sequence[Rulebook]) -> None:
-    """Refuse a pattern that matches no rule: reporting no difference would be misleading."""
-    known = {rule.name for book in books for rule in book.rules}
-    for pattern in patterns:
-        if not any(fnmatchcase(name, pattern) for name in known):
-            near = did_you_mean(pattern, known)
-            raise click.BadParameter(
-                f"none of these rulebooks has a rule like `{pattern}`{near and f'; {near}'}",
-                param_hint="--rule",
-            )
 
 
 def _pairs(texts: Sequence[str], books: Sequence[Rulebook]) -> dict[str, str]:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
-from fnmatch import fnmatchcase
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +16,7 @@ from rulec.cli.options.output_options import (
     input_format_option,
     output_options,
 )
+from rulec.cli.options.rule_choice import refuse_unmatched, with_rules_like
 from rulec.cli.options.scenario_options import (
     TRACE_FORMATS,
     drives_options,
@@ -256,15 +255,8 @@ def _trace(file: str, trace_id: str | None, form: Format | None) -> Trace:
 
 
 def _only(rules: CompiledRulebook, patterns: tuple[str, ...]) -> CompiledRulebook:
-    kept = [
-        rule
-        for rule in rules.rules
-        if not patterns or any(fnmatchcase(rule.name, pattern) for pattern in patterns)
-    ]
-    if not kept:
-        choice = " or ".join(f"`{pattern}`" for pattern in patterns)
-        raise click.UsageError(f"{rules.name} has no rule like {choice}.")
-    return replace(rules, rules=tuple(kept))
+    refuse_unmatched(patterns, [rules])
+    return with_rules_like(rules, patterns)
 
 
 def _judged(

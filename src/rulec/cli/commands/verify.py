@@ -21,6 +21,7 @@ from rulec.cli.options.output_options import (
     output_options,
     refuse_overwriting,
 )
+from rulec.cli.options.rule_choice import refuse_unmatched, with_rules_like
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import read_machines, rulebooks_named
 from rulec.cli.verdict_outputs import FORMATS, VerdictOutputs, verdict_outputs
@@ -48,6 +49,7 @@ _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
 @shared.rulebooks_option(
     shared.RULEBOOK_HELP + " May be given several times, for verdicts side by side."
 )
+@shared.rules_option("Judge only by rules that match PATTERN")
 @shared.number_option(
     "--explain",
     "n_explained",
@@ -95,6 +97,7 @@ _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
 def command(
     files: tuple[str, ...],
     rulebooks: tuple[str, ...],
+    patterns: tuple[str, ...],
     n_explained: int | None,
     every_part: bool,
     strict: bool,
@@ -136,6 +139,8 @@ def command(
     refuse_overwriting(to, inputs.paths)
     scenario_options.check_thresholds(options["thresholds"])
     books = [read_machines(name, at) for name in dict.fromkeys(rulebooks_named(rulebooks))]
+    refuse_unmatched(patterns, books)
+    books = [with_rules_like(book, patterns) for book in books]
     if len(books) > 1 and STANDARD_OUTPUT in inputs.paths:
         raise click.UsageError("standard input is read once; give a file, or one rulebook")
     form = scenario_options.trace_format(options)
@@ -163,6 +168,8 @@ def command(
         print_remark(f"rulec: {searched.in_words}")
     if exposure and not any(output.form in TABLES for output in to):
         raise click.UsageError("--exposure is for tables: -o FILE.jsonl, FILE.csv, FILE.parquet.")
+    if exposure and patterns:
+        raise click.UsageError("--exposure is for all rules of a rulebook: leave out --rule.")
     with verdict_outputs(to, books[0], with_rows=exposure) as outputs:
         complaints = Complaints()
         results = []
