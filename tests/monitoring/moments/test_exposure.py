@@ -143,6 +143,16 @@ def test_what_may_be_violated():
     assert found == Exposure(2, 4, 1.0, 2.0, 1, 3)
 
 
+def test_what_is_unknown_beside_a_known_opportunity_may_be_violated_with_it():
+    """Red, if it was in the first state, was violated there, and again in the last one."""
+    found = counted(IMPLICATION, "?red go", "red", "?red", "red go")
+    assert found == Exposure(1, 2, 1.0, 2.0, 1, 2)
+    # In between, it belongs to the one before, and there are not three
+    found = counted(IMPLICATION, "red go", "?red go", "red", "?red go")
+    assert found == Exposure(1, 2, 1.0, 2.0, 1, 2)
+    assert counted(IMPLICATION, "red", "?red go", "red") == Exposure(1, 2, 1.0, 1.5, 0, 1)
+
+
 def test_an_open_rule_may_have_been_violated_and_is_not_for_sure():
     assert counted(IMPLICATION, "red ?go", "", "red") == Exposure(2, 2, 1.0, 1.0, 0, 1)
 

@@ -59,16 +59,29 @@ def stretches_of(flags: Flags) -> Stretches:
     return Stretches(rows, first, behind - 1)
 
 
+def _with_states_between(inner: Stretches, outer: Stretches, n_states: int) -> Stretches:
+    """Stretches that lie in others, of which they share all states among them."""
+    begins = outer.rows * n_states + outer.first
+    within = np.searchsorted(begins, inner.rows * n_states + inner.first, side="right") - 1
+    is_first = np.append(True, within[1:] != within[:-1])[: len(inner)]
+    first = np.where(is_first, outer.first[within], inner.first)
+    is_last = np.append(is_first[1:], True)[: len(inner)]
+    last = np.where(is_last, outer.last[within], np.append(inner.first[1:], 0)[: len(inner)] - 1)
+    return Stretches(inner.rows, first, last)
+
+
 def opportunity_stretches(sure: Flags, possible: Flags) -> tuple[Stretches, Stretches]:
     """The certain opportunities, and the most that there may be.
 
     A stretch in which something possibly holds is one certain opportunity if it certainly holds
     somewhere in it. At most there are as many opportunities in it as stretches in which it
-    certainly holds, and one if there is none.
+    certainly holds, and one if there is none: what is not known is not thought to change more often
+    than it has to. Each such stretch takes the states up to the next one, and the first in a
+    stretch also those before it, as something may hold there, too.
     """
     joined = stretches_of(possible)
     for_sure = joined.with_some(sure)
-    certain = stretches_of(sure)
+    certain = _with_states_between(stretches_of(sure), joined, sure.shape[1])
     doubtful = Stretches(*[part[~for_sure] for part in (joined.rows, joined.first, joined.last)])
     at_least = Stretches(*[part[for_sure] for part in (joined.rows, joined.first, joined.last)])
     at_most = Stretches(
