@@ -168,6 +168,13 @@ def test_rulebooks_that_are_told_apart_are_rated_side_by_side(write):
     assert [(one.rulebook, one.opportunities) for one in found.rules] == [("de", 1), ("gb", 2)]
 
 
+def test_versions_of_one_rulebook_are_told_apart_by_their_hashes(write):
+    path = write(drive("v", ("stop", 1, 0)), drive("v", ("stop", 2, 0), rulebook_hash="0123456789"))
+    found = rates_of_findings([path], ["rulebook"])
+    names = ["de (01234567)", "de (abcdefgh)"]
+    assert sorted((one.rulebook, one.group) for one in found.rules) == [(x, (x,)) for x in names]
+
+
 ONE = drive("v", ("stop", 1, 0))
 REFUSED = {
     "a drive twice": [*ONE, *ONE],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
@@ -107,12 +108,18 @@ def violation_rates(
     groups: dict[tuple[str, tuple[str, ...]], list[DriveCounts]] = {}
     for (rulebook, *_), drive in sorted(counted.drives.items()):
         groups.setdefault((rulebook, drive.group), []).append(drive)
-    result = []
+    result, called = [], _names(counted)
     for (rulebook, group), drives in sorted(groups.items(), key=lambda item: item[0][1]):
         rules = counted.rules.get(rulebook, {})
         sums = _Sums(drives, list(rules))
         drawn = sums.drawn(seed, replicates)
-        name = counted.judged_by[rulebook].rulebook
+        name = called[rulebook]
+        group = tuple(
+            [
+                name if key == "rulebook" else value
+                for key, value in zip(counted.by, group, strict=True)
+            ]
+        )
         for number, (rule, title) in enumerate(rules.items()):
             own = _RuleSums(sums, drawn, number, confidence)
             result.append(_rule_rates(group, name, (rule, title), own))
@@ -126,6 +133,13 @@ def violation_rates(
         seed=seed,
         rules=tuple(result),
     )
+
+
+def _names(counted: Counted) -> dict[str, str]:
+    """The name of each rulebook by its hash, with which it has to be told from one of its name."""
+    names = {own: row.rulebook for own, row in counted.judged_by.items()}
+    times = Counter(names.values())
+    return {own: name if times[name] == 1 else f"{name} ({own[:8]})" for own, name in names.items()}
 
 
 _COLUMNS = (
