@@ -23,11 +23,12 @@ from rulec.scoring.score import score
 from rulec.scoring.traffic_world import TrafficWorld
 from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.recordings import RECORDINGS
-from support.builders.scored_worlds import STEP_S, car, lit_junction, street
+from support.builders.scored_worlds import STEP_S, car, lit_junction, stop_junction, street
 
 GERMAN, BRITISH = machines("de"), machines("gb")
 
 LIT = lit_junction()
+SIGNED = stop_junction()
 BUSY = street(
     [car("slow", 6.0, x=30.0), car("fast", 14.0, x=-40.0, y=3.5), car("near", 9.0, x=-25.0)]
 )
@@ -71,7 +72,7 @@ controls = st.lists(pieces, min_size=4, max_size=4).map(lambda own: [x for x in 
 
 @settings(max_examples=settings().max_examples // 12)
 @given(
-    st.sampled_from([LIT, BUSY]),
+    st.sampled_from([LIT, SIGNED, BUSY]),
     st.lists(controls, min_size=2, max_size=3),
     st.integers(0, 4),
     st.sampled_from([GERMAN, GERMAN, BRITISH]),
@@ -191,6 +192,13 @@ def test_order_and_company_change_nothing():
         assert [verdict_key(one) for one in alone.drives] == own
     back = score(futures[::-1], BUSY, GERMAN, BUSY.past)
     assert back.penalties_at_most.tolist() == together.penalties_at_most.tolist()[::-1]
+
+
+def test_who_stops_at_a_sign_has_the_same_words_alone_and_with_one_that_drives_on():
+    stops, drives = (driven(SIGNED.past[-1], [(a, 0.0)] * 14) for a in (-2.0, 0.0))
+    scores = assert_equal_to_verify(np.array([stops, drives]), SIGNED, GERMAN, SIGNED.past)
+    ((found,), _) = (one.drives for one in scores.candidates)
+    assert [state["cause_to_brake"] for state in found.drive.trace.states][-4:] == [True] * 4
 
 
 @pytest.mark.long

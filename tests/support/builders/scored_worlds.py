@@ -61,6 +61,27 @@ def lit_junction(speed=10.0, past=4, beside=None):
     return _world(lanes, (), speed, past, complete={"light"})
 
 
+def stop_junction(speed=8.0, past=3):
+    """A street with a stop sign at x = 20, and a junction behind it up to x = 40; nobody comes."""
+    line, town = [(20, -1.75), (20, 1.75)], {"types": ["urban"], "limit_mps": 50 / 3.6}
+    lanes = [
+        build_lanelet(
+            "in",
+            [(-100, 0), (20, 0)],
+            successors=["across"],
+            signs=["STOP"],
+            stop_line=line,
+            **town,
+        ),
+        build_lanelet("across", [(20, 0), (40, 0)], successors=["out"], junction="j", **town),
+        build_lanelet("out", [(40, 0), (400, 0)], **town),
+        build_lanelet("from", [(30, -80), (30, -10)], successors=["over"], **town),
+        build_lanelet("over", [(30, -10), (30, 10)], successors=["to"], junction="j", **town),
+        build_lanelet("to", [(30, 10), (30, 80)], **town),
+    ]
+    return _world(lanes, (), speed, past, complete={"STOP"})
+
+
 def _with_left(lanes, light):
     """Lanes along the x axis with others at their left, 3.5 m wide, which lead to each other."""
     aside = np.array([0.0, 3.5])

@@ -105,6 +105,9 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     # The mean still shows hard braking when its reason, such as a lower limit, is just gone
     shown = round(context.thresholds.smoothing_s / 2 / context.recording.step_s)
     perhaps |= brakes & spans.within_last(caused, shown)
+    if stands.any():
+        caused |= stands & _since(context, caused & stands, _SETS_OFF_S)
+    # The rest only adds to ``perhaps``: a drive has the same words alone and with others
     if (caused | perhaps).all():
         return caused, ~caused
     others = others.part((~(caused | perhaps)[others.states]).nonzero()[0])
@@ -124,7 +127,6 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     least = context.ego.acceleration[0] - context.ego.acceleration_error[0]
     perhaps |= (least <= -context.thresholds.braking_hard_mps2) & ~_followed(context)
     if stands.any():
-        caused |= stands & _since(context, caused & stands, _SETS_OFF_S)
         perhaps |= stands & _since(context, stands & (caused | perhaps), MOVES_OFF_S)
         # A vehicle that has just stopped may have seen another one that did not come after all
         looks = spans.within_last(~stands, round(LOOKS_S / context.recording.step_s))
