@@ -55,6 +55,15 @@ def test_who_brakes_hard_as_ego_comes_is_held_up_though_it_is_slow_when_ego_driv
     assert from_the_right(y) == conflict
 
 
+@pytest.mark.parametrize(("middle_s", "conflict"), [(1.3, "F"), (1.4, "?"), (1.5, "T"), (1.8, "T")])
+def test_who_drives_into_the_rear_of_one_that_is_nearly_past_hits_it(middle_s, conflict):
+    """Their corners are 0.4 m apart, or overlap by 0.2 m, 0.7 m, or ego hits its middle.
+
+    It is at most 0.3 s in ego's way, and deepest between two states.
+    """
+    assert from_the_right(10 * (np.arange(STEPS) * STEP_S - middle_s)) == conflict
+
+
 WIDE = [
     straight(1, -60, -10, successors=(2,)),
     straight(2, -10, 10, predecessors=(1,), successors=(3,), **INSIDE),

@@ -25,19 +25,21 @@ _FOLLOWS_S = 1.5
 def collide(
     context: DriveContext, own: Passage, other: Passage, columns: slice, least_m: float = 0.0
 ) -> bool:
-    """Whether two bodies overlap in one of the columns by more than the tolerance of places.
+    """Whether two bodies overlap in the columns by more than the tolerance of places.
 
-    And by ``least_m`` more.
+    And by ``least_m`` more; also between one column and the next.
     """
-    tracks = context.surroundings.passages.tracks
-    ours, theirs = (tracks.participants[passage.row].outlines for passage in (own, other))
-    steps = range(tracks.first + columns.start, tracks.first + columns.stop)
-    inner = -(context.tolerances.place_m + least_m)
-    return any(
-        shapely.Polygon(ours[step]).buffer(inner).intersects(shapely.Polygon(theirs[step]))
-        for step in steps
-        if step in ours and step in theirs
+    (ours, ours_at), (theirs, theirs_at) = (
+        _laid_out(context, passage, columns.start, columns.stop) for passage in (own, other)
     )
+    _, here, there = np.intersect1d(ours_at, theirs_at, return_indices=True)
+    if not len(here):
+        return False
+    # Only where they are near are their shapes compared
+    near = shapely.dwithin(ours[here], theirs[there], max(-least_m, 0.0))
+    inner = -(context.tolerances.place_m + least_m)
+    smaller = shapely.buffer(ours[here[near]], inner)
+    return bool(shapely.intersects(smaller, theirs[there[near]]).any())
 
 
 def gap_s(
@@ -68,7 +70,11 @@ def _laid_out(
     polygons, places = [], []
     for column in range(max(begin, 0), end):
         step = tracks.first + column
-        if step not in outlines or step + 1 not in outlines:
+        if step not in outlines:
+            continue
+        if step + 1 not in outlines:
+            polygons.append(shapely.Polygon(outlines[step]))
+            places.append(float(column))
             continue
         before, after = outlines[step], outlines[step + 1]
         # Shapes with other corners in the next state stay as they are

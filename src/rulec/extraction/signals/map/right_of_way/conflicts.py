@@ -185,15 +185,15 @@ def _runs_into(
         bool((slowest > (_DRIVES_MPS, SLOWEST_MPS)).all())
         and collide(context, own, other, there, _GRAZES_M)
     )
-    inside = (until - enters) * context.recording.step_s > _BEHIND_S
-    if not (drive and inside):
+    if not drive:
         return None
     if not collide(context, own, other, there, _GRAZES_M):
+        briefly = (until - enters) * context.recording.step_s <= _BEHIND_S
         behind = gap_s(context, (own, other), (enters, until)) >= context.thresholds.yielding_s
         near_m = _CLEAR_M + 2 * context.tolerances.place_m
-        if behind and not collide(context, own, other, there, -near_m):
+        if (briefly or behind) and not collide(context, own, other, there, -near_m):
             return None
-        if behind or slowest[0] < _DRIVES_MPS:
+        if briefly or behind or slowest[0] < _DRIVES_MPS:
             return first, False
     return first, not _slows_down(context, own, enters, until)
 
