@@ -136,6 +136,23 @@ def test_putting_off_what_is_violated_does_not_pay():
     assert np.diff(found.reward()).tolist() == pytest.approx([4 / 21])
 
 
+def test_who_has_remedied_it_does_not_violate_it_again_for_free():
+    """From 20 m/s in a town both brake to 12 m/s; one is at 15 m/s again within the first half."""
+    world = street(speed=20.0)
+    speeds = np.maximum(20 - 2 * np.arange(1, 21.0), 12)
+    burst = speeds.copy()
+    burst[5:9] = [13, 14, 15, 13.5]
+    found = scored(world, *(on_axis(np.cumsum(own) * STEP_S) for own in (burst, speeds)))
+    assert found.outcomes("speed_limit") == ["violated", "kept"]
+    ((again,),) = [
+        [one.step for one in candidate.violations if one.rule == "speed_limit"]
+        for candidate in found.candidates[:1]
+    ]
+    # 50 km/h are 13.9 m/s
+    assert again in (6, 7)
+    assert found.allowed.tolist() == [False, True]
+
+
 @pytest.mark.parametrize("drawn", ["", "sidewalk", "border", "parking"])
 def test_a_verge_is_no_way_past_a_slow_vehicle(drawn):
     # The right lane ends at y = -1.75; the middle of the last one is 0.85 m beyond it, the body not

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -15,26 +14,22 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.extraction.drives import FEWEST_STATES, NoDrive
 from rulec.extraction.recording_verdicts import (
-    DriveVerdict,
     JudgedDrive,
-    agreed_answers,
     judged_drives,
     names_read,
-    some_rules,
 )
-from rulec.extraction.traces.recorded_drive import Drive
 from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_participant
 from rulec.files import no_garbage_collection
-from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleFor, Verdict, Violation, rule_for
+from rulec.monitoring.verdict import NotJudged, Violation
 from rulec.recordings.recording import Participant
 from rulec.scoring.candidate_score import CandidateScore
-from rulec.scoring.charges import CandidateCharges, CandidateScores, at, forget_reasons
+from rulec.scoring.charges import CandidateCharges, CandidateScores, forget_reasons
+from rulec.scoring.judged_anew import judged_anew, verdicts_of
 from rulec.scoring.scored_again import without_drives
 from rulec.scoring.scores import Scores
 from rulec.scoring.scoring_messages import BAD_CANDIDATES
 from rulec.scoring.traffic_world import TrafficWorld
-from rulec.trace.trace_arrays import TraceArrays
 
 _Pasts: TypeAlias = "WeakKeyDictionary[TrafficWorld, tuple[Any, tuple[Violation, ...]]]"
 """For each world the last past asked about, and the violations of that past alone."""
@@ -95,7 +90,7 @@ def _scored(
         block = [(number - is_asked, own) for number, own in block]
         charges = _charges(block, first, (beside, back))
         if before:
-            scores = _anew(
+            scores = judged_anew(
                 [candidate_charges.score() for candidate_charges in charges],
                 before,
                 roundings,
@@ -144,7 +139,9 @@ def _by_itself(
 
 def _violated(drives: Sequence[JudgedDrive | NoDrive]) -> tuple[Violation, ...]:
     made = [drive.with_verdict() for drive in drives if isinstance(drive, JudgedDrive)]
-    return tuple([violation for _, verdict in _verdicts(made) for violation in verdict.violations])
+    return tuple(
+        [violation for _, verdict in verdicts_of(made) for violation in verdict.violations]
+    )
 
 
 def _judged(
@@ -165,14 +162,6 @@ def _judged(
         judged = judged_drives([drive for _, own in block for drive in own], roundings)
         yield [(number, [next(judged) for _ in own]) for number, own in block]
         del block, judged
-
-
-def _verdicts(
-    drives: Sequence[DriveVerdict | NoDrive],
-) -> Iterator[tuple[Drive, Verdict]]:
-    for drive in drives:
-        if isinstance(drive, DriveVerdict) and isinstance(drive.answer, Verdict):
-            yield drive.drive, drive.answer
 
 
 def _charges(
@@ -219,104 +208,3 @@ def _why(drives: Sequence[JudgedDrive | NoDrive], *, leaves: bool, goes_back: bo
     if goes_back:
         reasons.append("it drives backwards, faster than at walking pace")
     return "; ".join(reasons)
-
-
-def _anew(
-    scores: list[CandidateScore],
-    before: Sequence[Violation],
-    roundings: Sequence[CompiledRulebook],
-    steps: tuple[int, int],
-) -> list[CandidateScore]:
-    """The scores, with rules that the past violated judged anew by the future alone.
-
-    ``steps`` are the candidates' first step, and the one from which they are judged so: the first
-    half of their time is left for ending a violation that goes on.
-    """
-    first, begin = steps
-    known = {rule_for(violation) for violation in before}
-    if not known:
-        return scores
-    books, names = some_rules(frozenset(rule for rule, _ in known), roundings)
-    futures = [
-        _Future(number, drive.first_step, drive.arrays.said_by(names))
-        for number, found in enumerate(scores)
-        for drive, _ in _verdicts(found.drives)
-        if drive.first_step + drive.arrays.n_states > begin
-    ]
-    answers = agreed_answers([one.since(begin) for one in futures], books)
-    late = _mended_after(futures, known, books, steps)
-    violations: dict[int, list[Violation]] = {}
-    doubtful: dict[int, list[OpenVerdict]] = {}
-    for future, answer in zip(futures, answers, strict=True):
-        if isinstance(answer, Verdict):
-            number, begins = future.number, max(begin, future.first_step) - first
-            own = [
-                at(violation, begins)
-                for violation in answer.violations
-                if rule_for(violation) in known
-            ]
-            violations.setdefault(number, []).extend(own)
-            doubtful.setdefault(number, []).extend(x for x in answer.open if rule_for(x) in known)
-    return [
-        replace(
-            found,
-            violations=(
-                *(violation for violation in found.violations if rule_for(violation) not in known),
-                *violations.get(number, ()),
-            ),
-            open=(
-                *(verdict for verdict in found.open if rule_for(verdict) not in known),
-                *doubtful.get(number, ()),
-            ),
-            late=late.get(number, 0),
-        )
-        for number, found in enumerate(scores)
-    ]
-
-
-class _Future(NamedTuple):
-    """The values of a candidate's drive that some rules read, and the step in which it begins.
-
-    ``number`` is the candidate's.
-    """
-
-    number: int
-    first_step: int
-    trace: TraceArrays
-
-    def since(self, step: int) -> TraceArrays:
-        """The drive from a step on, as if nothing before were known."""
-        return self.trace.since(max(step - self.first_step, 0))
-
-
-def _mended_after(
-    futures: Sequence[_Future],
-    known: Collection[RuleFor],
-    books: Sequence[CompiledRulebook],
-    steps: tuple[int, int],
-) -> dict[int, int]:
-    """For each candidate the number of states until what the past violated is kept for good.
-
-    Found by bisection, since what is kept from some state on is kept from any later one on.
-    """
-    first, begin = steps
-    low, high = np.zeros(len(futures), dtype=int), np.full(len(futures), begin - first)
-    while (low < high).any():
-        middle = (low + high) // 2
-        traces = [
-            own.since(first + after) for after, own in zip(middle.tolist(), futures, strict=True)
-        ]
-        is_kept = np.array([_keeps(answer, known) for answer in agreed_answers(traces, books)])
-        low, high = np.where(is_kept, low, middle + 1), np.where(is_kept, middle, high)
-        low = np.minimum(low, high)
-    late: dict[int, int] = {}
-    for future, states in zip(futures, low.tolist(), strict=True):
-        late[future.number] = max(states, late.get(future.number, 0))
-    return late
-
-
-def _keeps(answer: Verdict | NotJudged, known: Collection[RuleFor]) -> bool:
-    if not isinstance(answer, Verdict):
-        return True
-    is_open = any(rule_for(open_verdict) in known for open_verdict in answer.open)
-    return not is_open and not any(rule_for(violation) in known for violation in answer.violations)

@@ -1,0 +1,180 @@
+"""What the past has violated: whether a candidate ends it, and does nothing of the kind again.
+
+What goes on is violated again as soon as it can be, each time one begins to look: then the first
+half of a candidate is left to end it. What is violated later than that is violated anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import DriveVerdict, agreed_answers, some_rules
+from rulec.extraction.traces.recorded_drive import Drive
+from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleFor, Verdict, Violation, rule_for
+from rulec.scoring.candidate_score import CandidateScore
+from rulec.scoring.charges import at
+from rulec.trace.trace_arrays import TraceArrays
+
+
+def verdicts_of(
+    drives: Sequence[DriveVerdict | NoDrive],
+) -> Iterator[tuple[Drive, Verdict]]:
+    """The drives that have been judged, with their verdicts."""
+    for drive in drives:
+        if isinstance(drive, DriveVerdict) and isinstance(drive.answer, Verdict):
+            yield drive.drive, drive.answer
+
+
+def judged_anew(
+    scores: list[CandidateScore],
+    before: Sequence[Violation],
+    roundings: Sequence[CompiledRulebook],
+    steps: tuple[int, int],
+) -> list[CandidateScore]:
+    """The scores, with rules that the past violated judged anew by the future alone.
+
+    ``steps`` are the candidates' first step, and the one from which they are judged so: the first
+    half of their time is left for ending a violation that goes on, and for nothing else.
+    """
+    first, begin = steps
+    known = {rule_for(violation) for violation in before}
+    if not known:
+        return scores
+    books, names = some_rules(frozenset(rule for rule, _ in known), roundings)
+    futures = [
+        _Future(number, drive.first_step, drive.arrays.said_by(names))
+        for number, found in enumerate(scores)
+        for drive, _ in verdicts_of(found.drives)
+        if drive.first_step + drive.arrays.n_states > begin
+    ]
+    answers = agreed_answers([one.since(begin) for one in futures], books)
+    late = _mended_after(futures, known, books, steps)
+    new = _violated_again(futures, known, books, steps)
+    violations: dict[int, list[Violation]] = {}
+    doubtful: dict[int, list[OpenVerdict]] = {}
+    for future, again, answer in zip(futures, new, answers, strict=True):
+        violations.setdefault(future.number, []).extend(again.values())
+        if isinstance(answer, Verdict):
+            number, begins = future.number, max(begin, future.first_step) - first
+            asked = known - again.keys()
+            own = [at(one, begins) for one in answer.violations if rule_for(one) in asked]
+            violations[number].extend(own)
+            doubtful.setdefault(number, []).extend(x for x in answer.open if rule_for(x) in asked)
+    return [
+        replace(
+            found,
+            violations=(
+                *(violation for violation in found.violations if rule_for(violation) not in known),
+                *violations.get(number, ()),
+            ),
+            open=(
+                *(verdict for verdict in found.open if rule_for(verdict) not in known),
+                *doubtful.get(number, ()),
+            ),
+            late=late.get(number, 0),
+        )
+        for number, found in enumerate(scores)
+    ]
+
+
+class _Future(NamedTuple):
+    """The values of a candidate's drive that some rules read, and the step in which it begins.
+
+    ``number`` is the candidate's.
+    """
+
+    number: int
+    first_step: int
+    trace: TraceArrays
+
+    def since(self, step: int) -> TraceArrays:
+        """The drive from a step on, as if nothing before were known."""
+        return self.trace.since(max(step - self.first_step, 0))
+
+
+def _mended_after(
+    futures: Sequence[_Future],
+    known: Collection[RuleFor],
+    books: Sequence[CompiledRulebook],
+    steps: tuple[int, int],
+) -> dict[int, int]:
+    """For each candidate the number of states until what the past violated is kept for good.
+
+    Found by bisection, since what is kept from some state on is kept from any later one on.
+    """
+    first, begin = steps
+    low, high = np.zeros(len(futures), dtype=int), np.full(len(futures), begin - first)
+    while (low < high).any():
+        middle = (low + high) // 2
+        traces = [
+            own.since(first + after) for after, own in zip(middle.tolist(), futures, strict=True)
+        ]
+        is_kept = np.array([_keeps(answer, known) for answer in agreed_answers(traces, books)])
+        low, high = np.where(is_kept, low, middle + 1), np.where(is_kept, middle, high)
+        low = np.minimum(low, high)
+    late: dict[int, int] = {}
+    for future, states in zip(futures, low.tolist(), strict=True):
+        late[future.number] = max(states, late.get(future.number, 0))
+    return late
+
+
+def _keeps(answer: Verdict | NotJudged, known: Collection[RuleFor]) -> bool:
+    if not isinstance(answer, Verdict):
+        return True
+    is_open = any(rule_for(open_verdict) in known for open_verdict in answer.open)
+    return not is_open and not any(rule_for(violation) in known for violation in answer.violations)
+
+
+def _violated_again(
+    futures: Sequence[_Future],
+    known: Collection[RuleFor],
+    books: Sequence[CompiledRulebook],
+    steps: tuple[int, int],
+) -> list[dict[RuleFor, Violation]]:
+    """For each future what it violates after the past's violation has ended.
+
+    As long as that goes on, a rule that is asked from some state on is violated after as many
+    states as it takes at least, and so it is if it is asked from the next one on.
+    """
+    first, begin = steps
+    soonest = {rule.name: _least_states(rule) for rule in books[0].rules}
+    found: list[dict[RuleFor, Violation]] = [{} for _ in futures]
+    asked = {(n, about): first for n in range(len(futures)) for about in known}
+    while asked:
+        jobs = sorted({(n, step) for (n, _), step in asked.items()})
+        traces = [futures[n].since(step) for n, step in jobs]
+        violations = {
+            (*job, rule_for(one)): one
+            for job, answer in zip(jobs, agreed_answers(traces, books), strict=True)
+            for one in (answer.violations if isinstance(answer, Verdict) else ())
+        }
+        goes_on = {}
+        for (n, about), step in asked.items():
+            one = violations.get((n, step, about))
+            if one is None or one.step is None:
+                continue
+            begins = max(step, futures[n].first_step)
+            if one.step >= soonest[about[0]]:
+                found[n][about] = at(one, begins - first)
+            elif begins + one.step + 1 < begin:
+                goes_on[n, about] = begins + one.step + 1
+        asked = goes_on
+    return found
+
+
+def _least_states(rule: CompiledRule) -> int:
+    """How many states it takes at least to violate a rule."""
+    machine = rule.machine
+    reached, states = {0}, 0
+    here = reached
+    while here and machine.rejecting_sink not in here:
+        here = {after for state in here for after in machine.successors[state]} - reached
+        reached |= here
+        states += 1
+    return states
