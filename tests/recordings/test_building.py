@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 import rulec
-from rulec import RulecError, build_lanelet, build_participant, build_recording
+from rulec import (
+    Light,
+    ObservedLight,
+    RulecError,
+    build_lanelet,
+    build_participant,
+    build_recording,
+)
 
 STREET = [(0.0, 0.0), (100.0, 0.0)]
 T = [0.0, 0.1, 0.2]
@@ -75,6 +82,15 @@ def test_a_recording_is_whole():
         ({"types": ["urbn"]}, "did you mean `urban`?"),
         ({"limit_mps": float("inf")}, "`limit_mps` is inf"),
         ({"stop_line": [1, 2]}, "`stop_line` is an array of shape (2,)"),
+        (
+            {"lights": [Light(0, (("amber", 9),))]},
+            "`lights` is `amber` expected `green`, `inactive`",
+        ),
+        ({"lights": [Light(0, (("RED", 9),))]}, "did you mean `red`?"),
+        ({"lights": [Light(0, ())]}, "a programme whose phases do not last"),
+        ({"lights": [ObservedLight({0.5: "red"})]}, "the time step 0.5 expected whole numbers"),
+        ({"lights": [ObservedLight({0: None})]}, "`lights` is `None`"),
+        ({"lights": [ObservedLight(None)]}, "without colours by time step"),
     ],
 )
 def test_a_lanelet_that_makes_no_sense(more, said):
@@ -143,6 +159,16 @@ def test_parts_that_were_made_by_hand_are_checked():
     found = messages(lambda: build_recording([build_lanelet("a", STREET)], [good, bad], step_s=0.1))
     assert "participant `h`: it has no outline at step 0" in found[0]
     assert "at step 0 it is TrackState" in found[1]
+
+
+def test_a_track_of_another_time_step_is_refused():
+    """13 m/s in steps of 0.5 s are 65 m/s in steps of 0.1 s."""
+    t = 0.5 * np.arange(6)
+    ego = build_participant("ego", "car", t, 20 + 13 * t, 0 * t, step_s=0.5)
+    (said,) = messages(lambda: build_recording([build_lanelet("s", STREET)], [ego], step_s=0.1))
+    assert "0.1 s apart, it drives 65.0 m/s, and by its speeds 13.0 m/s" in said
+    assert "the time step of the recording" in said
+    build_recording([build_lanelet("s", STREET)], [ego], step_s=0.5)
 
 
 def test_columns_and_pieces_say_the_same():

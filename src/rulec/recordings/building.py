@@ -25,6 +25,7 @@ from rulec.recordings.lanes.lanes_along import (
 )
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import (
+    LIGHT_COLOURS,
     MOST_STEPS,
     OBSTACLE_TYPES,
     Lamp,
@@ -43,6 +44,12 @@ from rulec.recordings.tracks.road_user_types import usual_size
 from rulec.recordings.tracks.track_rows import LONGEST_BODY_M
 
 _OFF_STEP = 0.02
+
+_OTHER_STEP = 1.8
+"""Speeds that differ by this factor all along are those of another time step, or other units."""
+
+_ENOUGH_PAIRS, _MOVES_MPS = 3, 1.0
+"""So many pairs of states of one that is this fast (m/s) tell."""
 
 COMPLETE = frozenset(
     {"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout", "lanes"}
@@ -75,7 +82,8 @@ def build_lanelet(
     """A lanelet along the points of its centre line (m), in the direction of travel.
 
     ``width`` (m) is one number, or one for each point. ``left_of`` and ``right_of`` are the ids of
-    the lanelets to its left and right that lead the same way; ``stop_line`` has two ends. The other
+    the lanelets to its left and right that lead the same way; ``stop_line`` has two ends. Lights
+    show ``LIGHT_COLOURS``, such as ``yellow``, an ``ObservedLight`` by time step. The other
     arguments are as in a ``Lanelet``. Raises RulecError R0617 with all mistakes.
     """
     name = str(identifier)
@@ -94,6 +102,9 @@ def build_lanelet(
         checks.positive("limit_mps", limit_mps, "m/s", FASTEST_LIMIT_MPS)
     if stop_line is not None:
         drawn = checks.points("stop_line", stop_line)
+    shown = tuple(lights)
+    for light in shown:
+        _check_light(checks, light)
     checks.raise_problems()
     return lanelet_along(
         name,
@@ -109,11 +120,33 @@ def build_lanelet(
         left_mark=left_mark,
         right_mark=right_mark,
         stop_line=drawn,
-        lights=tuple(lights),
+        lights=shown,
         junction=junction,
         foes=None if foes is None else frozenset(map(str, foes)),
         first=None if first is None else frozenset(map(str, first)),
     )
+
+
+def _check_light(checks: BuildingChecks, light: Light | ObservedLight) -> None:
+    colours: list[object] = []
+    if isinstance(light, ObservedLight):
+        by_step: object = light.colours
+        if not isinstance(by_step, Mapping):
+            checks.wrong("`lights` has an `ObservedLight` without colours by time step")
+            return
+        for step in by_step:
+            if not isinstance(step, int | np.integer):
+                checks.wrong(f"`lights` has the time step {step!r:.40}", "expected whole numbers")
+                return
+        colours += by_step.values()
+    elif isinstance(light, Light):
+        colours += [colour for colour, _ in light.phases]
+        if not colours or not all(duration >= 1 for _, duration in light.phases):
+            checks.wrong(
+                "`lights` has a programme whose phases do not last", "expected 1 or more steps"
+            )
+    for colour in dict.fromkeys(map(str, colours)):
+        checks.one_of("lights", colour, LIGHT_COLOURS)
 
 
 def _widths(
@@ -280,7 +313,7 @@ def build_recording(
     for lanelet in lanes:
         _check_lanelet(lanelet, known, checks)
     for body in bodies:
-        _check_participant(body, checks)
+        _check_participant(body, checks, step_s)
     if str(ego):
         checks.one_of("ego", str(ego), [participant.id for participant in bodies])
     checks.raise_problems()
@@ -319,7 +352,25 @@ def _references(lanelet: Lanelet) -> Iterator[tuple[str, Iterable[str]]]:
     yield "lights_to", lanelet.lights_to
 
 
-def _check_participant(body: Participant, to: BuildingChecks) -> None:
+def _check_speeds(checks: BuildingChecks, body: Participant, step_s: float) -> None:
+    """Positions an other number of steps apart than speeds say are those of another time step."""
+    steps = sorted(body.states)
+    pairs = [(body.states[k], body.states[k + 1]) for k in steps if k + 1 in body.states]
+    stated = [max(abs(a.speed), abs(b.speed)) for a, b in pairs]
+    driven = [float(np.hypot(b.x - a.x, b.y - a.y)) / step_s for a, b in pairs]
+    if len(pairs) < _ENOUGH_PAIRS or min(np.median(stated), np.median(driven)) < _MOVES_MPS:
+        return
+    ratio = float(np.median(driven) / np.median(stated))
+    if not 1 / _OTHER_STEP < ratio < _OTHER_STEP:
+        checks.wrong(
+            f"by its positions, {step_s:g} s apart, it drives {np.median(driven):.1f} m/s, and by "
+            f"its speeds {np.median(stated):.1f} m/s",
+            "expected the same",
+            "give `build_participant` the time step of the recording, and speeds in m/s",
+        )
+
+
+def _check_participant(body: Participant, to: BuildingChecks, step_s: float) -> None:
     checks = BuildingChecks(f"participant `{body.id:.40}`")
     checks.one_of("type", body.type, OBSTACLE_TYPES)
     if not body.states:
@@ -332,6 +383,7 @@ def _check_participant(body: Participant, to: BuildingChecks) -> None:
         if not all(abs(value) < LARGEST for value in values):
             checks.wrong(f"at step {step} it is {state}", "expected finite numbers")
             break
+    _check_speeds(checks, body, step_s)
     if body.standing and len(body.states) != 1:
         checks.wrong(f"it stands, and has {len(body.states):,} states", "expected one")
     to.problems += checks.problems

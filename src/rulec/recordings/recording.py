@@ -90,6 +90,10 @@ the way nevertheless.
 """
 
 
+LIGHT_COLOURS = ("red", "redYellow", "yellow", "green", "inactive")
+"""What a traffic light can show, in CommonRoad's words."""
+
+
 @dataclass(frozen=True, slots=True)
 class Light:
     """A traffic light's programme from a step on: colours with durations in time steps."""

@@ -14,6 +14,7 @@ from rulec.extraction.signals.map.map_signals import map_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.stop_lines import stop_line
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.recordings.building import build_participant
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
@@ -307,3 +308,26 @@ def test_places_do_not_tell_whether_one_that_stands_at_a_line_has_crossed_it(fro
     found = at_junctions(told)
     assert "".join(".?"[x] for x in found.unknown["crosses_stop_line"].tolist()) == may
     assert not (found.world["crosses_stop_line"] & found.unknown["crosses_stop_line"]).any()
+
+
+@pytest.mark.parametrize(
+    ("places", "known"),
+    [
+        ([80, 90, 97, 97, 97], "FFFFF"),
+        ([80, 90, 100, 100, 100], "FF?FF"),
+        ([80, 90, 100, 106], "FFFT"),
+        ([80, 90, 100, 100, 100, 106], "FF?FFT"),
+    ],
+    ids=["stops before the junction", "stops in it", "drives on", "stops, and drives on"],
+)
+def test_who_stops_in_a_junction_may_have_crossed_a_line_that_is_not_drawn(places, known):
+    """Its front is 2.25 m ahead of these places; the other way is 4 m wide, from x = 106 on."""
+    crossing = [lanelet(4, [(108, -50), (108, 50)], 4.0, types=INSIDE, junction="x")]
+    lanes = road(None, (), *crossing)
+    lanes[0] = replace(lanes[0], lights=(RED,))
+    t = np.arange(len(places)) * 0.5
+    ego = build_participant("7", "car", t, places, 0 * t, step_s=0.5)
+    found = line_signals(context_of(recording(lanes, [ego]), ("1", "2", "3")))
+    crosses, unknown = (x["crosses_light_line"] for x in (found.world, found.unknown))
+    told = zip(crosses.tolist(), unknown.tolist(), strict=True)
+    assert "".join("?" if dark else "FT"[crossed] for crossed, dark in told) == known

@@ -12,6 +12,7 @@ from rulec.extraction.signals.map.stop_lines import (
     ends_at_line,
     has_line,
     may_pass,
+    may_stop_beyond,
     passes,
     stop_line,
 )
@@ -135,8 +136,8 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
     """The light for ego (empty if unknown), and masks of crossing its line: surely and perhaps.
 
     In the state in which ego crosses the line, the light is still the one that it crosses. Perhaps:
-    where ego may have crossed it (``may_pass``), and for amber lights crossed at a place where it
-    is unknown whether ego approached slowly enough to stop at once.
+    where ego may have crossed it (``may_pass``, ``may_stop_beyond``), and for amber lights crossed
+    at a place where it is unknown whether ego approached slowly enough to stop at once.
     """
     front = own_front(context)
     colours = np.full(context.states, "no_light", dtype="<U11")
@@ -153,7 +154,9 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
             first, last = stop_line(context, piece, lane)
             unsure = may_pass(context, last) & (context.ego_lane == lane)
             crossed = passes(context, last) & ~unsure
-            may_cross |= unsure
+            may_cross |= unsure | (
+                may_stop_beyond(context, (first, last)) & (context.ego_lane == lane)
+            )
             ahead = ((front <= last) | unsure) & (front > first - context.thresholds.light_reach_m)
             while_crossing = around_crossing(context, front, (first, last))
             every = context.road.lanelet(piece, lane).lights

@@ -49,6 +49,24 @@ def may_pass(context: DriveContext, line: float) -> Flags:
     return at_line & ~(comes & goes & brief)
 
 
+def may_stop_beyond(context: DriveContext, line: tuple[float, float]) -> Flags:
+    """Mask of states in which ego comes to where an undrawn line may be, and stops or ends there.
+
+    ``line``: the places between which it is. Drivers stop before lines; but where one stands, the
+    line may also be behind it.
+    """
+    first, last = line
+    front, spans = own_front(context), context.spans
+    comes = passes(context, first + context.thresholds.touching_m) & (front <= last)
+    if not comes.any():
+        return comes
+    beyond = front > last
+    stands = ~beyond & (context.ego.speed[0] * KMH < context.thresholds.standing_kmh)
+    goes_on = spans.next_state(beyond)
+    found: Flags = comes & ((goes_on >= spans.end) | (spans.next_state(stands | beyond) < goes_on))
+    return found
+
+
 def around_crossing(
     context: DriveContext, front: Floats, line: tuple[float, float]
 ) -> Callable[[int], range]:
