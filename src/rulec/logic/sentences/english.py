@@ -35,9 +35,9 @@ ENGLISH = Language(
     value=("{} is “{}”", "{} is not “{}”"),
     value_is="{} is {}",
     atom=("“{}” holds", "“{}” does not hold"),
+    constants=("anything may be the case", "the impossible is the case"),
     atom_of=("“{}” holds of {}", "“{}” does not hold of {}"),
     truth=("“{}” is true", "“{}” is not true"),
-    truth_names=("true", "false"),
     same=("{} is the same as {}", "{} is not the same as {}"),
     relations={
         "<": ("{} is less than {}", "{} is not less than {}"),

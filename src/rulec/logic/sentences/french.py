@@ -29,9 +29,9 @@ FRENCH = Language(
     value=("{} est « {} »", "{} n'est pas « {} »"),
     value_is="{} est de {}",
     atom=("« {} » est vrai", "« {} » n'est pas vrai"),
+    constants=("tout est possible", "l'impossible est vrai"),
     atom_of=("« {} » est vrai de {}", "« {} » n'est pas vrai de {}"),
     truth=("la relation « {} » est vraie", "la relation « {} » n'est pas vraie"),
-    truth_names=("vrai", "faux"),
     same=("{} est le même que {}", "{} n'est pas le même que {}"),
     relations={
         "<": ("{} est de moins de {}", "{} n'est pas de moins de {}"),

@@ -28,9 +28,9 @@ GERMAN = Language(
     value=("{} ist „{}“", "{} ist nicht „{}“"),
     value_is="{} beträgt {}",
     atom=("„{}“ gilt", "„{}“ gilt nicht"),
+    constants=("alles ist möglich", "Unmögliches gilt"),
     atom_of=("„{}“ gilt für {}", "„{}“ gilt nicht für {}"),
     truth=("„{}“ ist wahr", "„{}“ ist nicht wahr"),
-    truth_names=("wahr", "falsch"),
     same=("{} ist dasselbe wie {}", "{} ist nicht dasselbe wie {}"),
     relations={
         "<": ("{} beträgt weniger als {}", "{} beträgt nicht weniger als {}"),

@@ -97,9 +97,9 @@ class Language:
     value: Pair
     value_is: str
     atom: Pair
+    constants: Pair
     atom_of: Pair
     truth: Pair
-    truth_names: Pair
     same: Pair
     relations: Mapping[Relation, Pair]
     times: str

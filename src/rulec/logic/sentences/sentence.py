@@ -151,7 +151,7 @@ def _clause(formula: ltl.Formula, language: Language, *, holds: bool) -> str | N
         case ltl.Comparison():
             return wording.comparison_clause(formula, language, holds=holds)
         case ltl.Constant(value):
-            return language.atom[not holds].format(language.truth_names[not value])
+            return language.constants[value is not holds]
         case ltl.Same(left, right):
             return language.same[not holds].format(left, right)
     return None

@@ -124,9 +124,12 @@ class _Reading:
         first, second = sorted(own[at : at + 2].tolist())
         rows = self.rows
         when = rows.times.steps[second] * rows.times.step_s + rows.times.start_s
-        why = f"track `{short(name)}` is twice at {when:.6g} s"
+        why = f"track `{short(name)}` is twice at {when:.15g} s"
         earlier = int(rows.columns.rows[first])
-        way_out = f"it is there in row {earlier:,}, too; keep one, or give them different tracks"
+        way_out = (
+            f"it is there in row {earlier:,}, too; keep one, or give them different tracks; "
+            "`rulec fleet` reads a table of several recordings, with a column `recording`"
+        )
         return rows.columns.wrong(second, why, help_text=way_out)
 
     def _participants(self, name: str, own: NDArray[np.intp]) -> Iterator[Participant]:

@@ -198,9 +198,11 @@ def check_types(schema: Any, pyarrow: Any, file: str) -> None:
         if name in (TOLD, UNKNOWN_NAMES) and (types.is_list(kind) or types.is_large_list(kind)):
             value = kind.value_type
         if not any(getattr(types, f"is_{type_name}")(value) for type_name in known):
-            message = f"the column `{name}` is of type {kind}"
-            help_text = "columns can be bool, integer, double (float64) or string"
-            raise problem(message, SourceLocation(file), help_text)
+            message = (
+                f"the column `{name}` is of type {kind}; it can be bool, integer, double (float64) "
+                "or string"
+            )
+            raise problem(message, SourceLocation(file), "write it anew with such a column")
 
 
 def rows_of_columns(path: Path, columns: Sequence[str]) -> Iterator[Mapping[str, Any]]:
