@@ -123,6 +123,12 @@ def forms_a_path():
     return lanes, bodies, {"emergency_corridor": late, "hard_shoulder": driven}
 
 
+def rolls_out_on_the_shoulder():
+    """§ 2(1) s. 2: who slows down there to stand may have broken down; who keeps its speed not."""
+    bodies = [braking("rolls out", 12, 40, 1.75, 2.0, after_s=-1.0), steady("on", 12, 200, 1.75)]
+    return motorway("shoulder", MAIN, MAIN), bodies, {"hard_shoulder": {"on"}}
+
+
 def brakes_alone():
     """R_G2. § 4(1) s. 2 binds who is ahead: with nobody behind nobody is endangered."""
     bodies = [braking("brakes", 30, 40, 1.75, 2.5), steady("follows", 30, 10, 5.25)]
@@ -149,7 +155,7 @@ def stands_in_a_jam():
     [
         *(reverses_and_turns, passes_a_queue, passes_on_the_right, passes_on_a_ramp),
         *(passes_beyond_a_broad_line, forms_a_path, brakes_alone, follows_closely),
-        stands_in_a_jam,
+        *(stands_in_a_jam, rolls_out_on_the_shoulder),
     ],
 )
 def test_those_violate_a_rule_who_do_and_nobody_else(made):
