@@ -96,7 +96,8 @@ COMPILING: Final = ResourceLimit(
     "compiling",
     30,
     "seconds of processor time for the automata of a rulebook",
-    "split large rules into several, or use shorter bounds or a longer step",
+    "split large rules into several, or use shorter bounds, or longer or fewer steps; a rulebook "
+    "that a program compiles anew has this time anew",
 )
 
 CUBES: Final = ResourceLimit(

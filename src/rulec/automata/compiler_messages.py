@@ -92,6 +92,8 @@ def no_machine(
             )
         case Failed("time"):
             whose = f"before rule `{rule.name}`"
+            if step_s is not None:
+                whose += f" for steps of {number_in_words(step_s)} s"
             return COMPILING.exceeded(at(rule.span), whose).diagnostics[0]
         case Failed("letters"):
             why = "it reads too many signals, enumerations and numbers at once"
