@@ -87,7 +87,14 @@ def test_a_recording_is_whole():
             "`lights` is `amber` expected `green`, `inactive`",
         ),
         ({"lights": [Light(0, (("RED", 9),))]}, "did you mean `red`?"),
-        ({"lights": [Light(0, ())]}, "a programme whose phases do not last"),
+        *(
+            ({"lights": [light]}, "a `Light` that is no programme expected a time step, and pairs")
+            for light in (
+                *(Light(0, ()), Light(0, (("red", 0),)), Light(0, (("red", -5),))),
+                *(Light(0, ((5, "red"),)), Light(0, "red"), Light(0, {"red": 5})),
+                *(Light(None, (("red", 5),)), Light(0, (("red", 2.5),)), Light(0, ("red", 5))),
+            )
+        ),
         ({"lights": [ObservedLight({0.5: "red"})]}, "the time step 0.5 expected whole numbers"),
         ({"lights": [ObservedLight({0: None})]}, "`lights` is `None`"),
         ({"lights": [ObservedLight(None)]}, "without colours by time step"),

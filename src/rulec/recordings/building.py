@@ -139,14 +139,33 @@ def _check_light(checks: BuildingChecks, light: Light | ObservedLight) -> None:
                 checks.wrong(f"`lights` has the time step {step!r:.40}", "expected whole numbers")
                 return
         colours += by_step.values()
-    elif isinstance(light, Light):
-        colours += [colour for colour, _ in light.phases]
-        if not colours or not all(duration >= 1 for _, duration in light.phases):
+    else:
+        phases: object = light.phases
+        if not isinstance(light.begin, int | np.integer) or not _are_phases(phases):
             checks.wrong(
-                "`lights` has a programme whose phases do not last", "expected 1 or more steps"
+                "`lights` has a `Light` that is no programme",
+                "expected a time step, and pairs of a colour and 1 or more time steps, such as "
+                'Light(0, (("red", 20), ("green", 30)))',
             )
+            return
+        colours += [colour for colour, _ in light.phases]
     for colour in dict.fromkeys(map(str, colours)):
         checks.one_of("lights", colour, LIGHT_COLOURS)
+
+
+def _are_phases(phases: object) -> bool:
+    return (
+        isinstance(phases, tuple | list)
+        and bool(phases)
+        and all(
+            isinstance(phase, tuple | list)
+            and len(phase) == 2
+            and isinstance(phase[0], str)
+            and isinstance(phase[1], int | np.integer)
+            and phase[1] >= 1
+            for phase in phases
+        )
+    )
 
 
 def _widths(
