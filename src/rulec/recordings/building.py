@@ -25,7 +25,6 @@ from rulec.recordings.lanes.lanes_along import (
 )
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import (
-    LIGHT_COLOURS,
     MOST_STEPS,
     OBSTACLE_TYPES,
     Lamp,
@@ -104,7 +103,7 @@ def build_lanelet(
         drawn = checks.points("stop_line", stop_line)
     shown = tuple(lights)
     for light in shown:
-        _check_light(checks, light)
+        checks.light(light)
     checks.raise_problems()
     return lanelet_along(
         name,
@@ -124,47 +123,6 @@ def build_lanelet(
         junction=junction,
         foes=None if foes is None else frozenset(map(str, foes)),
         first=None if first is None else frozenset(map(str, first)),
-    )
-
-
-def _check_light(checks: BuildingChecks, light: Light | ObservedLight) -> None:
-    colours: list[object] = []
-    if isinstance(light, ObservedLight):
-        by_step: object = light.colours
-        if not isinstance(by_step, Mapping):
-            checks.wrong("`lights` has an `ObservedLight` without colours by time step")
-            return
-        for step in by_step:
-            if not isinstance(step, int | np.integer):
-                checks.wrong(f"`lights` has the time step {step!r:.40}", "expected whole numbers")
-                return
-        colours += by_step.values()
-    else:
-        phases: object = light.phases
-        if not isinstance(light.begin, int | np.integer) or not _are_phases(phases):
-            checks.wrong(
-                "`lights` has a `Light` that is no programme",
-                "expected a time step, and pairs of a colour and 1 or more time steps, such as "
-                'Light(0, (("red", 20), ("green", 30)))',
-            )
-            return
-        colours += [colour for colour, _ in light.phases]
-    for colour in dict.fromkeys(map(str, colours)):
-        checks.one_of("lights", colour, LIGHT_COLOURS)
-
-
-def _are_phases(phases: object) -> bool:
-    return (
-        isinstance(phases, tuple | list)
-        and bool(phases)
-        and all(
-            isinstance(phase, tuple | list)
-            and len(phase) == 2
-            and isinstance(phase[0], str)
-            and isinstance(phase[1], int | np.integer)
-            and phase[1] >= 1
-            for phase in phases
-        )
     )
 
 
@@ -372,7 +330,7 @@ def _references(lanelet: Lanelet) -> Iterator[tuple[str, Iterable[str]]]:
 
 
 def _check_speeds(checks: BuildingChecks, body: Participant, step_s: float) -> None:
-    """Positions an other number of steps apart than speeds say are those of another time step."""
+    """Check that the speeds of one that drives fit its positions, one time step apart."""
     steps = sorted(body.states)
     pairs = [(body.states[k], body.states[k + 1]) for k in steps if k + 1 in body.states]
     stated = [max(abs(a.speed), abs(b.speed)) for a, b in pairs]
@@ -402,7 +360,8 @@ def _check_participant(body: Participant, to: BuildingChecks, step_s: float) -> 
         if not all(abs(value) < LARGEST for value in values):
             checks.wrong(f"at step {step} it is {state}", "expected finite numbers")
             break
-    _check_speeds(checks, body, step_s)
+    if not checks.problems:
+        _check_speeds(checks, body, step_s)
     if body.standing and len(body.states) != 1:
         checks.wrong(f"it stands, and has {len(body.states):,} states", "expected one")
     to.problems += checks.problems

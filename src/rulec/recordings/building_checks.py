@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
 import numpy as np
 from numpy import float64
@@ -12,7 +12,7 @@ from rulec.diagnostics import Diagnostic, RulecError, did_you_mean, named
 from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.lanes.lanes_along import CLOSEST_M
 from rulec.recordings.polylines import line_length, without_repeats
-from rulec.recordings.recording import LONGEST_M, Points
+from rulec.recordings.recording import LIGHT_COLOURS, LONGEST_M, Light, ObservedLight, Points
 from rulec.recordings.recording_messages import NOT_BUILT
 from rulec.value_display import brief
 
@@ -77,6 +77,31 @@ class BuildingChecks:
             self.wrong(f"`{name}` is {length:,.0f} m long", f"expected {LONGEST_M:,.0f} m at most")
         return kept
 
+    def light(self, light: Light | ObservedLight) -> None:
+        """Record a light with colours that do not exist, or that shows none at some time."""
+        colours: list[object] = []
+        if isinstance(light, ObservedLight):
+            by_step: object = light.colours
+            if not isinstance(by_step, Mapping):
+                self.wrong("`lights` has an `ObservedLight` without colours by time step")
+                return
+            for step in by_step:
+                if not isinstance(step, int | np.integer):
+                    self.wrong(f"`lights` has the time step {step!r:.40}", "expected whole numbers")
+                    return
+            colours += by_step.values()
+        elif not isinstance(light.begin, int | np.integer) or not _are_phases(light.phases):
+            self.wrong(
+                "`lights` has a `Light` that is no programme",
+                "expected a time step, and pairs of a colour and 1 or more time steps, such as "
+                'Light(0, (("red", 20), ("green", 30)))',
+            )
+            return
+        else:
+            colours += [colour for colour, _ in light.phases]
+        for colour in dict.fromkeys(map(str, colours)):
+            self.one_of("lights", colour, LIGHT_COLOURS)
+
     def _bounded(self, name: str, numbers: NDArray[float64]) -> bool:
         bad = ~(np.abs(numbers) < LARGEST)
         if bad.any():
@@ -101,3 +126,18 @@ class BuildingChecks:
             shown = value if isinstance(value, str) else brief(value)
             some = named(sorted(known))
             self.wrong(f"`{name}` is `{shown:.40}`", f"expected {some}", did_you_mean(shown, known))
+
+
+def _are_phases(phases: object) -> bool:
+    return (
+        isinstance(phases, tuple | list)
+        and bool(phases)
+        and all(
+            isinstance(phase, tuple | list)
+            and len(phase) == 2
+            and isinstance(phase[0], str)
+            and isinstance(phase[1], int | np.integer)
+            and phase[1] >= 1
+            for phase in phases
+        )
+    )

@@ -24,6 +24,7 @@ from rulec.extraction.signals.map.right_of_way.own_reasons import slows_for_itse
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.tracks import Flags
+from rulec.trace.plain_arrays import zero_if_nan
 
 FROM_SIDES = ("conflict_from_left", "conflict_from_right")
 ONCOMING = "in_way_of_oncoming"
@@ -224,7 +225,7 @@ def _held_up(
         return _held_up_until(context, ego, other, (first, at, until))
     if end < until:
         return first, False
-    speed = max(float(passages.tracks.speed[other.row, end]), 0.0)
+    speed = max(float(zero_if_nan(passages.tracks.speed[other.row, end])), 0.0)
     soonest_s = (sqrt(speed**2 + 2 * _SPEEDS_UP_MPS2 * left_m) - speed) / _SPEEDS_UP_MPS2
     at = end + soonest_s / context.recording.step_s
     found = _held_up_until(context, ego, other, (first, at, until), left_m)
