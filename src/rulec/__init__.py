@@ -143,9 +143,9 @@ _HOME = {
     "compile_rulebook coverage diff doc draw draw_drive envelope envelopes explain "
     "find find_maneuvers format formats judge_recording lineage list load_rulebook load_scenario "
     "load_vocabulary navigation_graph new_rulebook parse_rulebook rates_of_findings "
-    "read_recording read_traces rule_probabilities score show test traces tree verify verify_cells "
-    "verify_columns verify_compiled verify_many verify_recording write_compiled write_ltl "
-    "write_monitor write_traces",
+    "read_recording read_traces rule_probabilities score score_trajectories show test traces tree "
+    "verify verify_cells verify_columns verify_compiled verify_many verify_recording "
+    "write_compiled write_ltl write_monitor write_traces",
     "rulec.automata.bundle.compiled_rulebook": "CompiledRule CompiledRulebook",
     "rulec.automata.mealy_monitor": "MealyMonitor",
     "rulec.book_tests.example_coverage": "RuleCoverage UncoveredEdge UntouchedLimit",

@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from rulec.planning.probability.rule_probability import AlternativeCounts, RuleProbabilities
     from rulec.planning.ranking.cheapest import Maneuver
     from rulec.planning.trace_history import Before
+    from rulec.recordings.recording import Recording
     from rulec.scenario import Choice, Scenario
+    from rulec.scoring.scores import Scores
     from rulec.trace import Trace
 
 PictureFormat = Literal["svg", "png", "html"]
@@ -30,11 +32,21 @@ PictureFormat = Literal["svg", "png", "html"]
 class ScenarioVerbs(SessionSettings):
     """The verbs of a session that are about scenarios and pictures."""
 
-    def load_scenario(self, reference: str | Path, choice: Choice | None = None) -> Scenario:
-        """Load a scenario by name or path; ``choice`` is for recorded scenes."""
-        from rulec.scenario import load_scenario
+    def load_scenario(
+        self, reference: str | Path | Recording, choice: Choice | None = None
+    ) -> Scenario:
+        """Load a scenario by name or path, or make one of a recording.
 
-        return load_scenario(reference, choice)
+        ``choice`` is for recorded scenes.
+        """
+        if isinstance(reference, str | Path):
+            from rulec.scenario import load_scenario
+
+            return load_scenario(reference, choice)
+        from rulec.scenario import Choice
+        from rulec.scenario.scenario_files import scene_of
+
+        return scene_of(reference, choice or Choice(), Path(reference.name))
 
     def navigation_graph(
         self, scenario: str | Path | Scenario, **options: Unpack[GraphOptions]
@@ -98,6 +110,20 @@ class ScenarioVerbs(SessionSettings):
         """The envelopes of the ``n`` cheapest maneuvers that are satisfying or open."""
         cheapest = maneuvers.cheapest(n, perhaps=True)
         return tuple(self.envelope(maneuvers.graph, maneuver.nodes) for maneuver in cheapest)
+
+    def score_trajectories(self, maneuvers: Maneuvers, listed: Sequence[Maneuver]) -> Scores:
+        """Score the trajectories of maneuvers in a recorded scene, as ``score`` does with samples.
+
+        The world is the recording at the scene's beginning, with ego's past. Candidates are the
+        ``listed`` maneuvers, in their order.
+
+        Raises:
+            RulecError: R0781 if a maneuver has no trajectory, or the scene is not recorded; R0507
+                for rules compiled for another step than the recording's.
+        """
+        from rulec.scoring.maneuver_trajectories import score_trajectories
+
+        return score_trajectories(maneuvers, tuple(listed))
 
     def traces(
         self,

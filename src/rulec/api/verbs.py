@@ -78,6 +78,7 @@ read_recording = _USUAL.read_recording
 read_traces = _USUAL.read_traces
 rule_probabilities = _USUAL.rule_probabilities
 score = _USUAL.score
+score_trajectories = _USUAL.score_trajectories
 show = _USUAL.show
 test = _USUAL.test
 traces = _USUAL.traces

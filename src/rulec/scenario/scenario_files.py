@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Source, SourceLocation, did_you_mean, named
 from rulec.files import decoded, opened
@@ -17,21 +18,31 @@ from rulec.scenario.toml.conversion import to_scenario
 from rulec.scenario.toml.toml_tables import TomlFile
 from rulec.toml import parsed_toml
 
+if TYPE_CHECKING:
+    from rulec.recordings.recording import Recording
+
 
 def read_scene(path: Path, choice: Choice) -> Scenario:
     """The scenario of a recording, seen from the chosen ego.
 
     Raises RulecError: as for ``read_recording``, R0612 if what is chosen is not in the file.
     """
+    source = RecordingSource(path, choice.map_path, choice.input_format, choice.scenario_id)
+    return scene_of(read_recording(source), choice, path)
+
+
+def scene_of(recording: Recording, choice: Choice, file: Path) -> Scenario:
+    """The scenario of a recording, seen from the chosen ego; ``file`` is named in messages.
+
+    Raises RulecError: R0612 if what is chosen is not in it.
+    """
     # Imported late: TOML scenarios do not need NumPy and Shapely, which recordings do
     from rulec.scenario.recorded.recorded_scene import seen_from_ego
 
-    source = RecordingSource(path, choice.map_path, choice.input_format, choice.scenario_id)
-    recording = read_recording(source)
     try:
-        return seen_from_ego(recording, choice, str(path))
+        return seen_from_ego(recording, choice, str(file))
     except ValueError as reason:
-        raise RECORDING.refused(path, f"its road is invalid: {reason}") from None
+        raise RECORDING.refused(file, f"its road is invalid: {reason}") from None
 
 
 LARGEST_BYTES = 4_000_000

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from rulec.planning.ranking.cheapest import Maneuver
     from rulec.recordings.recording_inputs import InputFiles
     from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
+    from rulec.scoring.maneuver_trajectories import TrajectoryScores
 
 
 @click.command(cls=Verb)
@@ -223,7 +224,22 @@ class ManeuverQuestions:
             worlds=_worlds(maneuvers) if self.worlds else None,
             prunings=maneuvers.prunings() if self.why else None,
             classes=classes,
+            driven=_driven(maneuvers, shown),
         )
+
+
+def _driven(maneuvers: Maneuvers, shown: Sequence[Maneuver]) -> TrajectoryScores | None:
+    """The verdicts on the trajectories of maneuvers in a recorded scene."""
+    if maneuvers.words is None or not shown:
+        return None
+    # Late import, only for recorded scenes: scores (130 ms).
+    from rulec.scoring.maneuver_trajectories import trajectory_scores
+
+    try:
+        return trajectory_scores(maneuvers, shown)
+    except rulec.RulecError as error:
+        print_diagnostics(error.diagnostics)
+        return None
 
 
 def _chances(

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rulec.partition.cell_graph import NavigationGraph
 from rulec.partition.cells.cell_model import Cell
@@ -78,6 +79,17 @@ class WitnessTrajectory:
     greatest_acceleration: float
     greatest_braking: float
     cost: DrivingCost
+
+    def at(self, times_s: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The motion at some times (s): a row each of s, speed along, d, speed across (m, m/s)."""
+        knots = np.array(self.states)
+        begin = np.clip(knots[:, 0].searchsorted(times_s, "right") - 1, 0, len(knots) - 2)
+        before, after = knots[begin], knots[begin + 1]
+        gone, piece = times_s - before[:, 0], after[:, 0] - before[:, 0]
+        gained = (after[:, (2, 4)] - before[:, (2, 4)]) / piece[:, None]
+        speeds = before[:, (2, 4)] + gained * gone[:, None]
+        places = before[:, (1, 3)] + (before[:, (2, 4)] + speeds) / 2 * gone[:, None]
+        return np.stack((places, speeds), axis=2).reshape(len(times_s), 4)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,13 +15,14 @@ from rulec.partition import Cell, NavigationGraph, envelope
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.penalties import PenaltyRank
-from rulec.report.text.terminal_text import broken, shown_count, table_lines, visible
+from rulec.report.text.terminal_text import broken, first_of, shown_count, table_lines, visible
 from rulec.report.verdicts.verdict_report import open_in_words
 from rulec.rulebook.rulebook_model import cited_law
 
 if TYPE_CHECKING:
     from rulec.partition.motion.witness_trajectory import WitnessTrajectory
     from rulec.planning.probability.rule_probability import RuleProbabilities, RuleProbability
+    from rulec.scoring.maneuver_trajectories import TrajectoryScores
 
 # Numbers of items shown as text; JSON has all of them.
 MOST_BINDINGS = 3
@@ -88,13 +89,48 @@ def listed_block(
     number: int,
     maneuver: Maneuver,
     verdicts: Mapping[tuple[int, ...], Verdict],
+    driven: TrajectoryScores | None = None,
 ) -> list[str]:
-    """A maneuver of a list, with its open verdicts."""
+    """A maneuver of a list, with the verdict on its trajectory and its own open verdicts."""
     verdict = verdicts.get(maneuver.nodes)
     doubtful = () if verdict is None else verdict.open
     remark = "; open" if any(open_verdict.strength == "hard" for open_verdict in doubtful) else ""
-    details = _open_lines(maneuvers, doubtful)
+    details = [*_as_driven(maneuver, driven), *_open_lines(maneuvers, doubtful)]
     return maneuver_block(maneuvers.graph, number, maneuver, remark, details)
+
+
+def driven_counts(driven: TrajectoryScores | None) -> list[str]:
+    """How many of the trajectories satisfy every hard rule, if there are several."""
+    if driven is None or len(driven.of) < 2:
+        return []
+    lawful = sum(score.satisfied is True for score in driven.of.values())
+    shown = f"{lawful} of the {len(driven.of)} shown"
+    return [f"trajectories {shown} satisfy every hard rule that can be judged"]
+
+
+def _as_driven(maneuver: Maneuver, driven: TrajectoryScores | None) -> list[str]:
+    """The verdict on a maneuver's trajectory, if it has one."""
+    score = None if driven is None else driven.of.get(maneuver.nodes)
+    if driven is None or score is None:
+        return []
+    parts = []
+    if score.off_road:
+        parts.append("leaves the road")
+    violated = [
+        f"{'soft ' if violation.strength == 'soft' else ''}{violation.rule}"
+        + (f" for {bound_objects(violation.binding)}" if violation.binding else "")
+        + ("" if violation.step is None else f" from {driven.time_s(violation.step):g} s on")
+        for violation in score.violations
+    ]
+    if violated:
+        parts.append(f"violates {first_of(violated, MOST_NAMED)}")
+    if score.open:
+        open_rules = dict.fromkeys(open_verdict.rule for open_verdict in score.open)
+        parts.append(f"open: {first_of(list(open_rules), MOST_NAMED)}")
+    if score.satisfied:
+        parts.insert(0, "satisfies every hard rule that can be judged")
+    until = f" until {driven.until_s:g} s" if driven.is_cut else ""
+    return [visible(f"   trajectory{until}: {'; '.join(parts)}")]
 
 
 def _open_lines(maneuvers: Maneuvers, doubtful: Sequence[OpenVerdict]) -> list[str]:
@@ -107,13 +143,15 @@ def _open_lines(maneuvers: Maneuvers, doubtful: Sequence[OpenVerdict]) -> list[s
     return lines
 
 
-def ranked_block(maneuvers: Maneuvers, ranked: RankedManeuver) -> list[str]:
-    """A ranked maneuver with its violations."""
+def ranked_block(
+    maneuvers: Maneuvers, ranked: RankedManeuver, driven: TrajectoryScores | None = None
+) -> list[str]:
+    """A ranked maneuver with the verdict on its trajectory, and its own violations."""
     same = f"; {shown_count(ranked.members)} violate the same" if ranked.members > 1 else ""
     penalty = _penalty(ranked.penalty)
     if ranked.open:
         penalty = f"at most {penalty}, at least {_penalty(ranked.at_least)}"
-    details = [f"   violates {penalty}"]
+    details = [*_as_driven(ranked.maneuver, driven), f"   violates {penalty}"]
     details += [
         f"     {_violation_line(maneuvers, violation)}"
         for violation in ranked.violations[:MOST_VIOLATIONS]

@@ -44,13 +44,28 @@ class TrajectoryData(JsonPart, frozen=True, kw_only=True):
     """A trajectory that proves a maneuver drivable (m, m/s, m/s²), and its costs.
 
     ``states`` are at the ends of pieces: time, s, speed along, d, speed across. In between,
-    accelerations are constant.
+    accelerations are constant. In a recorded scene it has a ``verdict`` of its own.
     """
 
     greatest_acceleration: float
     greatest_braking: float
     costs: Mapping[str, float]
     states: Sequence[tuple[float, float, float, float, float]]
+    verdict: TrajectoryVerdictData | UnsetType = UNSET
+
+
+class TrajectoryVerdictData(JsonPart, frozen=True, kw_only=True):
+    """The verdict on a trajectory as a drive in the recorded world, up to ``until_s``.
+
+    ``satisfied`` is null if no hard rule is violated and one is open, or ego leaves the road in
+    ``off_road`` of the recording's steps. A violation's ``lost_s`` is null if the end decides.
+    """
+
+    satisfied: bool | None
+    until_s: float
+    violations: Sequence[ManeuverViolation]
+    open: Sequence[OpenData]
+    off_road: int
 
 
 class LevelPenalty(JsonPart, frozen=True, kw_only=True):

@@ -37,6 +37,7 @@ from rulec.report.maneuvers.maneuver_document import (
     RuleProbabilityData,
     SceneData,
     TrajectoryData,
+    TrajectoryVerdictData,
     WorldData,
 )
 from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
@@ -46,6 +47,7 @@ from rulec.report.verdicts.verdict_json import (
     open_data,
 )
 from rulec.scenario import Account
+from rulec.scoring.maneuver_trajectories import TrajectoryScores
 
 Item = TypeVar("Item")
 Data = TypeVar("Data", bound=JsonPart)
@@ -85,6 +87,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
                 lambda maneuver: _maneuver(
                     graph,
                     maneuver,
+                    trajectory=_trajectory(maneuver, maneuvers, answers.driven),
                     open=_open(answers.verdicts.get(maneuver.nodes), maneuvers),
                     chances=_chances(answers, maneuver),
                 ),
@@ -134,6 +137,7 @@ def _ranked(maneuvers: Maneuvers, answers: ManeuverAnswers, ranked: RankedManeuv
     return _maneuver(
         maneuvers.graph,
         ranked.maneuver,
+        trajectory=_trajectory(ranked.maneuver, maneuvers, answers.driven),
         place=ranked.place,
         penalty=_penalty(ranked.penalty),
         at_least=_penalty(ranked.at_least) if in_doubt else UNSET,
@@ -161,32 +165,48 @@ def _maneuver(graph: NavigationGraph, maneuver: Maneuver, **details: Any) -> Man
         for layer, index in zip(graph.layers, maneuver.nodes, strict=True)
     ]
     bounds = [filled(EnvelopeData, bounds) for bounds in envelope(graph, maneuver.nodes)]
-    driven = _trajectory(maneuver)
-    return filled(
-        ManeuverData, maneuver, cells=cells, envelope=bounds, trajectory=driven, **details
-    )
+    details.setdefault("trajectory", _trajectory(maneuver))
+    return filled(ManeuverData, maneuver, cells=cells, envelope=bounds, **details)
 
 
-def _trajectory(maneuver: Maneuver) -> TrajectoryData | UnsetType:
-    """The trajectory of a maneuver, if it has one, with the parts of its cost."""
+def _trajectory(
+    maneuver: Maneuver,
+    maneuvers: Maneuvers | None = None,
+    scores: TrajectoryScores | None = None,
+) -> TrajectoryData | UnsetType:
+    """The trajectory of a maneuver, if it has one, with the parts of its cost, and its verdict."""
     driven = maneuver.trajectory
     if driven is None:
         return UNSET
     costs = {"changes": maneuver.changes or 0.0, **asdict(driven.cost)}
-    return filled(TrajectoryData, driven, costs=costs)
+    verdict: TrajectoryVerdictData | UnsetType = UNSET
+    if maneuvers is not None and scores is not None and maneuver.nodes in scores.of:
+        score = scores.of[maneuver.nodes]
+        verdict = filled(
+            TrajectoryVerdictData,
+            score,
+            until_s=scores.until_s,
+            violations=_violations(maneuvers, score.violations, scores.time_s),
+            open=open_data(score.open, maneuvers.rules),
+        )
+    return filled(TrajectoryData, driven, costs=costs, verdict=verdict)
 
 
-def _violations(maneuvers: Maneuvers, violations: Iterable[Violation]) -> list[ManeuverViolation]:
+def _violations(
+    maneuvers: Maneuvers,
+    violations: Iterable[Violation],
+    time_s: Callable[[int], float] | None = None,
+) -> list[ManeuverViolation]:
+    """Violations with their times: those of layers, unless ``time_s`` gives those of states."""
     rules = {rule.name: rule for rule in maneuvers.rules.rules}
+    time_of = time_s or (lambda layer: maneuvers.graph.layers[layer].start_s)
     return [
         filled(
             ManeuverViolation,
             violation,
             cite=rules[violation.rule].cite,
             inherited_from=rules[violation.rule].inherited_from or UNSET,
-            lost_s=None
-            if violation.step is None
-            else maneuvers.graph.layers[violation.step].start_s,
+            lost_s=None if violation.step is None else time_of(violation.step),
             level=rules[violation.rule].level or None,
             weight=rules[violation.rule].weight,
         )

@@ -20,6 +20,7 @@ from rulec.scenario import Account, Scenario
 
 if TYPE_CHECKING:
     from rulec.planning.probability.rule_probability import AlternativeCounts, RuleProbabilities
+    from rulec.scoring.maneuver_trajectories import TrajectoryScores
 
 MOST_VIOLATIONS = 6
 """Number of past violations named as text; JSON has all of them."""
@@ -36,6 +37,7 @@ class ManeuverAnswers:
     does not list them already. ``chances`` and ``verdicts`` map a maneuver's nodes to its
     probabilities and its verdict; the latter only if some values are unknown. ``judged`` are the
     names of the rules that can be judged from the words of cells; None if cells have no words.
+    ``driven`` are the scores of the trajectories of all maneuvers shown, if there are some.
     """
 
     judged: Sequence[str] | None = None
@@ -47,6 +49,7 @@ class ManeuverAnswers:
     chances: Mapping[tuple[int, ...], RuleProbabilities] = field(default_factory=dict)
     verdicts: Mapping[tuple[int, ...], Verdict] = field(default_factory=dict)
     worlds: Sequence[AlternativeCounts] | None = None
+    driven: TrajectoryScores | None = None
 
 
 def horizon_s(graph: NavigationGraph) -> float:
@@ -124,6 +127,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         # Rounded up, it would be more than what is proved
         least = floor(10 * least) / 10
         lines.append(f"emergency   every maneuver brakes by more than {least:.1f} m/s²")
+    lines += maneuver_blocks.driven_counts(answers.driven)
     lines.append(f"computed in {seconds:.3f} s")
     if lists_none(maneuvers, answers):
         lines.append("listed      none: no trajectory was found along those that cost least")
@@ -132,12 +136,14 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         if graph.extent != "body":
             lines.append("opened by   `--extent body`, perhaps: it leaves more room")
     for number, maneuver in enumerate(answers.listed or (), 1):
-        lines += maneuver_blocks.listed_block(maneuvers, number, maneuver, answers.verdicts)
+        lines += maneuver_blocks.listed_block(
+            maneuvers, number, maneuver, answers.verdicts, answers.driven
+        )
         lines += _chances(answers, maneuver)
     if answers.best:
         lines += ["", "Every maneuver violates a hard rule. No other violates less than:"]
     for ranked_maneuver in (*(answers.best or ()), *(answers.ranked or ())):
-        lines += maneuver_blocks.ranked_block(maneuvers, ranked_maneuver)
+        lines += maneuver_blocks.ranked_block(maneuvers, ranked_maneuver, answers.driven)
         lines += _chances(answers, ranked_maneuver.maneuver)
     if answers.prunings is not None:
         lines += ["", *maneuver_blocks.pruning_lines(maneuvers, answers.prunings)]
