@@ -8,10 +8,12 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from rulec.analysis.diff.rule_comparison import compare, non_default_names
+from rulec.analysis.shared_compilation import compile_shared
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
+from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.trace import Trace
-from rulec.vocabulary import Enumeration, Signal
+from rulec.vocabulary import Enumeration, Quantity, Signal
 from support.generators.random_rule_pairs import (
     ALONE,
     COUNTED,
@@ -29,6 +31,16 @@ from support.generators.random_rule_pairs import (
 SEMANTICS = st.tuples(*[st.sampled_from(["stutter", "finite"])] * 2)
 
 
+def farthest(trace, name):
+    """How far a quantity of a trace is from its default, in any state and for any object."""
+    declaration = VOCABULARY.declarations[name]
+    if not isinstance(declaration, Quantity):
+        return 0
+    values = [state.get(name, declaration.default) for state in trace.states]
+    each = [x for value in values for x in (value.values() if isinstance(value, dict) else [value])]
+    return max(abs(value - declaration.default) for value in each)
+
+
 def check(one, other, traces):
     """The witnesses are real and shortest, and where there is none no short trace tells."""
     found = compare(one, other, most=3)
@@ -43,7 +55,12 @@ def check(one, other, traces):
             assert allows(permits, witness)
         needs = [non_default_names(witness, one.rulebook.vocabulary) for witness in traces_of_one]
         for number, later in enumerate(needs):
-            assert not any(earlier <= later for earlier in needs[:number])
+            assert not any(earlier == later for earlier in needs[:number])
+            # What needs more keeps a number of the first witness nearer to its default
+            first, own = traces_of_one[0], traces_of_one[number]
+            assert not any(earlier < later for earlier in needs[:number]) or any(
+                farthest(own, name) < farthest(first, name) for name in needs[0]
+            )
     expected = {
         (True, True): "equal",
         (False, True): "stricter",
@@ -205,3 +222,24 @@ def test_variables_in_another_order_make_no_difference(swapped):
     follows, back = PAIRED[1], PAIRED[2]
     one, other = sides([follows, back if swapped else follows], [X, Y])
     assert compare(one, other).relation == "equal"
+
+
+def test_a_limit_does_not_hide_a_lower_one():
+    lower = "(night implies speed <= 50 km/h) and (built_up implies speed <= 40 km/h)"
+    texts = ("speed <= 100 km/h", f"speed <= 90 km/h and {lower}")
+    books = [
+        parse_rulebook(f"rulebook b{n} use road hard rule r {{ require always ({text}) }}")
+        for n, text in enumerate(texts)
+    ]
+    one, other = (
+        each["r"] for each in compile_shared(books, [{"r": book.rules[0]} for book in books])
+    )
+    found = compare(other, one, most=9)
+    assert found.relation == "stricter"
+    vocabulary = other.rulebook.vocabulary
+    reasons = {
+        (trace.states[0]["speed"], *sorted(non_default_names(trace, vocabulary) - {"speed"}))
+        for trace in found.first_forbids
+    }
+    assert reasons == {(91,), (51, "night"), (41, "built_up")}
+    assert len(compare(other, one, most=2).first_forbids) == 2

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from rulec import Monitor, compile_rulebook
+from rulec import Monitor, RulecError, compile_rulebook
 from rulec.cli.main import main
 from support.oracles.installed_spot import spot
 
@@ -56,6 +56,56 @@ def test_automata_that_are_not_of_the_rulebook_are_named(tmp_path, capsys):
     said = f"in {tmp_path} stay automata of another rulebook or from before: `R0.hoa`\n"
     assert capsys.readouterr().err == said
     assert (tmp_path / "R0.hoa").exists()
+
+
+def test_automata_of_another_rulebook_that_are_replaced_are_named(tmp_path, capsys):
+    for name, sign in (("one", "p"), ("two", "not p")):
+        (tmp_path / f"{name}.rules").write_text(
+            f"rulebook {name}\nsignal p\nhard rule r {{ require always {sign} }}\n"
+        )
+    build = tmp_path / "build"
+
+    def said(name):
+        assert main(["compile", str(tmp_path / f"{name}.rules"), "-o", str(build)]) == 0
+        return capsys.readouterr().err
+
+    assert said("one") == said("one") == ""
+    replaced = f"in {build} automata of another rulebook (`one.rules`) were replaced: `r.hoa`; "
+    assert said("two") == f"{replaced}give each rulebook a folder of its own\n"
+
+
+@pytest.mark.parametrize(
+    ("emit", "file"), [("c", "Makefile"), ("c", "CMakeLists.txt"), ("rust", "src/lib.rs")]
+)
+def test_build_files_of_others_stay(emit, file, tmp_path, capsys):
+    own = tmp_path / file
+    command = ["compile", "esterle2019", "--emit", emit, "-o", str(tmp_path)]
+    assert main(command) == 0
+    assert main(command) == 0
+    capsys.readouterr()
+    # Another monitor's, and one that rulec has not written
+    for content in (own.read_text().replace("esterle2019", "other"), "all: mine\n"):
+        own.write_text(content)
+        assert main(command) == 2
+        assert "error[R0755]: the file is there already, and was" in capsys.readouterr().err
+        assert own.read_text() == content
+
+
+def test_a_compiled_rulebook_is_refused_for_another_day(tmp_path, capsys):
+    (tmp_path / "d.rules").write_text(
+        "rulebook d\nsignal p\nhard rule r { require always p in force until 2021-12-31 }\n"
+        "hard rule s { require always p }\n"
+    )
+    build = ["compile", str(tmp_path / "d.rules"), "--at", "2020-01-01", "-o", str(tmp_path)]
+    assert main(build) == 0
+    file = str(tmp_path / "d.json")
+    for command in (["show", file], ["compile", file, "--emit", "c", "-o", str(tmp_path / "c")]):
+        assert main([*command, "--at", "2020-01-01"]) == 0
+        assert main(command) == 0
+        assert main([*command, "--at", "2024-01-01"]) == 2
+        assert "for the law of 2020-01-01, not of 2024-01-01" in capsys.readouterr().err
+    with pytest.raises(RulecError, match="R0419"):
+        compile_rulebook(file, at="2024-01-01")
 
 
 def test_a_rulebook_with_mistakes_writes_nothing(tmp_path, capsys):

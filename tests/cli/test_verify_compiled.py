@@ -1,5 +1,6 @@
 """``rulec verify-compiled`` as its user meets it."""
 
+import gzip
 import json
 from pathlib import Path
 
@@ -67,6 +68,24 @@ def test_folders_and_patterns(file, tmp_path, monkeypatch, capsys):
     for named in ("none", "one/*.rules"):
         assert main(["verify-compiled", named]) == 2
         assert "error[R0733]" in capsys.readouterr().err
+
+
+def test_what_may_have_been_a_compiled_rulebook_is_not_passed_over(file, tmp_path, capsys):
+    data, folder = file.read_bytes(), tmp_path / "build"
+    folder.mkdir()
+    (folder / "b.json").write_bytes(data)
+    (folder / "b2.json.gz").write_bytes(gzip.compress(data))
+    (folder / "notes.json").write_text('{"a": [1, 2]}')
+    assert main(["verify-compiled", str(folder)]) == 0
+    out, err = capsys.readouterr()
+    assert out.endswith("2 rules: 2 proved, 0 not proved\n")
+    assert err == f"rulec: passed over, as other JSON: {folder / 'notes.json'}\n"
+    flipped = data.replace(b"rulec compiled", b"rulec bompiled", 1)
+    for content in (b"", data[:40], bytes(20_000), flipped):
+        (folder / "damaged.json").write_bytes(content)
+        for named in (folder, folder / "*.json"):
+            assert main(["verify-compiled", str(named)]) == 2
+            assert f" --> {folder / 'damaged.json'}" in capsys.readouterr().err
 
 
 def test_files_that_are_none(file, tmp_path, capsys):

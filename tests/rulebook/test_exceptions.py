@@ -275,3 +275,16 @@ def test_where_no_scope_fits_two_rules_are_suggested(formula, exception):
     text = f"rulebook x\nsignal p, q, r, s\nhard rule a {{ require {formula} {exception} }}\n"
     (finding,) = diagnose("x.rules", text.encode()).findings
     assert (finding.code, "write two rules" in finding.help) == ("R0318", True)
+
+
+@pytest.mark.parametrize(
+    ("formula", "way_out"),
+    [
+        ("always p implies q", "write `always (… implies …)`: "),
+        ("never p and q", "write `never (… and …)`: "),
+    ],
+)
+def test_who_forgot_parentheses_is_told_of_them(formula, way_out):
+    text = f"rulebook x\nsignal p, q, s\nhard rule a {{ require {formula} unless s }}\n"
+    (finding,) = diagnose("x.rules", text.encode()).findings
+    assert (finding.code, finding.help.startswith(way_out)) == ("R0318", True)

@@ -8,7 +8,7 @@ rule is evaluated for all choices of these objects that fit its variables.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -105,6 +105,31 @@ class Contest:
         axioms = [said_not_below_zero(name, Itself(item)) for name, item in quantities.items()]
         return Contest(self.forbidding, self._allowing, (*self._given, *axioms))
 
+    def within_limits(self, trace: Trace) -> Iterator[Contest]:
+        """The same contest without what is beyond a limit in a trace, for each number in turn.
+
+        The number then stays on the default's side of the last limit that it has passed.
+        """
+        rules = [analyzed.rule for analyzed in (self.forbidding, *self._allowing)]
+        declared = self._universe.vocabulary.declarations
+        for name, limits in sorted(_limits_of(rules).items()):
+            item = declared[name]
+            if not isinstance(item, Quantity) or item.default is None:
+                continue
+            usual = exact(float(item.default))
+            for value in sorted(_numbers_in(trace, name), key=lambda number: abs(number - usual)):
+                passed = [
+                    limit for limit in limits if min(usual, value) <= limit <= max(usual, value)
+                ]
+                if not passed or value == usual:
+                    continue
+                last = min(passed, key=lambda limit: abs(value - limit))
+                below: ltl.Relation = "<" if last == value else "<="
+                above: ltl.Relation = ">" if last == value else ">="
+                axiom = _bounded(name, item, below if value > usual else above, last)
+                yield Contest(self.forbidding, self._allowing, (*self._given, axiom))
+                break
+
     def _trace(
         self, alphabet: JointAlphabet, universe: ObjectUniverse, given: tuple[Axiom, ...]
     ) -> Trace | None:
@@ -172,9 +197,35 @@ def _variables_of(declaration: Declaration) -> tuple[Variable, ...]:
 @lru_cache(maxsize=1024)
 def said_not_below_zero(name: str, declared: Itself[Declaration]) -> Axiom:
     """The axiom that a quantity is not negative, for all objects."""
-    variables = _variables_of(declared.item)
+    return _bounded(name, declared.item, ">=", Fraction(0))
+
+
+def _bounded(name: str, declaration: Declaration, relation: ltl.Relation, limit: Fraction) -> Axiom:
+    """The axiom that a quantity stands in a relation to a limit, for all objects."""
+    variables = _variables_of(declaration)
     term = ltl.QuantityTerm(name, tuple(variable.name for variable in variables))
-    return Axiom(variables, ltl.Comparison(((Fraction(1), term),), ">=", Fraction(0)))
+    return Axiom(variables, ltl.Comparison(((Fraction(1), term),), relation, limit))
+
+
+def _limits_of(rules: Iterable[CompiledRule]) -> dict[str, set[Fraction]]:
+    """The limits with which rules compare quantities on their own, by name."""
+    limits: dict[str, set[Fraction]] = {}
+    for read in chain.from_iterable(rule.machine.reads for rule in rules):
+        if isinstance(read, NumberRead) and len(read.terms) == 1:
+            ((factor, term),) = read.terms
+            if isinstance(term, ltl.QuantityTerm):
+                own = limits.setdefault(term.name, set())
+                own.update(threshold.limit / factor for threshold in read.thresholds)
+    return limits
+
+
+def _numbers_in(trace: Trace, name: str) -> set[Fraction]:
+    """The numbers that a quantity has in a trace, for all objects."""
+    values = [state[name] for state in trace.states if name in state]
+    each = chain.from_iterable(
+        value.values() if isinstance(value, Mapping) else (value,) for value in values
+    )
+    return {exact(float(value)) for value in each if isinstance(value, int | float)}
 
 
 def _compared_with_no_more_than_zero(rules: Iterable[CompiledRule]) -> frozenset[str]:

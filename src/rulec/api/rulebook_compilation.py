@@ -108,7 +108,7 @@ def compile_rulebook(
             )
         from rulec.automata.bundle.bundle_file import read_compiled
 
-        reference = read_compiled(Path(reference))
+        reference = read_compiled(Path(reference), at)
         if reference.prefixes is None:
             reference = replace(reference, prefixes=_prefixes)
     if isinstance(reference, CompiledRulebook):

@@ -47,7 +47,7 @@ def prefix_machines(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine |
         finite = own if rulebook.semantics == "finite" else _table(next(answers))
         machine = None
         if own is not None and finite is not None:
-            machine = _machine(own, finite, goes_on=_goes_on(rule.formula, rule.variables))
+            machine = _machine(own, finite, goes_on=_goes_on(rule))
         _KNOWN[keys[rule.name]] = machine
     return {name: _KNOWN[key] for name, key in keys.items()}
 
@@ -72,13 +72,18 @@ def _answers(jobs: Sequence[Job], *, is_spots: bool) -> list[Done | Failed | Non
 
 def _key(rule: CompiledRule, rulebook: CompiledRulebook) -> tuple[object, ...]:
     axioms = tuple([(axiom.variables, axiom.formula) for axiom in rulebook.axioms])
-    return rule.formula, rule.machine.reads, rule.step_s, rule.variables, rulebook.semantics, axioms
+    formula = rule.formula, _goes_on(rule)
+    return formula, rule.machine.reads, rule.step_s, rule.variables, rulebook.semantics, axioms
 
 
-def _goes_on(formula: ltl.Formula, variables: Sequence[object]) -> bool:
-    """Whether a rule, kept before a cut word began, may have a sequence under way there."""
+def _goes_on(rule: CompiledRule) -> bool:
+    """Whether a rule, kept before a cut word began, may have a sequence under way there.
+
+    Exceptions and a condition do not change that, though the whole formula may have no `then`.
+    """
+    formula = rule.formula if rule.parts is None else rule.parts.required
     always = ltl.UnaryOperator.ALWAYS, ltl.UnaryOperator.NEVER
-    if not isinstance(formula, ltl.Unary) or formula.operator not in always or variables:
+    if not isinstance(formula, ltl.Unary) or formula.operator not in always or rule.variables:
         return False
     then = ltl.BinaryOperator.THEN
     return formula.bound is None and any(x.operator is then for x in operations_of(formula))

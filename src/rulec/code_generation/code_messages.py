@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.code import Code
@@ -121,4 +122,25 @@ def differs(differences: Sequence[str]) -> RulecError:
         None,
         f"the monitor in C differs from its tables: {'; '.join(differences[:3])}",
         help="try another compiler (`CC`), and report this",
+    )
+
+
+OTHERS_FILE = Code(
+    "R0755",
+    title="a monitor would replace a build file that is not its own",
+    why="A monitor comes with files whose names are the same for every program: a Makefile and "
+    "CMakeLists.txt, Cargo.toml and src/lib.rs, or package.xml. Such a file is replaced only if "
+    "rulec has generated it for the same monitor.",
+    bad="mkdir build\necho all: > build/Makefile\nrulec compile esterle2019 --emit c -o build\n",
+    good="rulec compile esterle2019 --emit c -o build\n",
+    kind="command",
+)
+
+
+def others_file(file: Path) -> RulecError:
+    """The error about a build file that belongs to something else."""
+    return OTHERS_FILE.error(
+        SourceLocation(str(file)),
+        "the file is there already, and was not generated for this monitor",
+        help="write the monitor to a folder of its own, or delete the file",
     )

@@ -16,8 +16,9 @@ def nearest_name(
 ) -> str | None:
     """The known name closest to ``name``, ignoring case, or None.
 
-    ``alike`` is the minimum similarity: the share of letters in common, in the same order. With
-    ``longer``, the only name with all its words, and more, is also close.
+    ``alike`` is the minimum similarity: the share of letters in common, in the same order. A short
+    name is also more than half as long. With ``longer``, the only name with all its words, and
+    more, is also close.
     """
     by_folded: dict[str, str] = {}
     for candidate in known:
@@ -25,7 +26,10 @@ def nearest_name(
     same = by_folded.get(name.casefold())
     if same is not None or len(by_folded) > _MOST_SEARCHED:
         return same
-    close = _closest(name.casefold(), tuple(by_folded), alike)
+    long_enough = tuple(
+        folded for folded in by_folded if len(folded) > _SHORT_WORD or 2 * len(folded) > len(name)
+    )
+    close = _closest(name.casefold(), long_enough, alike)
     if close:
         return by_folded[close[0]]
     return _longer_name(name, by_folded) if longer else None

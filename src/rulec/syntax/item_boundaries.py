@@ -157,6 +157,8 @@ class Landmarks:
         """Whether a misspelt keyword begins a line here."""
         if index + 1 >= len(self.tokens) or not self.tokens[index].first:
             return False
+        if self.is_word(index - 1, "certainty"):
+            return False
         text = self.tokens[index + 1].kind in _TEXTS
         return self.is_name(index) and (text or self.is_symbol(index + 1, "{"))
 

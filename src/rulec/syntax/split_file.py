@@ -85,12 +85,14 @@ class FileSplitter:
 
     def _end_of_item(self, index: int) -> int:
         end = index + 1
+        is_list = self.marks.is_word(index, "provisions")
         while end < len(self.tokens):
             if self.marks.is_symbol(end, "{") or self.marks.is_symbol(end, "}"):
                 break
             if self.marks.begins_item(end):
                 break
-            if self.tokens[end].first and self.marks.is_word(end, *CLAUSE_WORDS):
+            is_own = is_list and self.marks.is_word(end, "certainty")
+            if self.tokens[end].first and self.marks.is_word(end, *CLAUSE_WORDS) and not is_own:
                 break
             end += 1
         return end

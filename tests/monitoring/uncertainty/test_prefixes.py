@@ -144,6 +144,32 @@ def test_a_sequence_that_was_under_way_is_open(text, values, outcome):
     assert all(own.because == ("began before",) for own in verdict.open)
 
 
+SCOPES = ("throughout", "at start", "at end", "at some point", "initially")
+
+
+@pytest.mark.parametrize(
+    "exception", ["", "when not x", *(f"unless x {scope}" for scope in SCOPES)]
+)
+@pytest.mark.parametrize("phases", ["q then p", "q then p then not p", "q then q then p"])
+def test_no_exception_hides_that_a_sequence_may_be_under_way(exception, phases):
+    """It may be, whatever the rule's formula is made of: before the last phase ``q`` was seen."""
+    text = f"require never ({phases}) {exception}"
+    book = compile_here(
+        parse_rulebook(f"rulebook r signal p, q, x default false hard rule r {{ {text} }}"),
+        Fraction(1),
+    )
+
+    def outcome(*states, ends):
+        named = tuple({name: name in state for name in "pqx"} for state in states)
+        verdict = verify(Trace("t", 1.0, {}, named, ends=ends), book)
+        return bool(verdict.violations), [one.because for one in verdict.open]
+
+    rest = ["p", ""] if phases.endswith("not p") else ["p"]
+    # With the state before that was not seen it is violated; without it, nobody knows
+    assert outcome("q", "q", *rest, ends="complete") == (True, [])
+    assert outcome(*rest, ends="cut") == (False, [("began before",)])
+
+
 def test_what_is_with_others_begins_where_they_are_there():
     text = "type car signal p(o: car) hard rule r (o: car) { require never (p(o) then not p(o)) }"
     book = compile_here(parse_rulebook(f"rulebook r {text}"), Fraction(1))

@@ -9,7 +9,7 @@ for hitting sets (Reiter 1987), few first, so that simple reasons come first.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import chain, permutations
@@ -96,8 +96,26 @@ def _witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace, ...]:
             above = contest.not_below_zero()
             plain = above.trace()
             if plain is not None and len(plain.states) == len(first.states):
-                return diverse_witnesses(above, plain, most)
-    return traces
+                contest, traces = above, diverse_witnesses(above, plain, most)
+    return (*traces, *_further_witnesses(contest, traces, most - len(traces)))
+
+
+def _further_witnesses(contest: Contest, traces: Sequence[Trace], most: int) -> Iterator[Trace]:
+    """Witnesses in which some number stays within the last limit that it passes in the first one.
+
+    Otherwise a higher limit on a number would hide lower ones that hold under some conditions.
+    """
+    vocabulary = contest.forbidding.rulebook.vocabulary
+    shown = [non_default_names(trace, vocabulary) for trace in traces]
+    for nearer in contest.within_limits(traces[0]) if most > 0 else ():
+        with suppress(UndecidedError):
+            first = nearer.trace()
+            for trace in () if first is None else diverse_witnesses(nearer, first, most):
+                names = non_default_names(trace, vocabulary)
+                if most > 0 and names not in shown:
+                    most -= 1
+                    shown.append(names)
+                    yield trace
 
 
 def _is_below_zero(trace: Trace) -> bool:

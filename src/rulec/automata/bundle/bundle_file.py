@@ -21,7 +21,7 @@ from rulec.automata.bundle.bundle_digest import (
     with_digest,
     without_digest,
 )
-from rulec.automata.bundle.bundle_messages import DAMAGED_BUNDLE
+from rulec.automata.bundle.bundle_messages import DAMAGED_BUNDLE, other_day
 from rulec.automata.bundle.compiled_rulebook import (
     CompiledAxiom,
     CompiledRule,
@@ -220,9 +220,15 @@ def _damaged(file: str, message: str) -> RulecError:
     )
 
 
-def read_compiled(path: Path) -> CompiledRulebook:
-    """Read a compiled rulebook. Raises R0701, R0404, R0410, R0411, and as ``check_signed``."""
-    return from_json(read_signed(path), str(path))
+def read_compiled(path: Path, day: str = "") -> CompiledRulebook:
+    """Read a compiled rulebook, and refuse one for the law of another ``day``, if one is given.
+
+    Raises R0701, R0404, R0410, R0411, R0419, and as ``check_signed``.
+    """
+    compiled = from_json(read_signed(path), str(path))
+    if day and compiled.at and day != compiled.at:
+        raise other_day(str(path), compiled.at, day)
+    return compiled
 
 
 def read_signed(path: Path) -> bytes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.code import Code
 
 _SIGNALS = ", ".join(f"s{number}" for number in range(1, 18))
@@ -112,3 +113,25 @@ OTHER_STEP = Code(
     "rulec verify trace.jsonl -r build/soon.json",
     kind="command",
 )
+
+OTHER_DAY = Code(
+    "R0419",
+    title="a compiled rulebook is for the law of another day",
+    why="Rules and parameters that are not in force on a day are left out when a rulebook is "
+    "compiled, so a compiled rulebook has the law of one day. With the source of the rulebook, "
+    "`--at` chooses the day.",
+    bad="rulec compile esterle2019 --at 2024-01-01 -o build > log\n"
+    "rulec show build/esterle2019.json --at 2026-01-01",
+    good="rulec compile esterle2019 --at 2026-01-01 -o build > log\n"
+    "rulec show build/esterle2019.json --at 2026-01-01",
+    kind="command",
+)
+
+
+def other_day(file: str, compiled: str, wanted: str) -> RulecError:
+    """A file compiled for the law of one day, where that of another one is wanted."""
+    return OTHER_DAY.error(
+        SourceLocation(file),
+        f"this rulebook was compiled for the law of {compiled}, not of {wanted}",
+        help=f"compile its source with `--at {wanted}`, or leave out `--at`",
+    )

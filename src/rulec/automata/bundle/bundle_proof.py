@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from glob import glob, has_magic
 from pathlib import Path
 
@@ -16,30 +19,49 @@ from rulec.validation.file_proof import RuleProof, UnreadableError, proofs_of
 from rulec.work_trees import is_ordinary, leads_out, tree_of
 
 _HEAD_BYTES = 1024
+_SEAL = re.compile(rb'\{\s*"sha256"')
+"""Their first line."""
+
+_ENDINGS = ".json", ".json.gz"
 
 
-def compiled_files(references: Sequence[str]) -> list[str]:
-    """The compiled rulebooks given by paths, folders and patterns, each once.
+@dataclass(frozen=True, slots=True)
+class CompiledFiles:
+    """The files that are to be proved, each once, and other JSON files found beside them."""
 
-    A folder stands for the files in and below it, by name; hidden folders, links and other files
-    are skipped. If no file has the given name, ``*``, ``?`` and ``[…]`` are wildcards, and ``**``
-    is any number of folders. Raises RulecError R0733 for a folder or pattern that yields no file.
+    paths: tuple[str, ...]
+    others: tuple[str, ...] = ()
+
+
+def compiled_files(references: Sequence[str]) -> CompiledFiles:
+    """The compiled rulebooks given by paths, folders and patterns.
+
+    A folder stands for the files in and below it, by name; hidden folders and links are skipped,
+    and so are JSON files that are something else. One that cannot be read, or is no whole JSON, may
+    be what is left of a compiled rulebook, and is included. If no file has the given name, ``*``,
+    ``?`` and ``[…]`` are wildcards, and ``**`` is any number of folders. Raises RulecError R0733
+    for a folder or pattern that yields no file.
     """
     paths: dict[str, None] = {}
+    others: dict[str, None] = {}
     for reference in references:
         is_pattern = has_magic(reference) and not os.path.lexists(reference)
         places = sorted(glob(reference, recursive=True)) if is_pattern else [reference]  # noqa: PTH207
         for place in places:
             if os.path.isdir(place):  # noqa: PTH112 - Path raises on a null character
-                files = [str(path) for path in _below(place)]
+                below = list(map(str, _below(place)))
+                files = [path for path in below if _may_be_compiled(Path(path))]
                 if not files and not is_pattern:
                     raise _nothing(reference, "there is no compiled rulebook in this folder")
                 paths |= dict.fromkeys(files)
-            elif not is_pattern or _is_compiled(Path(place)):
+                others |= dict.fromkeys(path for path in below if path not in files)
+            elif not is_pattern or _may_be_compiled(Path(place)):
                 paths[place] = None
+            else:
+                others[place] = None
         if is_pattern and not places:
             raise _nothing(reference, "no file matches this pattern")
-    return list(paths)
+    return CompiledFiles(tuple(paths), tuple(others))
 
 
 def _nothing(reference: str, why: str) -> RulecError:
@@ -48,20 +70,26 @@ def _nothing(reference: str, why: str) -> RulecError:
 
 
 def _below(folder: str) -> Iterator[Path]:
+    """The JSON files in and below a folder, also compressed ones."""
     tree = tree_of(Path(folder))
     for here, folders, names in os.walk(folder):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
-        for path in (Path(here, name) for name in sorted(names) if name.endswith(".json")):
-            if is_ordinary(path) and not leads_out(path, tree) and _is_compiled(path):
+        for path in (Path(here, name) for name in sorted(names) if name.endswith(_ENDINGS)):
+            if is_ordinary(path) and not leads_out(path, tree):
                 yield path
 
 
-def _is_compiled(path: Path) -> bool:
+def _may_be_compiled(path: Path) -> bool:
+    """Whether a file is a compiled rulebook, or might have been one before it was damaged."""
     try:
         with opened(path) as stream:
-            return f'"{FORMAT}"'.encode() in stream.read(_HEAD_BYTES)
-    except RulecError:
-        return False
+            head = stream.read(_HEAD_BYTES)
+            if f'"{FORMAT}"'.encode() in head or _SEAL.match(head):
+                return True
+            json.loads(head + stream.read())
+    except (RulecError, ValueError, RecursionError):
+        return True
+    return False
 
 
 def proofs_of_file(path: Path) -> list[RuleProof]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -20,6 +22,10 @@ from rulec.report.text.console import print_line, print_remark
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+
+_HEAD_CHARACTERS = 1000
+_SOURCE = re.compile(r"/\* sha256 [0-9a-f]+ (.+?) \*/")
+"""An automaton's first line about a source, which is the rulebook's own."""
 
 _WRITTEN = (".hoa", ".json")
 _FILES = (*_WRITTEN, ".c", ".h", ".hpp", ".rs", ".csv", ".props", ".smv")
@@ -66,8 +72,8 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
 @click.option(
     "--prove",
     is_flag=True,
-    help="Also compile the monitor with a C compiler, check it against its tables and write a "
-    "report.",
+    help="Also compile the monitor, with a C compiler or rustc, check it against its tables and "
+    "write a report.",
 )
 @click.option(
     "--no-certificate",
@@ -90,8 +96,8 @@ def command(
     """Compile each RULEBOOK: a name, or the path of a source.
 
     Writes RULE.hoa for every rule, in the Hanoi Omega-Automata format, and the compiled rulebook
-    RULEBOOK.json, which every other command accepts in place of the source and which runs without
-    Spot. Instead, `--emit c` writes a monitor in C99 with its Makefile and CMakeLists.txt,
+    RULEBOOK.json, from which the commands that judge, monitor and show work as from the source, and
+    without Spot. Instead, `--emit c` writes a monitor in C99 with its Makefile and CMakeLists.txt,
     `--emit rust` a crate, `--emit ros2` a package around the C monitor, and `--emit ltl` all
     formulas for Spot, PRISM and nuXmv with the meaning of their propositions. Every file is written
     completely or not at all. If there are several rulebooks, each gets its own folder in DIR.
@@ -129,9 +135,11 @@ def command(
                 compiled = session.compile_rulebook(book, step_s=steps_s or None)
                 several = len({rule.step_s for rule in compiled.rules} - {None}) > 1
                 compiled = compiled.at_one_step()
+                before = _sources_of_automata(folder)
                 paths = session.write_compiled(compiled, folder, certificate=not no_certificate)
                 if several:
                     _tell_step(compiled)
+                _tell_replaced(folder, before)
                 _tell_others(folder, paths)
             else:
                 compiled = session.compile_rulebook(book, step_s=steps_s or None)
@@ -163,6 +171,30 @@ def _tell_others(folder: Path, written: Sequence[Path]) -> None:
     if others:
         print_remark(
             f"in {folder} stay automata of another rulebook or from before: {named(others)}"
+        )
+
+
+def _sources_of_automata(folder: Path) -> dict[str, str]:
+    """For each automaton in a folder, the source of its rulebook, as its head says."""
+    found = {}
+    for path in folder.glob("*.hoa"):
+        # What cannot be read is told when it is written.
+        with suppress(OSError):
+            head = path.read_text(encoding="utf-8", errors="replace")[:_HEAD_CHARACTERS]
+            source = _SOURCE.search(head)
+            found[path.name] = source[1] if source else ""
+    return found
+
+
+def _tell_replaced(folder: Path, before: Mapping[str, str]) -> None:
+    """Warn about automata of other rulebooks that were replaced because rules have their names."""
+    now = _sources_of_automata(folder)
+    replaced = sorted(name for name, source in before.items() if now.get(name, source) != source)
+    if replaced:
+        sources = named(sorted({before[name] for name in replaced} - {""}))
+        print_remark(
+            f"in {folder} automata of another rulebook{f' ({sources})' if sources else ''} were "
+            f"replaced: {named(replaced)}; give each rulebook a folder of its own"
         )
 
 

@@ -21,7 +21,7 @@ from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import answer_lines, open_session, print_written
 from rulec.cli.standard_input import STANDARD_INPUT, standard_input
-from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_remark, print_result
 
@@ -58,7 +58,7 @@ def _no_states(_: click.Context, __: click.Parameter, value: str) -> str:
 )
 @output_options(
     {**endings_of("text"), "json": (".jsonl", ".ndjson", ".json")},
-    "the verdicts, one line per state,",
+    "the verdicts, one line per state",
 )
 @shared.at_option
 def command(
@@ -80,6 +80,8 @@ def command(
     pending rules do not count as violated.
     """
     # Late import, not for --help: monitors and the reader of states (60 ms).
+    from rulec.automata.bundle.stored_steps import StoredSteps
+    from rulec.logic.printing import number_in_words
     from rulec.monitoring.online import monitor_sources
     from rulec.monitoring.online.running_monitor import Monitor
     from rulec.report.verdicts import running_verdicts
@@ -93,6 +95,13 @@ def command(
     step_s = step_s or monitor_sources.step_of(saved)
     rules = open_session(at).compile_rulebook(rulebook, step_s=step_s)
     if restore is None:
+        if step_s is None and isinstance(rules.recompile, StoredSteps):
+            taken = number_in_words(rules.recompile.steps[0])
+            others = named([f"{number_in_words(step)} s" for step in rules.recompile.steps[1:]])
+            print_remark(
+                f"rulec: for states {taken} s apart; {rulebook} was also compiled for {others}, "
+                "which `--step` says"
+            )
         monitor = Monitor(rules, step_s)
     else:
         place = "standard input" if restore == STANDARD_INPUT else restore

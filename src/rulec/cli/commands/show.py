@@ -211,7 +211,7 @@ def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
     if Path(reference).suffix != ".json":
         refuse_source(reference)
         return rulec.Session(search_path(), at).load_rulebook(reference), None
-    compiled = read_compiled(Path(reference))
+    compiled = read_compiled(Path(reference), at)
     # The other fields of a compiled rule are its compiled form.
     names = {field.name for field in fields(CompiledRule)} & {field.name for field in fields(Rule)}
     rules = [Rule(**{name: getattr(rule, name) for name in names}) for rule in compiled.rules]

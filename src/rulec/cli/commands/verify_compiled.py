@@ -12,9 +12,13 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, put_answer
 from rulec.cli.standard_input import read_as_file
+from rulec.report.text.console import print_remark
 
 if TYPE_CHECKING:
     from rulec.validation.file_proof import RuleProof
+
+_MOST_NAMED = 6
+"""So many of the files passed over are named."""
 
 
 @click.command(cls=Verb)
@@ -26,22 +30,26 @@ def command(files: tuple[str, ...], to: Output) -> int:
     Each table is compared, on all words, to a machine built afresh from the formula by a program
     that shares no code with the compiler; no results of earlier runs are used. A folder stands for
     all compiled rulebooks in it, at any depth, and a pattern such as `*.json` for all files that
-    match.
+    match; other JSON is passed over, and named.
 
     Exit status: 0 all rules are proved, 1 some are not, 2 a file could not be read.
     """
     # Late import, not for --help: compiled files and the checker (60 ms).
     from rulec.automata.bundle.bundle_proof import compiled_files, proofs_of_file
     from rulec.report.rulebooks.proof_report import render
+    from rulec.report.text.terminal_text import first_of
 
     proofs: list[tuple[str, list[RuleProof]]] = []
-    named = compiled_files(files)
-    for name in named:
+    found = compiled_files(files)
+    for name in found.paths:
         with errors_told():
             proofs.append((name, proofs_of_file(Path(name))))
+    if found.others:
+        names = first_of(found.others, _MOST_NAMED)
+        print_remark(f"rulec: passed over, as other JSON: {names}")
     if proofs or to.form == "json":
         put_answer(render(proofs, to.form), to)
     return ExitStatus.after(
-        answered=len(proofs) == len(named),
+        answered=len(proofs) == len(found.paths),
         failed=any(proof.because for _, of_file in proofs for proof in of_file),
     )

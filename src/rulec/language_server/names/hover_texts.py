@@ -107,7 +107,7 @@ def _rule(names: DocumentNames, name: str) -> Iterator[str]:
     law = entry.law
     book = law.name.text if law.name is not None else ""
     if item.cite:
-        heading = _heading(names, item.cite.value)
+        heading = _heading(names, item.cite.value, book)
         yield f"**{item.cite.value}**{f', {heading}' if heading else ''}, law of `{book}`"
     if item.source:
         yield f"<{item.source.value}>" if "://" in item.source.value else item.source.value
@@ -127,11 +127,12 @@ def _rule(names: DocumentNames, name: str) -> Iterator[str]:
         yield _code(f"require {print_formula(item.require, 'written')}")
 
 
-def _heading(names: DocumentNames, cite: str) -> str:
-    """The heading of the first article that a rule cites."""
+def _heading(names: DocumentNames, cite: str, law: str) -> str:
+    """The heading of the first article that a rule cites, by the provisions of its own law."""
     headings = {
         entry.number.value: entry.heading.value
-        for _, item in names.chain.names.constants.overlay.provisions
+        for file, item in names.chain.names.constants.overlay.provisions
+        if file.name is not None and file.name.text == law
         for entry in item.entries
     }
     found = next(cited_entries(cite, listed_places(headings)), "")

@@ -25,6 +25,7 @@ _TWO_ENDS = re.compile(r"(\d[\w. /-]*?)(?:\s*\.\.\s*|\s+until\s+)(\d[\w. /-]*)")
 _CHANGED_BY = re.compile(r"`(?P<head>(?:set|redefine) \w+) = …`")
 _SCOPE = re.compile(r"\b(?:throughout|at\s+start|at\s+end|at\s+some\s+point|initially)\b")
 _QUANTIFIED = re.compile(r"\b(?:every|some|no)\s+\w+\s*:\s*\w+[^()]*\(\s*$")
+_BEFORE_VARIABLE = re.compile(r"\b(?:every|some|no|count|least|most)\s+$")
 _OPERATOR = re.compile(r"\w+(?:\s*\[[^]]*\])?\s+")
 
 
@@ -87,6 +88,11 @@ def described_edits(
         yield _edit("Write `1`", start + match.start(), start + match.end(), "1")
     for words in re.findall(r"`([^`…]+)`", help_text):
         yield from _beginning_before(words, text, start, end)
+
+
+def declares_in_formula(text: str, start: int) -> bool:
+    """Whether a quantifier's variable is declared at a place; all its uses belong to it."""
+    return _BEFORE_VARIABLE.search(text[:start]) is not None
 
 
 def _is_near(amount: str, was: str) -> bool:

@@ -17,7 +17,12 @@ from rulec.language_server.workspace.editor_workspace import (
 )
 from rulec.language_server.workspace.published_diagnostics import diagnostics_of
 from rulec.language_server.workspace.text_positions import TextPositions
-from rulec.language_server.writing.described_edits import Edit, another_name, described_edits
+from rulec.language_server.writing.described_edits import (
+    Edit,
+    another_name,
+    declares_in_formula,
+    described_edits,
+)
 from rulec.rulebook.files.reference_messages import (
     EXTENDS_CIRCLE,
     NAME_NOT_FOUND,
@@ -35,11 +40,21 @@ _MOST_TRIED = 12
 _SEVERAL = re.compile(r", | or |such as")
 """If several things are possible, none of them is offered."""
 
+_LISTED = re.compile(r"`(?: \([^)]*\))?, `")
+"""What is listed is what there is, not what is meant."""
+
+_NOT_MEANT = re.compile(
+    r"check the unit|^end the older one|^a share is a factor|^say what must hold"
+    r"|^the most general of them"
+)
+"""Help in which quoted words are about what is there, or stand for more than the place."""
+
 _EITHER = "Say `traffic "
 """Edits with this start are offered beside another valid one, since only the author can choose."""
 
 _ONLY_THE_AUTHOR_KNOWS = re.compile(
-    r"the one you mean|the nearest multiples|say it in this state|`override rule \w+` to change it"
+    r"the one you mean|words that may mean it|`, or\b"
+    r"|the nearest multiples|say it in this state|`override rule \w+` to change it"
     r"|(?:give it|choose) another name"
 )
 
@@ -133,6 +148,8 @@ def _candidates(
     text, (start, end) = positions.text, _bounds(place, positions)
     path = trial.document.path
     stem = "" if path is None else path.stem
+    if declares_in_formula(text, start):
+        return
     yield from described_edits(finding, text, start, end, stem)
     for title, change in _quoted_edits(finding, text, start, end):
         yield title, (change,)
@@ -143,20 +160,16 @@ def _quoted_edits(
     finding: Diagnostic, text: str, start: int, end: int
 ) -> Iterator[tuple[str, TextChange]]:
     """Edits that use the words quoted in the help."""
-    words = [
-        word
-        for word in _QUOTED.findall(finding.help)
-        if not _is_example(word, finding.help, text[start:end])
-    ]
-    if not _SEVERAL.search(finding.expected):
-        words += _QUOTED.findall(finding.expected)
+    words = list(_meant_words(finding, text[start:end]))
     if finding.help.startswith(_DELETING):
         yield from _deletions(text, start, end)
     if finding.help.startswith("did you mean") and words:
         yield from _misspelt(words[0], text, start)
+    place = start, end
     for word in dict.fromkeys(words):
         if word == text[start:end]:
             continue
+        start, end = _with_own_words(word, text, *place)
         first_word, _, rest = word.partition(" ")
         if first_word in ("use", "traffic") and rest:
             head = text.find("\n") + 1 or len(text)
@@ -183,6 +196,31 @@ def _quoted_edits(
             yield f"Put `{_short(word)}` behind it", TextChange(end, end, f" {word}")
     if "leave" in finding.help or "delete" in finding.help:
         yield from _deletions(text, start, end)
+
+
+def _meant_words(finding: Diagnostic, own: str) -> Iterator[str]:
+    """The words quoted in a message that may be meant in place of ``own`` words."""
+    help_text, expected = finding.help, finding.expected
+    if "`unverified`" in expected:
+        yield "unverified"  # more has to be found out, not only written
+        return
+    if _NOT_MEANT.search(help_text):
+        return
+    is_question = help_text.startswith(("did you mean", "words that may mean it"))
+    if is_question or not _LISTED.search(help_text):
+        for word in _QUOTED.findall(help_text):
+            if not _is_example(word, help_text, own) and word != "_":
+                yield word
+    if not _SEVERAL.search(expected):
+        yield from _QUOTED.findall(expected)
+
+
+def _with_own_words(word: str, text: str, start: int, end: int) -> tuple[int, int]:
+    """A place with the words behind it that a replacement repeats."""
+    own = text[start:end]
+    behind = word.rpartition(own)[2] if own and own in word else ""
+    is_repeated = behind.startswith(" ") and text.startswith(behind, end)
+    return (start, end + len(behind)) if is_repeated else (start, end)
 
 
 def _is_example(word: str, help_text: str, own: str) -> bool:

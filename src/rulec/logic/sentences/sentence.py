@@ -104,6 +104,8 @@ def _for_every(variables: Sequence[tuple[str, str]], related: Related, language:
 def phrase(formula: ltl.Formula, language: Language = ENGLISH, *, inside: bool) -> Phrase:
     """A formula as a phrase. ``inside``: it refers to another time than the start of the trace."""
     match formula:
+        case ltl.Unary(ltl.UnaryOperator.NOT, ltl.Comparison() as operand) if _is_some(operand):
+            return phrase(replace(operand, relation="<"), language, inside=inside)
         case ltl.Unary(ltl.UnaryOperator.NOT, operand):
             denied = None if _counts(operand) else _clause(operand, language, holds=False)
             if denied is not None:
@@ -128,9 +130,14 @@ def phrase(formula: ltl.Formula, language: Language = ENGLISH, *, inside: bool) 
             pattern = wording.pattern_of(operator, bound, language, inside=inside)
             return _between(pattern, formula, language, inside=True)
         case ltl.Comparison() if (count := wording.single_count(formula)) is not None:
-            there_are = wording.counted(formula, count, language)
+            body, there_are = count.body, wording.counted(formula, count, language)
+            every = _denied(body) if wording.is_none(formula) else None
+            if every is not None:
+                body = every
+                words = language.type_of(count.type, wording.spoken(count.type))
+                there_are = language.for_every.format(f"{words.every} {count.variable}").rstrip()
             lead = there_are if inside else language.there_at_start.format(there_are)
-            return _after(lead, phrase(count.body, language, inside=True), language)
+            return _after(lead, phrase(body, language, inside=True), language)
     clause = _clause(formula, language, holds=True)
     assert clause is not None, "everything else is a clause"
     return _simple(clause, language, inside=inside)
@@ -138,6 +145,20 @@ def phrase(formula: ltl.Formula, language: Language = ENGLISH, *, inside: bool) 
 
 def _simple(clause: str, language: Language, *, inside: bool) -> Phrase:
     return Phrase(clause if inside else language.at_start.format(clause), Shape.CLAUSE)
+
+
+def _denied(formula: ltl.Formula) -> ltl.Formula | None:
+    """What a formula denies, if it is a negation."""
+    match formula:
+        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
+            return operand
+    return None
+
+
+def _is_some(formula: ltl.Comparison) -> bool:
+    """Whether it says that there is at least one object."""
+    is_one = formula.relation == ">=" and formula.limit == 1
+    return is_one and wording.single_count(formula) is not None
 
 
 def _counts(formula: ltl.Formula) -> bool:

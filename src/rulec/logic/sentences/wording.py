@@ -99,17 +99,24 @@ def single_count(comparison: Comparison) -> Count | None:
     return None
 
 
+def is_none(comparison: Comparison) -> bool:
+    """Whether a comparison of a single count says that there is no such object."""
+    match comparison.relation, comparison.limit:
+        case ("=" | "<=", Fraction(numerator=0)) | ("<", Fraction(numerator=1, denominator=1)):
+            return True
+    return False
+
+
 def counted(comparison: Comparison, count: Count, language: Language) -> str:
     """The head of a counting clause: ``there are at least 8 ...``.
 
     In full ``there are at least 8 vehicles x for which``, to be followed by the body.
     """
     words = language.type_of(count.type, spoken(count.type))
-    match comparison.relation, comparison.limit:
-        case ">=", Fraction(numerator=1, denominator=1):
-            return language.there_is.format(words.one, count.variable)
-        case "=", Fraction(numerator=0):
-            return language.there_is_no.format(words.none, count.variable)
+    if is_none(comparison):
+        return language.there_is_no.format(words.none, count.variable)
+    if comparison.relation == ">=" and comparison.limit == 1:
+        return language.there_is.format(words.one, count.variable)
     is_one = comparison.limit == 1 and comparison.relation != "!="
     n = language.counted[comparison.relation].format(number_text(comparison.limit, language))
     there = language.there_is if is_one else language.there_are

@@ -121,7 +121,7 @@ def two_values_in_force(values: Sequence[Value], name: str, day: str) -> Diagnos
         values[1].item.span,
         f"the parameter `{name}` has two values that are in force on {day}",
         expected="the second one",
-        help="end the first one by `in force until` the day before",
+        help="end the older one by `in force until` the day before the newer one begins",
         labels=(Label(values[0].item.span.place, "the first one"),),
     )
 

@@ -82,11 +82,17 @@ def _help(node: tree.Formula, left: _Side, right: _Side, scope: Scope) -> str:
     )
 
 
+_KILOGRAMS = 100
+"""From this number on, a mass without a unit is rather one in kilograms than in tonnes."""
+
+
 def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
     unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
     number = node.operand if isinstance(node, tree.Minus) else node
-    bare = isinstance(number, tree.NumberLiteral) and not number.unit
-    return f"write the unit, such as `{short(node)} {unit}`" if bare and unit else ""
+    if not (isinstance(number, tree.NumberLiteral) and not number.unit and unit):
+        return ""
+    is_heavy = unit == "t" and float(number.text) >= _KILOGRAMS
+    return f"write the unit, such as `{short(node)} {'kg' if is_heavy else unit}`"
 
 
 def _parameter_help(node: tree.Formula, kind: str, beside: tree.Formula, scope: Scope) -> str:
@@ -110,8 +116,19 @@ def _other_unit(node: tree.Formula, beside: tree.Formula, whole: tree.Formula, s
             return f"a share is a factor: for 10 % more write `1.1 * {short(beside)}`"
         # Of what it is beside, it would be a comparison of something with itself.
         return f"say what it is a share of, such as `{short(node)} * x` for a quantity `x`"
-    slip = hour_in_another_language(node.unit)
+    slip = hour_in_another_language(node.unit) or _in_other_letters(node, beside, scope)
     return slip or f"`{short(beside)}` is in {unit}: check the unit of `{short(node)}`"
+
+
+def _in_other_letters(node: tree.NumberLiteral, beside: tree.Formula, scope: Scope) -> str:
+    """Help for a unit in the wrong case, such as `T` for tonnes."""
+    unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
+    wanted = scope.symbols.unit(unit)
+    for written in (node.unit.lower(), node.unit.upper()):
+        meant = scope.symbols.unit(written)
+        if wanted is not None and meant is not None and meant.dimension == wanted.dimension:
+            return f"write `{node.text} {written}`: units are told apart by their case"
+    return ""
 
 
 def _kind_help(
@@ -143,15 +160,17 @@ def _by_units(more: tree.Formula, less: tree.Formula, factor: str, scope: Scope)
     if len(units) != 2 or not isinstance(less, tree.Arithmetic) or less.operator not in "*/":
         return ""
     number = next((x for x in (less.left, less.right) if isinstance(x, tree.NumberLiteral)), None)
+    of_time = ""
     if less.operator == "*" and number is not None and not number.unit:
-        return f"for the way in {number.text} s write `{number.text} s * {names[1]}`"
+        of_time = f"the way in {number.text} s write `{number.text} s * {names[1]}`"
     (of_more, whole), (of_less, part) = units
     if whole is None or part is None:
-        return ""
+        return of_time and f"for {of_time}"
     seconds = f"{float(whole.factor / part.factor):g}"
     if Fraction(seconds) != whole.factor / part.factor:
-        return ""
-    return f"for 1 {of_more} to each {of_less} write `{seconds} s * {factor}`"
+        return of_time and f"for {of_time}"
+    by_numbers = f"for 1 {of_more} to each {of_less} write `{seconds} s * {factor}`"
+    return f"{by_numbers}, or for {of_time}" if of_time else by_numbers
 
 
 _LENGTH_AND_TIME = (DIMENSIONS["length"], DIMENSIONS["time"])

@@ -233,6 +233,7 @@ def unfitting_exception(problem: str, item: tree.RuleItem, *, first_state_only: 
     labels = tuple(Label(place, "this is what the rule requires") for place in required)
     if problem == "no stretch":
         unless = next(unless for unless in item.unless if unless.scope != "initially")
+        around = "" if item.require is None else _around_all(item.require)
         written = f"`{unless.scope}`" if unless.scope else "this exception"
         return UNFITTING_SCOPE.at(
             unless.span,
@@ -241,12 +242,15 @@ def unfitting_exception(problem: str, item: tree.RuleItem, *, first_state_only: 
             expected="expected a rule that begins with `never` or `always`"
             if first_state_only
             else "expected `initially` after it",
-            help="write `require always (…)`, since this asks for something in the first state "
-            "only; or `initially` at the end of the exception, if that is meant"
-            if first_state_only
-            else "write `initially` at its end, if the first state decides; or begin the rule with "
-            "`never` or `always`; or write two rules, one for when the exception holds and one for "
-            "when it does not",
+            help=around
+            or (
+                "write `require always (…)`, since this asks for something in the first state "
+                "only; or `initially` at the end of the exception, if that is meant"
+                if first_state_only
+                else "write `initially` at its end, if the first state decides; or begin the rule "
+                "with `never` or `always`; or write two rules, one for when the exception holds "
+                "and one for when it does not"
+            ),
             labels=labels,
         )
     unless = [unless for unless in item.unless if unless.scope in (None, "throughout")][-1]
@@ -266,6 +270,21 @@ def unfitting_exception(problem: str, item: tree.RuleItem, *, first_state_only: 
         help="join some of them by `or` in one `unless`, if one of them may follow the other",
         labels=labels,
     )
+
+
+def _around_all(required: tree.Formula) -> str:
+    """Help if what is required begins with `always`, which is about its first part only."""
+    node = required
+    while isinstance(node, tree.Infix) and (node is required or not node.grouped):
+        node = node.left
+    if isinstance(node, tree.Prefix) and node is not required:
+        assert isinstance(required, tree.Infix), "its first part is another node"
+        if node.operator == "always" or (node.operator == "never" and required.operator == "and"):
+            return (
+                f"write `{node.operator} (… {required.operator} …)`: without parentheses "
+                f"`{node.operator}` is about its first part only"
+            )
+    return ""
 
 
 def no_multiple(rule: Rule, error: NotAMultipleError) -> Diagnostic:

@@ -59,6 +59,13 @@ def first_state_only(node: tree.Formula, asked_once: tree.Formula, *, alone: boo
         wider = f"never {text[len(node.sign) :].lstrip()}"
     else:
         wider = f"always {text}" if bare else f"always ({text})"
+    looks_back = _is_false_at_first(node)
+    spoken = f"write `{wider if len(wider) <= 60 else f'{wider[:59]}…'}` to speak of all states"
+    if looks_back:
+        spoken = (
+            "`previously` is false in the first state: say in which states this is asked for, as "
+            "in `always (p implies previously q)`, or write `always` and `weak previously`"
+        )
     asker = "the rule asks" if alone else "this part of the rule asks"
     asked = "for" if asked_once is node else "whether there is"
     return FIRST_STATE_ONLY.at(
@@ -67,21 +74,38 @@ def first_state_only(node: tree.Formula, asked_once: tree.Formula, *, alone: boo
         expected="nothing here speaks of later states"
         if asked_once is node
         else "no operator of time is about the whole of this",
-        help=f"write `{wider if len(wider) <= 60 else f'{wider[:59]}…'}` to speak of all states",
+        help=spoken,
         severity="warning",
-        fix=Fix(node.span.place, wider),
+        fix=None if looks_back else Fix(node.span.place, wider),
     )
 
 
+def _is_false_at_first(node: tree.Formula) -> bool:
+    """Whether a formula is false in the first state whatever is there: nothing was before it."""
+    match node:
+        case tree.Prefix("previously"):
+            return True
+        case tree.Infix("and", left, right):
+            return _is_false_at_first(left) or _is_false_at_first(right)
+        case tree.Infix("or", left, right):
+            return _is_false_at_first(left) and _is_false_at_first(right)
+    return False
+
+
 def narrow_operator(prefix: tree.Prefix, follows: str, until: int) -> Diagnostic:
-    """``never a and b``, where ``never (a and b)`` is probably meant, up to a position."""
+    """``never a and b``, where ``never (a and b)`` is probably meant, up to a position.
+
+    Of ``never a implies b`` that would be false: what is meant there is rather ``a and b``.
+    """
+    is_denial = prefix.operator == "never" and follows == "implies"
+    way_out = f"write `{prefix.operator} (… {'and' if is_denial else follows} …)`"
     return NARROW_OPERATOR.at(
         prefix.span,
         f"`{prefix.operator}` speaks of this alone, not of what `{follows}` joins to it",
         expected=f"`{prefix.operator}` binds tighter than `{follows}`",
-        help=f"write `{prefix.operator} (… {follows} …)`, or put parentheses around this",
+        help=f"{way_out}, or put parentheses around this",
         severity="warning",
-        fix=parentheses_behind(prefix, until),
+        fix=None if is_denial else parentheses_behind(prefix, until),
     )
 
 
