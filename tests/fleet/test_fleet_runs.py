@@ -422,3 +422,66 @@ def test_a_recording_whose_name_is_no_text(tmp_path):
     first, again = (run([drives], tmp_path / "found") for _ in range(2))
     assert (first.before, first.units, first.problems) == (0, 1, ())
     assert (again.before, again.units) == (1, 1)
+
+
+def csv_of(columns):
+    names = ",".join(columns)
+    rows = [",".join(map(str, row)) for row in zip(*columns.values(), strict=True)]
+    return "\n".join([names, *rows, ""])
+
+
+@pytest.mark.parametrize("name", ["recording", "RECORDING", "recordng", "recording_id"])
+def test_recordings_of_one_table_never_share_a_road(name, tmp_path, monkeypatch):
+    """Only Parquet has several recordings; elsewhere cars would follow those of other ones."""
+    monkeypatch.chdir(tmp_path)
+    lanes(tmp_path)
+    columns = tracks([0, 1])
+    columns = {name: columns.pop("recording"), **columns}
+    columns["track"] = [f"{a}{b}" for a, b in zip(columns[name], columns["track"], strict=True)]
+    Path("t.csv").write_text(csv_of(columns))
+    inputs = ["t.csv"]
+    if name != "recording":
+        Path("tables").mkdir()
+        parquet.write_table(pyarrow.table(columns), "tables/t.parquet")
+        inputs.append("tables")
+    done = run(inputs, tmp_path / "out", road_map=Path("fleet.lanes.csv"))
+    assert done.tally.judged == 0
+    assert done.tally.reasons.total() == len(inputs)
+    assert all("has the tracks of 2 recordings" in why for why in done.tally.reasons)
+    with pytest.raises(RulecError, match="they would be taken to share one road"):
+        rulec.read_recording("t.csv", "fleet.lanes.csv")
+    # Of one recording, the column may be there
+    one = {own: values[: columns[name].index("r001")] for own, values in columns.items()}
+    Path("t.csv").write_text(csv_of(one))
+    assert rulec.read_recording("t.csv", "fleet.lanes.csv").participants
+
+
+def test_a_damaged_table_in_a_folder_is_reported(tmp_path, capsys):
+    folder = tmp_path / "tables"
+    folder.mkdir()
+    for number in (0, 1):
+        parquet.write_table(pyarrow.table(tracks([number])), folder / f"r{number}.parquet")
+    (folder / "r1.parquet").write_bytes((folder / "r1.parquet").read_bytes()[:-40])
+    (folder / "r2.parquet").write_bytes(b"")
+    command = ["fleet", str(folder), "--map", str(lanes(tmp_path)), "-r", "esterle2019"]
+    assert main([*command, "-o", str(tmp_path / "out")]) == 2
+    err = capsys.readouterr().err
+    for name in ("r1", "r2"):
+        assert f" --> {folder / name}.parquet\n" in err
+    assert "r0" not in err
+
+
+def test_what_is_odd_about_recordings_is_told(tmp_path):
+    columns = tracks([0])
+    columns["speed"] = [20 * 3.6 if name == "a" else 8 * 3.6 for name in columns["track"]]
+    path = tmp_path / "t.parquet"
+    parquet.write_table(pyarrow.table(columns), path)
+    done = run([path], tmp_path / "out", road_map=lanes(tmp_path))
+    (remark,) = (own for own in done.tally.remarks if "what places and times say" in own)
+    assert done.tally.remarks[remark] == 3
+    assert f"note        3 drives: {remark} (as in " in as_text(done)
+    rows = _rows(tmp_path / "out")
+    assert {tuple(row["remarks"]) for row in rows if row["kind"] == "drive"} == {
+        tuple(done.tally.remarks)
+    }
+    assert {tuple(row["remarks"]) for row in rows if row["kind"] != "drive"} == {()}

@@ -141,6 +141,7 @@ HEAD = "trace,step,object,type,other,p\n"
         (HEAD + "t,0,,,true\n", 2, "this row has 5 cells; there are 6 columns", ""),
         (HEAD + ",0,,,,true\n", 2, "does not name its trace", ""),
         (HEAD + "t,1,,,,true\n", 2, "the step is `1`; it must be 0 here", "are consecutive"),
+        (HEAD + "t,-1,,,,true\nt,0,,,,true\n", 2, "the step is `-1`; it must be 0 here", ""),
         (HEAD + "t,0,,,,true\nt,2,,,,true\n", 3, "the step is `2`; it must be 0 or 1 here", ""),
         (HEAD + "t,0,,,,true\nt,1,,,,\nt,0,,,,\n", 4, "the step is `0`; it must be 1 or 2", ""),
         (HEAD + "t,0.0,,,,true\n", 2, "the step is `0.0`", "written without a point: 0, 1, 2"),

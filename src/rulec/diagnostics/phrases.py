@@ -27,7 +27,9 @@ def nearest_name(
     if same is not None or len(by_folded) > _MOST_SEARCHED:
         return same
     long_enough = tuple(
-        folded for folded in by_folded if len(folded) > _SHORT_WORD or 2 * len(folded) > len(name)
+        folded
+        for folded in by_folded
+        if len(folded) > min(_SHORT_WORD, len(name) - 2) or 2 * len(folded) > len(name)
     )
     close = _closest(name.casefold(), long_enough, alike)
     if close:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, fields
 from math import hypot
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.traces.recorded_drive import Drive
@@ -24,6 +25,15 @@ MOVED_M = 0.5
 
 OUTCOMES: Mapping[bool | None, OutcomeName] = {True: "kept", False: "violated", None: "open"}
 """Verdict on a drive's hard rules -> its name in the table."""
+
+
+def reason_of(error: RulecError, own: Mapping[str, object]) -> str:
+    """Why something cannot be judged, and the way out; with the file, if that is another one."""
+    first = error.diagnostics[0]
+    file = first.place.file if first.place is not None else ""
+    is_other = file and file not in (own.get("file"), own.get("recording"))
+    where = f" ({file})" if is_other and file not in first.message else ""
+    return f"{first.message}{where}{f'; {first.help}' if first.help else ''}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,13 +73,15 @@ class DriveRows:
             "source": recording.form,
             "country": recording.country,
         }
+        remarks = tuple(recording.remarks)
         if isinstance(answer, NoDrive):
             named = {"vehicle": answer.ego, "ego": answer.ego}
-            yield self.of_nothing({**own, **named}, answer.why)
+            yield {**self.of_nothing({**own, **named}, answer.why), "remarks": remarks}
         else:
             if findings is None:
                 findings = DriveFindings(verdicts, file).add(answer)
-            yield from self._of_drive(answer, own, findings)
+            for row in self._of_drive(answer, own, findings):
+                yield {**row, "remarks": remarks} if row["kind"] == "drive" else row
 
     def of_trace(
         self,
@@ -94,7 +106,7 @@ class DriveRows:
         drive, verdict = result.drive, result.answer
         own = {**own, "vehicle": drive.arrays.id, "ego": drive.ego}
         if isinstance(verdict, NotJudged):
-            yield self.of_nothing(own, verdict.error.diagnostics[0].message)
+            yield self.of_nothing(own, reason_of(verdict.error, own))
             return
         times = (drive.time_s(0), drive.time_s(None))
         facts = facts_of(drive.arrays, self.rules, verdict)

@@ -18,6 +18,7 @@ COLUMNS: Mapping[str, type] = {
     "kind": str,
     **verdict_finding.COLUMNS,
     **dict.fromkeys(("ego", "source", "country", "road"), str),
+    "remarks": list,
     "state": int,
     "states": int,
     **dict.fromkeys(("duration_s", "distance_m"), float),

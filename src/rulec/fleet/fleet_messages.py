@@ -49,6 +49,14 @@ def no_drives(columns: list[str]) -> RulecError:
     )
 
 
+def almost_named(column: str, known: str) -> RulecError:
+    return NO_DRIVES_TABLE.error(
+        None,
+        f"the table's column `{column:.40}` is almost called `{known}`, which tells drives apart",
+        help=f"call it `{known}` if that is meant; otherwise rename it, or leave it out",
+    )
+
+
 def unnamed_drives(why: str, path: str = "") -> RulecError:
     return NO_DRIVES_TABLE.error(
         SourceLocation(path) if path else None,

@@ -6,7 +6,8 @@ from collections import OrderedDict
 from collections.abc import Hashable, Sequence
 from typing import Any, Literal
 
-from rulec.fleet.fleet_messages import no_drives
+from rulec.diagnostics import nearest_name
+from rulec.fleet.fleet_messages import almost_named, no_drives
 from rulec.recordings.table_heads import is_track_head
 from rulec.trace.formats.table_reader import STEP, TRACE
 
@@ -18,11 +19,21 @@ FILE, RECORDING, MAP, ROWS = "file", "recording", "map", "rows"
 They contain a row's file, recording, map, and the row count of its recording or trace.
 """
 
+_SAME_NAME = 0.85
+"""So similar is a name to one of these that it is meant."""
+
 MOST_SEEN = 1 << 12
 
 
 def kind_of(columns: Sequence[str]) -> TableKind:
-    """The kind of a table with these columns. Raises RulecError R0710."""
+    """The kind of a table with these columns.
+
+    Raises RulecError R0710, also for a column that is almost called as one that identifies drives.
+    """
+    for name in columns:
+        own = nearest_name(name.strip(), (FILE, RECORDING, MAP, ROWS), _SAME_NAME)
+        if own is not None and own != name and own not in columns:
+            raise almost_named(name, own)
     names = [name.casefold() for name in columns]
     if TRACE in names and STEP in names:
         return "traces"

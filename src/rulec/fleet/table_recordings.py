@@ -12,7 +12,7 @@ from rulec.diagnostics import RulecError
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.files import FileState, note_read
-from rulec.fleet.drive_rows import DriveRows
+from rulec.fleet.drive_rows import DriveRows, reason_of
 from rulec.fleet.finding_columns import Row
 from rulec.fleet.fleet_messages import cut_drive, no_map
 from rulec.fleet.table_kind import FILE, MAP, RECORDING, ROWS, SeenKeys, keys_of, lacking
@@ -74,7 +74,7 @@ class TrackTableJudge:
             verdicts = RecordingVerdicts(recording, self.to_rows.rules, self.request, file or name)
             yield from self.to_rows.of_recording(verdicts, file)
         except RulecError as error:
-            yield self.to_rows.of_nothing(own, error.diagnostics[0].message)
+            yield self.to_rows.of_nothing(own, reason_of(error, own))
 
 
 def recording_of(table: Any, name: str, roads: Roads) -> Recording:
@@ -90,7 +90,7 @@ def recording_of(table: Any, name: str, roads: Roads) -> Recording:
 
     known = [column for column in table.column_names if column not in (MAP, ROWS)]
     columns = {column: cells_in(table.column(column)) for column in known}
-    rows, remark = track_rows_of(table_of(columns, f"tracks of `{name}`"))
+    rows, remark = track_rows_of(table_of(columns, f"tracks of `{name}`, rows counted in it"))
     chosen = maps[0] if maps and maps[0] else roads
     if chosen is None:
         raise no_map(name, "it has tracks, but no roads")

@@ -11,7 +11,9 @@ from pathlib import Path
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.file_messages import UNREADABLE_FILE
 from rulec.files import is_folder
+from rulec.recordings.encodings.csv_head import PARQUET
 from rulec.recordings.format_table import FORMATS
+from rulec.recordings.recording_files import check_readable
 from rulec.recordings.recording_format import RECORDING, Glance
 from rulec.work_trees import refuse_link_out, tree_of
 
@@ -115,13 +117,16 @@ def _recordings_below(folder: str) -> tuple[list[str], int, list[RulecError]]:
     for path in _walk(folder):
         try:
             refuse_link_out(path, tree=tree)
+            if _is_recording(path):
+                recordings.append(str(path))
+                continue
+            if path.name.lower().endswith(PARQUET):
+                # What is left of a damaged one is no other file
+                check_readable(path)
         except RulecError as error:
             refused.append(error)
             continue
-        if _is_recording(path):
-            recordings.append(str(path))
-        else:
-            others += 1
+        others += 1
     return recordings, others, refused
 
 

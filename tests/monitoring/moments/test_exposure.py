@@ -258,3 +258,24 @@ def drive(chance, number):
         states.append({"red": chance.random() < 0.7, **said})
     present = dict.fromkeys(late, (1, n_states - 1))
     return Trace(f"t{number}", 0.5, dict.fromkeys(cars, "vehicle"), tuple(states), present)
+
+
+@pytest.mark.parametrize(
+    ("states", "expected"),
+    [
+        ([("motorway", False)] * 2 + [("ordinary_road", True)], "motorway"),
+        ([("ordinary_road", True)] * 2, "built-up"),
+        ([("expressway", False)] * 2, "outside"),
+        ([("motorway", False), (UNKNOWN, False), (UNKNOWN, False)], ""),
+        ([("ordinary_road", UNKNOWN)] * 2, ""),
+    ],
+)
+def test_the_class_of_a_road_is_by_the_words_of_the_vocabulary_that_ships(states, expected):
+    text = (
+        "rulebook r use road hard rule r { require always (motorway implies speed <= 80 km/h) } "
+        "hard rule s { require always (built_up implies speed <= 50 km/h) }"
+    )
+    compiled = compile_here(parse_rulebook(text), Fraction(1))
+    named = tuple({"road_class": kind, "built_up": within} for kind, within in states)
+    trace = Trace("t", 1.0, {}, named)
+    assert facts_of(trace, compiled, verify(trace, compiled)).road == expected

@@ -74,9 +74,9 @@ def command(
     folders written by `rulec fleet`. All drives must have been judged in the same way; several
     rulebooks are allowed only with --by rulebook.
 
-    Each rate has two confidence intervals: an exact one for independent opportunities, and a
-    bootstrap over drives. This needs the extra `rates`: in a checkout
-    `.venv/bin/python -m pip install -e '.[rates]'`.
+    Each rate has three confidence intervals: an exact one for independent opportunities, a
+    bootstrap over drives, and one for independent drives of any kind. This needs the extra
+    `rates`: in a checkout `.venv/bin/python -m pip install -e '.[rates]'`.
     """
     # Late import, not for --help: NumPy, Arrow and display of rates (150 ms).
     from rulec.rates.rates_of_findings import rates_of_findings

@@ -47,7 +47,9 @@ def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
         tables |= dict.fromkeys(below)
         files = input_files([argument])
         # A folder that contains only tables need not contain recordings.
-        problems += (problem for problem in files.problems if not below or _is_link_out(problem))
+        problems += (
+            problem for problem in files.problems if not below or not _is_about(argument, problem)
+        )
         for path in files.paths:
             try:
                 # Each file is read by any free process, perhaps on another machine.
@@ -83,8 +85,13 @@ def _tables_below(argument: str) -> Iterator[str]:
             yield str(path)
 
 
-def _is_link_out(problem: RulecError) -> bool:
-    return any(diagnostic.code == LINK_OUT.code for diagnostic in problem.diagnostics)
+def _is_about(argument: str, problem: RulecError) -> bool:
+    """Whether a problem is about a folder itself, not about a file or link in it."""
+    places = [diagnostic.place for diagnostic in problem.diagnostics]
+    codes = {diagnostic.code for diagnostic in problem.diagnostics}
+    return LINK_OUT.code not in codes and all(
+        place is not None and Path(place.file) == Path(argument) for place in places
+    )
 
 
 def _why_not(path: str) -> RulecError:

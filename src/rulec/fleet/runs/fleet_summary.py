@@ -58,6 +58,12 @@ def _drives(run: FleetRun) -> Iterator[str]:
     distance = f", {tally.km:,.1f} km" if tally.km else ""
     driven = f"{tally.hours:,.2f} h" if tally.hours >= 1 else f"{tally.hours * 3600:,.1f} s"
     yield f"driven      {driven}{distance}"
+    for remark, count in tally.remarks.most_common(_MOST_REASONS):
+        drives = "1 drive" if count == 1 else f"{count:,} drives"
+        yield f"note        {drives}: {remark} (as in {tally.examples[remark]})"
+    if len(tally.remarks) > _MOST_REASONS:
+        others = len(tally.remarks) - _MOST_REASONS
+        yield f"note        and {others:,} more; the column `remarks` has them all"
     if not tally.drives["not_judged"]:
         return
     reasons = tally.reasons.most_common(_MOST_REASONS)

@@ -9,7 +9,10 @@ from pathlib import Path
 from rulec.trace.formats.arrow.parquet import arrow
 
 _NAMES = ("file", "recording", "vehicle")
-_COLUMNS = ("kind", "outcome", "rule", "ego", "because", *_NAMES, "duration_s", "distance_m")
+_COLUMNS = (
+    *("kind", "outcome", "rule", "ego", "because", *_NAMES),
+    *("duration_s", "distance_m", "remarks"),
+)
 
 _ROWS_AT_ONCE = 1 << 12
 
@@ -20,15 +23,17 @@ class FleetTally:
 
     ``drives``: outcome -> number. ``rules``: rule and outcome -> number of drives. ``reasons``: why
     drives were not judged -> number. ``examples``: such a reason -> the alphabetically first file
-    with such a drive; in a table without file names, its recording or trace. ``unread``: number of
-    files, recordings and traces (not vehicles) that could not be judged. ``lost``: units whose
-    process was killed twice.
+    with such a drive; in a table without file names, its recording or trace. ``remarks``: what is
+    odd about a recording -> the number of its drives; ``examples`` has these, too. ``unread``:
+    number of files, recordings and traces (not vehicles) that could not be judged. ``lost``: units
+    whose process was killed twice.
     """
 
     drives: Counter[str] = field(default_factory=Counter)
     rules: Counter[tuple[str, str]] = field(default_factory=Counter)
     reasons: Counter[str] = field(default_factory=Counter)
     examples: dict[str, str] = field(default_factory=dict)
+    remarks: Counter[str] = field(default_factory=Counter)
     unread: int = 0
     hours: float = 0.0
     km: float = 0.0
@@ -39,6 +44,7 @@ class FleetTally:
         self.drives.update(other.drives)
         self.rules.update(other.rules)
         self.reasons.update(other.reasons)
+        self.remarks.update(other.remarks)
         for why, where in other.examples.items():
             self.examples[why] = min(where, self.examples.get(why, where))
         self.unread += other.unread
@@ -59,16 +65,21 @@ def tally_of(path: Path) -> FleetTally:
     with parquet.ParquetFile(path) as source:
         for batch in source.iter_batches(_ROWS_AT_ONCE, columns=list(_COLUMNS), use_threads=False):
             for row in zip(*(batch.column(name).to_pylist() for name in _COLUMNS), strict=True):
-                kind, outcome, rule, ego, because, *names, duration_s, distance_m = row
+                kind, outcome, rule, ego, because, *names, duration_s, distance_m, remarks = row
+                where = next(filter(None, names), "")
                 if kind == "rule":
                     tally.rules[rule, outcome] += 1
                 elif kind == "drive":
                     tally.drives[outcome] += 1
                     tally.hours += (duration_s or 0.0) / 3600
                     tally.km += (distance_m or 0.0) / 1000
+                    tally.remarks.update(remarks)
+                    for remark in remarks:
+                        tally.examples[remark] = min(where, tally.examples.get(remark, where))
                     if outcome == "not_judged":
+                        # One reason, whichever recording it names
+                        because = because.replace(f"`{names[1]}`", "`…`") if names[1] else because
                         tally.reasons[because] += 1
-                        where = next(filter(None, names), "")
                         tally.examples[because] = min(where, tally.examples.get(because, where))
                         tally.unread += not ego
     return tally

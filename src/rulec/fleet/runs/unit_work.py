@@ -13,7 +13,7 @@ from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.files import files_read, written_whole
 from rulec.fleet.carried_rulebook import CarriedRulebook
-from rulec.fleet.drive_rows import DriveRows
+from rulec.fleet.drive_rows import DriveRows, reason_of
 from rulec.fleet.finding_columns import Row, arrow_schema, arrow_table
 from rulec.fleet.runs.drive_keys import memory_given_back
 from rulec.fleet.runs.fleet_folder import READ, STATE, FleetFolder
@@ -85,9 +85,10 @@ class UnitWorker:
                     verdicts = RecordingVerdicts(recording, rules, self.request, unit.path)
                     yield from to_rows.of_recording(verdicts, unit.path)
                 except RulecError as error:
-                    yield to_rows.of_nothing(own, error.diagnostics[0].message)
+                    yield to_rows.of_nothing(own, reason_of(error, own))
         except RulecError as error:
-            yield to_rows.of_nothing({"file": unit.path}, error.diagnostics[0].message)
+            own = {"file": unit.path}
+            yield to_rows.of_nothing(own, reason_of(error, own))
 
     def _of_table(self, unit: WorkUnit, to_rows: DriveRows) -> Iterator[Row]:
         roads = None if self.source.map_path is None else str(self.source.map_path)

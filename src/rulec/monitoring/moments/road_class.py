@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.monitoring.moments.name_tables import Flags, NameTables
-from rulec.vocabulary import Signal
+from rulec.vocabulary import Enumeration, Signal
 
 MOTORWAY, BUILT_UP, OUTSIDE = "motorway", "built-up", "outside"
 """Road classes: motorways, other roads within built-up areas, and other roads outside of them."""
@@ -14,15 +14,14 @@ MOTORWAY, BUILT_UP, OUTSIDE = "motorway", "built-up", "outside"
 def road_classes(tables: NameTables) -> list[str]:
     """For each trace the road class of most of its states.
 
-    It is empty if most states do not tell, or if the vocabulary lacks the signals, which are
-    ``motorway`` and ``built_up`` of the vocabulary ``road``.
+    It is empty if most states do not tell, or if the vocabulary lacks the words ``motorway`` and
+    ``built_up`` of the vocabulary ``road``: signals, or values of an enumeration.
     """
-    declared = [tables.vocabulary.declarations.get(name) for name in ("motorway", "built_up")]
-    if not all(isinstance(signal, Signal) and not signal.parameters for signal in declared):
-        return [""] * tables.n_traces
     there = np.arange(tables.n_states) <= tables.last[:, None]
-    on_motorway, not_on_motorway = _known(tables, "motorway", there)
-    built_up, not_built_up = _known(tables, "built_up", there)
+    told = [_known(tables, name, there) for name in ("motorway", "built_up")]
+    if None in told:
+        return [""] * tables.n_traces
+    (on_motorway, not_on_motorway), (built_up, not_built_up) = filter(None, told)
     counts = {
         MOTORWAY: on_motorway.sum(axis=1),
         BUILT_UP: (not_on_motorway & built_up).sum(axis=1),
@@ -33,8 +32,16 @@ def road_classes(tables: NameTables) -> list[str]:
     return [[*counts][place] for place in most.tolist()]
 
 
-def _known(tables: NameTables, name: str, there: Flags) -> tuple[Flags, Flags]:
-    """The states in which a signal is known to be true, and known to be false."""
-    rows = tables.world(name)
+def _known(tables: NameTables, name: str, there: Flags) -> tuple[Flags, Flags] | None:
+    """The states in which a word is known to hold, and known not to; None if it is no such word."""
+    declared = tables.vocabulary.declarations.get(name) or tables.vocabulary.enumeration_of.get(
+        name
+    )
+    if not isinstance(declared, Signal | Enumeration) or declared.parameters:
+        return None
+    rows = tables.world(declared.name)
+    holds: Flags = rows.values.astype(bool)
+    if isinstance(declared, Enumeration):
+        holds = rows.values == declared.values.index(name)
     known = there & ~rows.unknown
-    return rows.values & known, ~rows.values & known
+    return holds & known, ~holds & known

@@ -128,7 +128,8 @@ class _Reading:
         earlier = int(rows.columns.rows[first])
         way_out = (
             f"it is there in row {earlier:,}, too; keep one, or give them different tracks; "
-            "`rulec fleet` reads a table of several recordings, with a column `recording`"
+            "`rulec fleet` reads a table of several recordings in Parquet, with a column "
+            "`recording`"
         )
         return rows.columns.wrong(second, why, help_text=way_out)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast, get_args
 
 import numpy as np
 
+from rulec.diagnostics import nearest_name
 from rulec.recordings.doubts.motion_doubts import with_doubts
 from rulec.recordings.doubts.road_doubts import check_near
 from rulec.recordings.encodings.csv_head import is_number
@@ -39,6 +40,9 @@ TRACKS = FileFormat(
     "it has a row for each time of each track, with the columns `track`, `t`, `x`, `y`",
     4_000_000_000,
 )
+
+_RECORDING, _SAME_NAME = "recording", 0.85
+"""The column of fleets' tables that names a row's recording, and how similar its name is."""
 
 _SPARSE_S = 5.0
 _CREEPING_MPS = 0.5
@@ -118,6 +122,7 @@ def recording_from_columns(
 
 def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:
     """The rows of a table of tracks, and a remark about column names that are almost known."""
+    _check_one_recording(table)
     named = named_columns(table, TRACK_COLUMNS)
     numbers = named.numbers
     if ("vx" in numbers) != ("vy" in numbers):
@@ -153,6 +158,22 @@ def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:
     )
     _check_seconds(rows, heads)
     return rows, unread_remark(named.unread, TRACK_COLUMNS)
+
+
+def _check_one_recording(table: ColumnTable) -> None:
+    """Refuse tracks of several recordings, which would share one road."""
+    for name in table.names:
+        if not nearest_name(name.strip(), [_RECORDING], _SAME_NAME):
+            continue
+        names = table.read([], [name]).texts[name].names
+        if len(names) > 1:
+            shown = [f"`{short(text)}`" for text in names[:3]] + ["…"] * (len(names) > 3)
+            raise table.refused(
+                f"it has the tracks of {len(names):,} recordings, by its column `{short(name)}`: "
+                f"{', '.join(shown)}; they would be taken to share one road",
+                help_text="write each recording to a file of its own; or all of them to a table in "
+                "Parquet with the column `recording`, which `rulec fleet` reads",
+            )
 
 
 def _check_seconds(rows: TrackRows, heads: set[str]) -> None:

@@ -216,7 +216,7 @@ class _Building:
     def _go_to(self, step: Any, number: int) -> None:
         current = len(self.states) if self.now else -1
         step_number = whole(step)
-        if step_number is None or step_number not in (current, current + 1):
+        if step_number is None or step_number not in (max(current, 0), current + 1):
             expected = "0" if current < 0 else f"{current} or {current + 1}"
             raise self._problem(
                 f"the step is {_shown(step)}; it must be {expected} here",

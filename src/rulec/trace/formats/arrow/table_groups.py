@@ -122,7 +122,8 @@ def trace_outlines(table: Any) -> list[TraceOutline]:
     starts = _starts([names], len(table)) if len(table) else []
     try:
         array = whole_array(_plain(table.column(STEP)).cast(pyarrow.int64()))
-        steps = np.where(given_in(array), numbers_in(array), -1)
+        given = given_in(array)
+        steps = np.where(given, numbers_in(array), -1)
     except (pyarrow.ArrowException, OverflowError):
         steps = None
     outlines = []
@@ -131,7 +132,7 @@ def trace_outlines(table: Any) -> list[TraceOutline]:
         if steps is not None:
             own = steps[start:stop]
             states = int(own[-1]) + 1
-            if own[0] > 0:
+            if own[0] > 0 or (own[0] < 0 and given[start]):
                 lacks = f"it begins with step {own[0]}"
             elif (gaps := np.diff(own) > 1).any():
                 lacks = f"step {own[np.argmax(gaps)] + 1} is missing"
