@@ -292,6 +292,16 @@ def test_one_that_comes_to_the_road_while_ego_turns():
     assert side_road([-6.0] * 40)[9] == "F"
 
 
+@pytest.mark.parametrize(("inside", "told"), [(0.4, "?"), (0.9, "?"), (1.5, "T")])
+def test_who_stops_at_the_kerb_as_ego_comes_and_stays_may_wait_for_green(inside, told):
+    """It gets to its place, the road's edge being at y = -2, as ego turns; ego is gone by 17."""
+    comes = [min(-2 + inside, -6.0 + 0.6 * k) for k in range(40)]
+    assert side_road(comes)[9] == told
+    # Had it waited for ego only, it would have gone on as ego was past
+    goes_on = [*comes[:22], *(comes[21] + 0.6 * k for k in range(18))]
+    assert side_road(goes_on)[9] == "T"
+
+
 def test_one_on_a_crossing_that_is_drawn_within_the_junction():
     """The junction ends at x = 8, and the crossing is from 4 to 8 m."""
     crossing = lanelet(9, [(6, -10), (6, 10)], width=4.0, types=frozenset({"crosswalk"}))
@@ -349,7 +359,10 @@ def test_who_waits_on_a_corner_to_cross_the_road_from_which_ego_comes():
     """It stays at the crossing of that road, where ways of those who turn lie over the corner."""
     stays = [CORNER] * 32
     assert at_the_corner(stays) == "F"
-    assert at_the_corner(stays, entry=False) == "T"
+    # With no other crossing drawn it may wait for something else, as it never goes
+    assert at_the_corner(stays, entry=False) == "?"
+    goes = [(5.0, -3.8 + 0.6 * k) for k in range(16)]
+    assert at_the_corner([*stays[:16], *goes], entry=False) == "T"
     crosses = [(3.6 - 0.6 * k, -4.2) for k in range(16)]
     assert at_the_corner([*stays[:16], *crosses]) == "F"
 

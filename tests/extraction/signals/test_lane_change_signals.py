@@ -231,10 +231,22 @@ def test_an_indicator_that_goes_out_while_ego_lies_across_the_mark_counts(last_l
     change = found.world["lane_change"].tolist().index(True)
     assert change == 6
     assert found.values("indicator")[change] == expected
+    if expected == "far_indicator":
+        # In all states up to the change, as it was lit in all up to the mark
+        assert set(found.values("indicator")[: change + 1]) == {"far_indicator"}
     # A lamp that was lit longer ago announces nothing
     assert changes(body=body, signalling_s=0.5).values("indicator")[change] == (
         expected if last_lit > change - 2 else "no_indicator"
     )
+
+
+def test_what_was_lit_for_too_short_before_the_mark_stays_so():
+    """Two states before it goes out, it was dark: so it is two states before the change."""
+    places = {k: (5 * k, 0.5 * (k - 0.5)) for k in range(9)}
+    lit = {k: LEFT if k in (3, 4) else frozenset() for k in range(9)}
+    body = replace(vehicle(7, places, width=1.8), lamps=lit, shows=INDICATORS)
+    shown = changes(body=body).values("indicator")
+    assert [value == "far_indicator" for value in shown[:7]] == [False] * 5 + [True] * 2
 
 
 @pytest.mark.parametrize(("y", "unknown"), [(2.4, False), (2.6, True), (4.0, True)])

@@ -312,12 +312,6 @@ def way_along(context: DriveContext) -> Floats:
 
 
 @once
-def lateral_gap(context: DriveContext) -> Floats:
-    """The distance (m) across the road between bodies, 0 where they overlap across it."""
-    return np.maximum(way_across(context), 0.0)
-
-
-@once
 def way_across(context: DriveContext) -> Floats:
     """The distance (m) across the road between bodies, negative where they overlap across it."""
     ego, others = context.ego_extents, context.extents

@@ -242,8 +242,10 @@ def _indicator(context: DriveContext) -> SignalColumns:
     Both sides at once are no indication, like hazard lights; if a file states that hazard lights
     are off then, it contradicts itself, and both sides are unknown in the whole drive. A vehicle
     that changes lanes has indicated it if it did up to the state before, or while it lay across the
-    mark; if it jumps at that time, or off the road's edge, that is unknown. So is whether it did
-    before a change that takes one step, as in simulators, in which nobody can announce it.
+    mark; what it showed until then is as much later as the change is known later, since it may
+    switch off once its middle is over the mark. If it jumps at that time, or off the road's edge,
+    that is unknown. So is whether it did before a change that takes one step, as in simulators, in
+    which nobody can announce it.
     """
     egos = context.ego.participants
     if not context.spans.agreed([ego.lamps and ego.shows >= _INDICATORS for ego in egos]):
@@ -263,7 +265,13 @@ def _indicator(context: DriveContext) -> SignalColumns:
     is_dark = np.array([lamps is not None and not lamps & _INDICATORS for lamps in steps])
     spans, changed, across_mps = context.spans, _changes(context), _speed_across(context)
     changes = (changed & is_dark).nonzero()[0]
-    codes[changes] = [_shown_across(context, codes, change) for change in changes.tolist()]
+    shown, longest = codes.copy(), round(context.thresholds.signalling_s / context.recording.step_s)
+    for change in changes.tolist():
+        last = _lit_across(context, shown, change)
+        # What it showed until then is as much later as the change is known later
+        first = max(int(spans.first[change]), change - longest)
+        if last < change:
+            codes[first + change - last : change + 1] = shown[first : last + 1]
     jumps = across_mps > _JUMP_MPS
     # A jump may end short of the mark, or begin just behind it
     about = spans.within(jumps, round(_JUMP_S / context.recording.step_s), around=True)
@@ -280,8 +288,11 @@ def _indicator(context: DriveContext) -> SignalColumns:
     )
 
 
-def _shown_across(context: DriveContext, codes: NDArray[intp], change: int) -> int:
-    """What ego indicated last before a change of lanes, since its body reached the mark."""
+def _lit_across(context: DriveContext, codes: NDArray[intp], change: int) -> int:
+    """The last state before a change of lanes, since ego's body reached the mark, with a light.
+
+    The change itself if there is none.
+    """
     lane, own = context.steady_lane, context.ego_extents
     mark = max(lane[change - 1], lane[change])
     longest = round(context.thresholds.signalling_s / context.recording.step_s)
@@ -292,7 +303,7 @@ def _shown_across(context: DriveContext, codes: NDArray[intp], change: int) -> i
     clear = ((low > 0.0) | (high < 0.0)).nonzero()[0]
     since = min(first + int(clear[-1]) + 1 if len(clear) else first, change - 1)
     lit = codes[since:change].nonzero()[0]
-    return int(codes[since + lit[-1]]) if len(lit) else 0
+    return since + int(lit[-1]) if len(lit) else change
 
 
 def _speed_across(context: DriveContext) -> Floats:

@@ -33,6 +33,9 @@ from rulec.trace.plain_arrays import ranges
 _STOOD_S = 5.0
 """A pedestrian that stood this long before ego comes, and after it, has not stopped for ego."""
 
+_AT_KERB_M = 1.0
+"""So near (m) to the road's edge is the middle of one that waits at the kerb."""
+
 _HAIR_MPS = 1e-3
 
 _WALKS_MPS = 1.4
@@ -145,7 +148,8 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     ``entering_s`` later; or they stood until it was gone, and went then. Not those behind whom ego
     goes at walking pace, or waits, until they are across. Unknown for those that ego does not reach
     while both are seen, or for which it still waits; and for those that have stood since
-    ``_STOOD_S`` before ego comes and stay as long once it is gone, who may not want to cross.
+    ``_STOOD_S`` before ego comes and stay as long once it is gone, or stand at the edge of the road
+    for that long from then on: they may not want to cross.
     """
     own, others = context.ego_extents, context.extents.part(rows, slice(None))
     spans, seen = context.spans, context.relevant[rows]
@@ -174,12 +178,26 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     moves = np.take_along_axis(moves, np.maximum(at - stood, spans.first), axis=1)
     # For a pedestrian standing at a lane's bound, errors of places alone may show a step over it
     stays = (~waited | (moves > steps_on)) & (moves > np.minimum(goes + stood, last))
+    # One that stops at the kerb as ego comes, and stays, may wait for something else, as for green
+    leaves = spans.next_state(seen & ~(stands & _at_kerb(context, rows, on_lanes)))
+    stays |= np.take_along_axis(leaves, by_then, axis=1) > np.minimum(goes + stood, last)
     lost = spans.next_state(~seen) <= np.minimum(soon, last)
     unseen = (steps_on >= spans.end) & (lost | (soon >= spans.end))
     # As on the other half of a wide road, where it may stand because of others
     far = np.take_along_axis(_comes_s(context, rows) > limits.held_up_s, goes, axis=1)
     unsure = waits_yet | (taken & (stays | (far & ~in_way))) | (~let_go & ~taken & unseen)
     return taken, ~reached | unsure, goes
+
+
+def _at_kerb(context: DriveContext, rows: NDArray[intp], on_lanes: Flags) -> Flags:
+    """Mask, for ``rows``, of those off the lanes, or with their middle near the road's edge."""
+    own, at_kerb = Cells.at(on_lanes), ~on_lanes
+    (low_r, high_r), (low_l, high_l) = _from_edges(
+        context, own.in_rows(rows, len(context.relevant))
+    )
+    from_edge = np.minimum((low_r + high_r) / 2, -(low_l + high_l) / 2)
+    at_kerb.ravel()[own.places] = from_edge <= _AT_KERB_M
+    return at_kerb
 
 
 def _waited_for(

@@ -14,7 +14,7 @@ from rulec.extraction.signals.measured_numbers import (
     gap_bounds,
     gaps,
     headway_bounds,
-    lateral_gap_bounds,
+    lateral_gaps,
     moves,
     own_speed,
     speed_differences,
@@ -136,8 +136,7 @@ def _time_headway(context: DriveContext) -> SignalColumns:
 
 
 def _lateral_gap(context: DriveContext) -> SignalColumns:
-    gap = presence_cells(context).of(relations.lateral_gap(context))
-    return _measured("lateral_gap", gap, lateral_gap_bounds(context))
+    return _measured("lateral_gap", *lateral_gaps(context))
 
 
 def _speed_difference(context: DriveContext) -> SignalColumns:
