@@ -508,3 +508,60 @@ def test_who_arrives_more_than_a_second_before_ego_arrives_first(y, first):
     assert found.world["conflict_from_right"].any()
     assert bool(found.world["other_arrived_first"].any()) == first
     assert bool(found.world["arrived_together"].any()) != first
+
+
+@pytest.mark.parametrize(
+    ("away_m", "known"),
+    # At 10 m/s in 3.2 s, as if ego blocked its way; or in 8.2 s, when ego had time enough
+    [(32.0, True), (82.0, False)],
+)
+def test_who_comes_up_while_ego_is_held_up_in_the_junction_may_have_been_far(away_m, known):
+    """Ego drives in at 2 s, creeps there until 9 s, and is gone at 10 s; the other is held up."""
+    times = np.arange(0, 16, 0.5)
+    ahead = np.where(times < 2, -20 + 10 * times, np.where(times < 9, 0.2 * (times - 2), np.nan))
+    ahead = np.where(times < 9, ahead, 1.4 + 8 * (times - 9))
+    speeds = np.gradient(ahead, 0.5)
+    ego = vehicle(7, {k: (x, 0) for k, x in enumerate(ahead)})
+    ego = replace(
+        ego,
+        states={k: replace(state, speed=speeds[k]) for k, state in ego.states.items()},
+    )
+    # As fast as before, as far as ego leaves it room: it is at the ways' meeting place at 10.4 s
+    start = -4 - away_m - 20
+    way = np.minimum(start + 10 * times, np.where(times < 10, -8.0, -8 + 10 * (times - 10)))
+    moved = np.gradient(way, 0.5)
+    other = vehicle(8, {k: (0, y) for k, y in enumerate(way)}, heading=np.pi / 2)
+    other = replace(
+        other,
+        states={k: replace(state, speed=moved[k]) for k, state in other.states.items()},
+    )
+    found = replace(recording([*EAST, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
+    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    side = "conflict_from_right"
+    assert told.world[side].any() or told.unknown[side].any()
+    assert bool((told.world[side] & ~told.unknown[side]).any()) == known
+
+
+@pytest.mark.parametrize(("least_mps", "known"), [(0.0, True), (3.0, False)])
+def test_one_that_stops_for_ego_does_not_brake_for_its_bend(least_mps, known):
+    """From the right it turns into ego's road, and brakes by 8 m/s² before its bend of 12 m.
+
+    To a stand until ego is past the bend's end, which it reaches 2 s later; or to 3 m/s.
+    """
+    turns = np.linspace(0, np.pi / 2, 19)
+    bend = 12 * np.stack([1 - np.cos(turns), np.sin(turns) - 1], axis=1)
+    road = [
+        straight(1, -60, -12, successors=(2,)),
+        straight(2, -12, 12, predecessors=(1,), successors=(3,), types=INSIDE, junction="x"),
+        straight(3, 12, 120, predecessors=(2, 5)),
+        lanelet(4, [(0, -90), (0, -12)], successors=(5,)),
+        lanelet(5, bend, predecessors=(4,), successors=(3,), types=INSIDE, junction="x"),
+    ]
+    speeds = [10, 10, 10, 6, 2, *[least_mps] * 3, 4, 8, *[10] * 6]
+    driven = 60.0 + 0.5 * np.cumsum([0.0, *speeds[:-1]])
+    other = along(8, np.array([(0.0, -90.0), *bend, (120.0, 0.0)]), driven)
+    ego = vehicle(7, {k: (-15 + 5 * k, 0) for k in STEPS}, speed=10)
+    found = replace(recording(road, [ego, other]), complete=frozenset({"YIELD"}))
+    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    side = "conflict_from_right"
+    assert (signals.world[side] & ~signals.unknown[side]).any() == known

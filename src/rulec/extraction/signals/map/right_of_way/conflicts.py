@@ -63,6 +63,9 @@ _STRAIGHT_RAD = 0.3
 _LATE_S = 10.0
 """A vehicle that comes this long after ego reached a place may not have been in sight before."""
 
+_AMPLE_S = 6.0
+"""Who drives in this long (s) before another one can come has left it time enough."""
+
 _SPEEDS_UP_MPS2 = 2.0
 """So much faster a vehicle may become after its track has ended."""
 
@@ -256,6 +259,7 @@ def _held_up_until(
         drove_on = leaves is not None or _drives_on(context, own, comes)
         drives_in = min(max(passages.front_enters(own), first), last)
         late = (at - enters) * step_s > _LATE_S and _stood(context, own, enters, until)
+        late |= _catches_up(context, (own, enters, until), other, at, left_m)
         # The meeting place is wider than the bodies. One that slows down for itself, and whose body
         # does not come that soon, is not disturbed
         own_reason = (
@@ -274,7 +278,9 @@ def _held_up_until(
     waits_longer = late_s >= limits.held_up_s
     if waits_longer or not (soon[decides] and soon[-1]):
         before = max(decides - round(_SEES_S / step_s), 0)
-        braked = soon[before] and _brakes_for(context, other, (first + before, int(until)), comes)
+        braked = soon[before] and _brakes_for(
+            context, other, (first + before, int(until)), comes, may_turn=not waits_longer
+        )
         if not braked:
             return None
         decides = before
@@ -284,7 +290,9 @@ def _held_up_until(
     own_reason = _slows_for_itself(context, ego, other, first + decides, comes)
     if waits_longer and own_reason:
         return None
-    return int(columns[soon.argmax()]), not (leaves is None or own_reason or waits_longer)
+    unsure = leaves is None or own_reason or waits_longer
+    unsure = unsure or _catches_up(context, (own, enters, until), other, at, left_m)
+    return int(columns[soon.argmax()]), not unsure
 
 
 def _slows_for_itself(
@@ -311,11 +319,17 @@ def _is_train(context: DriveContext, own: Passage, other: Passage) -> bool:
 
 
 def _brakes_for(
-    context: DriveContext, other: Passage, columns: tuple[int, int], comes: int
+    context: DriveContext,
+    other: Passage,
+    columns: tuple[int, int],
+    comes: int,
+    *,
+    may_turn: bool,
 ) -> bool:
-    """Whether a vehicle that goes straight on brakes harder than ``disturbing_mps2`` then.
+    """Whether a vehicle brakes harder than ``disturbing_mps2`` then, and not to turn.
 
-    Straight on from where it brakes: one that drives onto a ring turns aside and back.
+    It goes straight on from where it brakes: one that drives onto a ring turns aside and back. Or
+    if it ``may_turn``, it comes to a stand, which no turn asks for.
     """
     tracks = context.surroundings.passages.tracks
     begin, end = columns
@@ -325,6 +339,9 @@ def _brakes_for(
     if not len(hard):
         return False
     brakes = begin + int(hard[0])
+    speed = tracks.speed[other.row, brakes : max(comes, brakes) + 1]
+    if may_turn and (speed < SLOWEST_MPS).any():
+        return True
     heading = tracks.heading[other.row, brakes : max(comes, brakes) + 1]
     return bool(np.ptp(np.unwrap(heading[~np.isnan(heading)])) < _STRAIGHT_RAD)
 
@@ -333,6 +350,36 @@ def _stood(context: DriveContext, own: Passage, first: int, last: float) -> bool
     """Whether ego stood between two columns: it may have driven in before those that came then."""
     speed = context.surroundings.passages.tracks.speed[own.row, first : int(last) + 1]
     return bool((speed < SLOWEST_MPS).any())
+
+
+def _catches_up(
+    context: DriveContext,
+    ego: tuple[Passage, int, float],
+    other: Passage,
+    at: float,
+    left_m: float,
+) -> bool:
+    """Whether another one comes so soon after ego only because ego is held up, as in a queue.
+
+    When ego drove in, it could not come for a long time, however it sped up. ``at``: when it does,
+    and ``left_m``: how far (m) it still has to go then.
+    """
+    (own, enters, until), passages = ego, context.surroundings.passages
+    speed, comes = passages.tracks.speed[own.row], ceil(at)
+    waits = (speed[own.first : enters + 1] < SLOWEST_MPS).nonzero()[0]
+    # Where it moves off, if it has waited within the junction
+    drives_in = own.first + int(waits[-1]) if len(waits) else passages.front_enters(own)
+    is_held_up = bool((speed[enters : int(until) + 1] < _DRIVES_MPS).any())
+    if not is_held_up or comes <= drives_in:
+        return False
+    travelled = passages.travelled[other.row]
+    begin = max(drives_in, int(passages.tracks.present[other.row].argmax()))
+    way = float(np.interp(at, np.arange(len(travelled)), travelled) + left_m - travelled[begin])
+    speeds = passages.tracks.speed[other.row, begin : comes + 1]
+    now, fastest = float(speeds[0]), float(np.nanmax(speeds))
+    gains_s = (fastest - now) / _SPEEDS_UP_MPS2
+    soonest_s = gains_s + max(way - (now + fastest) / 2 * gains_s, 0.0) / max(fastest, SLOWEST_MPS)
+    return soonest_s > _AMPLE_S
 
 
 def _stands(context: DriveContext, other: Passage, column: int) -> bool:
