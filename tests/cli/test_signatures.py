@@ -164,3 +164,9 @@ def test_what_minisign_signs_here(rules, capsys, tmp_path):
     assert asked(rules, public, capsys) == (0, "")
     subprocess.run([*sign, "-l"], check=True, capture_output=True)
     assert asked(rules, public, capsys)[0] == 2
+
+
+def test_a_key_file_that_is_not_there_is_named(capsys):
+    assert main(["show", "esterle2019", "--require-signed", "keys/us.pub"]) == 2
+    err = capsys.readouterr().err
+    assert "error[R0413]: there is no such file\n --> keys/us.pub\n" in err

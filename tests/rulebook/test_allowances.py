@@ -35,6 +35,8 @@ def test_without_a_reason_it_stays(comment):
 
 def test_what_is_not_found_is_not_allowed():
     assert codes("", "  # rulec: allow R0208 because elsewhere") == ["R0208", "R0219"]
+    # No code begins so
+    assert codes("", "  # rulec: allow R0999 because of it") == ["R0208", "R0219"]
     # Whether an analysis, or a test, finds something here is not known.
     assert codes("", "  # rulec: allow R0801, R0408 because of the tests") == ["R0208"]
 

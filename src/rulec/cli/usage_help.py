@@ -74,6 +74,13 @@ def reworded(problem: click.ClickException) -> str:
         known = [option for parameter in problem.ctx.command.params for option in parameter.opts]
         if others := _OF_OTHER_VERBS.get(problem.option_name):
             return f"there is no option `{problem.option_name}` here; {others}"
+        general = [option for own in problem.ctx.find_root().command.params for option in own.opts]
+        if problem.option_name in general and problem.ctx.parent is not None:
+            path = problem.ctx.command_path.removeprefix("rulec ")
+            return (
+                f"`{problem.option_name}` stands before the verb: "
+                f"`rulec {problem.option_name} … {path} …`"
+            )
         if problem.option_name in ("-r", "--rulebook") and "-r" not in known:
             names = {
                 own.name for own in problem.ctx.command.params if isinstance(own, click.Argument)

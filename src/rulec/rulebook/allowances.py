@@ -11,8 +11,8 @@ from rulec.rulebook.allowance_messages import UNFIT_ALLOWANCE
 _ALLOWANCE = re.compile(
     r"#\s*rulec:\s*allow\s+(?P<codes>R\d{4}(?:\s*,\s*R\d{4})*)\b[ \t]*(?:because[ \t]+(?P<why>\S))?"
 )
-_OF_A_CHECK = ("R01", "R02", "R03")
-"""The prefixes of codes that a check finds; unused allowances of other codes are not reported."""
+_OF_OTHERS = ("R04", "R05", "R06", "R07", "R08")
+"""The prefixes of codes that other verbs find; unused allowances of these are not reported."""
 
 
 def judged_allowances(findings: Sequence[Diagnostic], source: Source) -> tuple[Diagnostic, ...]:
@@ -49,7 +49,7 @@ def _unfit(findings: Sequence[Diagnostic], source: Source) -> Iterator[Diagnosti
             )
         codes = re.findall(r"R\d{4}", match["codes"])
         for code in codes:
-            if (line, code) not in places and code.startswith(_OF_A_CHECK):
+            if (line, code) not in places and not code.startswith(_OF_OTHERS):
                 yield UNFIT_ALLOWANCE.at(
                     span,
                     f"there is no warning {code} on this line",

@@ -23,6 +23,7 @@ VARIABLE = "RULEC_REQUIRE_SIGNED"
 """The path of a public key, or the key itself; unset or empty if no signature is required."""
 
 _LARGEST = 10_000
+_KEY_CHARACTERS = 56
 
 
 @contextmanager
@@ -84,12 +85,23 @@ def _not_signed(path: Path, message: str) -> RulecError:
     )
 
 
+def _is_key(text: str) -> bool:
+    """Whether a text may be a key itself: Base64 has slashes, too."""
+    return text.startswith("RW") and len(text) == _KEY_CHARACTERS
+
+
 def _key(required: str) -> PublicKey:
     # As above.
     from rulec.automata.bundle.minisign import SignatureFormatError, public_key
 
     try:
         path = Path(required)
+        if (os.sep in required or path.suffix) and not path.exists() and not _is_key(required):
+            raise NO_KEY.error(
+                SourceLocation(required),
+                "there is no such file",
+                help="give the path of a key that `minisign -G` made, or its second line",
+            )
         return public_key(_text(path) if path.is_file() else required)
     except (OSError, SignatureFormatError, ValueError) as problem:
         raise NO_KEY.error(

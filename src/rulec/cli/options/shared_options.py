@@ -30,7 +30,9 @@ RULEBOOK_HELP = (
 
 MOST_JOBS = 256
 
-_SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/(?!0+$)[0-9]{1,9})?")
+_SECONDS = re.compile(
+    r"[0-9]{1,9}(?:(?:\.[0-9]{1,17})?(?:[eE][+-]?[0-9]{1,2})?|/(?!0+$)[0-9]{1,9})"
+)
 
 
 def combined(options: Sequence[Callable[[Any], Any]]) -> Callable[[Decorated], Decorated]:

@@ -33,8 +33,8 @@ _CORNER_M = 0.2
 _STRAIGHT_RAD = 0.1
 """Largest angle to the road behind ego's rear at which ego has not begun to turn."""
 
-_ASKEW = 0.05
-"""Sine of the angle to the road from which a body is not measured as if it lay along it."""
+_NEXT_TO_M = 5.0
+"""So near (m) across the road bodies are measured by more than rectangles along it."""
 
 _MOST_ASKEW_RAD = 0.6
 """Up to this angle a body's width is computed from its rectangle along the road."""
@@ -152,12 +152,16 @@ def lateral_gaps(context: DriveContext) -> tuple[Floats, Bounds]:
     across = cells.of(relations.way_across(context))
     own, others = context.ego_extents, context.extents
     gap = across.copy()
-    angles = cells.of(own.turned), cells.of(others.turned)
-    askew = np.logical_or.reduce([np.abs(np.sin(angle)) > _ASKEW for angle in angles])
-    if askew.any():
-        few = cells.part(askew.nonzero()[0])
-        left = few.of(others.d_min + others.d_max) > few.of(own.d_min + own.d_max)
-        gap[askew] += _beside_askew(few, own, others, left) + _beside_askew(few, others, own, ~left)
+    beside = (np.abs(across) < _NEXT_TO_M) & (cells.of(relations.way_along(context)) < 0)
+    if beside.any():
+        chosen = beside.nonzero()[0]
+        few = cells.part(chosen)
+        left = (few.of(others.d_min) + few.of(others.d_max)) > (
+            few.of(own.d_min) + few.of(own.d_max)
+        )
+        gap[chosen] += _beside_askew(few, own, others, left) + _beside_askew(
+            few, others, own, ~left
+        )
     low, high = np.maximum(across - place, 0.0), np.maximum(gap + place, 0.0)
     return np.maximum(gap, 0.0), rounded_outward(low, high)
 

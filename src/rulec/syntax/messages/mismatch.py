@@ -183,7 +183,7 @@ def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
 def too_deep(span: Span) -> Diagnostic:
     return FORMULA_TOO_DEEP.at(
         span,
-        f"the formula is nested more than {MAX_DEPTH} levels deep",
+        f"the formula has more than {MAX_DEPTH} levels: parts inside others, or joined to others",
         help="split it into several rules",
     )
 
