@@ -22,6 +22,7 @@ from rulec.diagnostics import RulecError
 from rulec.extraction.selection import RequestedDrives
 from rulec.fleet import FleetJudge
 from rulec.fleet.carried_rulebook import carried
+from rulec.fleet.finding_columns import COLUMNS
 from rulec.fleet.judged_by import judged_by
 from rulec.fleet.runs import unit_slices
 from rulec.fleet.runs import work_units as units_module
@@ -32,6 +33,7 @@ from rulec.fleet.runs.fleet_summary import as_text
 from rulec.fleet.runs.local_engine import judged_locally
 from rulec.fleet.runs.work_units import work_units
 from rulec.recordings.recording_format import RecordingSource
+from rulec.trace.formats.arrow.parquet import rows_of_columns
 from support.builders.fleet_inputs import fleet_file, fleet_rules, lanes, trace_table, tracks
 from support.builders.interrupted_runs import DyingWorker
 from support.builders.recorded_cars import three_cars
@@ -220,6 +222,30 @@ def test_a_damaged_file_of_findings_is_written_again(folder_of, expected, tmp_pa
     part.write_bytes(part.read_bytes()[:-10])
     assert run([folder_of], out).before == 4
     assert found_in(out) == expected
+
+
+def test_a_bit_that_changes_in_findings_is_noticed(folder_of, expected, tmp_path):
+    """In the pages of the file, which have checksums; their headers have none."""
+    folder = tmp_path / "out"
+    run([folder_of], folder)
+    # A part of a file has no rows if the drives that begin in it are another part's
+    part = max(folder.glob("book=*/*.parquet"), key=lambda path: path.stat().st_size)
+    whole, group = part.read_bytes(), parquet.read_metadata(part).row_group(0)
+    columns = [group.column(number) for number in range(group.num_columns)]
+    ends = [
+        (column.dictionary_page_offset or column.data_page_offset) + column.total_compressed_size
+        for column in columns
+    ]
+    assert len(ends) > 20
+    for end in ends:
+        data = bytearray(whole)
+        data[end - 2] ^= 4
+        part.write_bytes(data)
+        with pytest.raises(RulecError, match="R0509"):
+            list(rows_of_columns(part, COLUMNS))
+    again = run([folder_of], folder)
+    assert again.units - again.before == 1
+    assert found_in(folder) == expected
 
 
 def test_a_folder_that_another_run_writes_into_is_refused(folder_of, expected, tmp_path):

@@ -30,6 +30,7 @@ STATE = b"rulec.unit"
 READ = b"rulec.read"
 """The metadata key for other files read, such as maps, each with its state at the time."""
 
+_ROWS_AT_ONCE = 1 << 12
 _SHORT = 12
 
 
@@ -50,7 +51,7 @@ class FleetFolder:
         return self.findings / f"part-{unit.digest}.parquet"
 
     def is_done(self, unit: WorkUnit) -> bool:
-        """Whether a unit's file exists, is complete and was made from the inputs' current state."""
+        """Whether a unit's file is there, undamaged, and made from the inputs' current state."""
         path = self.part(unit)
         if not path.is_file():
             return False
@@ -60,7 +61,12 @@ class FleetFolder:
             if metadata.get(STATE) != unit.state().encode():
                 return False
             beside = json.loads(metadata[READ]).items()
-            return all(file_state(name) == tuple(then) for name, then in beside)
+            if not all(file_state(name) == tuple(then) for name, then in beside):
+                return False
+            with parquet.ParquetFile(path, page_checksum_verification=True) as source:
+                for _ in source.iter_batches(_ROWS_AT_ONCE, use_threads=False):
+                    pass
+            return True
         except (pyarrow.ArrowException, OSError, KeyError, ValueError):
             return False
 

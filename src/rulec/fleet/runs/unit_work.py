@@ -62,7 +62,9 @@ class UnitWorker:
         with (
             files_read() as read,
             written_whole(path) as stream,
-            parquet.ParquetWriter(stream, arrow_schema(), compression="zstd") as writer,
+            parquet.ParquetWriter(
+                stream, arrow_schema(), compression="zstd", write_page_checksum=True
+            ) as writer,
         ):
             while len(table := arrow_table(islice(rows, _ROWS_AT_ONCE))):
                 writer.write_table(table)

@@ -208,7 +208,8 @@ def check_types(schema: Any, pyarrow: Any, file: str) -> None:
 def rows_of_columns(path: Path, columns: Sequence[str]) -> Iterator[Mapping[str, Any]]:
     """The rows of any Parquet file, with those of ``columns`` that it has.
 
-    Raises RulecError R0509 if it cannot be read, R0701, R0706.
+    Pages are compared with their checksums, if the file has some. Raises RulecError R0509 if it
+    cannot be read, R0701, R0706.
     """
     pyarrow, parquet = arrow(str(path))
     with opened(path) as stream:
@@ -216,11 +217,11 @@ def rows_of_columns(path: Path, columns: Sequence[str]) -> Iterator[Mapping[str,
         if refused is not None:
             raise refused
         try:
-            source = parquet.ParquetFile(stream)
+            source = parquet.ParquetFile(stream, page_checksum_verification=True)
             names = [name for name in source.schema_arrow.names if name in columns]
             for batch in source.iter_batches(_ROWS_AT_ONCE, columns=names):
                 yield from batch.to_pylist()
-        except (pyarrow.ArrowException, OSError) as reason:
+        except (pyarrow.ArrowException, OSError, ValueError) as reason:
             raise _unreadable("the file", reason, str(path)) from None
 
 
