@@ -145,6 +145,36 @@ def test_steps(tmp_path, times, step_s, steps):
     assert list(only(recording).states) == steps
 
 
+@pytest.mark.parametrize("off_s", [0.001, 0.0045])
+def test_clocks_may_jitter_row_by_row_or_from_track_to_track(tmp_path, off_s):
+    """By up to 2 % of a step, half a second, from the first one; each row by itself."""
+    chance = np.random.default_rng(3)
+    rows = [
+        f"{track},{0.5 * k + chance.uniform(-off_s, off_s):.6f},{5 * k},{y}"
+        for track, y in (("a", 0), ("b", 3.5))
+        for k in range(12)
+    ]
+    found = read(tmp_path, HEAD, *rows)
+    assert found.step_s == 0.5
+    assert [list(body.states) for body in found.participants] == [list(range(12))] * 2
+    later = [
+        f"{track},{0.5 * k + late:.3f},{5 * k},{y}"
+        for track, y, late in (("a", 0, 0), ("b", 3.5, off_s))
+        for k in range(12)
+    ]
+    again = read(tmp_path, HEAD, *later)
+    assert [list(body.states) for body in again.participants] == [list(range(12))] * 2
+
+
+def test_who_is_seen_less_often_than_others_makes_no_moments_one(tmp_path):
+    """Nine in ten rows are of tracks every 0.5 s; one is seen every 0.1 s."""
+    often = [f"a,{0.1 * k:.1f},{k},0" for k in range(31)]
+    told = message(
+        tmp_path, HEAD, *often, *(f"{n},{0.5 * k},{5 * k},3.5" for n in "bcdefg" for k in range(7))
+    )
+    assert "has a row every 0.5 s, while times of the table are 0.1 s apart" in told.message
+
+
 def test_the_rate_of_video(tmp_path):
     """A minute at 30,000 frames in 1001 s, written with milliseconds, is not 30 a second."""
     times = [round(k * 1001 / 30000, 3) for k in range(1800)]

@@ -28,13 +28,16 @@ class EvenTimes(NamedTuple):
     start_s: float = 0.0
 
 
-def even_times(times: NDArray[float64], columns: Columns) -> EvenTimes:
+def even_times(
+    times: NDArray[float64], columns: Columns, tracks: NDArray[int64] | None = None
+) -> EvenTimes:
     """Times (s) as steps: the time step is the shortest interval, or a fraction of it.
 
     Moments may be missing. A usual value close to the step is used instead: one of 1 to 1000 per
     second, or a thousand of those in 1001 s, as in video; else whole milliseconds. Steps count from
-    time 0, or from the first moment if that is off the grid or too far away. Raises RulecError for
-    times that are not on an even grid, or too far apart.
+    time 0, or from the first moment if that is off the grid or too far away. With the ``tracks`` of
+    the rows, moments that are much closer than a track's rows are one, as of clocks that jitter.
+    Raises RulecError for times that are not on an even grid, or too far apart.
     """
     start = float(times.min())
     # Floats have sixteen digits: of seconds since 1970 some seven remain for decimals
@@ -42,6 +45,8 @@ def even_times(times: NDArray[float64], columns: Columns) -> EvenTimes:
     moments = np.unique(np.round((times - start) / unit)) * unit
     if len(moments) == 1:
         return EvenTimes(1.0, np.zeros(len(times), dtype=int64), start)
+    if tracks is not None:
+        moments = _without_jitter(moments, _usual_interval(times, tracks))
     step = _fitted(moments, unit)
     spread = moments[-1] / step
     if spread > min(MOST_STEPS, SPARSEST * len(moments)):
@@ -55,6 +60,24 @@ def even_times(times: NDArray[float64], columns: Columns) -> EvenTimes:
     if abs(first) <= MOST_STEPS and abs(first - round(first)) * step <= _UNEVEN * step + unit:
         return EvenTimes(step, steps + round(first))
     return EvenTimes(step, steps, start)
+
+
+def _usual_interval(times: NDArray[float64], tracks: NDArray[int64]) -> float:
+    """The median time (s) from a row of a track to its next one; 0 if none has two."""
+    order = np.lexsort((times, tracks))
+    onward = np.diff(times[order])[np.diff(tracks[order]) == 0]
+    return float(np.median(onward)) if len(onward) else 0.0
+
+
+def _without_jitter(moments: NDArray[float64], interval: float) -> NDArray[float64]:
+    """The moments from the first on, with one in the middle of several that jitter makes of it."""
+    begins = np.diff(moments, prepend=-np.inf) > 2 * _UNEVEN * interval
+    if begins.all():
+        return moments
+    group = np.cumsum(begins) - 1
+    middles = np.bincount(group, moments) / np.bincount(group)
+    found: NDArray[float64] = middles - middles[0]
+    return found if len(found) > 1 else moments
 
 
 def _uneven(times: NDArray[float64], step: float, unit: float, columns: Columns) -> RulecError:

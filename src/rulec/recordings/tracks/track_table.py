@@ -137,7 +137,7 @@ def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:
         # Who has no velocity somewhere has none: places tell it as well
         velocity = None
     _check_exchanged(named)
-    times = even_times(numbers["t"], named.columns)
+    times = even_times(numbers["t"], named.columns, named.texts["track"].codes)
     rows = TrackRows(
         columns=named.columns,
         track=named.texts["track"],
