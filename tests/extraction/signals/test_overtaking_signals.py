@@ -284,6 +284,30 @@ def test_who_gets_past_overtakes_and_the_recording_may_end_before():
     assert coming((-13, 15), steps=4) is None
 
 
+@pytest.mark.parametrize(("pauses", "known"), [(False, False), (True, True)])
+def test_who_regains_its_speed_after_a_jam_may_be_overtaken_meanwhile(pauses, known):
+    """From 30 m/s it brakes to 15 by 5 s, and gains 0.5 m/s² to 25 at 25 s; passed at 20 s.
+
+    The 10 s in which having been faster counts are over by then. One that has driven evenly in
+    between has got used to its speed.
+    """
+    times = np.arange(0, 30, 0.5)
+    speeds = np.where(times < 2, 30.0, np.maximum(30 - 5 * (times - 2), 15.0))
+    speeds = np.where(times < 5, speeds, 15 + 0.5 * (times - 5))
+    if pauses:
+        speeds = np.where((times >= 14) & (times < 18), 19.5, speeds)
+        speeds = np.where(times >= 18, 19.5 + 0.5 * (times - 18), speeds)
+    way = np.concatenate(([0], np.cumsum(speeds[:-1] * 0.5)))
+    ego = along(7, np.array([(0.0, 0.0), (900.0, 0.0)]), way)
+    passes = way[40] + 32 * (times - 20)
+    other = along(8, np.array([(-900.0, 4.0), (1900.0, 4.0)]), 900 + passes)
+    road = [straight(1, 0, 900, left_of=2), straight(2, 0, 900, 4.0, right_of=1)]
+    found = replace(recording(road, [ego, other]), complete=frozenset({"arrivals"}))
+    told = overtaking_signals(context_of(found, near_m=300), frozenset({"being_overtaken"}))
+    assert told.world["being_overtaken"][40]
+    assert bool(told.unknown["being_overtaken"][40]) != known
+
+
 def test_nobody_is_overtaken_where_all_lanes_queue():
     # All drive at 10 m/s, but those beside ego are a little faster
     queues = [*line(10, 2), *line(12, 3, y=4.0, start=0.0, number=30)]

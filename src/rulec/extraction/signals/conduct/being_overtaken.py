@@ -80,12 +80,18 @@ def _was(context: DriveContext, there: Flags) -> Flags:
 
 
 def _recovers(context: DriveContext) -> Flags:
-    """Mask of states in which ego was faster up to ``setting_off_s`` ago: it had to brake."""
-    speed = context.ego.speed[0]
+    """Mask of states in which ego was faster up to ``setting_off_s`` ago: it had to brake.
+
+    Or that long before it began to gain the speed again, as it still does.
+    """
+    speed, spans = context.ego.speed[0], context.spans
     steps = round(context.thresholds.setting_off_s / context.recording.step_s)
-    fastest = context.spans.most_of_last(speed, steps)
-    recovers: Flags = speed + context.tolerances.speed_mps < fastest
-    return recovers
+    fastest, least = spans.most_of_last(speed, steps), speed + context.tolerances.speed_mps
+    recovers: Flags = least < fastest
+    gains = _gains_speed(context)
+    begins = np.maximum(spans.latest(~gains), spans.first)
+    regains: Flags = gains & recovers[begins] & (least < fastest[begins])
+    return recovers | regains
 
 
 def _may_recover(context: DriveContext) -> Flags:
