@@ -29,7 +29,7 @@ def compiled(tmp_path):
 def test_what_is_no_step(step, tmp_path, capsys):
     assert main(["compile", "esterle2019", "-o", str(tmp_path / "out"), f"--step={step}"]) == 2
     assert (
-        "a number above 0, in seconds and without a unit, such as 0.5 or 1/3"
+        "a number above 0, in seconds, without a unit and without an exponent"
         in capsys.readouterr().err
     )
     assert not (tmp_path / "out").exists()

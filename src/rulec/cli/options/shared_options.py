@@ -30,9 +30,7 @@ RULEBOOK_HELP = (
 
 MOST_JOBS = 256
 
-_SECONDS = re.compile(
-    r"[0-9]{1,9}(?:(?:\.[0-9]{1,17})?(?:[eE][+-]?[0-9]{1,2})?|/(?!0+$)[0-9]{1,9})"
-)
+_SECONDS = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,17}|/(?!0+$)[0-9]{1,9})?")
 
 
 def combined(options: Sequence[Callable[[Any], Any]]) -> Callable[[Decorated], Decorated]:
@@ -97,7 +95,8 @@ def _seconds(
         raise click.BadParameter(f"decimals have a point: {value.replace(',', '.')}")
     if not step:
         raise click.BadParameter(
-            "it has to be a number above 0, in seconds and without a unit, such as 0.5 or 1/3"
+            "it has to be a number above 0, in seconds, without a unit and without an exponent, such "
+            "as 0.5 or 1/3"
         )
     return step
 
