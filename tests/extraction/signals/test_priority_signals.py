@@ -346,12 +346,10 @@ def test_one_that_does_not_slow_down_for_ego_was_not_held_up(way, conflict):
     assert found.world["conflict_from_right"].any() == conflict
 
 
-@pytest.mark.parametrize(("mps", "known"), [(6.0, False), (4.0, True)])
-def test_who_slows_down_no_more_than_its_bend_needs_may_do_so_for_that(mps, known):
-    """From the right it turns into ego's road by a bend of 12 m: at 6 m/s with 3 m/s² across.
+def turning_into_ego_s_road(driven):
+    """The signals where one from the right turns into ego's road by a bend of 12 m.
 
-    Ego is past the bend's end when the other one, did it keep its 10 m/s, would come there less
-    than a second later; it comes more than a second later. At 4 m/s it waits for ego.
+    ``driven``: its way (m) by state. Ego goes on at 10 m/s and is past the bend's end at 3.2 s.
     """
     turns = np.linspace(0, np.pi / 2, 19)
     bend = 12 * np.stack([1 - np.cos(turns), np.sin(turns) - 1], axis=1)
@@ -362,11 +360,21 @@ def test_who_slows_down_no_more_than_its_bend_needs_may_do_so_for_that(mps, know
         lanelet(4, [(0, -90), (0, -12)], successors=(5,)),
         lanelet(5, bend, predecessors=(4,), successors=(3,), types=INSIDE, junction="x"),
     ]
-    driven = 55.0 + np.cumsum([0.0, *([5.0] * 4), *([mps / 2] * 11)])
     other = along(8, np.array([(0.0, -90.0), *bend, (120.0, 0.0)]), driven)
     ego = vehicle(7, {k: (-15 + 5 * k, 0) for k in STEPS}, speed=10)
     found = replace(recording(road, [ego, other]), complete=frozenset({"YIELD"}))
-    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    return priority_signals(context_of(found, route=("1", "2", "3")))
+
+
+@pytest.mark.parametrize(("mps", "known"), [(6.0, False), (4.0, True)])
+def test_who_slows_down_no_more_than_its_bend_needs_may_do_so_for_that(mps, known):
+    """From the right it turns into ego's road by a bend of 12 m: at 6 m/s with 3 m/s² across.
+
+    Ego is past the bend's end when the other one, did it keep its 10 m/s, would come there less
+    than a second later; it comes more than a second later. At 4 m/s it waits for ego.
+    """
+    driven = 55.0 + np.cumsum([0.0, *([5.0] * 4), *([mps / 2] * 11)])
+    signals = turning_into_ego_s_road(driven)
     side = "conflict_from_right"
     assert signals.world[side].any() == known
     assert signals.unknown[side].any() != known
@@ -548,20 +556,8 @@ def test_one_that_stops_for_ego_does_not_brake_for_its_bend(least_mps, known):
 
     To a stand until ego is past the bend's end, which it reaches 2 s later; or to 3 m/s.
     """
-    turns = np.linspace(0, np.pi / 2, 19)
-    bend = 12 * np.stack([1 - np.cos(turns), np.sin(turns) - 1], axis=1)
-    road = [
-        straight(1, -60, -12, successors=(2,)),
-        straight(2, -12, 12, predecessors=(1,), successors=(3,), types=INSIDE, junction="x"),
-        straight(3, 12, 120, predecessors=(2, 5)),
-        lanelet(4, [(0, -90), (0, -12)], successors=(5,)),
-        lanelet(5, bend, predecessors=(4,), successors=(3,), types=INSIDE, junction="x"),
-    ]
     speeds = [10, 10, 10, 6, 2, *[least_mps] * 3, 4, 8, *[10] * 6]
     driven = 60.0 + 0.5 * np.cumsum([0.0, *speeds[:-1]])
-    other = along(8, np.array([(0.0, -90.0), *bend, (120.0, 0.0)]), driven)
-    ego = vehicle(7, {k: (-15 + 5 * k, 0) for k in STEPS}, speed=10)
-    found = replace(recording(road, [ego, other]), complete=frozenset({"YIELD"}))
-    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    signals = turning_into_ego_s_road(driven)
     side = "conflict_from_right"
     assert (signals.world[side] & ~signals.unknown[side]).any() == known

@@ -95,8 +95,8 @@ def _seconds(
         raise click.BadParameter(f"decimals have a point: {value.replace(',', '.')}")
     if not step:
         raise click.BadParameter(
-            "it has to be a number above 0, in seconds, without a unit and without an exponent, such "
-            "as 0.5 or 1/3"
+            "it has to be a number above 0, in seconds, without a unit and without an exponent, "
+            "such as 0.5 or 1/3"
         )
     return step
 
