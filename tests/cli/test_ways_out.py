@@ -256,7 +256,7 @@ def test_what_a_newcomer_mistypes(tmp_path, monkeypatch, capsys):
         ([*verify, "--threshold", "nera_m=5"], "did you mean `near_m`?\n", "?."),
         ([*verify, "--input-format", "table"], "--input-format: there is no `table`", "--format:"),
         ([*verify, "--format", "table"], "--format: there is no `table`", "--input-format:"),
-        (["monitor", "esterle2019", "--step", "0.1s"], "in seconds and without a unit", "R0"),
+        (["monitor", "esterle2019", "--step", "0.1s"], "in seconds, without a unit", "R0"),
         (
             ["monitor", "esterle2019", "--restore", "t.jsonl"],
             "give a file that `rulec monitor --save` has written",
