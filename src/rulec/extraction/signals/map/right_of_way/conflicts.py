@@ -376,7 +376,7 @@ def _catches_up(
     begin = max(drives_in, int(passages.tracks.present[other.row].argmax()))
     way = float(np.interp(at, np.arange(len(travelled)), travelled) + left_m - travelled[begin])
     speeds = passages.tracks.speed[other.row, begin : comes + 1]
-    now, fastest = float(speeds[0]), float(np.nanmax(speeds))
+    now, fastest = float(speeds[0]), float(np.fmax.reduce(speeds))
     gains_s = (fastest - now) / _SPEEDS_UP_MPS2
     soonest_s = gains_s + max(way - (now + fastest) / 2 * gains_s, 0.0) / max(fastest, SLOWEST_MPS)
     return soonest_s > _AMPLE_S
