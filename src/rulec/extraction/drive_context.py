@@ -91,6 +91,11 @@ class DriveContext:
         return self.steps - self.surroundings.tracks.first
 
     @property
+    def first_column(self) -> int:
+        """The column of the first state."""
+        return int(self.columns[0])
+
+    @property
     def is_one(self) -> bool:
         """Whether this is a single drive whose ``surroundings`` contain all that concerns it."""
         return self.spans.n_drives == 1 and self.alone is None

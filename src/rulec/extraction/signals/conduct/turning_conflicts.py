@@ -12,7 +12,6 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_passages
-from rulec.extraction.signals.map.right_of_way.conflicts import first_column
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.junction_passages import Passage
@@ -53,7 +52,7 @@ def _conflict(
 
     ``towards``: 1 if ego turns left, -1 if right.
     """
-    passages, shift = context.surroundings.passages, first_column(context)
+    passages, shift = context.surroundings.passages, context.first_column
     tracks, step_s = passages.tracks, context.recording.step_s
     place, limits = context.tolerances.place_m, context.thresholds
     begin = max(own.first, shift)

@@ -14,15 +14,13 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents
+from rulec.extraction.signals.map.right_of_way.arrivals import ARRIVALS, arrivals
 from rulec.extraction.signals.map.right_of_way.conflicts import (
-    ARRIVALS,
     FROM_SIDES,
     LONGEST_WAIT_S,
     ONCOMING,
     Encounter,
-    arrivals,
     drives_in,
-    first_column,
     in_conflict,
     side_of,
 )
@@ -129,7 +127,7 @@ def approach(context: DriveContext, passage: Passage) -> slice:
     They begin after ego has entered the junction before, and end before it enters the next one,
     even if a long body is then still in this one: so others are in its way at one junction only.
     """
-    shift, passages = first_column(context), context.surroundings.passages
+    shift, passages = context.first_column, context.surroundings.passages
     ways = passages.travelled[passage.row]
     near = ways[passage.first] - ways[shift : passage.first + 1] <= context.thresholds.approach_m
     first = passage.first - shift - int(near.sum()) + 1 if len(near) else 0
@@ -143,10 +141,10 @@ def _next(context: DriveContext, passage: Passage) -> int:
     """The last state before ego's front is in the next junction, or one past all states."""
     passages = context.surroundings.passages
     later = [x for x in passages.of_row[passage.row] if x.first > passage.first]
-    enters = [passages.front_enters(x) - first_column(context) for x in later[:1]]
+    enters = [passages.front_enters(x) - context.first_column for x in later[:1]]
     # The middle of a long body may cut the next one's corner and never be in it
     first, last = (
-        int(np.clip(column - first_column(context), 0, context.states - 1))
+        int(np.clip(column - context.first_column, 0, context.states - 1))
         for column in (passage.first, passage.last)
     )
     beyond = context.ego_extents.s[0, last]
@@ -217,7 +215,7 @@ def _ending_roads(junction: Junction, passage: Passage) -> tuple[bool, bool]:
 
 def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
     """Participants that are in ego's way at a junction, or may be."""
-    passages, shift = context.surroundings.passages, first_column(context)
+    passages, shift = context.surroundings.passages, context.first_column
     span = approach(context, own)
     waits, latest = (
         own.last + round(seconds / context.recording.step_s)

@@ -147,7 +147,7 @@ def met(context: DriveContext, asked: Flags, reach: Floats) -> tuple[Flags, Flag
 
 def _met_alone(context: DriveContext, reach: Floats) -> tuple[Flags, Flags]:
     """``met`` for a single drive."""
-    passages, first = context.surroundings.passages, int(context.columns[0])
+    passages, first = context.surroundings.passages, context.first_column
     waits_for, thinks_of = (
         round(seconds / context.recording.step_s) for seconds in (_WAITS_S, _THINKS_OF_S)
     )

@@ -10,7 +10,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
-from rulec.extraction.signals.map.right_of_way.conflicts import drives_in, first_column, side_of
+from rulec.extraction.signals.map.right_of_way.conflicts import drives_in, side_of
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS
 from rulec.extraction.signals.signal_passes import once_a_recording
 from rulec.extraction.tracks.junction_passages import Passage
@@ -42,7 +42,7 @@ def astray(context: DriveContext) -> Flags:
     """
     found, along = np.zeros(context.states, dtype=bool), context.ego_extents.s[0]
     for _, *stay in strays(context):
-        first, last = np.clip(np.array(stay) - first_column(context), 0, context.states - 1)
+        first, last = np.clip(np.array(stay) - context.first_column, 0, context.states - 1)
         low, high = along[first : last + 1].min(), along[first : last + 1].max()
         if any(low < end and start < high for start, end in context.road.junctions):
             near = (along >= low - context.thresholds.approach_m) & (along <= high)
@@ -70,7 +70,7 @@ def might_come(context: DriveContext, own: Passage) -> Iterator[str]:
     Those on no way of the map, or whose track ends before the junction, be it that they stop there
     for ego. In a simulation, one that is gone before the end has arrived somewhere.
     """
-    passages, shift = context.surroundings.passages, first_column(context)
+    passages, shift = context.surroundings.passages, context.first_column
     tracks, step_s = passages.tracks, context.recording.step_s
     through = {x.row for x in passages.through[own.junction]}
     latest = _leaves_at_latest(context, own) + context.thresholds.yielding_s / step_s
