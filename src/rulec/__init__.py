@@ -43,10 +43,10 @@ if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook as CompiledRulebook
     from rulec.automata.mealy_monitor import MealyMonitor as MealyMonitor
     from rulec.book_tests.example_coverage import RuleCoverage as RuleCoverage
-    from rulec.book_tests.example_coverage import UncoveredEdge as UncoveredEdge
-    from rulec.book_tests.example_coverage import UntouchedLimit as UntouchedLimit
     from rulec.book_tests.example_runs import ExampleOutcome as ExampleOutcome
     from rulec.book_tests.example_runs import ExampleRun as ExampleRun
+    from rulec.book_tests.proposed_examples import UncoveredEdge as UncoveredEdge
+    from rulec.book_tests.proposed_examples import UntouchedLimit as UntouchedLimit
     from rulec.diagnostics import Diagnostic as Diagnostic
     from rulec.diagnostics import Fix as Fix
     from rulec.diagnostics import Label as Label
@@ -148,8 +148,9 @@ _HOME = {
     "write_compiled write_ltl write_monitor write_traces",
     "rulec.automata.bundle.compiled_rulebook": "CompiledRule CompiledRulebook",
     "rulec.automata.mealy_monitor": "MealyMonitor",
-    "rulec.book_tests.example_coverage": "RuleCoverage UncoveredEdge UntouchedLimit",
+    "rulec.book_tests.example_coverage": "RuleCoverage",
     "rulec.book_tests.example_runs": "ExampleOutcome ExampleRun",
+    "rulec.book_tests.proposed_examples": "UncoveredEdge UntouchedLimit",
     "rulec.diagnostics": "Diagnostic Fix Label RulecError SourceLocation",
     "rulec.diagnostics.code": "Code",
     "rulec.extraction.drives": "NoDrive",

@@ -117,7 +117,8 @@ class Contest:
             if not isinstance(item, Quantity) or item.default is None:
                 continue
             usual = exact(float(item.default))
-            for value in sorted(_numbers_in(trace, name), key=lambda number: abs(number - usual)):
+            numbers = set(map(exact, numbers_in(trace, name)))
+            for value in sorted(numbers, key=lambda number: abs(number - usual)):
                 passed = [
                     limit for limit in limits if min(usual, value) <= limit <= max(usual, value)
                 ]
@@ -219,13 +220,18 @@ def _limits_of(rules: Iterable[CompiledRule]) -> dict[str, set[Fraction]]:
     return limits
 
 
-def _numbers_in(trace: Trace, name: str) -> set[Fraction]:
-    """The numbers that a quantity has in a trace, for all objects."""
-    values = [state[name] for state in trace.states if name in state]
+def numbers_in(trace: Trace, name: str | None = None) -> Iterator[float]:
+    """The numbers in a trace, of all its objects: those of one quantity, or all of them."""
+    values = [
+        value
+        for state in trace.states
+        for own, value in state.items()
+        if name is None or own == name
+    ]
     each = chain.from_iterable(
         value.values() if isinstance(value, Mapping) else (value,) for value in values
     )
-    return {exact(float(value)) for value in each if isinstance(value, int | float)}
+    return (float(value) for value in each if isinstance(value, int | float))
 
 
 def _compared_with_no_more_than_zero(rules: Iterable[CompiledRule]) -> frozenset[str]:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from rulec.diagnostics import nearest_name
 from rulec.fleet.fleet_messages import almost_named, no_drives
-from rulec.recordings.table_heads import is_track_head
+from rulec.recordings.table_heads import SAME_NAME, is_track_head
 from rulec.trace.formats.table_reader import STEP, TRACE
 
 TableKind = Literal["tracks", "traces"]
@@ -19,9 +19,6 @@ FILE, RECORDING, MAP, ROWS = "file", "recording", "map", "rows"
 They contain a row's file, recording, map, and the row count of its recording or trace.
 """
 
-_SAME_NAME = 0.85
-"""So similar is a name to one of these that it is meant."""
-
 MOST_SEEN = 1 << 12
 
 
@@ -31,7 +28,7 @@ def kind_of(columns: Sequence[str]) -> TableKind:
     Raises RulecError R0710, also for a column that is almost called as one that identifies drives.
     """
     for name in columns:
-        own = nearest_name(name.strip(), (FILE, RECORDING, MAP, ROWS), _SAME_NAME)
+        own = nearest_name(name.strip(), (FILE, RECORDING, MAP, ROWS), SAME_NAME)
         if own is not None and own != name and own not in columns:
             raise almost_named(name, own)
     names = [name.casefold() for name in columns]

@@ -12,6 +12,9 @@ from rulec.recordings.encodings.csv_head import PARQUET, is_number, is_parquet, 
 from rulec.recordings.recording_format import RECORDING, Glance
 
 TABLES = (".csv", ".tsv", ".txt", *PARQUET)
+SAME_NAME = 0.85
+"""So similar is the name of a column to one that is known that it is meant."""
+
 _HEADLESS_NGSIM = (18, 24)
 _TRACK = {"track", "track_id", "trackid", "id", "object_id", "vehicle_id"}
 _TIME = {f"{name}{unit}" for name in ("t", "time") for unit in ("", "_s", "_ms", "_us", "_ns")}

@@ -9,13 +9,13 @@ for hitting sets (Reiter 1987), few first, so that simple reasons come first.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from itertools import chain, permutations
+from itertools import permutations
 from typing import Literal
 
-from rulec.analysis.counterexample import Contest
+from rulec.analysis.counterexample import Contest, numbers_in
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.monitoring.state_view import value_in
 from rulec.rulebook.rulebook_model import Variable
@@ -91,7 +91,7 @@ def _compare(first: AnalyzedRule, second: AnalyzedRule, most: int) -> RuleCompar
 def _witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace, ...]:
     """Diverse witnesses, with negative numbers only if no trace as short does without them."""
     traces = diverse_witnesses(contest, first, most)
-    if any(map(_is_below_zero, traces)):
+    if any(number < 0 for trace in traces for number in numbers_in(trace)):
         with suppress(UndecidedError):
             above = contest.not_below_zero()
             plain = above.trace()
@@ -116,15 +116,6 @@ def _further_witnesses(contest: Contest, traces: Sequence[Trace], most: int) -> 
                     most -= 1
                     shown.append(names)
                     yield trace
-
-
-def _is_below_zero(trace: Trace) -> bool:
-    """Whether some number in the trace is negative."""
-    values = (value for state in trace.states for value in state.values())
-    each = chain.from_iterable(
-        value.values() if isinstance(value, Mapping) else (value,) for value in values
-    )
-    return any(isinstance(value, int | float) and value < 0 for value in each)
 
 
 def relation_of(first_forbids: object, second_forbids: object) -> RuleRelation:

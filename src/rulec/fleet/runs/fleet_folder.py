@@ -16,6 +16,7 @@ from rulec.diagnostics import RulecError
 from rulec.files import file_state, make_folder, opened, refusals, written_whole
 from rulec.fleet.fleet_messages import folder_in_use, other_fleet
 from rulec.fleet.judged_by import JudgedBy
+from rulec.fleet.runs.fleet_tally import ROWS_AT_ONCE
 from rulec.fleet.runs.work_units import WorkUnit
 from rulec.recordings.recording_format import RecordingSource
 from rulec.trace.formats.arrow.parquet import arrow
@@ -30,7 +31,6 @@ STATE = b"rulec.unit"
 READ = b"rulec.read"
 """The metadata key for other files read, such as maps, each with its state at the time."""
 
-_ROWS_AT_ONCE = 1 << 12
 _SHORT = 12
 
 
@@ -64,7 +64,7 @@ class FleetFolder:
             if not all(file_state(name) == tuple(then) for name, then in beside):
                 return False
             with parquet.ParquetFile(path, page_checksum_verification=True) as source:
-                for _ in source.iter_batches(_ROWS_AT_ONCE, use_threads=False):
+                for _ in source.iter_batches(ROWS_AT_ONCE, use_threads=False):
                     pass
             return True
         except (pyarrow.ArrowException, OSError, KeyError, ValueError):

@@ -14,7 +14,8 @@ _COLUMNS = (
     *("duration_s", "distance_m", "remarks"),
 )
 
-_ROWS_AT_ONCE = 1 << 12
+ROWS_AT_ONCE = 1 << 12
+"""So many findings of a file are in memory at a time."""
 
 
 @dataclass
@@ -63,7 +64,7 @@ def tally_of(path: Path) -> FleetTally:
     _, parquet = arrow(str(path))
     tally = FleetTally()
     with parquet.ParquetFile(path) as source:
-        for batch in source.iter_batches(_ROWS_AT_ONCE, columns=list(_COLUMNS), use_threads=False):
+        for batch in source.iter_batches(ROWS_AT_ONCE, columns=list(_COLUMNS), use_threads=False):
             for row in zip(*(batch.column(name).to_pylist() for name in _COLUMNS), strict=True):
                 kind, outcome, rule, ego, because, *names, duration_s, distance_m, remarks = row
                 where = next(filter(None, names), "")

@@ -28,6 +28,7 @@ from rulec.recordings.lanes.lane_table import lane_map
 from rulec.recordings.map_files import read_map
 from rulec.recordings.recording import Lamp, Recording
 from rulec.recordings.road_map import RoadMap
+from rulec.recordings.table_heads import SAME_NAME
 from rulec.recordings.tracks.even_times import even_times
 from rulec.recordings.tracks.roads_of_tracks import lanes_beside, roads_of, track_recording
 from rulec.recordings.tracks.track_rows import TrackRows
@@ -41,8 +42,8 @@ TRACKS = FileFormat(
     4_000_000_000,
 )
 
-_RECORDING, _SAME_NAME = "recording", 0.85
-"""The column of fleets' tables that names a row's recording, and how similar its name is."""
+_RECORDING = "recording"
+"""The column of fleets' tables that names a row's recording."""
 
 _SPARSE_S = 5.0
 _CREEPING_MPS = 0.5
@@ -163,7 +164,7 @@ def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:
 def _check_one_recording(table: ColumnTable) -> None:
     """Refuse tracks of several recordings, which would share one road."""
     for name in table.names:
-        if not nearest_name(name.strip(), [_RECORDING], _SAME_NAME):
+        if not nearest_name(name.strip(), [_RECORDING], SAME_NAME):
             continue
         names = table.read([], [name]).texts[name].names
         if len(names) > 1:

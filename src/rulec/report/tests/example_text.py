@@ -7,19 +7,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from rulec.automata.thresholds import exact
-from rulec.book_tests.example_coverage import (
-    RuleCoverage,
-    UncoveredEdge,
-    asked_of,
-    percent,
-    stated,
-)
+from rulec.book_tests.example_coverage import RuleCoverage, asked_of, percent
 from rulec.book_tests.example_runs import (
     ExampleOutcome,
     ExampleRun,
     example_warning,
     is_inherited,
 )
+from rulec.book_tests.proposed_examples import UncoveredEdge, stated
 from rulec.diagnostics import Diagnostic
 from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Atom, Constant
