@@ -117,6 +117,17 @@ def test_trajectories_are_scored_until_the_recording_ends():
     assert (whole.until_s, whole.is_cut) == (4.0, False)
 
 
+def test_who_is_alone_is_scored_until_the_horizon():
+    recorded = world(until_s=1.0, beyond_s=1.0)
+    alone = replace(recorded, participants=recorded.participants[:1])
+    found = scene(alone)
+    assert rulec.score_trajectories(found, found.cheapest(1, perhaps=True)).paths.shape[1] == 8
+    # How the others go on from where the recording ends is not known
+    ends = scene(recorded)
+    with pytest.raises(RulecError, match=r"the recording ends where the scene begins.*R0781"):
+        rulec.score_trajectories(ends, ends.cheapest(1, perhaps=True))
+
+
 def test_assumptions_hold_for_trajectories_too():
     recorded = world()
     plain = rulec.load_scenario(recorded, rulec.Choice(ego="ego", at_s=1.0))

@@ -107,6 +107,48 @@ def test_margins_are_in_units():
     }
 
 
+def speeding(speeds, start):
+    """A future with these speeds (m/s), one a state."""
+    x = start[0] + STEP_S * np.cumsum(speeds)
+    return np.column_stack((x, 0 * x, 0 * x, speeds))
+
+
+def test_margins_after_a_past_that_was_too_fast():
+    world = street([car("ahead", 18.0, x=300.0)], speed=18.0)
+    steps = np.arange(1, 17)
+    too_fast, slower = np.maximum(18.0 - steps, 14.5), np.maximum(18.0 - 2 * steps, 13.0)
+    again = np.where(steps > 10, 25.0, slower)
+    future = [speeding(own, world.past[-1]) for own in (too_fast, slower, again)]
+    found = score(np.array(future), world, GERMAN, world.past)
+    assert [violation.rule for violation in found.violated_before] == ["speed_limit"]
+    told = [[x for x in found.margins(n) if x.rule == "speed_limit"] for n in range(3)]
+    by_speed = [next(x for x in own if x.margin.text == "speed") for own in told]
+    # As fast until half of its states are over, and then judged anew
+    assert (by_speed[0].violated, by_speed[0].state) == (True, 8)
+    assert by_speed[0].margin.value == pytest.approx(14.5 * 3.6, abs=0.1)
+    # It ends what the past did: from then on it keeps the limit by so much
+    assert not by_speed[1].violated
+    assert 2 <= by_speed[1].state < 16
+    assert by_speed[1].margin.value < 50
+    # Speeds are means around a state
+    assert by_speed[2].violated
+    assert by_speed[2].state in (9, 10)
+    assert by_speed[2].margin.value > 60
+
+
+def test_a_candidate_that_leaps_does_not_take_all_memory():
+    bend = 150 * np.array([(np.sin(a), 1 - np.cos(a)) for a in np.linspace(0, 2.6, 120)])
+    lane = rulec.build_lanelet("bend", bend, types=["urban"], limit_mps=50 / 3.6)
+    t = STEP_S * np.arange(4)
+    a = 5 * t / 150
+    places = 150 * np.sin(a), 150 * (1 - np.cos(a))
+    ego = rulec.build_participant("ego", "car", t, *places, step_s=STEP_S, heading=a)
+    world = TrafficWorld(rulec.build_recording([lane], [ego], step_s=STEP_S, side="right"), "ego")
+    future = along([(10.0, 0.35), (12.5, 0.55), (1e7, 0.8)], world.past[-1])
+    (row,) = score(future[None], world, GERMAN, world.past).rows()
+    assert row["off_road"]
+
+
 @pytest.mark.parametrize(
     "candidates",
     [

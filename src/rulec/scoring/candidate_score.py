@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict
-from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged, Violation
+from rulec.monitoring.verdict import OpenVerdict, RuleFor, RuleNotJudged, Violation
 from rulec.value_display import short_repr
 
 
@@ -22,7 +22,8 @@ class CandidateScore:
     or with ego's middle beside all lanes, or driven backwards; ``why`` gives the reason. ``drives``
     are those of ``verify_recording`` for past and candidate; if there are many candidates they are
     computed on demand. ``late`` is the number of states until everything that the past violated is
-    kept for good.
+    kept for good. ``judged_from`` has, for a violation of what the past had violated, too, the
+    state of the candidate from which it is judged anew.
     """
 
     __repr__ = short_repr
@@ -35,6 +36,7 @@ class CandidateScore:
     why: str
     drives: Sequence[DriveVerdict | NoDrive]
     late: int = 0
+    judged_from: Mapping[RuleFor, int] = field(default_factory=dict)
 
     @property
     def satisfied(self) -> bool | None:

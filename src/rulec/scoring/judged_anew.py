@@ -57,15 +57,16 @@ def judged_anew(
     late = _mended_after(futures, known, books, steps)
     new = _violated_again(futures, known, books, steps)
     violations: dict[int, list[Violation]] = {}
+    judged_from: dict[int, dict[RuleFor, int]] = {}
     doubtful: dict[int, list[OpenVerdict]] = {}
     for future, again, answer in zip(futures, new, answers, strict=True):
-        violations.setdefault(future.number, []).extend(again.values())
+        number, own = future.number, dict(again)
         if isinstance(answer, Verdict):
-            number, begins = future.number, max(begin, future.first_step) - first
-            asked = known - again.keys()
-            own = [at(one, begins) for one in answer.violations if rule_for(one) in asked]
-            violations[number].extend(own)
+            begins, asked = max(begin, future.first_step) - first, known - again.keys()
+            own |= {rule_for(x): (begins, x) for x in answer.violations if rule_for(x) in asked}
             doubtful.setdefault(number, []).extend(x for x in answer.open if rule_for(x) in asked)
+        violations.setdefault(number, []).extend(at(x, begins) for begins, x in own.values())
+        judged_from.setdefault(number, {}).update({x: begins for x, (begins, _) in own.items()})
     return [
         replace(
             found,
@@ -78,6 +79,7 @@ def judged_anew(
                 *doubtful.get(number, ()),
             ),
             late=late.get(number, 0),
+            judged_from=judged_from.get(number, {}),
         )
         for number, found in enumerate(scores)
     ]
@@ -136,15 +138,17 @@ def _violated_again(
     known: Collection[RuleFor],
     books: Sequence[CompiledRulebook],
     steps: tuple[int, int],
-) -> list[dict[RuleFor, Violation]]:
+) -> list[dict[RuleFor, tuple[int, Violation]]]:
     """For each future what it violates after the past's violation has ended.
+
+    With the state of the candidate from which it is judged, whose steps are counted from there.
 
     As long as that goes on, a rule that is asked from some state on is violated after as many
     states as it takes at least, and so it is if it is asked from the next one on.
     """
     first, begin = steps
     soonest = {rule.name: _least_states(rule) for rule in books[0].rules}
-    found: list[dict[RuleFor, Violation]] = [{} for _ in futures]
+    found: list[dict[RuleFor, tuple[int, Violation]]] = [{} for _ in futures]
     asked = {(n, about): first for n in range(len(futures)) for about in known}
     while asked:
         jobs = sorted({(n, step) for (n, _), step in asked.items()})
@@ -161,7 +165,7 @@ def _violated_again(
                 continue
             begins = max(step, futures[n].first_step)
             if one.step >= soonest[about[0]]:
-                found[n][about] = at(one, begins - first)
+                found[n][about] = begins - first, one
             elif begins + one.step + 1 < begin:
                 goes_on[n, about] = begins + one.step + 1
         asked = goes_on

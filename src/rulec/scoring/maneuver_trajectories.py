@@ -76,13 +76,16 @@ def trajectory_scores(maneuvers: Maneuvers, listed: Sequence[Maneuver]) -> Traje
 def _scored_states(maneuvers: Maneuvers) -> int:
     """The number of the recording's steps for which trajectories can be scored; 0 if for none.
 
-    They end with the recording: a scene lets the others go on beyond it, a recording does not.
+    They end with the recording: a scene lets the others go on beyond it, a recording does not. If
+    ego is alone, nobody could go on.
     """
     account = maneuvers.graph.scenario.account
     if account is None or account.origin is None or maneuvers.words is None:
         return 0
-    seconds = min(_horizon_s(maneuvers), account.until_s)
-    return max(0, int(seconds / _origin(maneuvers).recording.step_s + _ROUNDING))
+    origin, seconds = _origin(maneuvers), _horizon_s(maneuvers)
+    if any(one.id != origin.start.participant for one in origin.recording.participants):
+        seconds = min(seconds, account.until_s)
+    return max(0, int(seconds / origin.recording.step_s + _ROUNDING))
 
 
 def _horizon_s(maneuvers: Maneuvers) -> float:
@@ -106,6 +109,13 @@ def score_trajectories(maneuvers: Maneuvers, listed: Sequence[Maneuver]) -> Scor
     """
     n_states = _scored_states(maneuvers)
     if not n_states:
+        account = maneuvers.graph.scenario.account
+        if account is not None and account.origin is not None and maneuvers.words is not None:
+            raise NO_TRAJECTORY.error(
+                None,
+                "the recording ends where the scene begins, and how the others go on is not known",
+                help="begin earlier, or add to the recording what the others are expected to do",
+            )
         raise NO_TRAJECTORY.error(
             None,
             "the maneuvers are not of a scene from a recording with bounds of ego's motion",

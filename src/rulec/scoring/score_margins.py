@@ -11,10 +11,13 @@ from rulec.extraction.traces.recorded_drive import Drive
 from rulec.logic import formula as ltl
 from rulec.logic.formula import atoms_of
 from rulec.monitoring.bindings import Cast
+from rulec.monitoring.explain.explained_parts import Deciding
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.explain.margins import Margin, margin_in
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import RuleFor, Verdict, Violation, rule_for
+from rulec.scoring.candidate_score import CandidateScore
+from rulec.scoring.charges import at
 from rulec.value_display import short_repr
 
 
@@ -36,31 +39,59 @@ class RuleMargin:
 
 
 def margins_of(
-    drives: Sequence[DriveVerdict],
-    charged: Sequence[Violation],
-    rules: CompiledRulebook,
-    first: int,
+    candidate: CandidateScore, before: Sequence[Violation], rules: CompiledRulebook, first: int
 ) -> Iterator[RuleMargin]:
-    """The margins of a candidate, whose first state is step ``first`` of the recording."""
-    keys = {rule_for(violation) for violation in charged}
-    for drive in drives:
-        if not isinstance(drive.answer, Verdict):
+    """The margins of a candidate, whose first state is step ``first`` of the recording.
+
+    ``before`` are the violations of its past. What is violated anew has the margin of that, and
+    what ends in time the least one from then on.
+    """
+    charged, ended = candidate.violations, {rule_for(violation) for violation in before}
+    for drive in candidate.drives:
+        if not isinstance(drive, DriveVerdict) or not isinstance(drive.answer, Verdict):
             continue
         begins = drive.drive.first_step - first
-        violated = set()
-        for violation in drive.answer.violations:
-            violated.add(rule_for(violation))
-            if rule_for(violation) in keys:
-                explanation = explain(
-                    violation, drive.drive.trace, rules, drive.drive.decided_by, repaired=False
-                )
-                for margin in explanation.margins():
-                    at = explanation.decisive + begins
-                    yield RuleMargin(violation.rule, True, violation.binding, at, margin)
+        last = begins + drive.drive.arrays.n_states - 1
+        violated = {rule_for(violation) for violation in drive.answer.violations} - ended
+        for violation in charged:
+            about = rule_for(violation)
+            since = candidate.judged_from.get(about)
+            is_here = about in violated if since is None else begins <= since <= last
+            if is_here:
+                violated.add(about)
+                yield from _deciding(violation, drive.drive, rules, begins, since)
         untold = {not_judged.rule for not_judged in drive.answer.not_judged}
         for rule in rules.rules:
             if len(rule.variables) <= 1 and rule.name not in untold:
-                yield from _nearest(rule, drive.drive, rules, violated, begins)
+                soonest = {about: candidate.late for about in ended if about[0] == rule.name}
+                yield from _nearest(rule, drive.drive, rules, violated, (begins, soonest))
+
+
+def _deciding(
+    violation: Violation, drive: Drive, rules: CompiledRulebook, begins: int, since: int | None
+) -> Iterator[RuleMargin]:
+    """The margins that decide a violation, which is judged ``since`` a state of the candidate.
+
+    ``begins``: the state of the candidate in which the drive begins.
+    """
+    cut = 0 if since is None else since - begins
+    own = at(violation, -begins - cut)
+    decided_by = {name: _DecidedSince(x, cut) for name, x in drive.decided_by.items()}
+    explanation = explain(own, drive.arrays.since(cut).trace(), rules, decided_by, repaired=False)
+    for margin in explanation.margins():
+        state = explanation.decisive + cut + begins
+        yield RuleMargin(violation.rule, True, violation.binding, state, margin)
+
+
+@dataclass(frozen=True, slots=True)
+class _DecidedSince:
+    """The numbers that decided a signal, in a drive from a ``state`` on."""
+
+    own: Deciding
+    state: int
+
+    def margin(self, item: str, state: int) -> Margin | None:
+        return self.own.margin(item, self.state + state)
 
 
 def _nearest(
@@ -68,15 +99,20 @@ def _nearest(
     drive: Drive,
     rules: CompiledRulebook,
     violated: Collection[RuleFor],
-    begins: int,
+    states_from: tuple[int, Mapping[RuleFor, int]],
 ) -> Iterator[RuleMargin]:
-    """For each choice of objects the state in which a comparison is nearest to changing."""
-    trace = drive.trace
+    """For each choice of objects the state in which a comparison is nearest to changing.
+
+    ``states_from``: the state of the candidate in which the drive begins, and the first states that
+    count where it is not the candidate's first.
+    """
+    trace, (begins, soonest) = drive.trace, states_from
     cast = Cast(trace.objects, rules.vocabulary, len(trace.states), trace.present)
     for binding in cast.bindings(rule):
-        if (rule.name, tuple(binding.objects.values())) in violated:
+        about = rule.name, tuple(binding.objects.values())
+        if about in violated:
             continue
-        states = range(max(binding.first, -begins), binding.last + 1)
+        states = range(max(binding.first, soonest.get(about, 0) - begins), binding.last + 1)
         found = [
             (margin.by, state, margin)
             for state in states

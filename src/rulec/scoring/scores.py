@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import did_you_mean
 from rulec.diagnostics.argument_kinds import expected, finite
-from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.monitoring.verdict import Violation
 from rulec.planning.ranking.penalties import PenaltyOrder, PenaltyRank, ranks_of
 from rulec.scoring.candidate_score import CandidateScore
@@ -148,8 +147,7 @@ class Scores(Rows):
         Raises IndexError for an unknown number.
         """
         score = self.candidates[self._known(number)]
-        drives = [drive for drive in score.drives if isinstance(drive, DriveVerdict)]
-        return tuple(margins_of(drives, score.violations, self.rules, self._first))
+        return tuple(margins_of(score, self.violated_before, self.rules, self._first))
 
     def _known(self, number: int) -> int:
         """A candidate's number, checked; a negative one would be a bug in a planner's loop."""

@@ -45,6 +45,9 @@ _REACH_S, _GENTLE_MPS2 = 3.0, 4.0
 """A cause to brake is at most this far ahead: the way in ``_REACH_S``, the braking distance at
 ``_GENTLE_MPS2``, and ``REACH_M``."""
 
+_FARTHEST_M = 1000.0
+"""Nobody looks farther ahead (m), however fast a vehicle seems to be."""
+
 FOLLOWS_S, _FALLS_BACK_MPS = 3.0, 1.0
 """Ego holds up vehicles at most ``FOLLOWS_S`` behind, unless ``_FALLS_BACK_MPS`` slower."""
 
@@ -237,7 +240,7 @@ def _reach(context: DriveContext) -> Floats:
 def reach_at(speed: Floats) -> Floats:
     """How far ahead (m) a driver looks for reasons to brake, by speed (m/s)."""
     reach: Floats = _REACH_S * speed + speed**2 / (2 * _GENTLE_MPS2) + REACH_M
-    return reach
+    return np.minimum(reach, _FARTHEST_M)
 
 
 def _all_are_recorded(context: DriveContext) -> bool:
