@@ -157,7 +157,7 @@ def test_it_ends_so_that_it_can_still_stop_with_ease():
 
 def test_an_emergency_is_called_one():
     # Ego's front stops at the rear of one that stands, 12 m ahead, with 12² / 2 / 12 = 6 m/s²
-    road = Road((-50.0, 500.0), (-2.0, 2.0))
+    road = Road((-50.0, 500.0), (-1.7, 1.7))
     ego = Ego(0.0, 0.0, 4.0, 1.8, speed=12.0, bounds=MotionBounds())
     found = find_maneuvers(Scenario("h", road, ego, (car("c", 16.0, 0.0),), step_s=0.5), PAPER)
     assert 5.98 <= found.least_braking <= 6.0
@@ -166,6 +166,14 @@ def test_an_emergency_is_called_one():
     assert first.trajectory.greatest_braking >= 6.0
     eased = find_maneuvers(Scenario("e", road, ego, (car("c", 40.0, 0.0),), step_s=0.5), PAPER)
     assert eased.least_braking is None
+
+
+def test_who_is_behind_another_may_have_its_front_beside_it():
+    # On a road this wide ego's middle may be 1.9 m beside the other's, and stop 2 m later for it
+    road = Road((-50.0, 500.0), (-2.0, 2.0))
+    ego = Ego(0.0, 0.0, 4.0, 1.8, speed=12.0, bounds=MotionBounds())
+    found = find_maneuvers(Scenario("h", road, ego, (car("c", 16.0, 0.0),), step_s=0.5), PAPER)
+    assert 12**2 / 2 / 14 - 0.02 <= found.least_braking <= 12**2 / 2 / 14
 
 
 def test_one_that_has_braked_hard_goes_on_behind_who_cut_in():

@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.partition.cell_graph import NavigationGraph
-from rulec.partition.cells.cell_model import Cell
+from rulec.partition.cells.cell_model import Cell, Reach
 from rulec.partition.motion.least_costs import PER_ACCELERATION, PER_SPEED
 from rulec.partition.motion.linear_program import LinearProgram, Row, Solution
 from rulec.partition.motion.reachable_graph import ego_motion
+from rulec.partition.motion.reachable_sets import Interval
 from rulec.scenario import Box, MotionBounds
 
 PIECE_S = 0.1
@@ -88,6 +89,27 @@ class MotionProgram:
         first = int(self.at[axis])
         rows[:, first : first + self.count] = for_s**2 / 2 + for_s * left
         return PlaceRows(rows, place + speed * times)
+
+    def place_at(self, time: float, path: Sequence[int]) -> tuple[Interval, Interval]:
+        """Bounds of ego's places along and across the road at a time, on a path or its beginning.
+
+        By what the path's cells allow before and after it.
+        """
+        p = min(int(time / self.graph.step_s + 1e-9), len(path) - 1)
+        reach, gone = self._reach(p, path), time - float(self.layers_s[p])
+        along = self._motion.along.forward(reach.s, reach.speed, gone)
+        across = self._motion.across.forward(reach.d, reach.lateral_speed, gone)
+        if p + 1 < len(path):
+            reach, left = self._reach(p + 1, path), float(self.layers_s[p + 1]) - time
+            before = self._motion.along.backward(reach.s, reach.speed, left)
+            beside = self._motion.across.backward(reach.d, reach.lateral_speed, left)
+            along, across = _common(along, before), _common(across, beside)
+        return along, across
+
+    def _reach(self, p: int, path: Sequence[int]) -> Reach:
+        reach = self.graph.reach[p][path[p]]
+        assert reach is not None, "ego reaches the cells of its paths"
+        return reach
 
     def speeds(self, axis: int) -> PlaceRows:
         """The speeds along one axis at the ends of pieces."""
@@ -207,6 +229,10 @@ class MotionProgram:
             if inside:
                 last = nearest = min(inside, key=lambda d: abs(d - nearest))
             yield min(max(last, box.d_min), box.d_max)
+
+
+def _common(first: Interval, second: Interval) -> Interval:
+    return max(first[0], second[0]), min(first[1], second[1])
 
 
 def _add(program: LinearProgram, places: PlaceRows, low: float, high: float) -> None:

@@ -21,6 +21,8 @@ CHECK_S = 0.05
 GAP_M = 0.01
 """The gap (m) that ego keeps from obstacles, for the solver's rounding."""
 
+_HAIR_M = 1e-6
+
 Side = str
 """Where ego is relative to an obstacle: behind, in_front, right, left."""
 
@@ -104,8 +106,9 @@ class OthersBeside:
     ) -> Iterator[Cut]:
         """Rows to add where a solution overlaps obstacles up to a time, by the path's cells.
 
-        With ``sure``, only rows that every motion along the path keeps, because its cells leave
-        just one side. Among several sides a ``preferred`` one is chosen, then the nearest.
+        With ``sure``, only rows that every motion along the path keeps that overlaps nobody,
+        because ego can get to no other side. Among several sides a ``preferred`` one is chosen,
+        then the nearest.
         """
         last = int(np.searchsorted(self.times, until + 1e-9))
         along, across = self.along, self.across
@@ -123,32 +126,49 @@ class OthersBeside:
             }
             hit = there & (np.maximum.reduce(list(beyond.values())) < -1e-6)
             for k in np.flatnonzero(hit).tolist():
-                sides = self.sides(name, float(self.times[k]), path)
-                if sure and len(sides) != 1:
+                if sure:
+                    possible = self._possible_sides(name, k, path)
+                    if len(possible) <= 1:
+                        side = max(possible or beyond, key=lambda side: beyond[side][k])
+                        yield self._cut(name, side, k, gap=0.0)
                     continue
+                sides = self.sides(name, float(self.times[k]), path)
                 side = max(
                     sides or set(beyond), key=lambda side: (side in preferred, beyond[side][k])
                 )
-                if sure:
-                    yield self._cut(name, side, k)
-                    continue
                 # Add rows just before and after as well: the next solution will be close there too.
                 for j in range(max(k - 1, 1), min(k + 2, len(s))):
                     if there[j]:
                         yield self._cut(name, side, j)
 
-    def _cut(self, name: str, side: Side, k: int) -> Cut:
+    def _cut(self, name: str, side: Side, k: int, gap: float = GAP_M) -> Cut:
         """The row that keeps ego on one side of an obstacle at time number ``k``."""
         (length, width), boxes = self.body, self.boxes[name][1]
         places = self.along if side in ("behind", "in_front") else self.across
         low, high = {
-            "behind": (-np.inf, boxes[k, 0] - length - GAP_M),
-            "in_front": (boxes[k, 1] + length + GAP_M, np.inf),
-            "right": (-np.inf, boxes[k, 2] - width - GAP_M),
-            "left": (boxes[k, 3] + width + GAP_M, np.inf),
+            "behind": (-np.inf, boxes[k, 0] - length - gap),
+            "in_front": (boxes[k, 1] + length + gap, np.inf),
+            "right": (-np.inf, boxes[k, 2] - width - gap),
+            "left": (boxes[k, 3] + width + gap, np.inf),
         }[side]
         fixed = float(places.fixed[k])
         return Cut((name, side, k), places.rows[k], float(low) - fixed, float(high) - fixed)
+
+    def _possible_sides(self, name: str, k: int, path: Sequence[int]) -> list[Side]:
+        """The sides of an obstacle where ego's body may be at time number ``k``.
+
+        Cells say where ego's middle is: ego may be behind an obstacle, and already beside it with
+        its front.
+        """
+        (length, width), box = self.body, self.boxes[name][1][k]
+        (s_low, s_high), (d_low, d_high) = self._motion.place_at(float(self.times[k]), path)
+        room = {
+            "behind": box[0] - length - s_low,
+            "in_front": s_high - box[1] - length,
+            "right": box[2] - width - d_low,
+            "left": d_high - box[3] - width,
+        }
+        return [side for side, most in room.items() if most >= -_HAIR_M]
 
     def sides(self, name: str, time: float, path: Sequence[int]) -> set[Side]:
         """The sides of an obstacle on which the path's cells are around a time."""

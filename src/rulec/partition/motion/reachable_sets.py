@@ -20,6 +20,8 @@ from numpy.typing import NDArray
 Bounds = NDArray[np.float64]
 """One row per set, one column per direction."""
 
+Interval = tuple[float, float]
+
 Sets = tuple[Bounds, Bounds]
 """Lower and upper bounds."""
 
@@ -43,6 +45,23 @@ class AxisMotion:
         """One set: a position with speeds between bounds."""
         low, high = np.array([[place, speeds[0]]]), np.array([[place, speeds[1]]])
         return self._filled(low, high, now)
+
+    def forward(self, places: Interval, speeds: Interval, seconds: float) -> Interval:
+        """Bounds of the places some time after places and speeds between bounds."""
+        low, high = self._driven(speeds, self.accelerations, seconds)
+        return places[0] + low, places[1] + high
+
+    def backward(self, places: Interval, speeds: Interval, seconds: float) -> Interval:
+        """Bounds of the places some time before."""
+        braking, gaining = self.accelerations
+        low, high = self._driven(speeds, (-gaining, -braking), seconds)
+        return places[0] - high, places[1] - low
+
+    def _driven(self, speeds: Interval, gains: Interval, seconds: float) -> Interval:
+        gained = seconds**2 / 2
+        least = max(speeds[0] * seconds + gains[0] * gained, self.speeds[0] * seconds)
+        most = min(speeds[1] * seconds + gains[1] * gained, self.speeds[1] * seconds)
+        return least, most
 
     def _filled(self, least: Bounds, most: Bounds, now: float) -> Sets:
         low = np.full((len(least), 2 + len(self.moments)), -np.inf)

@@ -18,8 +18,6 @@ from rulec.partition.motion.others_beside import Cut, OthersBeside
 _MOST_ROUNDS = 12
 """The most rounds of adding rows; stopping early leaves a weaker bound."""
 
-_HAIR_S = 1e-6
-
 _Names = frozenset[tuple[object, ...]]
 
 
@@ -53,9 +51,6 @@ class WayBounds:
         cells = [layer.cells[i] for layer, i in zip(self._graph.layers, path, strict=False)]
         low, high = self._motion.cell_bounds(cells)
         until = float(self._motion.layers_s[len(path) - 1])
-        if len(path) < len(self._graph.layers):
-            # On arrival in the last cell ego may already be on the side that the next cell allows
-            until -= _HAIR_S
         names, found = before, None
         for _ in range(_MOST_ROUNDS):
             self._switch(names, low, high)

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,9 @@ PER_GOAL = 0.5
 
 _PREFERRED: Sequence[Collection[Side]] = ((), ("right", "left"), ("behind", "in_front"))
 """Preferred sides where ego may be on several sides of an obstacle, tried in this order."""
+
+ALIKE = 0.01
+"""Costs that differ by less than this are alike."""
 
 EASED, _EASED_ENOUGH = 4.0, 0.5
 """Braking (m/s²) that ego may need after the end, and the tolerance (m²/s²) of that check."""
@@ -122,19 +126,29 @@ class WitnessSearch:
         """Lower bounds on ego's hardest braking (m/s²) on paths' beginnings."""
         return WayBounds(self._motion, self._others, braking_only=True)
 
-    def of(self, path: Sequence[int]) -> WitnessTrajectory | None:
+    def of(self, path: Sequence[int], least: float = inf) -> WitnessTrajectory | None:
         """The trajectory of least cost found for a path; None if none was found.
 
-        If possible, its final speed lets ego slow down to the speed of the obstacle ahead.
+        If possible, its final speed lets ego slow down to the speed of the obstacle ahead. One that
+        costs hardly more than ``least``, below which none can, ends the search.
         """
-        for preferred in _PREFERRED:
-            for eased in (True, False):
+        best: WitnessTrajectory | None = None
+        tries: list[Collection[Side]] = [*_PREFERRED]
+        for eased in (True, False):
+            again = []
+            for preferred in tries:
                 attempt = self._attempt(path, preferred, eased=eased)
-                if attempt.trajectory is not None:
-                    return attempt.trajectory
-                if not attempt.was_eased:
-                    break
-        return None
+                found = attempt.trajectory
+                if found is not None and (best is None or found.cost.total < best.cost.total):
+                    best = found
+                    if found.cost.total <= least + ALIKE:
+                        return found
+                if attempt.was_eased:
+                    again.append(preferred)
+            if best is not None:
+                return best
+            tries = again
+        return best
 
     def in_way(self, path: Sequence[int]) -> tuple[str, ...]:
         """The obstacles in ego's way along a path without a trajectory, the earliest first.

@@ -9,6 +9,7 @@ from __future__ import annotations
 from bisect import insort
 from dataclasses import replace
 from itertools import islice, pairwise
+from math import inf
 from typing import TYPE_CHECKING
 
 from rulec.planning.product.graph_product import Memory, Product
@@ -45,7 +46,7 @@ def proven(
         if len(maneuvers) >= n and way.promises >= maneuvers[n - 1].cost:
             break
         looked_at.add(way.maneuver.nodes)
-        _add(maneuvers, way.maneuver, graph, search)
+        _add(maneuvers, way.maneuver, graph, search, way.promises)
     if len(maneuvers) < n:
         beam = beam_ways(product, graph, search.bounds, max(BEAM, n))
         by_cells = islice(cheapest(product), MOST_TRIED * n)
@@ -58,24 +59,31 @@ def proven(
 
 
 def _add(
-    found: list[Maneuver], candidate: Maneuver, graph: NavigationGraph, search: WitnessSearch
+    found: list[Maneuver],
+    candidate: Maneuver,
+    graph: NavigationGraph,
+    search: WitnessSearch,
+    least: float = inf,
 ) -> None:
-    driven = with_trajectory(candidate, graph, search)
+    driven = with_trajectory(candidate, graph, search, least)
     if driven is not None:
         insort(found, driven, key=lambda maneuver: (maneuver.cost, maneuver.nodes))
 
 
 def with_trajectory(
-    maneuver: Maneuver, graph: NavigationGraph, search: WitnessSearch
+    maneuver: Maneuver, graph: NavigationGraph, search: WitnessSearch, least: float = inf
 ) -> Maneuver | None:
-    """The maneuver with a trajectory, and the cost of both; None if no trajectory was found."""
-    trajectory = search.of(maneuver.nodes)
-    if trajectory is None:
-        return None
+    """The maneuver with a trajectory, and the cost of both; None if no trajectory was found.
+
+    No trajectory makes it cost less than ``least``; without it, the first one found will do.
+    """
     changes = sum(
         change_cost(graph, p, node, target)
         for p, (node, target) in enumerate(pairwise(maneuver.nodes))
     )
+    trajectory = search.of(maneuver.nodes, least - changes)
+    if trajectory is None:
+        return None
     cost = changes + trajectory.cost.total
     return replace(maneuver, cost=cost, changes=changes, trajectory=trajectory)
 
