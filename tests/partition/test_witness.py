@@ -72,8 +72,10 @@ def test_random_scenarios(scenario, speed):
         found = find_maneuvers(start, PAPER)
     except RulecError:
         assume(False)
+    least = found.least_braking or 0.0
     for maneuver in found.cheapest(1):
         check_driven(found.graph, maneuver)
+        assert least <= maneuver.trajectory.greatest_braking + 1e-3
 
 
 FILES = sorted(RECORDINGS.glob("*.xml"))
@@ -166,6 +168,20 @@ def test_an_emergency_is_called_one():
     assert first.trajectory.greatest_braking >= 6.0
     eased = find_maneuvers(Scenario("e", road, ego, (car("c", 40.0, 0.0),), step_s=0.5), PAPER)
     assert eased.least_braking is None
+
+
+def test_who_moves_out_just_in_time_need_not_brake_hard():
+    # Ego moves to the right anyway: until it is beside the one that stands, it has to stay behind
+    road = Road((-80.0, 120.0), (-5.25, -1.75, 1.75, 5.25))
+    ego = Ego(0.0, 0.0, 5.2, 1.6, speed=14.59, lateral_speed=-1.32, bounds=MotionBounds())
+    stands = Obstacle("o", "vehicle", 1.8, 1.8, ConstantAcceleration(14.0, 0.0, 0.0, 0.0))
+    scene = Scenario("m", road, ego, (stands,), horizon_s=2.0, step_s=0.5)
+    found = find_maneuvers(scene, PAPER, extent="clearance")
+    (first,) = found.cheapest(1)
+    check_driven(found.graph, first)
+    # A search with other means, at every 0.05 s, finds 3.8 m/s² and a cost of 2.8
+    assert first.trajectory.greatest_braking < 4.0
+    assert first.cost < 3.0
 
 
 def test_who_is_behind_another_may_have_its_front_beside_it():

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.partition.motion.linear_program import Row, Solution
+from rulec.partition.motion.linear_program import LinearProgram, Row, Solution
 from rulec.partition.motion.motion_program import MotionProgram, PlaceRows
 from rulec.scenario import Box
 from rulec.scenario.geometry import centred
@@ -25,6 +25,9 @@ _HAIR_M = 1e-6
 
 Side = str
 """Where ego is relative to an obstacle: behind, in_front, right, left."""
+
+ALONG: Sequence[Side] = ("behind", "in_front")
+ACROSS: Sequence[Side] = ("right", "left")
 
 _SIDES = {
     "b": "behind",
@@ -46,6 +49,10 @@ class Cut:
     row: Row
     low: float
     high: float
+
+
+Cuts = Mapping[tuple[object, ...], Cut]
+"""Rows by their names."""
 
 
 class OthersBeside:
@@ -111,37 +118,53 @@ class OthersBeside:
         then the nearest.
         """
         last = int(np.searchsorted(self.times, until + 1e-9))
-        along, across = self.along, self.across
-        s = along.rows[:last] @ solution.values + along.fixed[:last]
-        d = across.rows[:last] @ solution.values + across.fixed[:last]
-        length, width = self.body
-        for name, (all_there, all_boxes) in self.boxes.items():
-            there, boxes = all_there[:last], all_boxes[:last]
-            # Ego's clearance on each side; it overlaps where none is enough
-            beyond = {
-                "behind": boxes[:, 0] - length - s,
-                "in_front": s - boxes[:, 1] - length,
-                "right": boxes[:, 2] - width - d,
-                "left": d - boxes[:, 3] - width,
-            }
-            hit = there & (np.maximum.reduce(list(beyond.values())) < -1e-6)
+        for name, beyond, hit in self._clearances(solution, last):
+            there = self.boxes[name][0]
             for k in np.flatnonzero(hit).tolist():
                 if sure:
-                    possible = self._possible_sides(name, k, path)
+                    possible = self.possible_sides(name, k, path)
                     if len(possible) <= 1:
                         side = max(possible or beyond, key=lambda side: beyond[side][k])
-                        yield self._cut(name, side, k, gap=0.0)
+                        yield self.cut(name, side, k, gap=0.0)
                     continue
                 sides = self.sides(name, float(self.times[k]), path)
                 side = max(
                     sides or set(beyond), key=lambda side: (side in preferred, beyond[side][k])
                 )
                 # Add rows just before and after as well: the next solution will be close there too.
-                for j in range(max(k - 1, 1), min(k + 2, len(s))):
+                for j in range(max(k - 1, 1), min(k + 2, last)):
                     if there[j]:
-                        yield self._cut(name, side, j)
+                        yield self.cut(name, side, j)
 
-    def _cut(self, name: str, side: Side, k: int, gap: float = GAP_M) -> Cut:
+    def hits(self, solution: Solution) -> Iterator[tuple[str, list[int]]]:
+        """The obstacles that a solution overlaps, with the numbers of the times, not sorted."""
+        for name, _, hit in self._clearances(solution, len(self.times)):
+            numbers = np.flatnonzero(hit).tolist()
+            if numbers:
+                yield name, numbers
+
+    def _clearances(
+        self, solution: Solution, last: int
+    ) -> Iterator[tuple[str, dict[Side, Row], NDArray[np.bool_]]]:
+        """Ego's clearance (m) on each side of obstacles at the first ``last`` times.
+
+        And whether none is enough, so that ego overlaps the obstacle.
+        """
+        along, across = self.along, self.across
+        s = along.rows[:last] @ solution.values + along.fixed[:last]
+        d = across.rows[:last] @ solution.values + across.fixed[:last]
+        length, width = self.body
+        for name, (all_there, all_boxes) in self.boxes.items():
+            there, boxes = all_there[:last], all_boxes[:last]
+            beyond = {
+                "behind": boxes[:, 0] - length - s,
+                "in_front": s - boxes[:, 1] - length,
+                "right": boxes[:, 2] - width - d,
+                "left": d - boxes[:, 3] - width,
+            }
+            yield name, beyond, there & (np.maximum.reduce(list(beyond.values())) < -1e-6)
+
+    def cut(self, name: str, side: Side, k: int, gap: float = GAP_M) -> Cut:
         """The row that keeps ego on one side of an obstacle at time number ``k``."""
         (length, width), boxes = self.body, self.boxes[name][1]
         places = self.along if side in ("behind", "in_front") else self.across
@@ -154,7 +177,7 @@ class OthersBeside:
         fixed = float(places.fixed[k])
         return Cut((name, side, k), places.rows[k], float(low) - fixed, float(high) - fixed)
 
-    def _possible_sides(self, name: str, k: int, path: Sequence[int]) -> list[Side]:
+    def possible_sides(self, name: str, k: int, path: Sequence[int]) -> list[Side]:
         """The sides of an obstacle where ego's body may be at time number ``k``.
 
         Cells say where ego's middle is: ego may be behind an obstacle, and already beside it with
@@ -180,3 +203,26 @@ class OthersBeside:
                     words = (relation,) if isinstance(relation, str) else relation
                     sides.update(_SIDES[word] for word in words if word in _SIDES)
         return sides
+
+
+class CutRows:
+    """Rows of a program about obstacles that are switched on and off, each added once."""
+
+    def __init__(self, program: LinearProgram) -> None:
+        self._program = program
+        self._rows: dict[tuple[object, ...], tuple[int, Cut]] = {}
+
+    def switch(self, cuts: Cuts) -> None:
+        """Switch these rows on, and all others off."""
+        new = [cut for name, cut in cuts.items() if name not in self._rows]
+        if new:
+            rows = np.array([cut.row for cut in new])
+            low, high = (np.array([getattr(cut, end) for cut in new]) for end in ("low", "high"))
+            first = self._program.add(rows, low, high)
+            self._rows |= {cut.name: (first + k, cut) for k, cut in enumerate(new)}
+        if self._rows:
+            own = list(self._rows.items())
+            numbers = np.array([number for _, (number, _) in own])
+            low = np.array([cut.low if name in cuts else -np.inf for name, (_, cut) in own])
+            high = np.array([cut.high if name in cuts else np.inf for name, (_, cut) in own])
+            self._program.change(numbers, low, high)

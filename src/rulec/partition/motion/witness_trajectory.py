@@ -29,6 +29,7 @@ from rulec.partition.motion.motion_program import (
     MotionProgram,
 )
 from rulec.partition.motion.others_beside import Cut, OthersBeside, Side
+from rulec.partition.motion.side_search import least_by_sides
 from rulec.partition.motion.way_bounds import WayBounds
 from rulec.scenario import Box, MotionBounds
 
@@ -150,6 +151,24 @@ class WitnessSearch:
             tries = again
         return best
 
+    def cheaper(
+        self, path: Sequence[int], known: WitnessTrajectory, least: float
+    ) -> WitnessTrajectory:
+        """A cheaper trajectory than a known one, if one is found; no cost is below ``least``."""
+        if known.cost.total <= least + ALIKE:
+            return known
+        cells = [layer.cells[i] for layer, i in zip(self._graph.layers, path, strict=True)]
+        program, own = self._motion.program(), self._motion.in_cells(cells)
+        program.add(own.rows, own.low, own.high)
+
+        def further(solution: Solution) -> list[Cut]:
+            return [*self._beside_cells(solution, cells), *self._too_fast(solution, path)]
+
+        below = known.cost.total - known.cost.goal - ALIKE
+        solution = least_by_sides(program, self._others, path, further, below)
+        found = None if solution is None else self._trajectory(solution, cells, path)
+        return found if found is not None and found.cost.total < known.cost.total else known
+
     def in_way(self, path: Sequence[int]) -> tuple[str, ...]:
         """The obstacles in ego's way along a path without a trajectory, the earliest first.
 
@@ -227,6 +246,12 @@ class WitnessSearch:
         preferred: Collection[Side] = (),
     ) -> Iterator[Cut]:
         """Rows that a solution violates."""
+        yield from self._beside_cells(solution, cells)
+        until = float(self._motion.layers_s[-1])
+        yield from self._others.overlaps(solution, path, until, preferred=preferred)
+
+    def _beside_cells(self, solution: Solution, cells: Sequence[Cell]) -> Iterator[Cut]:
+        """Rows that keep ego in the nearest rectangle of cells that have several."""
         times = self._motion.layers_s
         along, across = self._motion.along(times), self._motion.across(times)
         for p, (s, d) in enumerate(zip(along.of(solution), across.of(solution), strict=True)):
@@ -239,7 +264,6 @@ class WitnessSearch:
                 ):
                     fixed = float(places.fixed[p])
                     yield Cut((axis, p), places.rows[p], low - fixed, high - fixed)
-        yield from self._others.overlaps(solution, path, float(times[-1]), preferred=preferred)
 
     def _trajectory(
         self, solution: Solution, cells: Sequence[Cell], path: Sequence[int]

@@ -53,7 +53,7 @@ class _Part(Generic[Memory]):
 
     def bounded(self, bounds: WayBounds) -> _Part[Memory] | None:
         """The part with its own bound; None if it cannot be driven."""
-        bound = bounds.of(self.path, self.bound.cuts if self.bound else frozenset())
+        bound = bounds.of(self.path, self.bound.cuts if self.bound else {})
         return None if bound is None else replace(self, bound=bound, is_known=True)
 
 

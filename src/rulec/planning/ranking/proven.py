@@ -41,11 +41,13 @@ def proven(
     """
     maneuvers: list[Maneuver] = []
     looked_at: set[tuple[int, ...]] = set()
+    promised: dict[tuple[int, ...], float] = {}
     ways = guided_ways(product, graph, search.bounds, MOST_BOUNDS + MORE_BOUNDS * n)
     for way in islice(ways, MOST_TRIED * n):
         if len(maneuvers) >= n and way.promises >= maneuvers[n - 1].cost:
             break
         looked_at.add(way.maneuver.nodes)
+        promised[way.maneuver.nodes] = way.promises
         _add(maneuvers, way.maneuver, graph, search, way.promises)
     if len(maneuvers) < n:
         beam = beam_ways(product, graph, search.bounds, max(BEAM, n))
@@ -55,7 +57,17 @@ def proven(
                 if candidate.nodes not in looked_at:
                     looked_at.add(candidate.nodes)
                     _add(maneuvers, candidate, graph, search)
-    return maneuvers[:n]
+    cheaper = [_cheaper(one, search, promised.get(one.nodes, 0.0)) for one in maneuvers[:n]]
+    return sorted(cheaper, key=lambda maneuver: (maneuver.cost, maneuver.nodes))
+
+
+def _cheaper(driven: Maneuver, search: WitnessSearch, least: float) -> Maneuver:
+    """The maneuver with a cheaper trajectory, if one is found; it costs no less than ``least``."""
+    known, changes = driven.trajectory, driven.changes
+    assert known is not None, "it is driven"
+    assert changes is not None, "its cost has parts"
+    found = search.cheaper(driven.nodes, known, least - changes)
+    return replace(driven, cost=changes + found.cost.total, trajectory=found)
 
 
 def _add(
