@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +56,18 @@ Cuts = Mapping[tuple[object, ...], Cut]
 """Rows by their names."""
 
 
+class _Closed(NamedTuple):
+    """Where a part of ego, half as long and wide as these (m), must not be at the checked times.
+
+    ``there``: at which of them. ``boxes``: s_min, s_max, d_min, d_max, a row for each time.
+    """
+
+    there: NDArray[np.bool_]
+    boxes: NDArray[np.float64]
+    length: float
+    width: float
+
+
 class OthersBeside:
     """The obstacles during a graph's layers, and where ego would overlap them."""
 
@@ -92,6 +105,21 @@ class OthersBeside:
         return result
 
     @cached_property
+    def _closed(self) -> dict[str | int, _Closed]:
+        """Obstacles by id, for ego's body, and missing lanes by number, for its middle."""
+        length, width = self.body
+        closed: dict[str | int, _Closed] = {
+            name: _Closed(*own, length, width) for name, own in self.boxes.items()
+        }
+        scenario, count = self._graph.scenario, len(self.times)
+        for number, hole in enumerate(scenario.road.holes()):
+            # A recorded ego may be on a lane that the map ends before
+            if not hole.covers(scenario.ego.s, scenario.ego.d):
+                rows = np.tile((hole.s_min, hole.s_max, hole.d_min, hole.d_max), (count, 1))
+                closed[number] = _Closed(np.ones(count, dtype=bool), rows, 0.0, 0.0)
+        return closed
+
+    @cached_property
     def body(self) -> tuple[float, float]:
         """Half of ego's length and width, or its bounds' unless that body starts in an obstacle."""
         ego, bounds = self._graph.scenario.ego, self._motion.bounds
@@ -111,7 +139,9 @@ class OthersBeside:
         sure: bool = False,
         preferred: Collection[Side] = (),
     ) -> Iterator[Cut]:
-        """Rows to add where a solution overlaps obstacles up to a time, by the path's cells.
+        """Rows to add where a solution overlaps obstacles, or missing lanes, up to a time.
+
+        By the path's cells.
 
         With ``sure``, only rows that every motion along the path keeps that overlaps nobody,
         because ego can get to no other side. Among several sides a ``preferred`` one is chosen,
@@ -119,7 +149,7 @@ class OthersBeside:
         """
         last = int(np.searchsorted(self.times, until + 1e-9))
         for name, beyond, hit in self._clearances(solution, last):
-            there = self.boxes[name][0]
+            there = self._closed[name].there
             for k in np.flatnonzero(hit).tolist():
                 if sure:
                     possible = self.possible_sides(name, k, path)
@@ -136,8 +166,8 @@ class OthersBeside:
                     if there[j]:
                         yield self.cut(name, side, j)
 
-    def hits(self, solution: Solution) -> Iterator[tuple[str, list[int]]]:
-        """The obstacles that a solution overlaps, with the numbers of the times, not sorted."""
+    def hits(self, solution: Solution) -> Iterator[tuple[str | int, list[int]]]:
+        """The obstacles and missing lanes that a solution overlaps, and the times' numbers."""
         for name, _, hit in self._clearances(solution, len(self.times)):
             numbers = np.flatnonzero(hit).tolist()
             if numbers:
@@ -145,7 +175,7 @@ class OthersBeside:
 
     def _clearances(
         self, solution: Solution, last: int
-    ) -> Iterator[tuple[str, dict[Side, Row], NDArray[np.bool_]]]:
+    ) -> Iterator[tuple[str | int, dict[Side, Row], NDArray[np.bool_]]]:
         """Ego's clearance (m) on each side of obstacles at the first ``last`` times.
 
         And whether none is enough, so that ego overlaps the obstacle.
@@ -153,8 +183,7 @@ class OthersBeside:
         along, across = self.along, self.across
         s = along.rows[:last] @ solution.values + along.fixed[:last]
         d = across.rows[:last] @ solution.values + across.fixed[:last]
-        length, width = self.body
-        for name, (all_there, all_boxes) in self.boxes.items():
+        for name, (all_there, all_boxes, length, width) in self._closed.items():
             there, boxes = all_there[:last], all_boxes[:last]
             beyond = {
                 "behind": boxes[:, 0] - length - s,
@@ -164,9 +193,9 @@ class OthersBeside:
             }
             yield name, beyond, there & (np.maximum.reduce(list(beyond.values())) < -1e-6)
 
-    def cut(self, name: str, side: Side, k: int, gap: float = GAP_M) -> Cut:
+    def cut(self, name: str | int, side: Side, k: int, gap: float = GAP_M) -> Cut:
         """The row that keeps ego on one side of an obstacle at time number ``k``."""
-        (length, width), boxes = self.body, self.boxes[name][1]
+        _, boxes, length, width = self._closed[name]
         places = self.along if side in ("behind", "in_front") else self.across
         low, high = {
             "behind": (-np.inf, boxes[k, 0] - length - gap),
@@ -177,13 +206,14 @@ class OthersBeside:
         fixed = float(places.fixed[k])
         return Cut((name, side, k), places.rows[k], float(low) - fixed, float(high) - fixed)
 
-    def possible_sides(self, name: str, k: int, path: Sequence[int]) -> list[Side]:
+    def possible_sides(self, name: str | int, k: int, path: Sequence[int]) -> list[Side]:
         """The sides of an obstacle where ego's body may be at time number ``k``.
 
         Cells say where ego's middle is: ego may be behind an obstacle, and already beside it with
         its front.
         """
-        (length, width), box = self.body, self.boxes[name][1][k]
+        _, boxes, length, width = self._closed[name]
+        box = boxes[k]
         (s_low, s_high), (d_low, d_high) = self._motion.place_at(float(self.times[k]), path)
         room = {
             "behind": box[0] - length - s_low,
@@ -193,7 +223,7 @@ class OthersBeside:
         }
         return [side for side, most in room.items() if most >= -_HAIR_M]
 
-    def sides(self, name: str, time: float, path: Sequence[int]) -> set[Side]:
+    def sides(self, name: str | int, time: float, path: Sequence[int]) -> set[Side]:
         """The sides of an obstacle on which the path's cells are around a time."""
         layer = min(int(time / self._graph.step_s + 1e-9), len(path) - 1)
         sides: set[Side] = set()

@@ -67,7 +67,7 @@ def least_by_sides(
 
 
 def _plans(
-    others: OthersBeside, path: Sequence[int], name: str, times: Sequence[int]
+    others: OthersBeside, path: Sequence[int], name: str | int, times: Sequence[int]
 ) -> Iterator[list[Cut]]:
     """The ways to keep beside an obstacle at these numbers of times, as rows."""
     plans: list[list[Side]] = [[side] * len(times) for side in (*ALONG, *ACROSS)]

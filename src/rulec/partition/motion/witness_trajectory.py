@@ -157,6 +157,14 @@ class WitnessSearch:
         """A cheaper trajectory than a known one, if one is found; no cost is below ``least``."""
         if known.cost.total <= least + ALIKE:
             return known
+        found = self.by_sides(path, below=known.cost.total - known.cost.goal - ALIKE)
+        return found if found is not None and found.cost.total < known.cost.total else known
+
+    def by_sides(self, path: Sequence[int], below: float = inf) -> WitnessTrajectory | None:
+        """A trajectory by a search over the sides of obstacles, which takes longer.
+
+        Its cost without the goal is ``below`` this one. None if none was found.
+        """
         cells = [layer.cells[i] for layer, i in zip(self._graph.layers, path, strict=True)]
         program, own = self._motion.program(), self._motion.in_cells(cells)
         program.add(own.rows, own.low, own.high)
@@ -164,10 +172,8 @@ class WitnessSearch:
         def further(solution: Solution) -> list[Cut]:
             return [*self._beside_cells(solution, cells), *self._too_fast(solution, path)]
 
-        below = known.cost.total - known.cost.goal - ALIKE
         solution = least_by_sides(program, self._others, path, further, below)
-        found = None if solution is None else self._trajectory(solution, cells, path)
-        return found if found is not None and found.cost.total < known.cost.total else known
+        return None if solution is None else self._trajectory(solution, cells, path)
 
     def in_way(self, path: Sequence[int]) -> tuple[str, ...]:
         """The obstacles in ego's way along a path without a trajectory, the earliest first.

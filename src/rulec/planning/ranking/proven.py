@@ -19,13 +19,16 @@ from rulec.planning.ranking.guided_ways import ALIKE, beam_ways, change_cost, gu
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph
     from rulec.partition.motion.way_bounds import WayBounds
-    from rulec.partition.motion.witness_trajectory import WitnessSearch
+    from rulec.partition.motion.witness_trajectory import WitnessSearch, WitnessTrajectory
 
 MOST_TRIED = 40
 """The most paths tried for each maneuver wanted."""
 
 MOST_BOUNDS, MORE_BOUNDS = 1_500, 100
 """The most beginnings of paths bounded, and how many more for each maneuver wanted."""
+
+MOST_THOROUGH = 4
+"""If no trajectory was found on any path, on so many of these it is looked for more thoroughly."""
 
 BEAM = 16
 """The width of the beam search that follows where those were not enough."""
@@ -41,14 +44,17 @@ def proven(
     """
     maneuvers: list[Maneuver] = []
     looked_at: set[tuple[int, ...]] = set()
+    without: list[Maneuver] = []
     promised: dict[tuple[int, ...], float] = {}
     ways = guided_ways(product, graph, search.bounds, MOST_BOUNDS + MORE_BOUNDS * n)
     for way in islice(ways, MOST_TRIED * n):
         if len(maneuvers) >= n and way.promises >= maneuvers[n - 1].cost:
             break
         looked_at.add(way.maneuver.nodes)
-        promised[way.maneuver.nodes] = way.promises
+        promised[way.maneuver.nodes], n_found = way.promises, len(maneuvers)
         _add(maneuvers, way.maneuver, graph, search, way.promises)
+        if len(maneuvers) == n_found and len(without) < MOST_THOROUGH:
+            without.append(way.maneuver)
     if len(maneuvers) < n:
         beam = beam_ways(product, graph, search.bounds, max(BEAM, n))
         by_cells = islice(cheapest(product), MOST_TRIED * n)
@@ -57,6 +63,11 @@ def proven(
                 if candidate.nodes not in looked_at:
                     looked_at.add(candidate.nodes)
                     _add(maneuvers, candidate, graph, search)
+    for candidate in without if not maneuvers else ():
+        trajectory = search.by_sides(candidate.nodes)
+        if trajectory is not None:
+            maneuvers.append(_driven(candidate, trajectory, graph))
+            break
     cheaper = [_cheaper(one, search, promised.get(one.nodes, 0.0)) for one in maneuvers[:n]]
     return sorted(cheaper, key=lambda maneuver: (maneuver.cost, maneuver.nodes))
 
@@ -89,15 +100,20 @@ def with_trajectory(
 
     No trajectory makes it cost less than ``least``; without it, the first one found will do.
     """
-    changes = sum(
-        change_cost(graph, p, node, target)
-        for p, (node, target) in enumerate(pairwise(maneuver.nodes))
-    )
-    trajectory = search.of(maneuver.nodes, least - changes)
-    if trajectory is None:
-        return None
+    trajectory = search.of(maneuver.nodes, least - _changes(maneuver, graph))
+    return None if trajectory is None else _driven(maneuver, trajectory, graph)
+
+
+def _driven(maneuver: Maneuver, trajectory: WitnessTrajectory, graph: NavigationGraph) -> Maneuver:
+    changes = _changes(maneuver, graph)
     cost = changes + trajectory.cost.total
     return replace(maneuver, cost=cost, changes=changes, trajectory=trajectory)
+
+
+def _changes(maneuver: Maneuver, graph: NavigationGraph) -> float:
+    """The cost of a path's changes of cell."""
+    steps = enumerate(pairwise(maneuver.nodes))
+    return sum(change_cost(graph, p, node, target) for p, (node, target) in steps)
 
 
 def least_promised(
