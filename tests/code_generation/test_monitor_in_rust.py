@@ -20,6 +20,7 @@ from rulec.code_generation.rust_form import formed
 from rulec.code_generation.rust_reading_code import RustReadingCode
 from rulec.code_generation.written_names import rust_string
 from rulec.rulebook.rulebook_model import SourceFile
+from support.builders.monitored_books import SINCE
 from support.builders.national_books import NATIONAL
 from support.builders.rulebooks import compile_here
 from support.generators.random_rulebooks import rulebook
@@ -61,7 +62,9 @@ def differs(library, n_states):
 def test_random_rulebooks_are_proved(chance):
     step_s = Fraction(1)
     compiled = compile_here(rulebook(chance, step_s), step_s)
-    assert differs(RustLibrary(layout_of(compiled), optimised=False), 60) == []
+    bounds = chance.choice([{}, {"thing": 1}])
+    layout = monitor_layout(compiled, bounds, RustReadingCode)
+    assert differs(RustLibrary(layout, optimised=False), 60) == []
 
 
 @needs_rust
@@ -79,6 +82,17 @@ def test_a_planted_fault_is_found(esterle):
     faulty, n = re.subn(r"(entries: &\[)(\d+)", lambda m: f"{m[1]}{int(m[2]) ^ 1}", source, count=1)
     assert n == 1
     assert differs(RustLibrary(layout, faulty, optimised=False), 20)
+
+
+@needs_rust
+def test_a_past_that_is_taken_for_known_is_found():
+    compiled = rulec.compile_rulebook(rulec.parse_rulebook(SINCE), step_s=1)
+    one_seat = monitor_layout(compiled, {"car": 1}, RustReadingCode)
+    assert differs(RustLibrary(one_seat, optimised=False), 2000) == []
+    source = rust_source(one_seat)
+    faulty = source.replace("= kept.left_out[kind];", "= false;")
+    assert faulty != source
+    assert differs(RustLibrary(one_seat, faulty, optimised=False), 2000)
 
 
 @pytest.mark.parametrize("text", HOSTILE)

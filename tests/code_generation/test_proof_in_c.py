@@ -19,7 +19,7 @@ from rulec.code_generation.proof import monitor_proof
 from rulec.code_generation.proof.monitor_proof import proof_of
 from rulec.code_generation.rust_reading_code import RustReadingCode
 from rulec.diagnostics import RulecError
-from support.builders.monitored_books import NARROW
+from support.builders.monitored_books import NARROW, SINCE
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
 FAULTS = {
@@ -117,6 +117,16 @@ def test_a_planted_fault_is_found(layout, fault):
     assert n == 1
     assert faulty != source
     assert differs(layout, faulty)
+
+
+def test_a_past_that_is_taken_for_known_is_found():
+    compiled = rulec.compile_rulebook(rulec.parse_rulebook(SINCE), step_s=1)
+    one_seat = monitor_layout(compiled, {"car": 1})
+    assert differs_in(CLibrary(one_seat, optimised=False)) == []
+    source = c_source(one_seat)
+    faulty = source.replace("= state->left_out[type];", "= 0u;")
+    assert faulty != source
+    assert differs(one_seat, faulty)
 
 
 def with_open_tables(layout):

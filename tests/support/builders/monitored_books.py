@@ -34,3 +34,11 @@ soft rule keeps_away (c: car) { require always gap(c) >= 2.5 m }
 soft rule lets_in (c: car, d: car) { require always (between(c, d) >= 10 m or gap(c) >= 2.5 m) }
 """
 """Rules of none, of one and of two objects."""
+
+SINCE = """\
+rulebook since
+type car
+signal beside(c: car) default true
+hard rule begins_beside (c: car) { require always once beside(c) }
+"""
+"""A rule that the first state of each object decides."""

@@ -48,7 +48,8 @@ static uint16_t rulec_seat_of(const rulec_state *state, uint32_t id, uint8_t typ
     return RULEC_EMPTY;
 }
 
-/* Seats: objects keep theirs while they are present, new ones get free seats. */
+/* Seats: objects keep theirs while they are present, others get free seats. Nothing is kept about
+ * objects without a seat: if a type had some, any object of it that now gets one may be of them. */
 static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32_t *left_out)
 {
     size_t one;
@@ -58,7 +59,7 @@ static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32
     *left_out = 0u;
     state->crowded = 0u;
     for (seat = 0u; seat < RULEC_TYPES; seat++) {
-        state->absent[seat] = 0u;
+        state->next_left_out[seat] = 0u;
     }
     for (seat = 0u; seat < RULEC_SEATS; seat++) {
         state->seated[seat] = RULEC_EMPTY;
@@ -81,6 +82,7 @@ static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32
     for (seat = 0u; seat < RULEC_SEATS; seat++) {
         const bool stays = state->seated[seat] != RULEC_EMPTY;
         state->stays[seat] = stays ? 1u : 0u;
+        state->earlier[seat] = state->stays[seat];
         state->next_id[seat] = state->id[seat];
         state->next_type[seat] = stays ? state->type[seat] : RULEC_NOBODY;
     }
@@ -110,10 +112,11 @@ static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32
             state->seated[free] = (uint16_t)one;
             state->next_id[free] = id;
             state->next_type[free] = type;
+            state->earlier[free] = state->left_out[type];
         } else if (!has_seat) {
             *left_out += 1u;
             state->crowded = 1u;
-            state->absent[type] = 1u;
+            state->next_left_out[type] = 1u;
         } else {
             /* has a seat already */
         }
@@ -218,12 +221,30 @@ static inline uint16_t rulec_entry(const rulec_rule *rule, uint32_t from, uint32
     return rulec_entries[(place < RULEC_ENTRIES) ? place : 0u];
 }
 
-/* A step with unknown values: from each possible state by each possible class. */
-static void rulec_advance_all(rulec_state *state, const rulec_rule *rule, uint32_t instance)
+/* The set of states of an instance. */
+static uint32_t *rulec_states_of(rulec_state *state, const rulec_rule *rule, uint32_t instance)
 {
     const uint32_t first = rule->first_word
         + ((instance - rule->first_instance) * (((uint32_t)rule->n_states >> 5) + 1u));
-    uint32_t *const states = &state->states[(first < RULEC_WORDS) ? first : 0u];
+    return &state->states[(first < RULEC_WORDS) ? first : 0u];
+}
+
+/* The past of an instance is unknown: it may be in any state. */
+static void rulec_forget(rulec_state *state, const rulec_rule *rule, uint32_t instance)
+{
+    uint32_t *const states = rulec_states_of(state, rule, instance);
+    uint32_t word;
+    for (word = 0u; word <= ((uint32_t)rule->n_states >> 5); word++) {
+        states[word] = UINT32_MAX;
+    }
+    state->at[instance] = RULEC_SEVERAL;
+    state->verdict[instance] = RULEC_WITHIN(RULEC_SATISFIED, RULEC_VIOLATED);
+}
+
+/* A step with unknown values: from each possible state by each possible class. */
+static void rulec_advance_all(rulec_state *state, const rulec_rule *rule, uint32_t instance)
+{
+    uint32_t *const states = rulec_states_of(state, rule, instance);
     uint8_t best = RULEC_VIOLATED;
     uint8_t worst = RULEC_SATISFIED;
     uint16_t last = 0u;
@@ -336,9 +357,10 @@ static void rulec_look(rulec_state *state, const rulec_input *in, const rulec_ru
 }
 
 typedef struct {
-    bool was;   /* all objects were present in the state before */
-    bool stays; /* and all are still present */
-    bool is;    /* all are present now */
+    bool was;     /* all objects were present in the state before */
+    bool stays;   /* and all are still present */
+    bool is;      /* all are present now */
+    bool earlier; /* all that are present now were so in the state before, or may have been */
 } rulec_presence;
 
 /* The worst of the best verdicts so far, and the worst one as stored (best, and worst times 4). */
@@ -391,6 +413,7 @@ static bool rulec_there(const rulec_state *state, const rulec_rule *rule, rulec_
     found->was = true;
     found->stays = true;
     found->is = true;
+    found->earlier = true;
     for (variable = 0u; variable < last; variable++) {
         const uint16_t turn = one->turns[variable];
         const uint16_t seat = state->taken[(turn < RULEC_SEATS) ? turn : 0u];
@@ -404,6 +427,7 @@ static bool rulec_there(const rulec_state *state, const rulec_rule *rule, rulec_
         found->was = found->was && (fits[state->type[seat]] != 0u);
         found->is = found->is && (fits[state->next_type[seat]] != 0u);
         found->stays = found->stays && (state->stays[seat] != 0u);
+        found->earlier = found->earlier && (state->earlier[seat] != 0u);
     }
     one->first *= (uint32_t)rule->seats_end[last] - rule->seats_first[last];
     one->first += rule->first_instance;
@@ -466,8 +490,12 @@ static void rulec_visit(rulec_state *state, const rulec_input *in, uint16_t numb
     }
     if (there.is) {
         uint8_t before;
-        if (!there.was || !there.stays) {
+        if (there.earlier && !there.stays) {
+            rulec_forget(state, rule, one->number);
+        } else if (!there.stays) {
             state->at[one->number] = rule->start;
+        } else {
+            /* goes on */
         }
         rulec_look(state, in, rule, one);
         before = rulec_said(state, one->number);
@@ -491,6 +519,7 @@ static void rulec_visit_each(rulec_state *state, const rulec_input *in, uint16_t
         all.is = there->is && (fits[state->next_type[seat]] != 0u);
         all.was = there->was && (fits[state->type[seat]] != 0u);
         all.stays = there->stays && (state->stays[seat] != 0u);
+        all.earlier = there->earlier && (state->earlier[seat] != 0u);
         if ((all.is || all.was) && rulec_bind(state, last, seat, one)) {
             rulec_stand(one, seat);
             rulec_visit(state, in, number, one, all, tally);
@@ -547,7 +576,7 @@ static void rulec_visit_fitting(rulec_state *state, const rulec_input *in, uint1
             if ((by != RULEC_SEVERAL) && (from != RULEC_SEVERAL)) {
                 rulec_enter(state, number, one, rulec_entry(rule, (uint32_t)from >> 2, by), tally);
             } else {
-                const rulec_presence always = {true, true, true};
+                const rulec_presence always = {true, true, true, true};
                 rulec_visit(state, in, number, one, always, tally);
             }
         }
@@ -564,7 +593,7 @@ static void rulec_visit_world(rulec_state *state, const rulec_input *in, uint16_
         rulec_enter(state, number, one,
             rulec_entry(rule, (uint32_t)from >> 2, (uint32_t)one->start & 0x7fffu), tally);
     } else {
-        const rulec_presence always = {true, true, true};
+        const rulec_presence always = {true, true, true, true};
         rulec_visit(state, in, number, one, always, tally);
     }
 }
@@ -591,7 +620,7 @@ static void rulec_visit_all(rulec_state *state, const rulec_input *in, uint16_t 
 {
     const rulec_rule *const rule = &rulec_rules[number];
     rulec_instance one;
-    rulec_presence there = {true, true, true};
+    rulec_presence there = {true, true, true, true};
     bool more = state->n_taken > 0u;
     rulec_begin(state, rule, &one);
     if (rule->n_variables == 0u) {
@@ -650,7 +679,7 @@ static void rulec_judge(rulec_state *state, const rulec_input *in, uint16_t numb
         for (kind = 0u; (state->crowded != 0u) && (kind < RULEC_TYPES); kind++) {
             uint16_t variable;
             for (variable = 0u; variable < rule->n_variables; variable++) {
-                if ((state->absent[kind] != 0u)
+                if ((state->next_left_out[kind] != 0u)
                     && (rulec_fits[rule->types[variable]][kind] != 0u)) {
                     state->flags[number] |= RULEC_DOUBTED;
                 }
@@ -676,6 +705,7 @@ void rulec_init(rulec_state *state)
         state->next_type[each] = RULEC_NOBODY;
         state->seated[each] = RULEC_EMPTY;
         state->stays[each] = 0u;
+        state->earlier[each] = 0u;
         state->taken[each] = 0u;
         state->changed[each] = 0u;
         state->fitting[each] = 0u;
@@ -704,6 +734,9 @@ void rulec_init(rulec_state *state)
         }
     }
     state->violations = 0u;
+    for (each = 0u; each < RULEC_TYPES; each++) {
+        state->left_out[each] = 0u;
+    }
     state->crowded = 0u;
     state->fitting_type = RULEC_NOBODY;
     state->n_taken = 0u;
@@ -768,6 +801,9 @@ rulec_status rulec_step(rulec_state *state, const rulec_input *input, rulec_verd
     for (each = 0u; each < RULEC_SEATS; each++) {
         state->id[each] = state->next_id[each];
         state->type[each] = state->next_type[each];
+    }
+    for (each = 0u; each < RULEC_TYPES; each++) {
+        state->left_out[each] = state->next_left_out[each];
     }
     verdict->violations = state->violations;
     return RULEC_OK;

@@ -21,12 +21,14 @@ typedef struct {
     uint32_t about[RULEC_RULES][RULEC_VARIABLES];
     uint8_t flags[RULEC_RULES];
     uint32_t violations;
+    uint8_t left_out[RULEC_TYPES]; /* types of objects for which there was no seat */
     /* Working memory of the current step */
     uint32_t next_id[RULEC_SEATS];
     uint8_t next_type[RULEC_SEATS];
     uint16_t seated[RULEC_SEATS];
     uint8_t stays[RULEC_SEATS];
-    uint8_t absent[RULEC_TYPES];
+    uint8_t earlier[RULEC_SEATS];
+    uint8_t next_left_out[RULEC_TYPES];
     uint8_t crowded;
     uint8_t fitting_type;
     uint16_t n_taken;
@@ -57,8 +59,8 @@ void rulec_init(rulec_state *state);
 
 /* Takes the next state. An object that is missing has left; if it returns, or changes its type, it
  * is a new object. Objects for which there is no seat are counted in left_out; from then on the
- * worst verdict of every rule that could apply to them is violated. The verdict is written only if
- * the status is RULEC_OK. */
+ * worst verdict of every rule that could apply to them is violated. If one of them gets a seat
+ * later, its past is unknown. The verdict is written only if the status is RULEC_OK. */
 rulec_status rulec_step(rulec_state *state, const rulec_input *input, rulec_verdict *verdict);
 
 /* The id of the object of a rule's variable (from 0) in the choice of objects with the worst

@@ -34,13 +34,18 @@ QUIET = (0.0, 0.0, 0.5, 0.8, 0.95)
 def drives(
     layout: MonitorLayout, chance: Random, n_states: int, share_unknown: float
 ) -> Iterator[Drive]:
-    """Random drives with objects that appear and disappear, with ``n_states`` states in all."""
+    """Random drives with objects that appear and disappear, with ``n_states`` states in all.
+
+    If values may be unknown, so may be the past of objects that had no seat.
+    """
     left = n_states
     least, most = STATES_OF_A_POOL
     while left > 0:
         of_pool = min(left, max(least, min(most, n_states // POOLS)))
         n = max(2, min(STATES_OF_A_CAST, of_pool // CASTS))
         casts = list(_casts(layout, chance))
+        if share_unknown == 0:
+            casts = [_seated(layout, cast) for cast in casts]
         quiet = chance.choice(QUIET)
         pools = [
             [_state(layout, chance, cast, (share_unknown, quiet)) for _ in range(n)]
@@ -68,13 +73,9 @@ def _casts(layout: MonitorLayout, chance: Random) -> Iterator[dict[str, str]]:
     known = {f"o{number}": chance.choice(kinds) for number in range(6)}
     for _ in range(CASTS):
         there = chance.sample(sorted(known), chance.randrange(5))
-        yield _seated(
-            layout,
-            {
-                name: chance.choice(kinds) if chance.random() < 0.1 else known[name]
-                for name in there
-            },
-        )
+        yield {
+            name: chance.choice(kinds) if chance.random() < 0.1 else known[name] for name in there
+        }
 
 
 def _seated(layout: MonitorLayout, objects: Mapping[str, str]) -> dict[str, str]:

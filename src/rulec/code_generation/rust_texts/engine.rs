@@ -70,6 +70,13 @@ impl Rule {
     fn n_states(&self) -> usize {
         self.entries.len() / self.n_classes
     }
+
+    /// The place of an instance's set of states.
+    fn words(&self, instance: usize) -> core::ops::Range<usize> {
+        let n_words = self.n_states() / 32 + 1;
+        let first = self.first_word + (instance - self.first_instance) * n_words;
+        first..first + n_words
+    }
 }
 
 const NOBODY: u8 = TYPES as u8;
@@ -108,6 +115,8 @@ struct Kept {
     about: [[u32; VARIABLES]; RULES],
     flags: [u8; RULES],
     violations: u32,
+    /// Types of objects for which there was no seat.
+    left_out: [bool; TYPES],
 }
 
 /// The working memory of a step.
@@ -117,7 +126,8 @@ struct Work {
     next_kind: [u8; SEATS],
     seated: [usize; SEATS],
     stays: [bool; SEATS],
-    absent: [bool; TYPES],
+    earlier: [bool; SEATS],
+    next_left_out: [bool; TYPES],
     crowded: bool,
     taken: [usize; SEATS],
     n_taken: usize,
@@ -147,6 +157,8 @@ struct Presence {
     was: bool,
     stays: bool,
     is: bool,
+    /// All that are present now were so in the state before, or may have been.
+    earlier: bool,
 }
 
 fn set(bits: &mut [u32], place: usize) {
@@ -274,11 +286,16 @@ impl Kept {
         }
     }
 
+    /// The past of an instance is unknown: it may be in any state.
+    fn forget(&mut self, rule: &Rule, instance: usize) {
+        self.states[rule.words(instance)].fill(u32::MAX);
+        self.at[instance] = SEVERAL;
+        self.verdict[instance] = 3 << 2;
+    }
+
     /// A step with unknown values: from each possible state by each possible class.
     fn advance_all(&mut self, rule: &Rule, instance: usize, by: &[u32], following: &mut [u32]) {
-        let n_words = rule.n_states() / 32 + 1;
-        let first = rule.first_word + (instance - rule.first_instance) * n_words;
-        let states = &mut self.states[first..first + n_words];
+        let states = &mut self.states[rule.words(instance)];
         if self.at[instance] != SEVERAL {
             states.fill(0);
             set(states, usize::from(self.at[instance] >> 2));
@@ -297,7 +314,7 @@ impl Kept {
                 }
             }
         }
-        states.copy_from_slice(&following[..n_words]);
+        states.copy_from_slice(&following[..states.len()]);
         let exact = found == 1 && best == worst;
         self.at[instance] = if exact {
             last << 2 | u16::from(best)
@@ -321,6 +338,7 @@ impl Monitor {
             about: [[0; VARIABLES]; RULES],
             flags: [0; RULES],
             violations: 0,
+            left_out: [false; TYPES],
         };
         let mut rule = 0;
         while rule < RULES {
@@ -334,7 +352,8 @@ impl Monitor {
             next_kind: [NOBODY; SEATS],
             seated: [EMPTY; SEATS],
             stays: [false; SEATS],
-            absent: [false; TYPES],
+            earlier: [false; SEATS],
+            next_left_out: [false; TYPES],
             crowded: false,
             taken: [0; SEATS],
             n_taken: 0,
@@ -360,7 +379,8 @@ impl Monitor {
 
     /// Takes the next state. An object that is missing has left; if it returns, or changes its
     /// type, it is a new object. Objects for which there is no seat are counted; from then on the
-    /// worst verdict of every rule that could apply to them is violated.
+    /// worst verdict of every rule that could apply to them is violated. If one of them gets a seat
+    /// later, its past is unknown.
     ///
     /// # Errors
     ///
@@ -390,15 +410,18 @@ impl Monitor {
         }
         self.kept.id = self.work.next_id;
         self.kept.kind = self.work.next_kind;
+        self.kept.left_out = self.work.next_left_out;
         said.violations = self.kept.violations;
         Ok(said)
     }
 
-    /// Seats: objects keep theirs while they are present, new ones get free seats.
+    /// Seats: objects keep theirs while they are present, others get free seats. Nothing is kept
+    /// about objects without a seat: if a type had some, any object of it that now gets one may be
+    /// of them.
     fn seat(&mut self, input: &Input) -> Result<u32, Refusal> {
         let (kept, work) = (&self.kept, &mut self.work);
         work.crowded = false;
-        work.absent.fill(false);
+        work.next_left_out.fill(false);
         work.seated.fill(EMPTY);
         for (one, object) in input.objects.iter().enumerate() {
             let kind = usize::from(object.r#type);
@@ -416,6 +439,7 @@ impl Monitor {
         }
         for seat in 0..SEATS {
             work.stays[seat] = work.seated[seat] != EMPTY;
+            work.earlier[seat] = work.stays[seat];
             work.next_id[seat] = kept.id[seat];
             work.next_kind[seat] = if work.stays[seat] {
                 kept.kind[seat]
@@ -444,11 +468,12 @@ impl Monitor {
                     work.seated[free] = one;
                     work.next_id[free] = object.id;
                     work.next_kind[free] = object.r#type;
+                    work.earlier[free] = kept.left_out[kind];
                 }
                 None => {
                     left_out += 1;
                     work.crowded = true;
-                    work.absent[kind] = true;
+                    work.next_left_out[kind] = true;
                 }
             }
         }
@@ -478,6 +503,7 @@ impl Monitor {
             was: true,
             stays: true,
             is: true,
+            earlier: true,
         };
         let mut number = 0;
         for (variable, &(kind, first, end)) in rule.variables.iter().enumerate() {
@@ -490,6 +516,7 @@ impl Monitor {
             found.was = found.was && fits(kind, kept.kind[seat]);
             found.is = found.is && fits(kind, work.next_kind[seat]);
             found.stays = found.stays && work.stays[seat];
+            found.earlier = found.earlier && work.earlier[seat];
         }
         one.number = rule.first_instance + number;
         (found.was || found.is).then_some(found)
@@ -564,7 +591,9 @@ impl Monitor {
             if !there.is {
                 return;
             }
-            if !there.was || !there.stays {
+            if there.earlier && !there.stays {
+                this.kept.forget(rule, one.number);
+            } else if !there.stays {
                 this.kept.at[one.number] = u16::from(rule.start);
             }
             this.work.look(input, rule, one);
@@ -587,8 +616,9 @@ impl Monitor {
         if !rule.variables.is_empty() && rule.start != 0 {
             best = best.max(1);
             worst = worst.max(1);
-            let absent =
-                |kind: usize| (0..TYPES).any(|own| self.work.absent[own] && fits(kind, own as u8));
+            let absent = |kind: usize| {
+                (0..TYPES).any(|own| self.work.next_left_out[own] && fits(kind, own as u8))
+            };
             if self.work.crowded && rule.variables.iter().any(|&(kind, _, _)| absent(kind)) {
                 self.kept.flags[number] |= DOUBTED;
             }
