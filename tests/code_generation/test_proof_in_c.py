@@ -88,10 +88,15 @@ def test_facts_that_count_and_counts_of_counts_are_no_fault():
 NOTHING_TOLD = """\
 rulebook nothing_told
 type car
-signal p, near(c: car) default false
+signal p, near(c: car), beside(c: car, d: car) default false
 mono is one of only default only
 hard rule c { require always (p or count c: car (near(c)) >= 0) }
 hard rule d (v: car) { require always (near(v) or count x: car (x = v and near(x)) < 0) }
+hard rule e (v: car) { require always (p or -count x: car (beside(v, x)) <= 2) }
+hard rule f (v: car, w: car) { require always (p or -count x: car (beside(v, x) or near(w)) <= 2) }
+hard rule g (v: car) {
+  require always (p or count x: car (near(x) or -count y: car (beside(v, y)) <= 2) >= 1)
+}
 hard rule uint8_max { require always (p or count x: car (only and near(x)) >= 1) }
 """
 

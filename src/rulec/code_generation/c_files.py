@@ -11,6 +11,7 @@ from textwrap import dedent
 from rulec.code_generation.c_tables import rule_tables, text_tables, type_tables
 from rulec.code_generation.input_fields import RULE, TYPE
 from rulec.code_generation.monitor_layout import TOGETHER, MonitorLayout
+from rulec.code_generation.reading_code import ignored_in_c, unread
 from rulec.code_generation.written_names import in_comment, prefix_of
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES
@@ -27,7 +28,9 @@ def c_source(layout: MonitorLayout) -> str:
     """The source: tables, readings and the engine."""
     engine = (_TEXTS / "engine.c").read_text(encoding="utf-8")
     own = "\n".join(_reading_functions(layout))
-    readings = _needed((_TEXTS / "readings.c").read_text(encoding="utf-8"), own)
+    texts = (_TEXTS / "readings.c").read_text(encoding="utf-8")
+    several = [line for item in layout.fields.about(2) for line in _matrix(item, layout)]
+    readings = _needed("\n".join([texts, *several]), own)
     lines = [
         *_head(layout),
         f'#include "{prefix_of(layout.rulebook.name)}.h"',
@@ -229,9 +232,6 @@ def _sizes(layout: MonitorLayout) -> Iterator[str]:
 
 
 def _reading_functions(layout: MonitorLayout) -> Iterator[str]:
-    fields = layout.fields
-    for item in fields.about(2):
-        yield from _matrix(item, layout)
     yield from layout.definitions
     world, own, together = layout.digits
     yield "static void rulec_read_world(const rulec_input *in, uint16_t *digits)"
@@ -245,28 +245,22 @@ def _reading_functions(layout: MonitorLayout) -> Iterator[str]:
     yield "static uint16_t rulec_read_together("
     yield "    const rulec_input *in, const size_t *who, uint16_t read)"
     yield "{"
-    yield "    uint16_t digits = 0u;"
+    lines = ["uint16_t digits = 0u;"]
     if together:
-        yield "    switch (read) {"
+        lines.append("switch (read) {")
         for number, expression in enumerate(together):
-            yield f"    case {number}u:"
-            yield f"        digits = {expression};"
-            yield "        break;"
-        yield "    default:"
-        yield "        break;"
-        yield "    }"
-    else:
-        yield from ("    (void)in;", "    (void)who;", "    (void)read;")
-    yield "    return digits;"
+            lines += [f"case {number}u:", f"    digits = {expression};", "    break;"]
+        lines += ["default:", "    break;", "}"]
+    lines += ignored_in_c(unread(["in", "who", "read"], lines))
+    yield from (f"    {line}" for line in [*lines, "return digits;"])
     yield "}\n"
     yield from _initialisers(layout)
 
 
 def _assignments(expressions: Sequence[str], *parameters: str) -> Iterator[str]:
-    for number, expression in enumerate(expressions):
-        yield f"    digits[{number}u] = {expression};"
-    if not expressions:
-        yield from (f"    (void){name};" for name in (*parameters, "digits"))
+    lines = [f"digits[{number}u] = {text};" for number, text in enumerate(expressions)]
+    lines += ignored_in_c(unread([*parameters, "digits"], lines))
+    yield from (f"    {line}" for line in lines)
 
 
 def _matrix(item: Declaration, layout: MonitorLayout) -> Iterator[str]:

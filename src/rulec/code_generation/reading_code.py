@@ -6,7 +6,8 @@ greatest digit that a read may have (see there).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import partial
 from math import isfinite, lcm
@@ -252,8 +253,20 @@ class ReadingCode:
 
     def _function_pattern(self, kind: str, parameters: Sequence[str], lines: Sequence[str]) -> str:
         given = "".join(f", size_t {name}" for name in parameters)
-        code = "\n    ".join(lines)
+        *first, last = lines
+        code = "\n    ".join([*first, *ignored_in_c(unread(parameters, lines)), last])
         return f"static {kind} {NAME}(const rulec_input *in{given})\n{{\n    {code}\n}}"
+
+
+def unread(parameters: Iterable[str], lines: Sequence[str]) -> list[str]:
+    """The parameters that code does not read, as if a count is compared that any number passes."""
+    words = {word for line in lines for word in re.findall(r"(?<![.>\w])\w+", line)}
+    return [name for name in parameters if name not in words]
+
+
+def ignored_in_c(parameters: Iterable[str]) -> list[str]:
+    """Statements for parameters that are not read, of which compilers would warn."""
+    return [f"(void){name};" for name in parameters]
 
 
 def _is_double(number: Fraction) -> bool:

@@ -10,7 +10,9 @@ from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.code_generation.c_files import default_of, head_lines
 from rulec.code_generation.input_fields import RULE, TYPE
 from rulec.code_generation.monitor_layout import MonitorLayout, RuleLayout
+from rulec.code_generation.reading_code import unread
 from rulec.code_generation.rust_form import formed
+from rulec.code_generation.rust_reading_code import ignored_in_rust
 from rulec.code_generation.written_names import in_comment, prefix_of, rust_string
 from rulec.vocabulary import Declaration, Enumeration, Quantity
 
@@ -315,21 +317,14 @@ def _reading_functions(layout: MonitorLayout) -> Iterator[str]:
     yield from _assignments(own, "input", "one")
     yield "}\n"
     yield "fn read_together(input: &Input, who: &[usize; VARIABLES], read: u16) -> u16 {"
-    if not together:
-        yield "    let _ = (input, who, read);"
-        yield "    0"
-        yield "}\n"
-        return
-    yield "    match read {"
-    for number, expression in enumerate(together):
-        yield f"        {number} => {expression},"
-    yield "        _ => 0,"
-    yield "    }"
+    arms = [f"    {number} => {expression}," for number, expression in enumerate(together)]
+    lines = ["match read {", *arms, "    _ => 0,", "}"] if together else ["0"]
+    lines = [*ignored_in_rust(unread(["input", "who", "read"], lines)), *lines]
+    yield from (f"    {line}" for line in lines)
     yield "}\n"
 
 
 def _assignments(expressions: Sequence[str], *parameters: str) -> Iterator[str]:
-    if not expressions:
-        yield f"    let _ = ({', '.join(parameters)}, digits);"
-    for number, expression in enumerate(expressions):
-        yield f"    digits[{number}] = {expression};"
+    lines = [f"digits[{number}] = {text};" for number, text in enumerate(expressions)]
+    lines += ignored_in_rust(unread([*parameters, "digits"], lines))
+    yield from (f"    {line}" for line in lines)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
-from rulec.code_generation.reading_code import NAME, ReadingCode
+from rulec.code_generation.reading_code import NAME, ReadingCode, unread
 
 _KINDS = {"double": "f64", "uint8_t": "u8", "uint16_t": "u16", "uint32_t": "u32", "int64_t": "i64"}
 
@@ -70,5 +70,10 @@ class RustReadingCode(ReadingCode):
 
     def _function_pattern(self, kind: str, parameters: Sequence[str], lines: Sequence[str]) -> str:
         given = "".join(f", {name}: usize" for name in parameters)
-        code = "\n    ".join(lines)
+        code = "\n    ".join([*ignored_in_rust(unread(parameters, lines)), *lines])
         return f"fn {NAME}(input: &Input{given}) -> {_KINDS[kind]} {{\n    {code}\n}}"
+
+
+def ignored_in_rust(parameters: Iterable[str]) -> list[str]:
+    """Statements for parameters that are not read, of which compilers would warn."""
+    return [f"let _ = {name};" for name in parameters]
