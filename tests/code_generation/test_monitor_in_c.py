@@ -115,6 +115,19 @@ def test_who_has_no_seat_is_reported_and_doubted(esterle):
 
 
 @needs_a_compiler
+@pytest.mark.parametrize("ids", [[1, 2, 3, 3], [1, 2, 3, 1], [1, 3, 2, 3]])
+def test_who_is_given_twice_without_a_seat_is_refused(esterle, ids):
+    monitor = CMonitor(esterle)
+    drive(monitor, {"a": "b", "b": "b"})
+    given = esterle.input_type()
+    objects = (esterle.object_type * 4)()
+    for one, number in zip(objects, ids, strict=True):
+        one.type, one.id = esterle.layout.fields.types.index("vehicle"), number
+    given.n_objects, given.objects = 4, objects
+    assert monitor.take(given) == 3
+
+
+@needs_a_compiler
 def test_who_has_left_gives_away_the_seat(esterle):
     passing = [{"a": "b", "b": "b"}, {"b": "r", "c": "b"}, {"b": "f", "c": "b", "a": "b"}]
     *_, third = drive(CMonitor(esterle), *passing)

@@ -12,6 +12,7 @@ from hypothesis import Phase, given, settings
 
 import rulec
 from rulec.cli.main import main
+from rulec.code_generation.compiled_c.c_library import CMonitor
 from rulec.code_generation.compiled_c.rust_library import RustLibrary
 from rulec.code_generation.monitor_layout import monitor_layout
 from rulec.code_generation.proof.monitor_proof import proof_of
@@ -84,15 +85,30 @@ def test_a_planted_fault_is_found(esterle):
     assert differs(RustLibrary(layout, faulty, optimised=False), 20)
 
 
-@needs_rust
-def test_a_past_that_is_taken_for_known_is_found():
+@pytest.fixture(scope="module")
+def one_seat():
     compiled = rulec.compile_rulebook(rulec.parse_rulebook(SINCE), step_s=1)
-    one_seat = monitor_layout(compiled, {"car": 1}, RustReadingCode)
-    assert differs(RustLibrary(one_seat, optimised=False), 2000) == []
-    source = rust_source(one_seat)
+    return RustLibrary(monitor_layout(compiled, {"car": 1}, RustReadingCode), optimised=False)
+
+
+@needs_rust
+def test_a_past_that_is_taken_for_known_is_found(one_seat):
+    assert differs(one_seat, 2000) == []
+    source = rust_source(one_seat.layout)
     faulty = source.replace("= kept.left_out[kind];", "= false;")
     assert faulty != source
-    assert differs(RustLibrary(one_seat, faulty, optimised=False), 2000)
+    assert differs(RustLibrary(one_seat.layout, faulty, optimised=False), 2000)
+
+
+@needs_rust
+@pytest.mark.parametrize("ids", [[1, 2, 2], [1, 2, 1], [2, 1, 2]])
+def test_who_is_given_twice_without_a_seat_is_refused(one_seat, ids):
+    objects = (one_seat.object_type * 3)()
+    for one, number in zip(objects, ids, strict=True):
+        one.type, one.id = 0, number
+    given = one_seat.input_type()
+    given.n_objects, given.objects = 3, objects
+    assert CMonitor(one_seat).take(given) == 3
 
 
 @pytest.mark.parametrize("text", HOSTILE)

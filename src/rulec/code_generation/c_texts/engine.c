@@ -48,6 +48,19 @@ static uint16_t rulec_seat_of(const rulec_state *state, uint32_t id, uint8_t typ
     return RULEC_EMPTY;
 }
 
+/* Whether an object is also at an earlier place of the input. */
+static bool rulec_is_repeated(const rulec_input *in, size_t one)
+{
+    size_t other;
+    for (other = 0u; other < one; other++) {
+        if ((in->objects[other].id == in->objects[one].id)
+            && (in->objects[other].type == in->objects[one].type)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* Seats: objects keep theirs while they are present, others get free seats. Nothing is kept about
  * objects without a seat: if a type had some, any object of it that now gets one may be of them. */
 static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32_t *left_out)
@@ -114,6 +127,9 @@ static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32
             state->next_type[free] = type;
             state->earlier[free] = state->left_out[type];
         } else if (!has_seat) {
+            if (rulec_is_repeated(in, one)) {
+                return RULEC_TWICE;
+            }
             *left_out += 1u;
             state->crowded = 1u;
             state->next_left_out[type] = 1u;

@@ -454,13 +454,9 @@ impl Monitor {
             if seats.clone().any(|seat| work.seated[seat] == one) {
                 continue;
             }
-            let is_this = |seat: usize| {
-                work.seated[seat] != EMPTY && {
-                    let other = &input.objects[work.seated[seat]];
-                    other.id == object.id && other.r#type == object.r#type
-                }
-            };
-            if seats.clone().any(is_this) {
+            let is_this = |other: &Object| other.id == object.id && other.r#type == object.r#type;
+            let on_seat = |seat: usize| input.objects.get(work.seated[seat]);
+            if seats.clone().filter_map(on_seat).any(is_this) {
                 return Err(Refusal::Twice);
             }
             match seats.find(|&seat| work.seated[seat] == EMPTY) {
@@ -470,6 +466,7 @@ impl Monitor {
                     work.next_kind[free] = object.r#type;
                     work.earlier[free] = kept.left_out[kind];
                 }
+                None if input.objects[..one].iter().any(is_this) => return Err(Refusal::Twice),
                 None => {
                     left_out += 1;
                     work.crowded = true;
