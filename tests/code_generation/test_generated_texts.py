@@ -18,7 +18,7 @@ from rulec.code_generation.compiled_c.rust_library import RustLibrary
 from rulec.code_generation.letter_cells import EXCLUDED, LEAF, letter_cells
 from rulec.code_generation.monitor_files import monitor_texts
 from rulec.code_generation.monitor_layout import monitor_layout
-from rulec.code_generation.written_names import Identifiers, c_string, in_comment
+from rulec.code_generation.written_names import Identifiers, c_string, in_comment, prefix_of
 from rulec.diagnostics import RulecError
 from rulec.rulebook.rulebook_model import SourceFile
 
@@ -90,6 +90,21 @@ def test_a_hostile_rulebook_compiles_to_the_same_code(esterle, tmp_path):
 )
 def test_no_name_of_a_language_or_its_headers_is_taken(name):
     assert Identifiers().of(name) == f"{name}_of_rule"
+
+
+@pytest.mark.parametrize("name", ["limits", "Time", "sem", "std", "names", "test", "m", "main"])
+def test_no_monitor_is_called_like_what_it_is_built_with(name):
+    assert prefix_of(name) == f"{name.lower()}_of_rule"
+
+
+def test_values_are_called_unlike_a_monitors_own_constants():
+    book = rulec.parse_rulebook(
+        "rulebook own\nmost is one of digit, other\nmonitor is one of h, hpp\n"
+        "hard rule r { require always (digit or hpp) }\n"
+    )
+    texts = monitor_texts(monitor_layout(rulec.compile_rulebook(book, step_s=1), {}))
+    defined = re.findall(r"#define (\w+)", "".join(texts.values()))
+    assert {name for name in defined if defined.count(name) > 1} == set()
 
 
 @needs_a_compiler

@@ -111,6 +111,14 @@ def test_who_is_given_twice_without_a_seat_is_refused(one_seat, ids):
     assert CMonitor(one_seat).take(given) == 3
 
 
+@needs_rust
+@pytest.mark.parametrize("name", ["names", "std", "harness"])
+def test_a_crate_is_called_unlike_what_it_is_compiled_with(name):
+    text = f"rulebook {name}\nsignal p default false\nhard rule r {{ require always p }}\n"
+    compiled = rulec.compile_rulebook(rulec.parse_rulebook(text), step_s=1)
+    RustLibrary(layout_of(compiled), optimised=False)
+
+
 @pytest.mark.parametrize("text", HOSTILE)
 def test_a_literal_has_its_text(text):
     written = rust_string(text)

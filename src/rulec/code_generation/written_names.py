@@ -31,6 +31,21 @@ _RESERVED = frozenset(_KEYWORDS.split())
 _OF_STDINT = re.compile(r"u?int(_least|_fast|ptr|max)?[0-9]*_t|[A-Z0-9_]+_(MIN|MAX|C)")
 """Names of ``stdint.h``."""
 
+_TAKEN = """
+    assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign
+    stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar
+    wchar wctype
+    alloca dirent endian fcntl features grp malloc memory netdb poll pwd regex sched search
+    semaphore strings syslog termios unistd values
+    aio atomic cnd fanotify inotify mtx nss obstack res sem
+    alloc core names proc_macro proof std test
+    all clean edit_cache help install package package_source preinstall rebuild_cache
+    c dl m pthread rt util
+"""
+_TAKEN_PREFIXES = frozenset(_TAKEN.split())
+"""No names of monitors: headers of C and POSIX, functions ``..._init`` of the C library, Rust's own
+crates and the crate's own modules, targets of CMake, libraries."""
+
 _SHOWN = frozenset({"Lu", "Ll", "Lt", "Lm", "Lo", "Nd", "Nl", "No", "Pd", "Po", "Ps", "Pe", "Sc"})
 """Categories of non-ASCII characters that a comment may contain unchanged."""
 
@@ -61,7 +76,8 @@ class Identifiers:
 
 def prefix_of(name: str) -> str:
     """The common prefix of all identifiers of a monitor, in lower case."""
-    return Identifiers().of(name.lower())
+    prefix = Identifiers().of(name.lower())
+    return f"{prefix}_of_rule" if prefix in _TAKEN_PREFIXES else prefix
 
 
 def _letters(text: str) -> str:

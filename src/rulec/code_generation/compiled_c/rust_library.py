@@ -29,6 +29,7 @@ class RustLibrary(CLibrary):
         crate = ["--crate-type", "rlib", "--crate-name", name, "lib.rs", "-o", f"lib{name}.rlib"]
         self.compiler_version = first_line_of(["rustc", "--version"])
         self.command = run_compiler([*command, *crate], folder)
-        own = ["--crate-type", "cdylib", "harness.rs", "--extern", f"{name}=lib{name}.rlib"]
-        run_compiler([*command, "-A", "non_snake_case", *own, "-o", f"{name}.so"], folder)
+        own = ["--crate-type", "cdylib", "--crate-name", f"{name}_harness", "harness.rs"]
+        own += ["--extern", f"{name}=lib{name}.rlib", "-o", f"{name}.so"]
+        run_compiler([*command, "-A", "non_snake_case", *own], folder)
         return folder / f"{name}.so"
