@@ -78,8 +78,8 @@ def proof_of(library: CLibrary, n_states: int) -> Iterator[ProofPart]:
         _runs(library, n_states, share_unknown=0.0),
     )
     yield _part(
-        "states of which not all is known, or with objects without a seat, have no narrower verdicts "
-        "than those of the monitor in Python",
+        "states of which not all is known, or with objects without a seat, have no narrower "
+        "verdicts than those of the monitor in Python",
         _runs(library, n_states, share_unknown=0.1),
     )
     yield _part(
