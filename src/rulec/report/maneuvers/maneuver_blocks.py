@@ -74,7 +74,8 @@ def _cost_parts(maneuver: Maneuver) -> str:
 
 def _driven(trajectory: WitnessTrajectory) -> str:
     """The greatest acceleration and braking of the witness trajectory, its speeds and its end."""
-    _, s, speed, d, _ = trajectory.states[-1]
+    # Rounding may leave a speed a hair below zero
+    _, s, speed, d, _ = (round(number, 3) + 0.0 for number in trajectory.states[-1])
     least = min(speed for _, _, speed, _, _ in trajectory.states)
     slowest = "" if least >= min(trajectory.states[0][2], speed) - 0.1 else f", least {least:.1f}"
     return (

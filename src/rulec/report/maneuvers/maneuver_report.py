@@ -133,7 +133,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         lines.append("listed      none: no trajectory was found along those that cost least")
         if maneuvers.in_way:
             lines.append(visible(f"in the way  {first_of(maneuvers.in_way, MOST_DEFAULTS)}"))
-        if graph.extent != "body":
+        if maneuvers.in_way and graph.extent != "body":
             lines.append("opened by   `--extent body`, perhaps: it leaves more room")
     for number, maneuver in enumerate(answers.listed or (), 1):
         lines += maneuver_blocks.listed_block(

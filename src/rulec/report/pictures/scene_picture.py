@@ -24,6 +24,8 @@ _TAKEN = {
     "body": "too close to an obstacle, or to the verge, for ego's width",
 }
 
+_UNREACHED = ", or where ego cannot get"
+
 
 def scene_pictures(
     graph: NavigationGraph, layers: Sequence[int], maneuver: Maneuver | None
@@ -43,7 +45,7 @@ def scene_legend(graph: NavigationGraph, maneuver: Maneuver | None) -> Picture:
         entries += [
             ("body", "an obstacle as the interval begins"),
             ("swept", "what it sweeps in the interval"),
-            ("taken", f"no cell: {_TAKEN[graph.extent]}"),
+            ("taken", f"no cell: {_TAKEN[graph.extent]}{_UNREACHED if graph.bounds else ''}"),
         ]
     if graph.scenario.goal:
         entries.append(("goal", "the goal"))
