@@ -120,6 +120,19 @@ def test_formulas(written, canonical):
     assert clause(f"require {written}") == f"  require {canonical}\n"
 
 
+@pytest.mark.parametrize(
+    ("written", "shown"),
+    [
+        ("always (p) implies q", "(always p) implies q"),
+        ("never (p) and q", "(never p) and q"),
+        ("always (some x: c (r(x))) and p", "(always some x: c (r(x))) and p"),
+        ("always ((p or q)) and q", "always (p or q) and q"),
+    ],
+)
+def test_redundant_parentheses_do_not_hide_what_could_be_misread(written, shown):
+    assert clause(f"  require {written}\n") == f"  require {shown}\n"
+
+
 def test_parentheses_before_a_scope_stay():
     text = "  require a\n  unless  (a or b) at some point\n"
     assert clause(text) == text

@@ -16,7 +16,7 @@ from rulec.syntax import parse
 from rulec.syntax.formatting import format_source, safe_format
 from support.builders.counted_steps import grows_in_proportion
 from support.builders.printed_files import print_file
-from support.generators.untidy_files import tree_of, untidy_files
+from support.generators.untidy_files import loose_formulas, tree_of, untidy_files
 
 PROGRAMS = Path(__file__).parent.parent / "programs"
 TEXTS = [path.read_text(encoding="utf-8") for path in sorted(PROGRAMS.glob("*/*.rules"))]
@@ -39,6 +39,17 @@ def code_of(line):
     """A line without its comment, and whether it holds a text."""
     texts = [found[0] for found in TEXT_OR_COMMENT.finditer(line) if not found[1]]
     return TEXT_OR_COMMENT.sub(lambda found: "" if found[1] else found[0], line).rstrip(), texts
+
+
+@given(st.lists(loose_formulas(), min_size=20, max_size=20))
+def test_parentheses_that_group_nothing(formulas):
+    rules = [f"hard rule r {{ require {formula} }}\n" for formula in formulas]
+    text = f"rulebook test\n{''.join(rules)}"
+    tree = tree_of(text)
+    assert tree is not None
+    result = formatted(text)
+    assert tree_of(result) == tree
+    assert formatted(result) == result
 
 
 @given(untidy_files)

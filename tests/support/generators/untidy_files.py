@@ -228,6 +228,22 @@ untidy_files = st.builds(
     untidied, files.map(lambda file: print_file(file, "written")), st.integers()
 )
 
+_OPERATORS = st.sampled_from(["not", "always", "never", "eventually", "next", "once", "weak next"])
+_JOINS = st.sampled_from(["and", "or", "xor", "implies", "iff", "until", "since", "then"])
+_PLAIN = st.sampled_from(["p", "r(v)", "true", "d <= 2", "some x: a (r(x))", "p or q"])
+
+
+@st.composite
+def loose_formulas(draw):
+    """The text of a formula with parentheses anywhere, also where they group nothing."""
+    text = ""
+    for join in ["", *draw(st.lists(_JOINS, min_size=1, max_size=3))]:
+        operand = draw(_PLAIN)
+        for operator in [*draw(st.lists(_OPERATORS, max_size=2)), ""]:
+            operand = f"{operator} ({operand})" if draw(st.booleans()) else f"{operator} {operand}"
+        text += f" {join} {operand}"
+    return text
+
 
 def tree_of(text):
     """The tree of a text; None if it has mistakes."""

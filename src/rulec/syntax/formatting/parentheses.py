@@ -52,9 +52,6 @@ def with_fitting_parentheses(node: ParseNode) -> ParseNode:
 
 
 def _fitted(node: ParseNode, *, shows: bool) -> ParseNode:
-    if shows and node.kind == "infix":
-        left, *rest = node.children
-        node = replace(node, children=(_end_shown(left, node), *rest))
     whole = node.kind in _WHOLE and _has_no_words_behind(node)
     children = tuple(
         child
@@ -62,7 +59,12 @@ def _fitted(node: ParseNode, *, shows: bool) -> ParseNode:
         else _fitted(_without_spare(node, child, whole=whole), shows=shows)
         for child in node.children
     )
-    return replace(node, children=children)
+    fitted = replace(node, children=children)
+    if shows and node.kind == "infix":
+        # Redundant parentheses are gone by now: they would hide an operator at the end.
+        left, *rest = children
+        fitted = replace(fitted, children=(_end_shown(left, fitted), *rest))
+    return fitted
 
 
 def _without_spare(node: ParseNode, child: ParseNode, *, whole: bool) -> ParseNode:
