@@ -1,11 +1,13 @@
 """Parts of rules, which triggers are read off, proved against their formulas."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
 import rulec
 from rulec.automata.bundle.bundle_file import from_json, to_json
+from rulec.automata.bundle.stored_prefixes import stored
 from rulec.validation.file_proof import proofs_of
 from support.builders.compiled_files import sealed
 
@@ -42,6 +44,32 @@ def test_every_scope_is_proved_and_every_trigger_survives(compiled):
     again = from_json(text.encode(), "b.json")
     assert [rule.trigger for rule in again.rules] == [rule.trigger for rule in compiled.rules]
     assert all(rule.parts is not None for rule in again.rules)
+
+
+@pytest.mark.parametrize(
+    "exempting",
+    [
+        "when z",
+        "unless z at start",
+        "unless z at end",
+        "unless z at some point",
+        "unless z throughout",
+        "unless z initially",
+        "unless z initially when r",
+    ],
+)
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
+@pytest.mark.parametrize("required", ["never (q then p)", "never (q then once p then q)"])
+def test_tables_for_cut_traces_are_those_of_a_sequence_under_way(required, semantics, exempting):
+    text = f"""rulebook b
+semantics {semantics}
+signal p, q, r, z default false
+hard rule k {{ require {required} {exempting} }}
+"""
+    rules = rulec.compile_rulebook(rulec.parse_rulebook(text))
+    data = json.loads(to_json(replace(rules, prefixes=stored(rules))))
+    assert data["rules"][0]["cut"]["starts"]
+    assert reasons(data) == {}
 
 
 def word(name):

@@ -59,6 +59,17 @@ def test_one_limit_in_two_units_is_one_comparison():
         assert "counted" in {one.rule for one in found.violations}
 
 
+@pytest.mark.parametrize("compared", ["!= -2", ">= -2", "= -2", "< 0.5", "= 0.5"])
+def test_a_count_is_never_negative(compared):
+    rules = rulec.compile_rulebook(
+        rulec.parse_rulebook(
+            "rulebook b\ntype a\nsignal p, s(x: a) default false\n"
+            f"hard rule r {{ require always (p or count x: a (s(x)) {compared}) }}"
+        )
+    )
+    assert reasons(to_json(rules).encode()) == {}
+
+
 @pytest.mark.parametrize("name", sorted(UNITS.keys() - {"in"}))
 def test_the_checker_has_every_unit_of_the_language(name):
     assert KNOWN_UNITS[name][0] == UNITS[name].factor

@@ -120,15 +120,20 @@ def _prove(rule: Mapping[str, Any], book: Mapping[str, Any]) -> None:
     table = machine["letters"], machine["following"], machine["accepting"]
     same = rule.get("certificate", "") in ("", table_digest(*table))
     require(same, "its certificate belongs to another table")
+    prove_parts(rule)
     if rule.get("cut") is not None:
         prove_cut_table(formula, rule["cut"], letters, goes_on=_goes_on(rule))
-    prove_parts(rule)
     prove_hoa(formula, rule["hoa"], tree, letters, ends=book["semantics"] == "finite")
 
 
 def _goes_on(rule: Mapping[str, Any]) -> bool:
-    """Whether a cut trace may begin within a sequence of this rule, which was kept before."""
-    tree = rule["tree"]
+    """Whether a cut trace may begin within a sequence of this rule, which was kept before.
+
+    That is asked of what the rule requires: with exceptions or a condition, the phases of a
+    sequence may be written by other operators in the tree.
+    """
+    parts = rule.get("parts")
+    tree = rule["tree"] if parts is None else parts["required"]
     is_one = isinstance(tree, list) and tree[0] in ("always", "never") and len(tree) == 2
     return is_one and not rule["variables"] and "then" in _operators(tree)
 

@@ -210,12 +210,16 @@ def _samples(
     for place in (low, high):
         near += [] if place is None else [place[0]]
     if whole:
-        # The neighbouring whole numbers suffice: between them no truth value changes.
+        # The neighbouring whole numbers suffice: between them no truth value changes. None of them
+        # may be a count, so there is 0, too.
         near = [
-            Fraction(round_(each) + n)
-            for each in near
-            for round_ in (floor, ceil)
-            for n in (-1, 0, 1)
+            Fraction(0),
+            *(
+                Fraction(round_(each) + n)
+                for each in near
+                for round_ in (floor, ceil)
+                for n in (-1, 0, 1)
+            ),
         ]
         near = [each for each in near if each >= 0]
     else:
