@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 
-from rulec.logic.formula import Atom, Comparison, Count, QuantityTerm, Same
+from rulec.logic.formula import Atom, Comparison, Constant, Count, QuantityTerm, Same
 from rulec.logic.free_names import rename_variables, required_inputs
 
 GAP_V, GAP_W = QuantityTerm("gap", ("v",)), QuantityTerm("gap", ("w",))
@@ -62,3 +62,14 @@ def test_inputs_of_counts_are_asked_of_each_object_that_may_count():
         GAP_W,
     ]
     assert list(required_inputs(slow, objects, fits)) == [GAP_V, GAP_W]
+
+
+def test_terms_that_become_equal_are_added():
+    to, fro = QuantityTerm("d", ("v", "x")), QuantityTerm("d", ("x", "v"))
+    itself = QuantityTerm("d", ("v", "v"))
+    difference = Comparison(((Fraction(1), to), (Fraction(-1), fro)), "!=", Fraction(1))
+    assert rename_variables(difference, {"x": "v"}) == Constant(True)
+    weighted = Comparison(((Fraction(1), to), (Fraction(2), fro)), "<", Fraction(6))
+    assert rename_variables(weighted, {"x": "v"}) == Comparison(
+        ((Fraction(1), itself),), "<", Fraction(2)
+    )

@@ -207,3 +207,29 @@ def test_counted_objects_are_there(bad):
     # A bus behind, and nobody behind: there is no such state, whatever it would violate.
     assert (traces.rejected is None) is (bad == {0})
     assert (traces.accepted is None) is (bad >= {1, 2, 3})
+
+
+TO_ITSELF = """rulebook r
+type a
+signal p default false
+quantity d(x: a, y: a) in m default 0
+hard rule r (v: a) {{ require always (p or every x: a ({condition}d(v, x) - d(x, v) != 1 m)) }}
+"""
+
+
+def test_a_difference_of_a_number_and_itself_is_zero():
+    rules = parse_rulebook(TO_ITSELF.format(condition="x = v implies "))
+    assert shortest_traces(compile_here(rules).rules[0], rules.vocabulary).rejected is None
+    rules = parse_rulebook(TO_ITSELF.format(condition=""))
+    traces = shortest_traces(compile_here(rules).rules[0], rules.vocabulary)
+    # One beside the rule's own
+    assert len(traces.rejected.objects) == 1
+
+
+def test_a_count_that_always_fits_beside_one_that_may_not():
+    rules = parse_rulebook(
+        "rulebook r type a signal p(x: a) default false hard rule r { "
+        "require always (count x: a (p(x)) <= 1 and count x: a (not p(x)) >= 0) }"
+    )
+    traces = shortest_traces(compile_here(rules).rules[0], rules.vocabulary)
+    assert len(traces.rejected.objects) == 2

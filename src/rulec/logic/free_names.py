@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from fractions import Fraction
 from functools import lru_cache
 
 from rulec.logic import formula as ltl
@@ -69,17 +70,21 @@ def reads_in(formula: ltl.Formula) -> Iterator[ltl.Atom | ltl.Term]:
 def rename_variables(formula: ltl.Formula, names: Mapping[str, str]) -> ltl.Formula:
     """Rename all free variables of a formula at once.
 
-    Variables that are not in ``names`` stay.
-
-    The new names must be distinct, and none may be the variable of a count inside the formula.
+    Variables that are not in ``names`` stay. No new name may be the variable of a count inside the
+    formula.
     """
     match formula:
         case ltl.Atom():
             return replace(formula, arguments=_renamed(formula.arguments, names))
         case ltl.Comparison(terms, relation, limit, text):
-            # The new names may change the order of the terms.
+            # The new names may change the order of the terms, and one that two variables get may
+            # make terms equal.
+            coefficients: dict[ltl.Term, Fraction] = {}
+            for factor, term in terms:
+                renamed = _renamed_term(term, names)
+                coefficients[renamed] = coefficients.get(renamed, Fraction(0)) + factor
             return comparison(
-                {_renamed_term(term, names): factor for factor, term in terms},
+                {term: factor for term, factor in coefficients.items() if factor},
                 relation,
                 limit,
                 _ARGUMENT.sub(lambda match: match[1] + names.get(match[2], match[2]), text),

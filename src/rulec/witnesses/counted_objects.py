@@ -115,7 +115,8 @@ def _enough(count: Count, state: JointState) -> int:
         if any(term == count for _, term in read.terms):
             if len(read.terms) > 1:
                 return MOST_COUNTED_OBJECTS + 1
-            most = max(most, *(ceil(threshold.limit) + 1 for threshold in read.thresholds))
+            # A comparison that is always true has no thresholds.
+            most = max([most, *(ceil(threshold.limit) + 1 for threshold in read.thresholds)])
     return most
 
 
