@@ -297,6 +297,38 @@ def test_what_was_before_a_cut_trace_is_unknown():
     assert again.so_far.rules == found.rules
 
 
+LEAVING = """\
+rulebook leaving
+type car
+signal s(v: car), t(v: car) default false
+hard rule r (v: car) { require CONDITION }
+"""
+
+
+@pytest.mark.parametrize(
+    ("condition", "kept", "violated"),
+    [
+        ("eventually s(v)", False, False),
+        ("never s(v)", True, False),
+        ("always s(v)", False, True),
+        ("always (t(v) implies eventually s(v))", True, False),
+        ("next s(v)", False, False),
+    ],
+)
+def test_who_leaves_a_cut_trace_was_lost_from_view(condition, kept, violated):
+    rules = rulec.compile_rulebook(parse_rulebook(LEAVING.replace("CONDITION", condition)))
+    trace = Trace("t", 1, {"a": "car"}, ({}, {}), {"a": (0, 0)}, ends="cut")
+    found = verify(trace, rules)
+    assert (found.satisfied is True, bool(found.violations)) == (kept, violated)
+    judge = Monitor(rules, cut=True)
+    judge.step({}, {"a": "car"})
+    on_rule = judge.step({}, {}).rules["r"]
+    assert (worst_of(on_rule) != "violated", best_of(on_rule) == "violated") == (kept, violated)
+    assert bool(judge.violations) is violated
+    again = Monitor.restore(rules, json.loads(json.dumps(judge.snapshot())))
+    assert again.so_far.rules == {"r": on_rule}
+
+
 def test_a_monitor_that_knows_all_is_saved_as_ever():
     judge = monitor(NEVER_FAR)
     judge.step({"place": {"a": "near"}}, CAR)

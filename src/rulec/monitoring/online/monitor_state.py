@@ -212,7 +212,7 @@ def carry_over(
                 known[items] = edge
             elif edge.verdict == "pending" or isinstance(edge.verdict, VerdictRange):
                 binding = MappingProxyType(prepared.bound(items))
-                after_all = _at_the_end(edge.verdict)
+                after_all = _at_the_end(edge.verdict, goes_on=prepared.is_cut)
                 if after_all != "satisfied":
                     change = VerdictChange(prepared.name, binding, edge.verdict, after_all, True)
                     ended.append(change)
@@ -235,9 +235,13 @@ def awake(current: MonitorState, objects: Mapping[str, str]) -> Awake:
     return choices
 
 
-def _at_the_end(verdict: RunningVerdict) -> RunningVerdict:
-    """The final verdict when the objects are no longer present together."""
-    best: FourValued = "satisfied" if best_of(verdict) in _OPEN_AT_END else "violated"
+def _at_the_end(verdict: RunningVerdict, *, goes_on: bool) -> RunningVerdict:
+    """The final verdict when the objects are no longer present together.
+
+    If their time together ``goes_on`` unobserved, it may still satisfy what is pending.
+    """
+    is_kept = goes_on or best_of(verdict) in _OPEN_AT_END
+    best: FourValued = "satisfied" if is_kept else "violated"
     worst: FourValued = "satisfied" if worst_of(verdict) in _OPEN_AT_END else "violated"
     return within(best, worst)
 

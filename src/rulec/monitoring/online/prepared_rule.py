@@ -53,7 +53,8 @@ class PreparedRule:
 
     ``letters`` has the class of each letter. ``entangled`` are its entangled reads, None if they
     depend on more than the rule's own objects; their inputs are the ``values`` on which they
-    depend. ``alone`` are the places of the other reads, with an input for each.
+    depend. ``alone`` are the places of the other reads, with an input for each. ``is_cut``: what
+    was before objects appeared, and comes after they are gone, is unknown.
     """
 
     rule: CompiledRule
@@ -66,6 +67,7 @@ class PreparedRule:
     values: tuple[MonitorInput, ...]
     vocabulary: Vocabulary
     axioms: tuple[CompiledAxiom, ...]
+    is_cut: bool = False
 
     @cached_property
     def uncertain(self) -> UncertainSteps:
@@ -351,6 +353,6 @@ def _prepared_rule(
     from rulec.monitoring.online.uncertain_steps import cut_edges  # numpy, as above
 
     first, cut_edges_, steps = cut_edges(cut)
-    prepared = replace(prepared, start=first, edges=cut_edges_, letters=cut.letters)
+    prepared = replace(prepared, start=first, edges=cut_edges_, letters=cut.letters, is_cut=True)
     vars(prepared)["uncertain"] = steps
     return prepared

@@ -63,7 +63,8 @@ class Monitor:
             omitted, the step that they were compiled for.
         told: the names that the source can provide; other names are unknown in states that do not
             contain them, except those with ``presumed`` defaults. If omitted, all have defaults.
-        cut: the time before the first state, and before an object appeared, is unknown.
+        cut: the time before the first state, and before an object appeared, is unknown; an object
+            that has left was lost from view, so what is pending about it stays open.
 
     Raises RulecError R0507 if a rule was compiled for another step and cannot be compiled again,
     R0403 if it is cut and Spot is not installed, TypeError for rules that are not compiled.
