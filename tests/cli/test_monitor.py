@@ -248,6 +248,27 @@ def test_it_saves_whatever_ends_it(running, folder, number, status):
     assert list(folder.glob("*.part")) == []
 
 
+def test_what_was_saved_stays_until_the_end(folder, running):
+    tell(running, SIGN)
+    running.stdout.readline()
+    running.send_signal(signal.SIGINT)
+    running.wait(30)
+    again = subprocess.Popen(
+        [*RULEC, "monitor", "./waiting.rules", "--save", "m.json"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        cwd=folder,
+    )
+    with again:
+        tell(again, SIGN)
+        again.stdout.readline()
+        tell(again, SIGN)
+        again.stdout.readline()
+        # As when the power fails
+        again.kill()
+    assert states_in(folder / "m.json") == 1
+
+
 def test_it_saves_when_the_reader_leaves(running, folder):
     tell(running, SIGN)
     running.stdout.readline()

@@ -288,6 +288,20 @@ def test_the_former_name_is_taken_and_not_shown(name, capsys, tmp_path):
     assert "--format " not in capsys.readouterr().out
 
 
+def test_what_a_link_leads_to_is_not_overwritten(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("words.rules").write_text("vocabulary words { signal p }")
+    Path("mine.rules").write_text("rulebook mine use words hard rule r { require always p }")
+    Path("page.html").symlink_to("link.html")
+    Path("link.html").symlink_to("words.rules")
+    assert main(["doc", "./mine.rules", "-o", "page.html"]) == 2
+    assert "`words.rules` is a source, and would be overwritten" in capsys.readouterr().err
+    assert Path("words.rules").read_text() == "vocabulary words { signal p }"
+    Path("link.html").unlink()
+    assert main(["doc", "./mine.rules", "-o", "page.html"]) == 0
+    assert Path("link.html").read_text().startswith("<!DOCTYPE html>")
+
+
 BESIDE = {
     "rulec.toml": ("", ["check", "esterle2019", "--output-format", "json"]),
     "road.net.xml": (sumo_files.ROAD_NET, ["verify", "cars.csv", "-r", "esterle2019"]),

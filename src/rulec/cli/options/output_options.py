@@ -19,7 +19,7 @@ import click
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.file_messages import OVERWRITES_INPUT
-from rulec.files import refuse_unwritable
+from rulec.files import from_here, refuse_unwritable
 from rulec.report.verdict_findings.finding_writers import ENDINGS
 from rulec.work_trees import is_ordinary
 
@@ -284,19 +284,28 @@ def refuse_overwriting(to: Sequence[Output], paths: Iterable[str]) -> None:
         if is_path and _identity(path) in files and not _is_device(Path(path)):
             raise _overwrites(path, f"`{path}` is named already, and would be overwritten")
     for path in files.values():
-        if path.endswith(".rules") and os.path.lexists(path):
-            raise _overwrites(path, f"`{path}` is a source, and would be overwritten")
-        if Path(path).name in _OF_PROJECTS and os.path.lexists(path):
-            raise _overwrites(path, f"`{path}` is a project's own, and would be overwritten")
-        if is_ordinary(Path(path)):
-            # Late import, only if a file would be replaced: formats of recordings (80 ms).
-            from rulec.recordings.recording_files import is_beside_recordings
+        _refuse_what_is_read(path)
+        # What a link leads to would be overwritten, whatever the link is called.
+        if Path(path).is_symlink():
+            _refuse_what_is_read(from_here(os.path.realpath(path)))
 
-            if is_beside_recordings(path):
-                message = (
-                    f"`{path}` is recorded traffic, a map, or read along with these, and would be"
-                )
-                raise _overwrites(path, f"{message} overwritten")
+
+def _refuse_what_is_read(path: str) -> None:
+    """Refuse to overwrite a file that may be read without being named.
+
+    Raises RulecError R0735.
+    """
+    if path.endswith(".rules") and os.path.lexists(path):
+        raise _overwrites(path, f"`{path}` is a source, and would be overwritten")
+    if Path(path).name in _OF_PROJECTS and os.path.lexists(path):
+        raise _overwrites(path, f"`{path}` is a project's own, and would be overwritten")
+    if is_ordinary(Path(path)):
+        # Late import, only if a file would be replaced: formats of recordings (80 ms).
+        from rulec.recordings.recording_files import is_beside_recordings
+
+        if is_beside_recordings(path):
+            message = f"`{path}` is recorded traffic, a map, or read along with these, and would be"
+            raise _overwrites(path, f"{message} overwritten")
 
 
 _OF_PROJECTS = ("rulec.toml", "rulec.lock")

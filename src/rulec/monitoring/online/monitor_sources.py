@@ -14,7 +14,7 @@ import msgspec
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import with_place
-from rulec.files import MAX_SAVED_BYTES, opened, read_whole, written_whole
+from rulec.files import MAX_SAVED_BYTES, opened, read_whole, refuse_unwritable, written_whole
 from rulec.logic.codec import number_from_data
 from rulec.monitoring.constant_values import with_constants
 from rulec.monitoring.letter_reader import present_in
@@ -96,18 +96,16 @@ def step_of(saved: Any) -> Fraction | None:
 
 @contextmanager
 def saved_at_the_end(monitor: Monitor, path: Path | None) -> Iterator[None]:
-    """Save a monitor at the block's beginning and end, also if it raises an error.
+    """Save a monitor at the block's end, also if it raises an error.
 
-    Without a path this does nothing. Raises RulecError R0702.
+    Until then a file that is there stays as it is. Without a path this does nothing. Raises
+    RulecError R0702 or R0730, already at the beginning if the file cannot be written.
     """
-    _save(monitor, path)
+    if path is not None:
+        refuse_unwritable(path)
     try:
         yield
     finally:
-        _save(monitor, path)
-
-
-def _save(monitor: Monitor, path: Path | None) -> None:
-    if path is not None:
-        with written_whole(path) as stream:
-            stream.write(json.dumps(monitor.snapshot(), ensure_ascii=False).encode() + b"\n")
+        if path is not None:
+            with written_whole(path) as stream:
+                stream.write(json.dumps(monitor.snapshot(), ensure_ascii=False).encode() + b"\n")
