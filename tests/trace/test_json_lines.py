@@ -209,6 +209,21 @@ def test_a_field_is_called_as_it_is_written():
     assert "unknown field `object`" in problem(line(object={})).message
 
 
+@pytest.mark.parametrize("half", [r"\ud800", r"\uDBFF", r"\udc00", r"\udc00\ud800"])
+@pytest.mark.parametrize("behind", ["", "x", r"\n", "a much longer text"])
+@pytest.mark.parametrize("before", ["", r"\ud83d\ude00 \\ud900"])
+def test_half_a_character_is_not_the_end_of_a_line(before, half, behind):
+    found = problem(f'{{"states": [], "id": "{before}{half}{behind}"}}'.encode())
+    assert "has been cut short" not in found.message
+    assert found.message == f"this is not a trace: `{half[:6]}` is half of a surrogate pair"
+
+
+@pytest.mark.parametrize("size", range(17, 28))
+def test_a_pair_of_surrogates_may_be_cut_short(size):
+    whole = r'{"id": "t", "id": "\ud83d\ude00"'
+    assert "it has been cut short" in problem(whole[:size].encode()).message
+
+
 def test_a_line_without_end_is_refused_without_keeping_it(monkeypatch):
     monkeypatch.setattr(json_line_problems, "LONGEST_LINE_BYTES", 1000)
     found = read(b"x" * 5000 + b"\n" + line(id="after"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,6 +25,11 @@ _UNKNOWN_FIELD = re.compile(r"unknown field `(.*?)`(?! - at)", re.DOTALL)
 _UNKNOWN_CHOICE = re.compile(r"nvalid enum value '.*' - at `\$\.(\w+)`", re.DOTALL)
 _REFUSED_BYTE = re.compile(r" \(byte ([0-9]+)\)")
 _MARK = re.compile(rb'\\.|["{}\[\],]', re.DOTALL)
+_SURROGATES = re.compile(
+    rb"\\u[dD][89abAB]\w\w\\u[dD][c-fC-F]\w\w|(?P<half>\\u[dD][89a-fA-F]\w\w)|\\.", re.DOTALL
+)
+"""The escapes of a text, so that a backslash that is itself escaped begins none."""
+
 _CALLED = re.compile(rb'\s*:\s*([0-9]+\b|"[^"\\]{1,100}")')
 
 ONE_LINE = "write it without line breaks, as `jq -c . FILE` does"
@@ -77,6 +83,11 @@ class Kind(Generic[Record]):
         if is_beginning(line):
             message = f"the line ends in the middle of a {self.name}: it has been cut short"
             return self.bad(message, placed(place, line, len(line) - 1))
+        if "surrogate" in str(problem) or "truncated" in str(problem):
+            half = next(each for each in _SURROGATES.finditer(line) if each["half"])
+            words = f"`{half[0].decode()}` is half of a surrogate pair"
+            help_text = "write a character beyond U+FFFF as it is, or as both halves of its pair"
+            return self.bad(f"{this}: {words}", placed(place, line, half.start()), help_text)
         words = json_words(problem)
         byte = _REFUSED_BYTE.search(words)
         help_text = self.no_list if line.lstrip().startswith(b"[") else self.example
@@ -148,7 +159,7 @@ def _spelling(text: bytes) -> str:
 def is_beginning(line: bytes) -> bool:
     """Whether a line is valid JSON so far but ends too early."""
     # If it ends within a number, such as `0.`, that is recognised only with another digit.
-    return _is_truncated(line) or _is_truncated(line + b"0")
+    return (_is_truncated(line) or _is_truncated(line + b"0")) and not _is_whole(line)
 
 
 def _is_truncated(line: bytes) -> bool:
@@ -157,6 +168,15 @@ def _is_truncated(line: bytes) -> bool:
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as problem:
         return "truncated" in str(problem)
     return False
+
+
+def _is_whole(line: bytes) -> bool:
+    """Whether a line is JSON except for halves of surrogate pairs, near its end too."""
+    try:
+        json.loads(line)
+    except (ValueError, RecursionError):
+        return False
+    return True
 
 
 def middle_of(line: bytes) -> str:
