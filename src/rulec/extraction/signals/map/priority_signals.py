@@ -20,10 +20,10 @@ from rulec.extraction.signals.map.right_of_way.conflicts import (
     LONGEST_WAIT_S,
     ONCOMING,
     Encounter,
-    drives_in,
     in_conflict,
     side_of,
 )
+from rulec.extraction.signals.map.right_of_way.held_up import drives_in
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import (
     gives_way_to,
     is_settled,
@@ -270,7 +270,7 @@ def _turned_in_later(context: DriveContext, own: Passage, other: Passage) -> boo
     Where links are short, it is unknown whether one still before the junction at their other end
     will come.
     """
-    passages, moved_in = context.surroundings.passages, drives_in(context, own)
+    passages, moved_in = context.surroundings.passages, drives_in(context, own, own.last)
     least = np.radians(context.thresholds.turned_deg)
     return any(
         moved_in < passages.front_enters(before) < other.first

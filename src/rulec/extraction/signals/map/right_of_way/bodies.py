@@ -25,21 +25,29 @@ _FOLLOWS_S = 1.5
 def collide(
     context: DriveContext, own: Passage, other: Passage, columns: slice, least_m: float = 0.0
 ) -> bool:
-    """Whether two bodies overlap in the columns by more than the tolerance of places.
+    """Whether two bodies collide in the columns, as ``collision`` has it."""
+    return collision(context, own, other, columns, least_m) is not None
 
-    And by ``least_m`` more; also between one column and the next.
+
+def collision(
+    context: DriveContext, own: Passage, other: Passage, columns: slice, least_m: float = 0.0
+) -> int | None:
+    """The column at or after which two bodies first overlap by more than the tolerance of places.
+
+    And by ``least_m`` more; also between it and the next one.
     """
     (ours, ours_at), (theirs, theirs_at) = (
         _laid_out(context, passage, columns.start, columns.stop) for passage in (own, other)
     )
     _, here, there = np.intersect1d(ours_at, theirs_at, return_indices=True)
     if not len(here):
-        return False
+        return None
     # Only where they are near are their shapes compared
     near = shapely.dwithin(ours[here], theirs[there], max(-least_m, 0.0))
     inner = -(context.tolerances.place_m + least_m)
     smaller = shapely.buffer(ours[here[near]], inner)
-    return bool(shapely.intersects(smaller, theirs[there[near]]).any())
+    overlap = shapely.intersects(smaller, theirs[there[near]])
+    return int(ours_at[here[near]][overlap][0]) if overlap.any() else None
 
 
 def gap_s(

@@ -17,10 +17,12 @@ from typing import TypeAlias
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.map.right_of_way.bodies import collide, gap_s
+from rulec.extraction.signals.map.right_of_way.bodies import collide, collision, gap_s
 from rulec.extraction.signals.map.right_of_way.held_up import (
     BEHIND_S,
     DRIVES_MPS,
+    SEES_S,
+    drives_in,
     held_up,
     slows_down,
 )
@@ -66,14 +68,6 @@ def side_of(angle: float) -> str:
     if abs(angle) < 30.0:
         return ""
     return ONCOMING if abs(angle) > 135.0 else FROM_SIDES[0] if angle < 0 else FROM_SIDES[1]
-
-
-def drives_in(context: DriveContext, own: Passage) -> int:
-    """The column in which ego drives in: where it moves off, if it waits within the junction."""
-    passages = context.surroundings.passages
-    speed = passages.tracks.speed[own.row, own.first : own.last + 1]
-    waits = (speed < SLOWEST_MPS).nonzero()[0]
-    return own.first + int(waits[-1]) if len(waits) else passages.front_enters(own)
 
 
 def in_conflict(
@@ -137,8 +131,9 @@ def _runs_into(
     If the ways join, ego drives in behind it; if bodies meet nevertheless, it is not sure who ran
     into whom. If ego brakes meanwhile, it may see the vehicle and stop short of it, on lanes that
     are narrower than on the map; if it creeps on behind, it does not touch it. A slow vehicle may
-    wait there, unless ego runs into it. One behind which ego passes is not in conflict: where ways
-    cross at a slant the place is longer than bodies.
+    wait there, unless it came up when ego drove in, or ego runs into it; one that stood before may
+    be part of a queue. One behind which ego passes is not in conflict: where ways cross at a slant
+    the place is longer than bodies.
     """
     passages = context.surroundings.passages
     (own, enters), (other, passed) = ego, foe
@@ -146,26 +141,30 @@ def _runs_into(
     present = passages.tracks.present[other.row].nonzero()[0]
     first = max(int(present[0]), context.first_column)
     until = int(present[-1]) + 1 if passed is None else passed
-    if ways[0].names & ways[1].names or ways[0].exits & ways[1].exits:
-        meet = collide(context, own, other, slice(enters, until), _GRAZES_M)
-        return (first, False) if meet else None
-    slowest = passages.tracks.speed[[own.row, other.row], enters:until].min(axis=1, initial=np.inf)
     there = slice(enters, until)
-    drive = bool((slowest > (SLOWEST_MPS, DRIVES_MPS)).all()) or (
-        bool((slowest > (DRIVES_MPS, SLOWEST_MPS)).all())
-        and collide(context, own, other, there, _GRAZES_M)
-    )
-    if not drive:
+    hit = collision(context, own, other, there, _GRAZES_M)
+    if ways[0].names & ways[1].names or ways[0].exits & ways[1].exits:
+        return None if hit is None else (first, False)
+    # How fast they are after a collision does not show who drove or waited
+    alone = slice(enters, until if hit is None else hit + 1)
+    slowest = passages.tracks.speed[[own.row, other.row], alone].min(axis=1, initial=np.inf)
+    moved_in = max(drives_in(context, own, enters), int(present[0]))
+    sees = slice(max(moved_in - round(SEES_S / context.recording.step_s), 0), moved_in + 1)
+    came_mps = max(slowest[1], np.fmax.reduce(passages.tracks.speed[other.row, sees]))
+    drives_mps = DRIVES_MPS if hit is None else SLOWEST_MPS
+    if not (slowest[0] > SLOWEST_MPS and came_mps > drives_mps):
         return None
-    if not collide(context, own, other, there, _GRAZES_M):
+    if hit is None:
         briefly = (until - enters) * context.recording.step_s <= BEHIND_S
         behind = gap_s(context, (own, other), (enters, until)) >= context.thresholds.yielding_s
         near_m = _CLEAR_M + 2 * context.tolerances.place_m
         if (briefly or behind) and not collide(context, own, other, there, -near_m):
             return None
-        if briefly or behind or slowest[0] < DRIVES_MPS:
+        if briefly or behind or slowest.min() < DRIVES_MPS:
             return first, False
-    return first, not slows_down(context, own, enters, until)
+    moved_mps = max(slowest[1], passages.tracks.speed[other.row, moved_in])
+    sure = moved_mps > SLOWEST_MPS and slowest.max() > DRIVES_MPS
+    return first, bool(sure) and not slows_down(context, own, enters, until)
 
 
 def _column(when: float | None) -> int | None:

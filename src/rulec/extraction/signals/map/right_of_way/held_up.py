@@ -28,7 +28,7 @@ _BRIEFLY_S = 1.0
 _NEAR = 0.7
 """Who comes within this part of ``yielding_s`` is near, whatever it slows down for."""
 
-_SEES_S = 2.0
+SEES_S = 2.0
 """This long before ego drives in, others may see that it will, and brake."""
 
 _STRAIGHT_RAD = 0.3
@@ -94,7 +94,7 @@ def _held_up_until(
     train, late_s = _is_train(context, own, other), (at - until) * step_s
     if late_s < (limits.held_up_s if train else limits.yielding_s):
         drove_on = leaves is not None or _drives_on(context, own, comes)
-        drives_in = min(max(passages.front_enters(own), first), last)
+        moved_in = min(max(passages.front_enters(own), first), last)
         late = (at - enters) * step_s > _LATE_S and _stood(context, own, enters, until)
         late |= _catches_up(context, (own, enters, until), other, at, left_m)
         # The meeting place is wider than the bodies. One that slows down for itself, and whose body
@@ -104,7 +104,7 @@ def _held_up_until(
             and _slows_for_itself(context, ego, other, first + decides, comes)
             and gap_s(context, (own, other), (enters, comes)) >= limits.yielding_s
         )
-        waits = _stands(context, other, drives_in) or own_reason
+        waits = _stands(context, other, moved_in) or own_reason
         return first, drove_on and not late and not waits
     travelled = passages.travelled[other.row]
     way = np.interp(at, np.arange(len(travelled)), travelled) + left_m - travelled[columns]
@@ -114,7 +114,7 @@ def _held_up_until(
     # in
     waits_longer = late_s >= limits.held_up_s
     if waits_longer or not (soon[decides] and soon[-1]):
-        before = max(decides - round(_SEES_S / step_s), 0)
+        before = max(decides - round(SEES_S / step_s), 0)
         braked = soon[before] and _brakes_for(
             context, other, (first + before, int(until)), comes, may_turn=not waits_longer
         )
@@ -203,14 +203,12 @@ def _catches_up(
     """
     (own, enters, until), passages = ego, context.surroundings.passages
     speed, comes = passages.tracks.speed[own.row], ceil(at)
-    waits = (speed[own.first : enters + 1] < SLOWEST_MPS).nonzero()[0]
-    # Where it moves off, if it has waited within the junction
-    drives_in = own.first + int(waits[-1]) if len(waits) else passages.front_enters(own)
+    moved_in = drives_in(context, own, enters)
     is_held_up = bool((speed[enters : int(until) + 1] < DRIVES_MPS).any())
-    if not is_held_up or comes <= drives_in:
+    if not is_held_up or comes <= moved_in:
         return False
     travelled = passages.travelled[other.row]
-    begin = max(drives_in, int(passages.tracks.present[other.row].argmax()))
+    begin = max(moved_in, int(passages.tracks.present[other.row].argmax()))
     way = float(np.interp(at, np.arange(len(travelled)), travelled) + left_m - travelled[begin])
     speeds = passages.tracks.speed[other.row, begin : comes + 1]
     now, fastest = float(speeds[0]), float(np.fmax.reduce(speeds))
@@ -233,6 +231,13 @@ def slows_down(context: DriveContext, other: Passage, first: int, last: int) -> 
     steps = min(steps, len(travelled) - 1)
     slowest = float((travelled[steps:] - travelled[:-steps]).min()) / steps / step_s
     return slowest < _SLOWED * float(passages.tracks.speed[other.row, first])
+
+
+def drives_in(context: DriveContext, own: Passage, last: int) -> int:
+    """The column in which ego drives in: where it moves off, if it waits there until ``last``."""
+    passages = context.surroundings.passages
+    waits = (passages.tracks.speed[own.row, own.first : last + 1] < SLOWEST_MPS).nonzero()[0]
+    return own.first + int(waits[-1]) if len(waits) else passages.front_enters(own)
 
 
 def _decides(context: DriveContext, own: Passage, enters: int) -> int:

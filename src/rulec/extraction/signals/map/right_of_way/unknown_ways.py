@@ -10,7 +10,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
-from rulec.extraction.signals.map.right_of_way.conflicts import drives_in, side_of
+from rulec.extraction.signals.map.right_of_way.conflicts import side_of
+from rulec.extraction.signals.map.right_of_way.held_up import drives_in
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS
 from rulec.extraction.signals.signal_passes import once_a_recording
 from rulec.extraction.tracks.junction_passages import Passage
@@ -79,7 +80,7 @@ def might_come(context: DriveContext, own: Passage) -> Iterator[str]:
             through.add(row)
             yield side_of(float(np.degrees(turn(own.heading, tracks.heading[row, first]))))
     rows, ends, back = _lost_from_sight(context)
-    moved_in, longest = drives_in(context, own), context.thresholds.held_up_s / step_s
+    moved_in, longest = drives_in(context, own, own.last), context.thresholds.held_up_s / step_s
     # A participant with a known way is in the junction on that way, unless it was unseen there
     in_time = (ends >= shift) & (ends <= latest + longest) & (back > own.first)
     for row, end, seen in zip(*(x[in_time].tolist() for x in (rows, ends, back)), strict=True):
