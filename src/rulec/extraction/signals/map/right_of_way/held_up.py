@@ -41,7 +41,10 @@ _AMPLE_S = 6.0
 """Who drives in this long (s) before another one can come has left it time enough."""
 
 _SPEEDS_UP_MPS2 = 2.0
-"""So much faster a vehicle may become after its track has ended."""
+"""So much faster a vehicle may become, such as after its track has ended."""
+
+_GAINS_MPS2 = 0.5
+"""Whose speed changes by less than this keeps it."""
 
 
 def held_up(
@@ -66,8 +69,7 @@ def held_up(
     if end < until:
         return first, False
     speed = max(float(zero_if_nan(passages.tracks.speed[other.row, end])), 0.0)
-    soonest_s = (sqrt(speed**2 + 2 * _SPEEDS_UP_MPS2 * left_m) - speed) / _SPEEDS_UP_MPS2
-    at = end + soonest_s / context.recording.step_s
+    at = end + _soonest_s(speed, _SPEEDS_UP_MPS2, left_m) / context.recording.step_s
     found = _held_up_until(context, ego, other, (first, at, until), left_m)
     return found and (found[0], False)
 
@@ -107,9 +109,10 @@ def _held_up_until(
         waits = _stands(context, other, moved_in) or own_reason
         return first, drove_on and not late and not waits
     travelled = passages.travelled[other.row]
-    way = np.interp(at, np.arange(len(travelled)), travelled) + left_m - travelled[columns]
+    place = float(np.interp(at, np.arange(len(travelled)), travelled)) + left_m
     speed = np.maximum(passages.tracks.speed[other.row, columns], 0.1)
-    soon = columns + way / speed / step_s - until < limits.yielding_s / step_s
+    arrives = columns + (place - travelled[columns]) / speed / step_s
+    soon = arrives - until < limits.yielding_s / step_s
     # A vehicle that speeds up when ego is already in the junction was not held up by ego's driving
     # in
     waits_longer = late_s >= limits.held_up_s
@@ -119,7 +122,8 @@ def _held_up_until(
             context, other, (first + before, int(until)), comes, may_turn=not waits_longer
         )
         if not braked:
-            return None
+            seen = first + before, first + decides
+            return _stops_again(context, ego, other, (seen, until, comes), place)
         decides = before
     # Nor was one that brakes once ego is gone
     elif not slows_down(context, other, first + decides, int(until)):
@@ -130,6 +134,61 @@ def _held_up_until(
     unsure = leaves is None or own_reason or waits_longer
     unsure = unsure or _catches_up(context, (own, enters, until), other, at, left_m)
     return int(columns[soon.argmax()]), not unsure
+
+
+def _stops_again(
+    context: DriveContext,
+    ego: tuple[Passage, int, float | None],
+    other: Passage,
+    times: tuple[tuple[int, int], float, int],
+    place: float,
+) -> tuple[int, bool] | None:
+    """``held_up`` for one that was speeding up as ego drove in, and then brakes.
+
+    It would have come sooner than its speed tells; how much sooner is not known. ``times``: when it
+    may have seen that ego drives in, first and last, when ego has left, and when it comes;
+    ``place``: where that is (m).
+    """
+    (begin, decides), until, comes = times
+    tracks = context.surroundings.passages.tracks
+    last = min(int(until), int(tracks.present[other.row].nonzero()[0][-1]))
+    speed = zero_if_nan(tracks.speed[other.row, begin : last + 1])
+    fastest = begin + int(speed.argmax())
+    late_s = (comes - until) * context.recording.step_s
+    halved = SLOWEST_MPS < speed.max() and speed[fastest - begin :].min() < speed.max() / 2
+    if not halved and not _brakes_for(context, other, (fastest, last), comes, may_turn=False):
+        return None
+    by = until + context.thresholds.yielding_s / context.recording.step_s
+    if not any(
+        _comes_by(context, other, column, place) < by for column in range(begin, decides + 1)
+    ):
+        return None
+    if late_s >= context.thresholds.held_up_s and _slows_for_itself(
+        context, ego, other, fastest, comes
+    ):
+        return None
+    return begin, False
+
+
+def _comes_by(context: DriveContext, other: Passage, column: int, place: float) -> float:
+    """When (in columns) one that speeds up would be at a place (m); infinite if it does not.
+
+    If it went on speeding up as hard as it did about then.
+    """
+    passages, step_s = context.surroundings.passages, context.recording.step_s
+    tracks, about = passages.tracks, round(_BRIEFLY_S / step_s)
+    then = tracks.acceleration[other.row, max(column - about, 0) : column + about + 1]
+    gains = min(float(np.fmax.reduce(zero_if_nan(then))), _SPEEDS_UP_MPS2)
+    if gains < _GAINS_MPS2:
+        return np.inf
+    speed = float(zero_if_nan(tracks.speed[other.row, column]))
+    left_m = max(place - float(passages.travelled[other.row, column]), 0.0)
+    return column + _soonest_s(speed, gains, left_m) / step_s
+
+
+def _soonest_s(speed: float, gains: float, left_m: float) -> float:
+    """How long (s) one takes for a way that speeds up by so much (m/s²)."""
+    return (sqrt(speed**2 + 2 * gains * left_m) - speed) / gains
 
 
 def _slows_for_itself(
