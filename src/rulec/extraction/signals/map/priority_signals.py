@@ -14,7 +14,11 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.signals.map.right_of_way.arrivals import ARRIVALS, arrivals
+from rulec.extraction.signals.map.right_of_way.arrivals import (
+    ARRIVALS,
+    arrivals,
+    order_of_arrival,
+)
 from rulec.extraction.signals.map.right_of_way.conflicts import (
     FROM_SIDES,
     LONGEST_WAIT_S,
@@ -245,7 +249,7 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
         settled = from_side and is_settled(context.recording, *ways)
         if settled:
             continue
-        lead_s = (own.first - other.first) * context.recording.step_s
+        together, comes_first = order_of_arrival(context, own, other)
         yield Encounter(
             kinds=kinds,
             first=first,
@@ -259,8 +263,8 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
             and not _turned_in_later(context, own, other)
             and _is_seen(passages.tracks.present[other.row], first + shift, latest),
             other=other,
-            together=abs(lead_s) <= context.thresholds.together_s,
-            comes_first=lead_s > context.thresholds.together_s,
+            together=together,
+            comes_first=comes_first,
         )
 
 

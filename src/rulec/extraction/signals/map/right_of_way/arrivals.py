@@ -8,10 +8,50 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.right_of_way.conflicts import FROM_SIDES, Encounter
+from rulec.extraction.signals.map.right_of_way.held_up import DRIVES_MPS
+from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS
 from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.tracks.junction_passages import Passage
+from rulec.extraction.tracks.junctions import all_have_to_stop
 from rulec.extraction.tracks.tracks import Flags
 
 ARRIVALS = ("arrived_together", "other_arrived_first", "other_in_junction")
+
+_STOPS_M = 10.0
+"""Who stood no farther (m) from where its middle is in a junction has stopped at its line."""
+
+
+def order_of_arrival(
+    context: DriveContext, own: Passage, other: Passage
+) -> tuple[bool | None, bool | None]:
+    """Whether another one arrives at a junction together with ego, and whether earlier.
+
+    Where all have to stop they arrive at its line, and enter it when it is their turn. None if both
+    do not tell the same: one that creeps up to a line may have arrived later than it seems.
+    """
+    step_s, together_s = context.recording.step_s, context.thresholds.together_s
+    leads_s = [(own.first - other.first) * step_s]
+    junction = context.surroundings.passages.junctions[own.junction]
+    if all_have_to_stop(context.recording, junction):
+        leads_s.append((_stops(context, own) - _stops(context, other)) * step_s)
+    together = {abs(lead_s) <= together_s for lead_s in leads_s}
+    earlier = {lead_s > together_s for lead_s in leads_s}
+    return (
+        None if len(together) > 1 else together.pop(),
+        None if len(earlier) > 1 else earlier.pop(),
+    )
+
+
+def _stops(context: DriveContext, passage: Passage) -> int:
+    """The column in which one arrives where it stops before a junction; enters it, if nowhere."""
+    passages = context.surroundings.passages
+    speed = passages.tracks.speed[passage.row, : passage.first + 1]
+    travelled = passages.travelled[passage.row]
+    stands = (speed < SLOWEST_MPS).nonzero()[0]
+    if not len(stands) or travelled[passage.first] - travelled[stands[-1]] > _STOPS_M:
+        return passage.first
+    drives = (speed[: stands[-1]] > DRIVES_MPS).nonzero()[0]
+    return int(drives[-1]) + 1 if len(drives) else int(stands[0])
 
 
 def arrivals(
@@ -52,5 +92,6 @@ def _by_side(context: DriveContext, encounters: Iterable[Encounter]) -> tuple[Fl
         inside = max(one.first, one.other.first - context.first_column)
         begins = (one.first, one.first, inside, one.first)
         for word, holds in enumerate((one.together, one.comes_first, True, True)):
-            met[int(not one.known), word, side, begins[word] : one.last + 1] |= holds
+            sure = one.known and holds is not None
+            met[int(not sure), word, side, begins[word] : one.last + 1] |= holds is not False
     return met[0], met[1]

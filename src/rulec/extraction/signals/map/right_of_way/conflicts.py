@@ -50,7 +50,7 @@ class Encounter:
     """Another participant whose way crosses ego's, and the time in which the two are in conflict.
 
     In columns of the drive; from ``enters`` on ego is in its way. ``known`` is False if the
-    recording ends before it is clear.
+    recording ends before it is clear, and ``together`` and ``comes_first`` None if they are not.
     """
 
     kinds: tuple[str, ...]
@@ -59,8 +59,8 @@ class Encounter:
     last: int
     known: bool
     other: Passage
-    together: bool
-    comes_first: bool
+    together: bool | None
+    comes_first: bool | None
 
 
 def side_of(angle: float) -> str:
