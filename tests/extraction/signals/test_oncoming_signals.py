@@ -206,6 +206,27 @@ def test_one_that_has_to_brake_is_in_conflict():
     assert conflict.any()
 
 
+@pytest.mark.parametrize(
+    ("speeds", "perhaps"),
+    [
+        ([(4.3, 0.0), (5.55, 2.5), (6.55, 0.0), (9.0, 0.0), (11.0, 7.0)], True),
+        # It lets ego go, and sets off behind it
+        ([(7.0, 0.0), (9.0, 5.0)], False),
+    ],
+)
+def test_who_sets_off_at_green_and_brakes_for_one_that_turns_may_be_held_up(speeds, perhaps):
+    """Ego sets off at 4 s, a metre before the junction, and has left the other's lane by 7.7 s."""
+    ego, way = (
+        begin
+        + np.concatenate(([0.0], np.cumsum(np.interp(TIMES, *zip(*mps, strict=True)))[:-1]))
+        * STEP_S
+        for begin, mps in ((49.0, [(4.0, 0.0), (6.5, 7.0)]), (79.0, speeds))
+    )
+    conflict, unknown = told(way, ego=ego)
+    assert not conflict.any()
+    assert unknown.any() == perhaps
+
+
 def test_who_goes_straight_on_goes_first():
     conflict, unknown = told(at(5.5), line=STRAIGHT_ON, turn="far", ego=EGO, route=("1", "9", "11"))
     assert not (conflict | unknown).any()

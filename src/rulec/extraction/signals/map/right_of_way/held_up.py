@@ -155,7 +155,7 @@ def _stops_again(
     speed = zero_if_nan(tracks.speed[other.row, begin : last + 1])
     fastest = begin + int(speed.argmax())
     late_s = (comes - until) * context.recording.step_s
-    halved = SLOWEST_MPS < speed.max() and speed[fastest - begin :].min() < speed.max() / 2
+    halved = speed.max() > SLOWEST_MPS and speed[fastest - begin :].min() < speed.max() / 2
     if not halved and not _brakes_for(context, other, (fastest, last), comes, may_turn=False):
         return None
     by = until + context.thresholds.yielding_s / context.recording.step_s
