@@ -43,6 +43,9 @@ _AMPLE_S = 6.0
 _SPEEDS_UP_MPS2 = 2.0
 """So much faster a vehicle may become, such as after its track has ended."""
 
+_BRAKED = 0.7
+"""A vehicle that was speeding up and keeps less of its speed brakes: who only rolls keeps more."""
+
 _GAINS_MPS2 = 0.5
 """Whose speed changes by less than this keeps it."""
 
@@ -150,37 +153,32 @@ def _stops_again(
     ``place``: where that is (m).
     """
     (begin, decides), until, comes = times
-    tracks = context.surroundings.passages.tracks
+    tracks, step_s = context.surroundings.passages.tracks, context.recording.step_s
+    by = until + context.thresholds.yielding_s / step_s
+    gains = tracks.acceleration[other.row, begin : decides + 1] >= _GAINS_MPS2
+    speeds_up = (begin + int(k) for k in gains.nonzero()[0])
+    soon = next((k for k in speeds_up if _comes_by(context, other, k, place) < by), None)
+    if soon is None:
+        return None
     last = min(int(until), int(tracks.present[other.row].nonzero()[0][-1]))
-    speed = zero_if_nan(tracks.speed[other.row, begin : last + 1])
-    fastest = begin + int(speed.argmax())
-    late_s = (comes - until) * context.recording.step_s
-    halved = speed.max() > SLOWEST_MPS and speed[fastest - begin :].min() < speed.max() / 2
-    if not halved and not _brakes_for(context, other, (fastest, last), comes, may_turn=False):
+    speed = zero_if_nan(tracks.speed[other.row, soon : last + 1])
+    fastest = np.maximum.accumulate(speed)
+    slowed = ((fastest > SLOWEST_MPS) & (speed < _BRAKED * fastest)).nonzero()[0]
+    if not len(slowed) and not _brakes_for(context, other, (soon, last), comes, may_turn=False):
         return None
-    by = until + context.thresholds.yielding_s / context.recording.step_s
-    if not any(
-        _comes_by(context, other, column, place) < by for column in range(begin, decides + 1)
-    ):
+    brakes = soon + int(speed[: slowed[0] if len(slowed) else None].argmax())
+    waits_longer = (comes - until) * step_s >= context.thresholds.held_up_s
+    if waits_longer and _slows_for_itself(context, ego, other, brakes, comes):
         return None
-    if late_s >= context.thresholds.held_up_s and _slows_for_itself(
-        context, ego, other, fastest, comes
-    ):
-        return None
-    return begin, False
+    return soon, False
 
 
 def _comes_by(context: DriveContext, other: Passage, column: int, place: float) -> float:
-    """When (in columns) one that speeds up would be at a place (m); infinite if it does not.
-
-    If it went on speeding up as hard as it did about then.
-    """
+    """When (in columns) one would be at a place (m) that goes on speeding up as about then."""
     passages, step_s = context.surroundings.passages, context.recording.step_s
     tracks, about = passages.tracks, round(_BRIEFLY_S / step_s)
     then = tracks.acceleration[other.row, max(column - about, 0) : column + about + 1]
     gains = min(float(np.fmax.reduce(zero_if_nan(then))), _SPEEDS_UP_MPS2)
-    if gains < _GAINS_MPS2:
-        return np.inf
     speed = float(zero_if_nan(tracks.speed[other.row, column]))
     left_m = max(place - float(passages.travelled[other.row, column]), 0.0)
     return column + _soonest_s(speed, gains, left_m) / step_s
