@@ -5,7 +5,8 @@ within ``yielding_s`` after ego, or does come within ``held_up_s`` although it w
 that soon; and if ego drives into the side of one that is there. A participant that ego lets pass is
 not in conflict, unless it runs into ego. One that comes more than ten seconds after ego has got
 there and has had to stand there is only perhaps in conflict; likewise one that brakes hard for ego
-and then comes later than ``held_up_s``: how long it waits does not show why it braked.
+and then comes later than ``held_up_s``: how long it waits does not show why it braked; and one that
+was speeding up as ego drove in, and then brakes: it is not known how soon it would have come.
 """
 
 from __future__ import annotations

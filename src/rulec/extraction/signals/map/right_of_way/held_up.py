@@ -119,18 +119,18 @@ def _held_up_until(
     # A vehicle that speeds up when ego is already in the junction was not held up by ego's driving
     # in
     waits_longer = late_s >= limits.held_up_s
+    before = max(decides - round(SEES_S / step_s), 0)
+    seen = first + before, first + decides
     if waits_longer or not (soon[decides] and soon[-1]):
-        before = max(decides - round(SEES_S / step_s), 0)
         braked = soon[before] and _brakes_for(
-            context, other, (first + before, int(until)), comes, may_turn=not waits_longer
+            context, other, (seen[0], int(until)), comes, may_turn=not waits_longer
         )
-        if not braked:
-            seen = first + before, first + decides
-            return _stops_again(context, ego, other, (seen, until, comes), place)
         decides = before
-    # Nor was one that brakes once ego is gone
-    elif not slows_down(context, other, first + decides, int(until)):
-        return None
+    else:
+        # Nor was one that brakes once ego is gone
+        braked = slows_down(context, other, first + decides, int(until))
+    if not braked:
+        return _stops_again(context, ego, other, (seen, until, comes), place)
     own_reason = _slows_for_itself(context, ego, other, first + decides, comes)
     if waits_longer and own_reason:
         return None
