@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
-from support.builders.drive_contexts import context_of, steady
+from support.builders.drive_contexts import context_of, steady, told_on_both_sides
 from support.builders.recordings import recording, straight, vehicle
 from support.generators.random_recordings import lanes
 
@@ -128,3 +128,45 @@ def beside(k, count, more=0):
         "left_of": k + 1 + more if k < count else None,
         "right_of": k - 1 + more if k > 1 else None,
     }
+
+
+def at_a_shoulder(linked):
+    """Lanes at y = 0 and 4, and a hard shoulder at y = -4; all lines are solid."""
+    solid = {"left_mark": "solid", "right_mark": "solid"}
+    return [
+        straight(1, 0, 600, left_of=2, right_of=3 if linked else None, **solid),
+        straight(2, 0, 600, 4, right_of=1, **solid),
+        straight(3, 0, 600, -4, left_of=1 if linked else None, types={"shoulder"}, **solid),
+    ]
+
+
+def on_solid_lines(road, body, route=("1",), step_s=0.5):
+    """Whether ego is on a solid line, by state; the same in the mirror."""
+    found = recording(road, [body], step_s=step_s)
+    return told_on_both_sides(lane_mark_signals, found, route)["on_solid_line"]
+
+
+@pytest.mark.parametrize("route", [("1",), ("3",)])
+@pytest.mark.parametrize("linked", [True, False])
+@pytest.mark.parametrize(("step_s", "mps"), [(0.5, 10.0), (0.1, 30.0)])
+def test_other_rules_say_who_may_cross_the_line_towards_a_shoulder(route, linked, step_s, mps):
+    n_steps = round(3 / step_s)
+    out = np.interp(np.arange(n_steps + 1) / n_steps, (0.1, 0.9), (0.0, 4.0))
+
+    def goes(ys):
+        places = {k: (20 + mps * step_s * k, y) for k, y in enumerate(ys.tolist())}
+        return on_solid_lines(at_a_shoulder(linked), vehicle(7, places, speed=mps), route, step_s)
+
+    assert set(goes(-out)) == {"False", "?"}
+    assert set(goes(out - 4)) == {"False", "?"}
+    if route == ("1",):
+        # The line between two lanes is another matter
+        assert "True" in goes(out)
+
+
+def test_a_lane_beyond_the_road_s_edge_is_no_shoulder():
+    """Who drives onto it crosses a line between lanes, though the map does not link them."""
+    road = at_a_shoulder(linked=False)
+    assert on_solid_lines(road, steady(7, 20, -1.6)) == ["?"] * 4
+    road[2] = replace(road[2], types=frozenset())
+    assert on_solid_lines(road, steady(7, 20, -1.6)) == ["True"] * 4

@@ -10,7 +10,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
-from rulec.extraction.signals.ego_lanelets import map_contents
+from rulec.extraction.signals.ego_lanelets import SHOULDER, map_contents
 from rulec.extraction.signals.measured_numbers import own_widths
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
@@ -88,7 +88,8 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     """Whether ego is on a solid line, one broken on the side that it comes from, and a single one.
 
     Unknown where tolerances or the map decide, where marks are unknown, and for the line at the
-    road's edge: maps do not contain what is beyond it, and laws on it differ. A vehicle that stands
+    road's edge: maps do not contain what is beyond it, and laws on it differ. So also for the line
+    towards a hard shoulder: who may drive there, other rules say. A vehicle that stands
     all through its drive crosses no line: it is parked on the one at the edge. A vehicle that
     stands from the drive's start was not seen crossing the line under it, until it moves off; and
     for one first seen on a line, the side that it came from is unknown.
@@ -109,6 +110,7 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     every = slice(None)
     outer = _outer_lines(context)
     outer &= ~_on_a_lane_beside(context, (measured & outer).any(axis=1).nonzero()[0])[:, None]
+    outer |= _shoulder_lines(context)
     found = _under(context, measured & ~outer, every)
     # Beyond the road's edge there may be premises, a parking space or a lane missing on the map
     not_told = ~found[:, 0] & _under(context, measured, every)[:, [0, -1]].any(axis=1)
@@ -202,15 +204,32 @@ def _outer_lines(context: DriveContext) -> Flags:
     return outer
 
 
+def _shoulder_lines(context: DriveContext) -> Flags:
+    """Mask of the lines (second axis) at the edges of hard shoulders, by state."""
+    marked = _marked_rows(context)
+    found = [
+        [_is_shoulder(right) != _is_shoulder(left) for right, left in pairwise([None, *row, None])]
+        for row in marked.rows
+    ]
+    flags: Flags = np.array(found)[marked.number]
+    return flags
+
+
+def _is_shoulder(lanelet: Lanelet | None) -> bool:
+    return lanelet is not None and SHOULDER in lanelet.types
+
+
 def _on_a_lane_beside(context: DriveContext, asked: NDArray[intp]) -> Flags:
     """Mask of the states in ``asked`` in which ego reaches onto a lane outside its road.
 
-    This happens where a file does not say which lanes of the other direction lie beside ego's.
+    This happens where a file does not say which lanes of the other direction lie beside ego's. A
+    hard shoulder is beyond the edge of the carriageway, whether or not it is on the map.
     """
     found = np.zeros(context.states, dtype=bool)
     own = {lanelet.id for row in context.road.rows for lanelet in row if lanelet is not None}
-    lanes = context.recording.lanelets.values() if asked.size else ()
-    areas = [lanelet_area(lane) for lane in lanes if is_lane(lane) and lane.id not in own]
+    every = context.recording.lanelets.values() if asked.size else ()
+    lanes = [lane for lane in every if is_lane(lane) and not _is_shoulder(lane)]
+    areas = [lanelet_area(lane) for lane in lanes if lane.id not in own]
     if areas:
         half, heading = own_widths(context)[asked] / 2, context.ego.heading[0, asked]
         for side in (-half, half):
