@@ -176,6 +176,126 @@ def test_who_is_fast_needs_time_to_get_back_from_one_that_walks(x, blocked):
     assert signals(two_ways(), ego(mps=15), walker)["obstructed"][0] == str(blocked)
 
 
+ROUND_M = 3.4
+"""How far aside ego goes round an obstacle: into the middle of the next lane, or almost."""
+
+
+def goes_round(out_s, clear_m, back_s, *, mps, step_s, until_s=14.0, first_s=0.0, aside=ROUND_M):
+    """Ego at y = 0, aside from ``out_s`` before one that stands at x = 100, and back after it.
+
+    Ego begins to go back when it is ``clear_m`` ahead of it, and takes ``back_s``.
+    """
+    steps = np.arange(round(first_s / step_s), round(until_s / step_s) + 1)
+    at, beside_s = steps * step_s, 96.0 / mps
+    turns = [beside_s - out_s - 2.0, beside_s - out_s, (104.0 + clear_m) / mps]
+    y = np.interp(at, [*turns, turns[-1] + back_s], [0.0, aside, aside, 0.0])
+    places = {int(k): (mps * s, d) for k, s, d in zip(steps, at, y, strict=True)}
+    return vehicle(7, places, speed=mps)
+
+
+def stands(x=100.0, y=0.0, number=9, steps=150, **more):
+    return vehicle(number, dict.fromkeys(range(steps), (x, y)), **more)
+
+
+def waits(x=100.0, seconds=12.0, step_s=0.1):
+    """One that drives off in the end."""
+    stood = round(seconds / step_s)
+    return vehicle(9, {**dict.fromkeys(range(stood), (x, 0.0)), stood: (x + 5.0, 0.0)})
+
+
+def told(lanes, body, *others, step_s=0.1):
+    """Whether ego is obstructed, by time (s); the same in the mirror."""
+    found = recording(lanes, [body, *others], step_s=step_s)
+    column = told_on_both_sides(clearance_signals, found, ("1",))["obstructed"]
+    return dict(zip([round(k * step_s, 1) for k in body.states], column, strict=True))
+
+
+def those_in(column, first_s, last_s):
+    return {value for at, value in column.items() if first_s <= at <= last_s}
+
+
+@pytest.mark.parametrize("step_s", [0.1, 0.5])
+@pytest.mark.parametrize("mps", [9.0, 14.0, 20.0])
+@pytest.mark.parametrize("other", [stands, waits])
+def test_ego_is_still_on_its_way_back_from_an_obstacle(mps, step_s, other):
+    """Its rear is 5 m beyond when it begins to go back over the middle, which takes 3.5 s."""
+    body = goes_round(1.0, 7.0, 3.5, mps=mps, step_s=step_s, until_s=15.0)
+    column = told(
+        two_ways(), body, stands() if other is stands else waits(step_s=step_s), step_s=step_s
+    )
+    # It is back when it reaches over the line by 30 cm, with its middle at y = 1.3
+    beyond_s, back_s = 136 / mps, 111 / mps + 3.5 * (1 - 1.3 / ROUND_M)
+    assert "False" not in those_in(column, 94 / mps, back_s - step_s)
+    assert those_in(column, beyond_s + step_s, back_s - step_s) <= {"?"}
+    assert those_in(column, max(back_s, beyond_s) + step_s, 15.0) <= {"False"}
+
+
+def test_who_does_not_go_back_is_on_its_way_round_for_six_seconds():
+    column = told(
+        two_ways(), goes_round(1.0, 300.0, 3.0, mps=14.0, step_s=0.1, aside=1.5), stands()
+    )
+    # At 7.6 s ego's rear is level with the obstacle's front
+    assert those_in(column, 10.0, 13.4) == {"?"}
+    assert those_in(column, 13.8, 14.0) == {"False"}
+
+
+def test_who_was_in_the_next_lane_long_before_does_not_come_back_from_an_obstacle():
+    body = goes_round(5.0, 40.0, 3.0, mps=10.0, step_s=0.1, until_s=18.0)
+    from_far = told(two_ways(), body, stands(steps=200))
+    # Ego left its lane 7 s before
+    assert those_in(from_far, 13.8, 18.0) == {"False"}
+
+
+def next_lanes():
+    """Ego's lane, and two lanes of its direction to the left of it."""
+    return [
+        straight(1, -200, 600, left_of=3),
+        straight(3, -200, 600, 4, left_of=4, right_of=1),
+        straight(4, -200, 600, 8, right_of=3),
+    ]
+
+
+@pytest.mark.parametrize(("step_s", "mps"), [(0.1, 9.0), (0.5, 9.0), (0.1, 20.0), (1.0, 20.0)])
+def test_in_the_next_lane_ego_may_be_on_its_way_round(step_s, mps):
+    """It is wholly in it, also beside the obstacle, from which it came and goes back."""
+    body = goes_round(2.0, 10.0, 3.0, mps=mps, step_s=step_s, until_s=18.0, aside=4.0)
+    column = told(next_lanes(), body, stands(steps=200), step_s=step_s)
+    beside_s, back_s = 96 / mps, 114 / mps
+    assert those_in(column, beside_s - 1.0, back_s) == {"?"}
+    # One that drives off in the end may have waited in a queue
+    waiting = told(next_lanes(), body, waits(seconds=16.0, step_s=step_s), step_s=step_s)
+    assert those_in(waiting, beside_s - 1.0, back_s) == {"False"}
+    walks = {k: (98 + 0.1 * k * step_s, 0.0) for k in range(200)}
+    walker = vehicle(9, walks, "pedestrian", length=0.5, width=0.5, speed=0.1)
+    assert those_in(told(next_lanes(), body, walker, step_s=step_s), beside_s, back_s) == {"?"}
+
+
+def test_who_only_drives_in_the_next_lane_goes_round_nothing():
+    """Whoever stands beside its way, and however many."""
+    queue = [stands(80.0 + 7.0 * k, number=10 + k) for k in range(8)]
+    passes = vehicle(7, {k: (1.4 * k, 4.0) for k in range(141)}, speed=14.0)
+    assert set(told(next_lanes(), passes, *queue).values()) == {"False"}
+    # Nor does one that came from ego's lane long before, or only goes there long after
+    early = goes_round(6.5, 300.0, 3.0, mps=10.0, step_s=0.1, aside=4.0, until_s=18.0)
+    assert those_in(told(next_lanes(), early, stands(steps=200)), 4.0, 18.0) == {"False"}
+    late = goes_round(30.0, 70.0, 3.0, mps=10.0, step_s=0.1, aside=4.0, until_s=21.0)
+    assert those_in(told(next_lanes(), late, stands(steps=220)), 0.0, 18.0) == {"False"}
+
+
+def test_beside_an_obstacle_two_lanes_away_ego_goes_round_nothing():
+    body = goes_round(2.0, 10.0, 3.0, mps=9.0, step_s=0.1, aside=8.0)
+    assert those_in(told(next_lanes(), body, stands()), 10.0, 12.0) == {"False"}
+    # Nor over the line beyond the next lane
+    body = goes_round(2.0, 10.0, 3.0, mps=9.0, step_s=0.1, aside=6.0)
+    assert those_in(told(next_lanes(), body, stands()), 10.0, 12.0) == {"False"}
+
+
+def test_ego_goes_round_several_one_after_another():
+    cars = [stands(100.0 + 40.0 * k, number=10 + k, steps=300) for k in range(4)]
+    body = goes_round(2.0, 125.0, 3.0, mps=9.0, step_s=0.1, aside=4.0, until_s=29.0)
+    assert those_in(told(next_lanes(), body, *cars), 10.0, 25.0) == {"?"}
+
+
 def test_one_that_moves_is_no_obstacle():
     assert signals(two_ways(), ego(), steady(9, 20, 0, 5))["obstructed"] == ["False"] * 4
 

@@ -34,7 +34,8 @@ def _for_overtaking(context: DriveContext) -> SignalColumns:
 
 
 def _in_own_lanes(context: DriveContext) -> SignalColumns:
-    return SignalColumns({"obstructed": _obstructed(context)})
+    obstructed, perhaps = _obstructed(context)
+    return SignalColumns({"obstructed": obstructed}, unknown={"obstructed": perhaps})
 
 
 def _for_access(context: DriveContext) -> SignalColumns:
@@ -146,41 +147,90 @@ def _edges(context: DriveContext) -> tuple[NDArray[intp], NDArray[intp]]:
     return there.argmax(axis=1), there.shape[1] - there[:, ::-1].argmax(axis=1)
 
 
-def _obstructed(context: DriveContext) -> Flags:
-    """Mask of states in which an obstacle in one of ego's lanes leaves no room within that lane.
+def _obstructed(context: DriveContext) -> tuple[Flags, Flags]:
+    """Whether an obstacle in one of ego's lanes leaves no room there, and where that is unknown.
 
     Obstacles stand ahead, beside ego, or so near behind it that ego may still be on its way back;
-    pedestrians who walk along in the lane count, too.
+    pedestrians who walk along in the lane count, too. Unknown where ego may be on its way round
+    one, as ``_on_the_way_round`` says.
     """
-    own = context.ego_extents
-    width = own.d_max[0] - own.d_min[0]
-    used = own.inside[0] > 0
+    used = context.ego_extents.inside[0] > 0
     used[np.arange(context.states), context.ego_lane] = True
-    blocked, present = np.zeros(context.states, dtype=bool), presence_cells(context)
-    stands = present.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
-    walking = context.tracks.of_type("pedestrian")
-    maybe = present.part((stands | walking[present.rows]).nonzero()[0])
-    if not len(maybe):
-        return blocked
-    maybe = maybe.part(_near_obstacle(context, maybe).nonzero()[0])
-    if not len(maybe):
-        return blocked
-    stands = maybe.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
-    walks = walking[maybe.rows]
-    walks &= np.abs(np.cos(maybe.of(context.extents.turned))) >= _ALONG
-    needed = np.where(walks, _BESIDE_WALKERS_M, _BESIDE_M)
-    chosen = ((stands | walks) & maybe.of(context.relevant)).nonzero()[0]
-    cells, needed = maybe.part(chosen), needed[chosen]
-    sets, columns = cells.of(context.lanes_within[0]), cells.columns
+    blocked, perhaps = np.zeros((2, context.states), dtype=bool)
+    cells, needed = _obstacles(context)
+    if not len(cells):
+        return blocked, perhaps
+    own = context.ego_extents
+    needed += cells.of(own.d_max[0] - own.d_min[0])
+    near, sets = _near_obstacle(context, cells), cells.of(context.lanes_within[0])
     for lane in range(used.shape[1]):
-        there = (is_in(sets, lane) & used[columns, lane]).nonzero()[0]
-        if not len(there):
-            continue
-        part = cells.part(there)
-        (low, _), (_, high) = context.extents.cells_from_bounds(part, lane, lane + 1)
-        room = width[part.columns] + needed[there]
-        blocked[part.columns[np.maximum(low, -high) < room]] = True
-    return blocked
+        (low, _), (_, high) = context.extents.cells_from_bounds(cells, lane, lane + 1)
+        there = is_in(sets, lane) & (np.maximum(low, -high) < needed)
+        blocked[cells.columns[there & near & cells.of(used[:, lane])]] = True
+        bodies = cells.part(there.nonzero()[0])
+        perhaps |= _on_the_way_round(context, bodies, lane, used[:, lane])
+    return blocked, perhaps & ~blocked
+
+
+def _obstacles(context: DriveContext) -> tuple[Cells, Floats]:
+    """The cells of those that stand, or walk along the road, and the room (m) beside each."""
+    present = presence_cells(context)
+    stands = present.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
+    walks = context.tracks.of_type("pedestrian")[present.rows]
+    walks &= np.abs(np.cos(present.of(context.extents.turned))) >= _ALONG
+    chosen = ((stands | walks) & present.of(context.relevant)).nonzero()[0]
+    return present.part(chosen), np.where(walks[chosen], _BESIDE_WALKERS_M, _BESIDE_M)
+
+
+def _on_the_way_round(context: DriveContext, obstacles: Cells, lane: int, used: Flags) -> Flags:
+    """Mask of states in which ego may be on its way round an obstacle in a lane that it left.
+
+    After it, while ego reaches into that lane: ``used``. Before, beside and after it, while ego is
+    in the next lane alone; there only those count that never move or that walk: others may wait in
+    a queue, and who drives past a queue goes round nothing.
+    """
+    limits, own = context.thresholds, context.ego_extents
+    step_s = context.recording.step_s
+    # In a single step ego may get from behind an obstacle to in front of it
+    way = np.abs(obstacles.of(own.along[0])) * step_s
+    obstacles = obstacles.part((obstacles.of(relations.gap(context)) <= way).nonzero()[0])
+    found = np.zeros(context.states, dtype=bool)
+    if not len(obstacles):
+        return found
+    touched = own.inside[0] > limits.touching_m
+    low, high = own.left_of_min[0, :, lane], own.left_of_max[0, :, lane + 1]
+    within = touched[:, lane] & (np.maximum(-low, high) <= limits.touching_m)
+    next_lanes = [other for other in (lane - 1, lane + 1) if 0 <= other < touched.shape[1]]
+    is_next = (touched.sum(axis=1) == 1) & touched[:, next_lanes].any(axis=1)
+    steps, spans = round((limits.passed_s + limits.parting_s) / step_s), context.spans
+    rows, keeps_place = obstacles.rows, context.stays | context.tracks.of_type("pedestrian")
+    for counting, states, ahead in (
+        (np.ones(len(rows), dtype=bool), used, False),
+        (keeps_place[rows], is_next, True),
+    ):
+        passed = np.zeros(context.states, dtype=bool)
+        passed[obstacles.columns[counting]] = True
+        passed = _passed_from(context, passed, within, steps)
+        near = spans.within_last(passed, steps) & (spans.latest(passed) > spans.latest(within))
+        if ahead:
+            soon = spans.next_state(passed) < spans.next_state(within)
+            near |= soon & spans.within(passed, steps)
+        found |= states & near
+    return found
+
+
+def _passed_from(context: DriveContext, passed: Flags, within: Flags, steps: int) -> Flags:
+    """Those of the states in which ego has ``passed`` obstacles for which it has left their lane.
+
+    No more than ``steps`` lie between the last state ``within`` that lane, or the drive's start,
+    and the first obstacle, nor between two of them. Ego is in that lane before or after them.
+    """
+    spans = context.spans
+    since = within | spans.begins_here
+    for_others = ~spans.within_last(passed | since, steps)
+    comes, goes = spans.latest(within) >= spans.first, spans.next_state(within) < spans.end
+    linked: Flags = spans.latest(for_others) < spans.latest(since)
+    return passed & ~within & linked & (comes | goes)
 
 
 def _near_obstacle(context: DriveContext, cells: Cells) -> Flags:
