@@ -64,7 +64,7 @@ def test_nothing_is_said_where_there_is_a_way(tmp_path, capsys):
 )
 def test_it_says_that_no_trajectory_was_found(require, satisfying, tmp_path, capsys, monkeypatch):
     """Of those that keep the rule, and of those that may: of `near` nothing is known."""
-    search = "rulec.partition.motion.witness_trajectory.WitnessSearch.of"
+    search = "rulec.partition.motion.witness_trajectory.WitnessSearch"
     file = tmp_path / "free.toml"
     ego = ROAD.replace("d = 0", 'd = 0\nspeed = 5\nbounds = "car"')
     file.write_text(f'{ego}[signals]\nnear = "?"\n')
@@ -78,7 +78,8 @@ def test_it_says_that_no_trajectory_was_found(require, satisfying, tmp_path, cap
     said = capsys.readouterr().out
     assert "listed      none" not in said
     assert satisfying in said
-    monkeypatch.setattr(search, lambda *_: None)
+    for way_of_search in ("of", "by_sides"):
+        monkeypatch.setattr(f"{search}.{way_of_search}", lambda *_: None)
     assert main(command) == 0
     assert "listed      none: no trajectory was found" in capsys.readouterr().out
 
@@ -139,8 +140,9 @@ def test_a_rule_is_named_that_closes_every_way(tmp_path, capsys):
 def test_an_emergency_is_said(tmp_path, capsys, speed, least, shown):
     # 14 m to the rear of one that stands, less half of a car's 4.508 m: 12² / 2 / 11.746 = 6.13,
     # 15² / 2 / 11.746 = 9.578. It is found to a tenth, in pieces of 0.1 s, and not said to be more.
+    # The road leaves no room beside it.
     file = tmp_path / "hard.toml"
-    ego = ROAD.replace("d = 0", f'd = 0\nspeed = {speed}\nbounds = "car"')
+    ego = ROAD.replace("[-2, 2]", "[-1.6, 1.6]").replace("d = 0", f'd = 0\nspeed = {speed}\nbounds = "car"')
     file.write_text(ego + CAR.format(name="c", s=46, speed=0))
     command = ["maneuvers", str(file), "-r", "esterle2019", "--step", "0.5"]
     assert main([*command, "--list", "1", "--json"]) == 0
