@@ -78,7 +78,7 @@ def reading(meant, semantics, word):
                 lost = hope.first_lost(whole)
                 if lost is None:
                     found.add("kept" if is_kept(there, whole, "finite") else "pending")
-                elif lost >= length:
+                elif lost >= length or begin == length:
                     found.add("violated")
         looks_back = any(op.operator in PAST for op in operations)
         if len(found) == 3 or not (looks_back or goes_on):
