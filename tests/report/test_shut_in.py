@@ -142,7 +142,8 @@ def test_an_emergency_is_said(tmp_path, capsys, speed, least, shown):
     # 15² / 2 / 11.746 = 9.578. It is found to a tenth, in pieces of 0.1 s, and not said to be more.
     # The road leaves no room beside it.
     file = tmp_path / "hard.toml"
-    ego = ROAD.replace("[-2, 2]", "[-1.6, 1.6]").replace("d = 0", f'd = 0\nspeed = {speed}\nbounds = "car"')
+    narrow = ROAD.replace("[-2, 2]", "[-1.6, 1.6]")
+    ego = narrow.replace("d = 0", f'd = 0\nspeed = {speed}\nbounds = "car"')
     file.write_text(ego + CAR.format(name="c", s=46, speed=0))
     command = ["maneuvers", str(file), "-r", "esterle2019", "--step", "0.5"]
     assert main([*command, "--list", "1", "--json"]) == 0
