@@ -141,9 +141,8 @@ def _violated_again(
 ) -> list[dict[RuleFor, tuple[int, Violation]]]:
     """For each future what it violates after the past's violation has ended.
 
-    With the state of the candidate from which it is judged, whose steps are counted from there.
-
-    As long as that goes on, a rule that is asked from some state on is violated after as many
+    And the state of the candidate from which that is judged, and from which its steps count. As
+    long as the past's goes on, a rule that is asked from some state on is violated after as many
     states as it takes at least, and so it is if it is asked from the next one on.
     """
     first, begin = steps

@@ -80,12 +80,18 @@ def _scored_states(maneuvers: Maneuvers) -> int:
     ego is alone, nobody could go on.
     """
     account = maneuvers.graph.scenario.account
-    if account is None or account.origin is None or maneuvers.words is None:
+    if account is None or not _is_recorded(maneuvers):
         return 0
     origin, seconds = _origin(maneuvers), _horizon_s(maneuvers)
     if any(one.id != origin.start.participant for one in origin.recording.participants):
         seconds = min(seconds, account.until_s)
     return max(0, int(seconds / origin.recording.step_s + _ROUNDING))
+
+
+def _is_recorded(maneuvers: Maneuvers) -> bool:
+    """Whether the scene has a recording whose words its cells have."""
+    account = maneuvers.graph.scenario.account
+    return account is not None and account.origin is not None and maneuvers.words is not None
 
 
 def _horizon_s(maneuvers: Maneuvers) -> float:
@@ -109,8 +115,7 @@ def score_trajectories(maneuvers: Maneuvers, listed: Sequence[Maneuver]) -> Scor
     """
     n_states = _scored_states(maneuvers)
     if not n_states:
-        account = maneuvers.graph.scenario.account
-        if account is not None and account.origin is not None and maneuvers.words is not None:
+        if _is_recorded(maneuvers):
             raise NO_TRAJECTORY.error(
                 None,
                 "the recording ends where the scene begins, and how the others go on is not known",

@@ -46,14 +46,15 @@ def margins_of(
     ``before`` are the violations of its past. What is violated anew has the margin of that, and
     what ends in time the least one from then on.
     """
-    charged, ended = candidate.violations, {rule_for(violation) for violation in before}
+    violated_before = {rule_for(violation) for violation in before}
     for drive in candidate.drives:
         if not isinstance(drive, DriveVerdict) or not isinstance(drive.answer, Verdict):
             continue
         begins = drive.drive.first_step - first
         last = begins + drive.drive.arrays.n_states - 1
-        violated = {rule_for(violation) for violation in drive.answer.violations} - ended
-        for violation in charged:
+        violated = {rule_for(violation) for violation in drive.answer.violations}
+        violated -= violated_before
+        for violation in candidate.violations:
             about = rule_for(violation)
             since = candidate.judged_from.get(about)
             is_here = about in violated if since is None else begins <= since <= last
@@ -63,8 +64,8 @@ def margins_of(
         untold = {not_judged.rule for not_judged in drive.answer.not_judged}
         for rule in rules.rules:
             if len(rule.variables) <= 1 and rule.name not in untold:
-                soonest = {about: candidate.late for about in ended if about[0] == rule.name}
-                yield from _nearest(rule, drive.drive, rules, violated, (begins, soonest))
+                late = {about: candidate.late for about in violated_before if about[0] == rule.name}
+                yield from _nearest(rule, drive.drive, rules, violated, (begins, late))
 
 
 def _deciding(

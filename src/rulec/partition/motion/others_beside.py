@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,6 +66,18 @@ class _Closed(NamedTuple):
     boxes: NDArray[np.float64]
     length: float
     width: float
+
+    def clearances(
+        self, at: int | slice, along: tuple[Any, Any], across: tuple[Any, Any]
+    ) -> dict[Side, Any]:
+        """The greatest clearance (m) on each side, from places between bounds, at some times."""
+        s_min, s_max, d_min, d_max = self.boxes[at].T
+        return {
+            "behind": s_min - self.length - along[0],
+            "in_front": along[1] - s_max - self.length,
+            "right": d_min - self.width - across[0],
+            "left": across[1] - d_max - self.width,
+        }
 
 
 class OthersBeside:
@@ -141,11 +153,9 @@ class OthersBeside:
     ) -> Iterator[Cut]:
         """Rows to add where a solution overlaps obstacles, or missing lanes, up to a time.
 
-        By the path's cells.
-
-        With ``sure``, only rows that every motion along the path keeps that overlaps nobody,
-        because ego can get to no other side. Among several sides a ``preferred`` one is chosen,
-        then the nearest.
+        Ego stays on a side on which the path's cells are; of several on a ``preferred`` one, then
+        on the nearest. With ``sure``, only rows that every motion along the path keeps that
+        overlaps nobody, because ego can get to no other side.
         """
         last = int(np.searchsorted(self.times, until + 1e-9))
         for name, beyond, hit in self._clearances(solution, last):
@@ -183,20 +193,15 @@ class OthersBeside:
         along, across = self.along, self.across
         s = along.rows[:last] @ solution.values + along.fixed[:last]
         d = across.rows[:last] @ solution.values + across.fixed[:last]
-        for name, (all_there, all_boxes, length, width) in self._closed.items():
-            there, boxes = all_there[:last], all_boxes[:last]
-            beyond = {
-                "behind": boxes[:, 0] - length - s,
-                "in_front": s - boxes[:, 1] - length,
-                "right": boxes[:, 2] - width - d,
-                "left": d - boxes[:, 3] - width,
-            }
-            yield name, beyond, there & (np.maximum.reduce(list(beyond.values())) < -1e-6)
+        for name, closed in self._closed.items():
+            beyond = closed.clearances(slice(last), (s, s), (d, d))
+            hit = closed.there[:last] & (np.maximum.reduce(list(beyond.values())) < -_HAIR_M)
+            yield name, beyond, hit
 
     def cut(self, name: str | int, side: Side, k: int, gap: float = GAP_M) -> Cut:
         """The row that keeps ego on one side of an obstacle at time number ``k``."""
         _, boxes, length, width = self._closed[name]
-        places = self.along if side in ("behind", "in_front") else self.across
+        places = self.along if side in ALONG else self.across
         low, high = {
             "behind": (-np.inf, boxes[k, 0] - length - gap),
             "in_front": (boxes[k, 1] + length + gap, np.inf),
@@ -212,16 +217,9 @@ class OthersBeside:
         Cells say where ego's middle is: ego may be behind an obstacle, and already beside it with
         its front.
         """
-        _, boxes, length, width = self._closed[name]
-        box = boxes[k]
-        (s_low, s_high), (d_low, d_high) = self._motion.place_at(float(self.times[k]), path)
-        room = {
-            "behind": box[0] - length - s_low,
-            "in_front": s_high - box[1] - length,
-            "right": box[2] - width - d_low,
-            "left": d_high - box[3] - width,
-        }
-        return [side for side, most in room.items() if most >= -_HAIR_M]
+        along, across = self._motion.place_at(float(self.times[k]), path)
+        most = self._closed[name].clearances(k, along, across)
+        return [side for side, clearance in most.items() if clearance >= -_HAIR_M]
 
     def sides(self, name: str | int, time: float, path: Sequence[int]) -> set[Side]:
         """The sides of an obstacle on which the path's cells are around a time."""

@@ -42,9 +42,6 @@ PER_GOAL = 0.5
 _PREFERRED: Sequence[Collection[Side]] = ((), ("right", "left"), ("behind", "in_front"))
 """Preferred sides where ego may be on several sides of an obstacle, tried in this order."""
 
-ALIKE = 0.01
-"""Costs that differ by less than this are alike."""
-
 EASED, _EASED_ENOUGH = 4.0, 0.5
 """Braking (m/s²) that ego may need after the end, and the tolerance (m²/s²) of that check."""
 
@@ -127,11 +124,11 @@ class WitnessSearch:
         """Lower bounds on ego's hardest braking (m/s²) on paths' beginnings."""
         return WayBounds(self._motion, self._others, braking_only=True)
 
-    def of(self, path: Sequence[int], least: float = inf) -> WitnessTrajectory | None:
+    def of(self, path: Sequence[int], enough: float = inf) -> WitnessTrajectory | None:
         """The trajectory of least cost found for a path; None if none was found.
 
         If possible, its final speed lets ego slow down to the speed of the obstacle ahead. One that
-        costs hardly more than ``least``, below which none can, ends the search.
+        costs no more than ``enough`` ends the search.
         """
         best: WitnessTrajectory | None = None
         tries: list[Collection[Side]] = [*_PREFERRED]
@@ -142,23 +139,14 @@ class WitnessSearch:
                 found = attempt.trajectory
                 if found is not None and (best is None or found.cost.total < best.cost.total):
                     best = found
-                    if found.cost.total <= least + ALIKE:
+                    if found.cost.total <= enough:
                         return found
                 if attempt.was_eased:
                     again.append(preferred)
             if best is not None:
                 return best
             tries = again
-        return best
-
-    def cheaper(
-        self, path: Sequence[int], known: WitnessTrajectory, least: float
-    ) -> WitnessTrajectory:
-        """A cheaper trajectory than a known one, if one is found; no cost is below ``least``."""
-        if known.cost.total <= least + ALIKE:
-            return known
-        found = self.by_sides(path, below=known.cost.total - known.cost.goal - ALIKE)
-        return found if found is not None and found.cost.total < known.cost.total else known
+        return None
 
     def by_sides(self, path: Sequence[int], below: float = inf) -> WitnessTrajectory | None:
         """A trajectory by a search over the sides of obstacles, which takes longer.

@@ -44,17 +44,19 @@ def proven(
     """
     maneuvers: list[Maneuver] = []
     looked_at: set[tuple[int, ...]] = set()
-    without: list[Maneuver] = []
+    unproved: list[Maneuver] = []
     promised: dict[tuple[int, ...], float] = {}
     ways = guided_ways(product, graph, search.bounds, MOST_BOUNDS + MORE_BOUNDS * n)
     for way in islice(ways, MOST_TRIED * n):
         if len(maneuvers) >= n and way.promises >= maneuvers[n - 1].cost:
             break
         looked_at.add(way.maneuver.nodes)
-        promised[way.maneuver.nodes], n_found = way.promises, len(maneuvers)
-        _add(maneuvers, way.maneuver, graph, search, way.promises)
-        if len(maneuvers) == n_found and len(without) < MOST_THOROUGH:
-            without.append(way.maneuver)
+        promised[way.maneuver.nodes] = way.promises
+        driven = with_trajectory(way.maneuver, graph, search, way.promises + ALIKE)
+        if driven is not None:
+            insort(maneuvers, driven, key=_by_cost)
+        else:
+            unproved.append(way.maneuver)
     if len(maneuvers) < n:
         beam = beam_ways(product, graph, search.bounds, max(BEAM, n))
         by_cells = islice(cheapest(product), MOST_TRIED * n)
@@ -62,45 +64,43 @@ def proven(
             for candidate in candidates if len(maneuvers) < n else ():
                 if candidate.nodes not in looked_at:
                     looked_at.add(candidate.nodes)
-                    _add(maneuvers, candidate, graph, search)
-    for candidate in without if not maneuvers else ():
-        trajectory = search.by_sides(candidate.nodes)
-        if trajectory is not None:
-            maneuvers.append(_driven(candidate, trajectory, graph))
-            break
-    cheaper = [_cheaper(one, search, promised.get(one.nodes, 0.0)) for one in maneuvers[:n]]
-    return sorted(cheaper, key=lambda maneuver: (maneuver.cost, maneuver.nodes))
+                    driven = with_trajectory(candidate, graph, search)
+                    if driven is not None:
+                        insort(maneuvers, driven, key=_by_cost)
+    if not maneuvers:
+        found = ((one, search.by_sides(one.nodes)) for one in unproved[:MOST_THOROUGH])
+        driven_ones = (_driven(one, way, graph) for one, way in found if way is not None)
+        return [*islice(driven_ones, 1)]
+    cheaper = [_cheaper(one, graph, search, promised.get(one.nodes, 0.0)) for one in maneuvers[:n]]
+    return sorted(cheaper, key=_by_cost)
 
 
-def _cheaper(driven: Maneuver, search: WitnessSearch, least: float) -> Maneuver:
+def _by_cost(maneuver: Maneuver) -> tuple[float, tuple[int, ...]]:
+    return maneuver.cost, maneuver.nodes
+
+
+def _cheaper(
+    driven: Maneuver, graph: NavigationGraph, search: WitnessSearch, least: float
+) -> Maneuver:
     """The maneuver with a cheaper trajectory, if one is found; it costs no less than ``least``."""
-    known, changes = driven.trajectory, driven.changes
+    known = driven.trajectory
     assert known is not None, "it is driven"
-    assert changes is not None, "its cost has parts"
-    found = search.cheaper(driven.nodes, known, least - changes)
-    return replace(driven, cost=changes + found.cost.total, trajectory=found)
-
-
-def _add(
-    found: list[Maneuver],
-    candidate: Maneuver,
-    graph: NavigationGraph,
-    search: WitnessSearch,
-    least: float = inf,
-) -> None:
-    driven = with_trajectory(candidate, graph, search, least)
-    if driven is not None:
-        insort(found, driven, key=lambda maneuver: (maneuver.cost, maneuver.nodes))
+    if driven.cost <= least + ALIKE:
+        return driven
+    found = search.by_sides(driven.nodes, known.cost.total - known.cost.goal - ALIKE)
+    if found is None or found.cost.total >= known.cost.total:
+        return driven
+    return _driven(driven, found, graph)
 
 
 def with_trajectory(
-    maneuver: Maneuver, graph: NavigationGraph, search: WitnessSearch, least: float = inf
+    maneuver: Maneuver, graph: NavigationGraph, search: WitnessSearch, enough: float = inf
 ) -> Maneuver | None:
     """The maneuver with a trajectory, and the cost of both; None if no trajectory was found.
 
-    No trajectory makes it cost less than ``least``; without it, the first one found will do.
+    The first one that makes it cost no more than ``enough`` will do.
     """
-    trajectory = search.of(maneuver.nodes, least - _changes(maneuver, graph))
+    trajectory = search.of(maneuver.nodes, enough - _changes(maneuver, graph))
     return None if trajectory is None else _driven(maneuver, trajectory, graph)
 
 
