@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
-from rulec.file_messages import OUT_OF_TREE, WRONG_SETTINGS
-from rulec.files import MAX_SETTINGS_BYTES, decoded, opened, read_whole
+from rulec.files.file_messages import OUT_OF_TREE, WRONG_SETTINGS
+from rulec.files.read_files import MAX_SETTINGS_BYTES, decoded, opened, read_whole
+from rulec.files.work_trees import leads_out, refuse_no_source, tree_of
 from rulec.toml import parsed_toml
-from rulec.work_trees import leads_out, refuse_no_source, tree_of
 
 FILE_NAME = "rulec.toml"
 _HOW = 'such as `search_path = ["rulebooks"]`'

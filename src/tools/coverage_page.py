@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from rulec.diagnostics import RulecError, Source
-from rulec.file_messages import WRONG_SETTINGS
+from rulec.files.file_messages import WRONG_SETTINGS
 from rulec.report.text.markdown import code, escaped, table
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.overlay.rulebook_overlay import Overlay, RuleEntry, overlay, own_law

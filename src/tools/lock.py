@@ -12,8 +12,8 @@ import tempfile
 from pathlib import Path
 
 from rulec.diagnostics import Source
-from rulec.file_messages import WRONG_SETTINGS
-from rulec.files import written_whole
+from rulec.files.file_messages import WRONG_SETTINGS
+from rulec.files.written_files import written_whole
 from rulec.toml import parsed_toml
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from rulec.files import written_whole
+from rulec.files.written_files import written_whole
 from tools.codes_page import codes_page
 from tools.coverage_page import coverage_page
 from tools.emacs_mode import emacs_mode

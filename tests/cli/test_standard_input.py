@@ -7,7 +7,7 @@ import os
 import pytest
 
 from rulec.cli.main import main
-from rulec.files import STANDARD_INPUT_COPY
+from rulec.files.read_files import STANDARD_INPUT_COPY
 
 WORDS = "vocabulary words { signal p default false }"
 MINE = "rulebook mine\nuse words\nhard rule r { require always p }\n"

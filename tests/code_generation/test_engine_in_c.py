@@ -12,7 +12,7 @@ from hypothesis import Phase, given, settings
 
 import rulec
 from rulec.cli.main import main
-from rulec.files import temporary_files
+from rulec.files.written_files import temporary_files
 from support.builders.rulebooks import compile_here
 from support.generators.blurred_traces import blurred
 from support.generators.random_rulebooks import rulebook

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from rulec import files
 from rulec.automata import compiler, compiler_jobs
 from rulec.automata.worker import compiler_worker
 from rulec.cli.main import main
 from rulec.extraction import traffic_thresholds
+from rulec.files import read_files
 from rulec.rates import finding_rows
 from rulec.recordings import recording, recording_inputs
 from rulec.recordings.encodings.arrow import arrow_tables
@@ -27,12 +27,12 @@ from rulec.trace.formats.arrow import parquet
 PAGE = (Path(__file__).parents[2] / "docs" / "limits.md").read_text(encoding="utf-8")
 
 FIXED = {
-    "bytes of a rulebook or vocabulary": files.MAX_SOURCE_BYTES,
-    "bytes of a law's text, of a saved audit": files.MAX_LAW_BYTES,
-    "bytes of a compiled rulebook, of a saved monitor": files.MAX_SAVED_BYTES,
+    "bytes of a rulebook or vocabulary": read_files.MAX_SOURCE_BYTES,
+    "bytes of a law's text, of a saved audit": read_files.MAX_LAW_BYTES,
+    "bytes of a compiled rulebook, of a saved monitor": read_files.MAX_SAVED_BYTES,
     "folders inside one another that are walked for sources": source_walk.DEEPEST_FOLDER,
     "folders inside one another that are walked for recordings": recording_inputs.DEEPEST_FOLDER,
-    "bytes of `rulec.toml`": files.MAX_SETTINGS_BYTES,
+    "bytes of `rulec.toml`": read_files.MAX_SETTINGS_BYTES,
     "words and signs of a source": scanner.MAX_TOKENS,
     "states of an example": parser.MOST_EXAMPLE_STATES,
     "operators, atoms and comparisons of a rule, definitions put in": size_limits.MOST_PARTS,
@@ -41,7 +41,7 @@ FIXED = {
     "seconds of processor time for a rule's automaton": compiler.CPU_LIMIT_S,
     "bytes of memory for it": compiler_worker.MEMORY_LIMIT_BYTES,
     "steps of a bound, which are states of it": compiler_jobs.MOST_STEPS_AHEAD,
-    "bytes of a packed file, unpacked": files.LARGEST_UNPACKED,
+    "bytes of a packed file, unpacked": read_files.LARGEST_UNPACKED,
     "bytes of one line of traces": json_line_problems.LONGEST_LINE_BYTES,
     "characters of a row of CSV": table_reader.LONGEST_ROW,
     "bytes of a row group of Parquet, unpacked, beside 1,024 a cell": parquet.LARGEST_GROUP,

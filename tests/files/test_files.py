@@ -13,10 +13,11 @@ from pathlib import Path
 
 import pytest
 
-from rulec import files
 from rulec.diagnostics import RulecError
-from rulec.file_sets import MANIFEST, write_together
-from rulec.files import decoded, opened, refusals, written_whole
+from rulec.files import read_files, written_files
+from rulec.files.file_sets import MANIFEST, write_together
+from rulec.files.read_files import decoded, opened
+from rulec.files.written_files import refusals, written_whole
 
 
 @pytest.mark.parametrize("line_end", ["\n", "\r\n", "\r"])
@@ -107,7 +108,7 @@ def test_what_is_packed_is_unpacked_on_the_way(tmp_path):
     ],
 )
 def test_what_is_packed_and_cannot_be_unpacked(tmp_path, monkeypatch, content, says):
-    monkeypatch.setattr(files, "LARGEST_UNPACKED", 1000)
+    monkeypatch.setattr(read_files, "LARGEST_UNPACKED", 1000)
     file = tmp_path / "file.gz"
     file.write_bytes(content)
     with pytest.raises(RulecError) as refused, opened(file) as stream:
@@ -317,7 +318,7 @@ def test_an_owner_who_cannot_be_kept_and_a_second_name_are_reasons_not_to(tmp_pa
         return caught.value.diagnostics[0].code
 
     with monkeypatch.context() as patch:
-        patch.setattr(files, "as_before", lambda name, path: False)
+        patch.setattr(written_files, "as_before", lambda name, path: False)
         assert code_of_writing() == "R0734"
     os.link(file, tmp_path / "other")
     assert code_of_writing() == "R0734"

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from rulec.cli.main import main
+from rulec.files.source_detection import is_foreign
 from rulec.rulebook.files.source_walk import sources_below
-from rulec.source_detection import is_foreign
 
 BOOK = "rulebook a\nsignal p\nhard rule r { require always p }\n"
 SECRET = "DEPLOY_KEY=hunter2"

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from rulec.diagnostics import RulecError, Source
-from rulec.files import MAX_SOURCE_BYTES as MAX_BYTES
+from rulec.files.read_files import MAX_SOURCE_BYTES as MAX_BYTES
 from rulec.rulebook.loader import parse_rulebook
 from rulec.syntax import decode, parse, parse_formula, print_formula
 from support.builders.counted_steps import grows_in_proportion

@@ -48,7 +48,7 @@ class TraceVerbs(SessionSettings):
 
     def write_traces(self, traces: Iterable[Trace], path: str | Path) -> None:
         """Write traces in the format given by the file's name. Raises RulecError."""
-        from rulec.files import written_whole
+        from rulec.files.written_files import written_whole
         from rulec.trace.formats.trace_files import (
             check_writable,
             format_of,

@@ -8,7 +8,7 @@ from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
-from rulec.files import OF_OTHERS, is_own, private
+from rulec.files.written_files import OF_OTHERS, is_own, private
 from rulec.resources import package_files
 
 

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from rulec.cache.cache_folder import program_digest, tidy, usable_folder, write_own
 from rulec.cache.keeping import is_keeping
-from rulec.files import is_own
+from rulec.files.written_files import is_own
 from rulec.version import __version__
 
 _QUICKLY = 1

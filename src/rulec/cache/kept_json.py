@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from rulec.cache.cache_folder import tidy, write_own
-from rulec.files import is_own
+from rulec.files.written_files import is_own
 
 
 def recall_json(path: Path) -> Any:

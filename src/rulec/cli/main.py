@@ -185,7 +185,7 @@ def _refused(problem: OSError) -> int:
     if isinstance(problem, BrokenPipeError):
         return ExitStatus.READER_GONE
     # Late import, only after an error: messages, their text and colours (7 ms).
-    from rulec.file_messages import refused
+    from rulec.files.file_messages import refused
     from rulec.report.findings.diagnostics_text import print_diagnostics
 
     with suppress(OSError):

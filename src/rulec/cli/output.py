@@ -18,7 +18,7 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.output_options import Output
 from rulec.cli.options.shared_options import only_sources
 from rulec.diagnostics import Diagnostic, RulecError
-from rulec.files import written_whole
+from rulec.files.written_files import written_whole
 from rulec.report.findings.diagnostics_text import excerpt_width, print_diagnostics
 from rulec.report.findings.finding_formats import render
 from rulec.report.text.console import (

@@ -12,8 +12,9 @@ from typing import IO, Any, cast
 
 import click
 
-from rulec.file_messages import no_input
-from rulec.files import STANDARD_INPUT_COPY, TEMPORARY, opened, temporary_files
+from rulec.files.file_messages import no_input
+from rulec.files.read_files import STANDARD_INPUT_COPY, opened
+from rulec.files.written_files import TEMPORARY, temporary_files
 
 STANDARD_INPUT = "-"
 

@@ -15,7 +15,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.cli.standard_input import standard_input
 from rulec.cli.verdict_outputs import VerdictOutputs
 from rulec.diagnostics import RulecError
-from rulec.files import opened
+from rulec.files.read_files import opened
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.batch.batch_verify import Items, rulebook_for, step_of, verify_items
 from rulec.monitoring.verdict import NotJudged, Verdict

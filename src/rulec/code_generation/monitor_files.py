@@ -16,8 +16,8 @@ from rulec.code_generation.ros2_files import ros2_texts
 from rulec.code_generation.rust_files import crate_texts
 from rulec.code_generation.rust_reading_code import RustReadingCode
 from rulec.code_generation.written_names import prefix_of
-from rulec.file_sets import write_together
-from rulec.files import make_folder
+from rulec.files.file_sets import write_together
+from rulec.files.written_files import make_folder
 
 Language: TypeAlias = Literal["c", "rust", "ros2"]
 """The language of the files: C (and C++), a Rust crate, or a ROS 2 package around the C."""

@@ -32,7 +32,7 @@ from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.towed import towed_by
 from rulec.extraction.tracks.tracks import Flags, Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
-from rulec.files import no_garbage_collection
+from rulec.garbage_collection import no_garbage_collection
 from rulec.recordings.recording import Lanelet, Recording, Side
 from rulec.trace.end_to_end import UnlikeDrivesError
 

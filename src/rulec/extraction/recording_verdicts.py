@@ -13,7 +13,7 @@ from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.traces.recorded_drive import Drive
-from rulec.files import no_garbage_collection
+from rulec.garbage_collection import no_garbage_collection
 from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.findings import JudgedTrace
 from rulec.monitoring.batch.stacked.verify_arrays import answer_to, judge_arrays, verify_arrays

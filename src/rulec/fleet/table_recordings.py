@@ -11,7 +11,7 @@ from typing import Any
 from rulec.diagnostics import RulecError
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
-from rulec.files import FileState, note_read
+from rulec.files.read_files import FileState, note_read
 from rulec.fleet.drive_rows import DriveRows, reason_of
 from rulec.fleet.finding_columns import Row
 from rulec.fleet.fleet_messages import cut_drive, no_map

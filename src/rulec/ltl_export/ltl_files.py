@@ -10,8 +10,8 @@ from pathlib import Path
 
 from rulec.automata.compiler import RulebookFormulas
 from rulec.diagnostics import RulecError
-from rulec.file_sets import write_together
-from rulec.files import make_folder
+from rulec.files.file_sets import write_together
+from rulec.files.written_files import make_folder
 from rulec.ltl_export.ltl_terms import NUXMV, PRISM, SPOT, TRUE, Term, text_of
 from rulec.ltl_export.rule_terms import Proposition, RuleTerms, fresh_identifier, rule_terms
 from rulec.rulebook.rulebook_model import Rulebook

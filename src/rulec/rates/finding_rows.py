@@ -10,11 +10,11 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from rulec.files import is_folder, opened
+from rulec.files.read_files import is_folder, opened
+from rulec.files.work_trees import refuse_link_out, tree_of
 from rulec.rates.rates_messages import no_findings
 from rulec.trace.formats.arrow.parquet import rows_of_columns
 from rulec.value_display import short_repr
-from rulec.work_trees import refuse_link_out, tree_of
 
 LARGEST = 1e12
 """No drive has this many metres or seconds; sums of larger numbers would overflow."""

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.diagnostics.argument_kinds import checked_kinds
-from rulec.files import opened
+from rulec.files.read_files import opened
 from rulec.recordings import table_heads as heads
 from rulec.recordings.argoverse.argoverse_files import MAP as MAP_ARCHIVES
 from rulec.recordings.argoverse.argoverse_files import is_named

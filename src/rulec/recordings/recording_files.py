@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, named
-from rulec.files import is_folder, opened
+from rulec.files.read_files import is_folder, opened
 from rulec.recordings.encodings.csv_head import PARQUET
 from rulec.recordings.encodings.safe_xml import is_xml
 from rulec.recordings.encodings.xml_element import short

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from rulec.diagnostics.argument_kinds import expected_fields
-from rulec.files import opened
+from rulec.files.read_files import opened
+from rulec.files.work_trees import is_ordinary
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.safe_xml import is_xml, root_of
-from rulec.work_trees import is_ordinary
 
 if TYPE_CHECKING:
     from rulec.recordings.recording import Recording

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.file_messages import UNREADABLE_FILE
-from rulec.files import is_folder
+from rulec.files.file_messages import UNREADABLE_FILE
+from rulec.files.read_files import is_folder
+from rulec.files.work_trees import refuse_link_out, tree_of
 from rulec.recordings.encodings.csv_head import PARQUET
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.recording_files import check_readable
 from rulec.recordings.recording_format import RECORDING, Glance
-from rulec.work_trees import refuse_link_out, tree_of
 
 STANDARD_INPUT = "-"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Source, SourceLocation, did_you_mean, named
-from rulec.files import decoded, opened
+from rulec.files.read_files import decoded, opened
 from rulec.recordings.recording_files import is_recording, read_recording
 from rulec.recordings.recording_format import RECORDING, RecordingSource
 from rulec.recordings.recording_messages import OTHER_CHOICE

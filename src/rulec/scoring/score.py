@@ -20,7 +20,7 @@ from rulec.extraction.recording_verdicts import (
 )
 from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_participant
-from rulec.files import no_garbage_collection
+from rulec.garbage_collection import no_garbage_collection
 from rulec.monitoring.verdict import NotJudged, Violation
 from rulec.recordings.recording import Participant
 from rulec.scoring.candidate_score import CandidateScore

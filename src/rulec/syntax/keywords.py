@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from rulec.source_detection import FILE_WORDS
+from rulec.files.source_detection import FILE_WORDS
 
 HEADER_WORDS: Final = (
     *FILE_WORDS,

@@ -9,7 +9,7 @@ from types import ModuleType
 from typing import TypeVar, cast
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span
-from rulec.source_detection import is_foreign
+from rulec.files.source_detection import is_foreign
 from rulec.syntax import tree
 from rulec.syntax.assembly import Part, assemble_file, assemble_rule
 from rulec.syntax.building import formulas, items

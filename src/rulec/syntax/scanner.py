@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, Span
 from rulec.diagnostics.diagnostic import unquoted
-from rulec.file_messages import FILE_TOO_LARGE
-from rulec.files import MAX_SOURCE_BYTES, decoded, without_null
-from rulec.source_detection import beginning_of, is_foreign
+from rulec.files.file_messages import FILE_TOO_LARGE
+from rulec.files.read_files import MAX_SOURCE_BYTES, decoded, without_null
+from rulec.files.source_detection import beginning_of, is_foreign
 
 MAX_TOKENS = 1_000_000
 """The most tokens: far more than a file of the permitted size has, and still fit for memory."""

@@ -11,7 +11,7 @@ from typing import Final, TypeAlias
 from rulec.analysis.audit.audit_messages import NO_ARTICLES
 from rulec.analysis.audit.citations import PartKind, Reference, references_in
 from rulec.diagnostics import Source, SourceLocation
-from rulec.files import MAX_LAW_BYTES, decoded, opened, read_whole
+from rulec.files.read_files import MAX_LAW_BYTES, decoded, opened, read_whole
 
 
 @dataclass(frozen=True, slots=True)

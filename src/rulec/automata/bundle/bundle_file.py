@@ -34,8 +34,9 @@ from rulec.automata.bundle.stored_steps import StoredSteps
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
-from rulec.file_sets import write_together
-from rulec.files import MAX_SAVED_BYTES, make_folder, opened, read_whole
+from rulec.files.file_sets import write_together
+from rulec.files.read_files import MAX_SAVED_BYTES, opened, read_whole
+from rulec.files.written_files import make_folder
 from rulec.logic.codec import terms_to_data, to_data
 from rulec.logic.printing import formula_text, number_in_words
 from rulec.rulebook.rulebook_model import Rule, Rulebook, RuleParts, Variable

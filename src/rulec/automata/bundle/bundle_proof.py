@@ -13,10 +13,10 @@ from pathlib import Path
 from rulec.automata.bundle.bundle_file import read_signed, refusal
 from rulec.automata.bundle.bundle_schema import FORMAT
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.file_messages import NOTHING_LEFT
-from rulec.files import opened
+from rulec.files.file_messages import NOTHING_LEFT
+from rulec.files.read_files import opened
+from rulec.files.work_trees import is_ordinary, leads_out, tree_of
 from rulec.validation.file_proof import RuleProof, UnreadableError, proofs_of
-from rulec.work_trees import is_ordinary, leads_out, tree_of
 
 _HEAD_BYTES = 1024
 _SEAL = re.compile(rb'\{\s*"sha256"')

@@ -19,7 +19,7 @@ from pathlib import Path
 from struct import Struct, error
 from typing import Literal, TypeAlias, TypeVar, get_args
 
-from rulec.files import is_own
+from rulec.files.written_files import is_own
 
 _Entry = TypeVar("_Entry", int, bool)
 

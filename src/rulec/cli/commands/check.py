@@ -20,7 +20,7 @@ from rulec.cli.standard_input import standard_input
 from rulec.cli.watching import watch as watch_sources
 from rulec.cli.watching import watch_option
 from rulec.diagnostics import named
-from rulec.files import MAX_SOURCE_BYTES
+from rulec.files.read_files import MAX_SOURCE_BYTES
 from rulec.report.text.console import print_remark
 from rulec.report.text.terminal_text import counted
 from rulec.settings import exclusion, search_path

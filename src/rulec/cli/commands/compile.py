@@ -17,7 +17,7 @@ from rulec.cli.options.output_options import Output, refuse_overwriting, refuse_
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, open_session, rulebooks_named, told_apart
 from rulec.diagnostics import SourceLocation, named, placed_at
-from rulec.files import refuse_unwritable
+from rulec.files.written_files import refuse_unwritable
 from rulec.report.text.console import print_line, print_remark
 
 if TYPE_CHECKING:

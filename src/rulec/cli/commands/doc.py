@@ -12,7 +12,7 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, open_session, put_answer, sources_of_rulebooks, told_apart
-from rulec.files import make_folder
+from rulec.files.written_files import make_folder
 from rulec.logic.sentences.language import LANGUAGES, LanguageCode
 
 Format: TypeAlias = Literal["html", "markdown"]

@@ -26,7 +26,7 @@ from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import answer_lines, output_stream, print_written
 from rulec.cli.standard_input import not_standard_input, standard_input
 from rulec.diagnostics import RulecError
-from rulec.files import opened
+from rulec.files.read_files import opened
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.settings import search_path
 

@@ -11,8 +11,8 @@ from rulec.cli.options.output_options import refuse_standard_output
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.options.verb_class import Verb
 from rulec.diagnostics import SourceLocation
-from rulec.file_messages import UNWRITABLE_FILE
-from rulec.files import make_folder, written_whole
+from rulec.files.file_messages import UNWRITABLE_FILE
+from rulec.files.written_files import make_folder, written_whole
 from rulec.report.text.console import print_line, print_remark
 from rulec.settings import search_path
 

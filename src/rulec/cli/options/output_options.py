@@ -18,10 +18,11 @@ from typing import Any, TypeVar, cast
 import click
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.file_messages import OVERWRITES_INPUT
-from rulec.files import from_here, refuse_unwritable
+from rulec.files.file_messages import OVERWRITES_INPUT
+from rulec.files.read_files import from_here
+from rulec.files.work_trees import is_ordinary
+from rulec.files.written_files import refuse_unwritable
 from rulec.report.verdict_findings.finding_writers import ENDINGS
-from rulec.work_trees import is_ordinary
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 

@@ -21,7 +21,7 @@ from rulec.code_generation.code_messages import (
 )
 from rulec.code_generation.monitor_layout import VERDICTS, MonitorLayout
 from rulec.code_generation.written_names import prefix_of
-from rulec.files import TEMPORARY, temporary_files
+from rulec.files.written_files import TEMPORARY, temporary_files
 from rulec.monitoring.online.four_valued import FourValued, RunningVerdict, within
 from rulec.trace import State
 from rulec.vocabulary import Declaration, Enumeration, Quantity

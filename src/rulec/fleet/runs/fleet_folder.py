@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from rulec.diagnostics import RulecError
-from rulec.files import file_state, make_folder, opened, refusals, written_whole
+from rulec.files.read_files import file_state, opened
+from rulec.files.written_files import make_folder, refusals, written_whole
 from rulec.fleet.fleet_messages import folder_in_use, other_fleet
 from rulec.fleet.judged_by import JudgedBy
 from rulec.fleet.runs.fleet_tally import ROWS_AT_ONCE

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rulec.diagnostics import RulecError
-from rulec.file_messages import LINK_OUT
-from rulec.files import is_folder, opened
+from rulec.files.file_messages import LINK_OUT
+from rulec.files.read_files import is_folder, opened
+from rulec.files.work_trees import leads_out, refuse_no_file, tree_of
 from rulec.fleet.fleet_messages import no_fleet_input
 from rulec.fleet.table_kind import RECORDING
 from rulec.recordings.encodings.csv_head import PARQUET
@@ -17,7 +18,6 @@ from rulec.recordings.recording_files import is_recording
 from rulec.recordings.recording_inputs import STANDARD_INPUT, input_files
 from rulec.trace.formats.arrow.parquet_columns import parquet_names
 from rulec.trace.formats.table_reader import STEP, TRACE
-from rulec.work_trees import leads_out, refuse_no_file, tree_of
 
 
 @dataclass(frozen=True, slots=True)

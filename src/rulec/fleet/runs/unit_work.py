@@ -11,7 +11,8 @@ from pathlib import Path
 from rulec.diagnostics import RulecError
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
-from rulec.files import files_read, written_whole
+from rulec.files.read_files import files_read
+from rulec.files.written_files import written_whole
 from rulec.fleet.carried_rulebook import CarriedRulebook
 from rulec.fleet.drive_rows import DriveRows, reason_of
 from rulec.fleet.finding_columns import Row, arrow_schema, arrow_table

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rulec.diagnostics import RulecError
-from rulec.files import file_state
+from rulec.files.read_files import file_state
 from rulec.fleet.runs.drive_keys import KeyHashes, keyed_rows, opened_table
 
 MOST_ROWS = 1 << 19

@@ -14,7 +14,8 @@ import msgspec
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import with_place
-from rulec.files import MAX_SAVED_BYTES, opened, read_whole, refuse_unwritable, written_whole
+from rulec.files.read_files import MAX_SAVED_BYTES, opened, read_whole
+from rulec.files.written_files import refuse_unwritable, written_whole
 from rulec.logic.codec import number_from_data
 from rulec.monitoring.constant_values import with_constants
 from rulec.monitoring.letter_reader import present_in

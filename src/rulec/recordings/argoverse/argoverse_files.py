@@ -6,7 +6,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from rulec.diagnostics import named
-from rulec.files import is_folder
+from rulec.files.read_files import is_folder
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.xml_element import short
 

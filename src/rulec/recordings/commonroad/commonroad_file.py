@@ -6,7 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from rulec.diagnostics import RulecError
-from rulec.files import no_garbage_collection
+from rulec.garbage_collection import no_garbage_collection
 from rulec.recordings.commonroad.areas import wanted_of_point
 from rulec.recordings.commonroad.countries import country_in
 from rulec.recordings.commonroad.scenario_content import Content, add, add_step, to_recording

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.files import opened
+from rulec.files.read_files import opened
 from rulec.recordings.recording_messages import NOT_A_RECORDING
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import IO, NamedTuple
 from zlib import crc32
 
-from rulec.files import opened
+from rulec.files.read_files import opened
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.packed_chunks import unpacked
 from rulec.recordings.encodings.xml_element import short

@@ -1,7 +1,7 @@
 """XML as a stream, safe against malicious files, with little memory.
 
 Documents that define entities are refused at the definition, before anything is expanded or
-fetched. Packed files are unpacked while they are read (`rulec.files.opened`), up to the same limit.
+fetched. Packed files are unpacked while they are read (`read_files.opened`), up to the same limit.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from pathlib import Path
 from xml.parsers.expat import ExpatError, ParserCreate, XMLParserType, errors
 
 from rulec.diagnostics import RulecError
-from rulec.files import opened
+from rulec.files.read_files import opened
 from rulec.recordings.encodings.file_format import FileFormat, XmlFormat
 from rulec.recordings.encodings.xml_element import XmlElement, short
 from rulec.trace.formats.stream_lines import packed

@@ -18,7 +18,7 @@ from numpy import int64
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
-from rulec.files import opened
+from rulec.files.read_files import opened
 from rulec.recordings.encodings.csv_head import (
     LONGEST_LINE,
     PACKED,

@@ -18,7 +18,7 @@ from numpy import uint32
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
-from rulec.files import opened
+from rulec.files.read_files import opened
 from rulec.recordings.encodings.file_format import BinaryFormat
 
 _HEAD = struct.Struct("<QI")

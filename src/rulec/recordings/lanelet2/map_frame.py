@@ -20,7 +20,7 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.files import opened
+from rulec.files.read_files import opened
 from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.recordings.lanelet2 import projections
 from rulec.recordings.lanelet2.osm_file import LANELET2, OsmFile

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rulec.diagnostics import RulecError, named
-from rulec.files import opened
+from rulec.files.read_files import opened
 from rulec.recordings.encodings.file_format import BinaryFormat
 from rulec.recordings.encodings.mcap_file import MAGIC, McapChannel, read_messages
 from rulec.recordings.encodings.wire_format import Table, WireFile

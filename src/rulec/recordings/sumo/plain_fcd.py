@@ -15,7 +15,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
-from rulec.files import opened
+from rulec.files.read_files import opened
 from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.sumo.fcd_content import (
     FCD,

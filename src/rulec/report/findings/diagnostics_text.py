@@ -14,9 +14,9 @@ from typing import TextIO
 
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.source_text import SourceLocation, address
+from rulec.files.work_trees import leads_out
 from rulec.report.text.console import page_width, print_aside
 from rulec.report.text.terminal_text import cell_width, styled, visible, wants_color
-from rulec.work_trees import leads_out
 
 MAX_WIDTH = 100
 """Width of a shown source line outside a terminal; a longer line is cut around the place."""

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.source_text import address
-from rulec.files import from_here
+from rulec.files.read_files import from_here
 from rulec.report.text.terminal_text import visible
 
 FORMATS = ("full", "concise", "json", "github", "sarif")

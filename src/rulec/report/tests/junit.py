@@ -9,7 +9,7 @@ from rulec.book_tests.example_coverage import RuleCoverage, asked_of, percent
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.diagnostic import at
-from rulec.files import from_here
+from rulec.files.read_files import from_here
 from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.report.tests.example_text import Besides, coverage_lines, failures
 from rulec.report.text.xml_text import HEAD, element, xml_text

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from typing import IO, Any
 
 from rulec.diagnostics import SourceLocation
-from rulec.file_messages import UNWRITABLE_FILE
+from rulec.files.file_messages import UNWRITABLE_FILE
 from rulec.report.verdict_findings.mcap_file_writer import JsonChannel, TimedMessage, write_mcap
 from rulec.report.verdict_findings.verdict_finding import (
     COLUMNS,

@@ -13,14 +13,14 @@ from typing import Any
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import diagnostic_rows
-from rulec.file_messages import NOTHING_LEFT
+from rulec.files.file_messages import NOTHING_LEFT
+from rulec.files.source_detection import beginning_of, first_word_at
 from rulec.rulebook.batch.bare_rules import bare_rules
 from rulec.rulebook.batch.check_cache import CheckQuestion, recall, remember
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import EXTENDS_CIRCLE, NAME_NOT_FOUND
 from rulec.rulebook.files.source_walk import SUFFIX, FoundSources, LeftAlone, sources_below
 from rulec.settings import Exclusion
-from rulec.source_detection import beginning_of, first_word_at
 from rulec.value_display import Rows, short_repr
 
 _STANDARD_INPUT = Path("standard input")

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
-from rulec.file_messages import UNREADABLE_FILE, UNWRITABLE_FILE
-from rulec.files import written_whole
+from rulec.files.file_messages import UNREADABLE_FILE, UNWRITABLE_FILE
+from rulec.files.written_files import written_whole
 from rulec.rulebook.batch.batch_check import find_sources
 from rulec.rulebook.batch.form_cache import KnownForms
 from rulec.rulebook.files.search_path import read_bytes

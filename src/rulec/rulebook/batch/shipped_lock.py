@@ -8,14 +8,15 @@ from hashlib import sha256
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
-from rulec.files import MAX_SETTINGS_BYTES, decoded, opened, read_whole, written_whole
+from rulec.files.read_files import MAX_SETTINGS_BYTES, decoded, opened, read_whole
+from rulec.files.work_trees import refuse_link_out
+from rulec.files.written_files import written_whole
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.batch.batch_check import is_vocabulary
 from rulec.rulebook.batch.lock_messages import NOT_AS_LOCKED, WRONG_LOCK
 from rulec.rulebook.files.search_path import read_bytes
 from rulec.settings import settings_file
 from rulec.toml import parsed_toml
-from rulec.work_trees import refuse_link_out
 
 FILE_NAME = "rulec.lock"
 

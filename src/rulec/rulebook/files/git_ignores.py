@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from rulec.work_trees import is_ordinary, leads_out
+from rulec.files.work_trees import is_ordinary, leads_out
 
 MOST_BYTES = 100_000
 """The most bytes of a file of patterns; the rest is ignored."""

@@ -11,13 +11,13 @@ from pathlib import Path
 from typing import Literal
 
 from rulec.diagnostics import Label, RulecError, Span, did_you_mean, named
-from rulec.files import MAX_SOURCE_BYTES, opened
+from rulec.files.read_files import MAX_SOURCE_BYTES, opened
+from rulec.files.source_detection import LEAD_BYTES, beginning_of, first_word_at
+from rulec.files.work_trees import refuse_no_source
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.files.open_documents import open_text
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
 from rulec.rulebook.files.source_walk import SUFFIX, rules_files
-from rulec.source_detection import LEAD_BYTES, beginning_of, first_word_at
-from rulec.work_trees import refuse_no_source
 
 _PACKED = ".json.gz"
 _DOCUMENTS = (".doc", ".docx", ".odt", ".pdf", ".rtf")

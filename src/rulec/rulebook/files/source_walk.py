@@ -11,7 +11,9 @@ from os.path import islink, lexists
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
-from rulec.file_messages import NOTHING_LEFT, UNREADABLE_FILE
+from rulec.files.file_messages import NOTHING_LEFT, UNREADABLE_FILE
+from rulec.files.source_detection import LEAD_BYTES, beginning_of, is_foreign
+from rulec.files.work_trees import is_ordinary, refuse_no_source, tree_of
 from rulec.rulebook.files.git_ignores import (
     IgnoreFile,
     ignore_files,
@@ -20,8 +22,6 @@ from rulec.rulebook.files.git_ignores import (
     patterns_in,
 )
 from rulec.settings import Exclusion
-from rulec.source_detection import LEAD_BYTES, beginning_of, is_foreign
-from rulec.work_trees import is_ordinary, refuse_no_source, tree_of
 
 SUFFIX = ".rules"
 

@@ -12,7 +12,7 @@ from rulec.cache.keeping import knows_shipped
 from rulec.cache.kept_bytes import KeptBytes
 from rulec.cache.shipped_bytes import shipped, shipped_key
 from rulec.diagnostics import Diagnostic, Source
-from rulec.files import no_garbage_collection
+from rulec.garbage_collection import no_garbage_collection
 from rulec.syntax import tree
 from rulec.syntax.caching.tree_codec import decoded, encoded
 from rulec.syntax.parser import parse

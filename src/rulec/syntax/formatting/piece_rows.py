@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Final, cast
 
 from rulec.diagnostics import Source
-from rulec.source_detection import FILE_WORDS
+from rulec.files.source_detection import FILE_WORDS
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
 from rulec.syntax.formatting.document import (
     WIDTH,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import accumulate
 
 from rulec.diagnostics import Diagnostic, Label, RulecError, Source, SourceLocation
-from rulec.source_detection import is_foreign
+from rulec.files.source_detection import is_foreign
 from rulec.syntax import tree
 from rulec.syntax.assembly import assemble_file
 from rulec.syntax.incremental.growing_source import GrowingSource

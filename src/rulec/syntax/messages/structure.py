@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from rulec.diagnostics import Diagnostic, Label, Source, Span
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.source_text import SourceLocation
-from rulec.source_detection import first_word_at
+from rulec.files.source_detection import first_word_at
 from rulec.syntax.keywords import ITEM_WORDS
 from rulec.syntax.scanner import Token
 

@@ -13,7 +13,7 @@ from typing import IO, TYPE_CHECKING, Any, cast
 import msgspec
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.files import no_garbage_collection
+from rulec.garbage_collection import no_garbage_collection
 from rulec.resource_limits import STATES
 from rulec.trace.formats import json_line_problems
 from rulec.trace.formats.json_numbers import as_written, exactly, may_be_no_float

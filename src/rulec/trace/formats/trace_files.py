@@ -8,7 +8,7 @@ from pathlib import Path, PurePath
 from typing import IO, Any, Literal
 
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.files import opened
+from rulec.files.read_files import opened
 from rulec.trace.formats import json_lines
 from rulec.trace.formats.arrow.parquet import read_parquet, write_parquet
 from rulec.trace.formats.csv_table import read_csv, write_csv

@@ -10,7 +10,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.missing_package import missing_package
-from rulec.files import opened
+from rulec.files.read_files import opened
 from rulec.trace.formats.stream_lines import packed
 from rulec.trace.formats.table_reader import (
     TOLD,

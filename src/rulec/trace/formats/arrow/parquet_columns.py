@@ -9,7 +9,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
-from rulec.files import opened
+from rulec.files.read_files import opened
 from rulec.trace.formats.arrow.parquet import arrow
 
 Refused = Callable[..., RulecError]

@@ -24,7 +24,8 @@ from typing import Any
 
 import msgspec
 
-from rulec.files import (
+from rulec.files.work_trees import is_ordinary, refuse_no_source
+from rulec.files.written_files import (
     as_before,
     is_own,
     is_replaced,
@@ -33,7 +34,6 @@ from rulec.files import (
     put_on_disk,
     refusals,
 )
-from rulec.work_trees import is_ordinary, refuse_no_source
 
 MANIFEST = ".rulec-writing.json"
 _PART = re.compile(r"\.rulec-[0-9a-f]{16}-[0-9]+\.part")

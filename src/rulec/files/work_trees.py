@@ -11,7 +11,7 @@ import stat
 from pathlib import Path
 
 from rulec.diagnostics import Label, SourceLocation
-from rulec.file_messages import LINK_OUT, NO_ORDINARY_FILE, UNREADABLE_FILE, reason_in_words
+from rulec.files.file_messages import LINK_OUT, NO_ORDINARY_FILE, UNREADABLE_FILE, reason_in_words
 
 _OF_THE_SYSTEM = ("/dev/", "/proc/self/fd/")
 """Folders whose links are the system's own, such as ``/dev/stdout``."""
