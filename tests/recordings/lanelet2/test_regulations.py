@@ -175,6 +175,20 @@ def test_lines_across_a_lane_are_for_it(tmp_path):
     assert found[second].stop_line is None
 
 
+def test_the_line_of_a_rule_is_not_for_the_other_direction_as_well(tmp_path):
+    """The road behind it may be driven both ways; the one that no lanelet names is for all."""
+    file = MapFile()
+    line, other = (file.line((x, 0), (x, -3), type="stop_line") for x in (50, 90))
+    rule = file.rule("traffic_light", [("ref_line", "way", line)])
+    file.rule("traffic_light", [("ref_line", "way", other)])
+    before = road(file, 0, 50, rules=[rule])
+    behind = road(file, 50, 90, one_way="no")
+    found = map_of(file, tmp_path).lanelets
+    assert found[before].stop_line.tolist() == [[50, 0], [50, -3]]
+    assert found[f"{behind}_reversed"].stop_line is None
+    assert found[behind].stop_line.tolist() == [[90, 0], [90, -3]]
+
+
 def junction(rule=None, light=False, **tags):
     """A road from the west that crosses one from the south, and one from the east to its left.
 

@@ -32,6 +32,17 @@ def test_a_centre_line_is_enough(tmp_path):
     assert "lanes are taken to be 3.5 m wide" in roads.remarks
 
 
+def test_a_width_between_two_others_is_by_the_distance(tmp_path):
+    rows = ("a,0,0,3", "a,10,0,", "a,100,0,5", "a,100,0,9", "a,104,3,")
+    lane = lanes(tmp_path, "lane,x,y,width", *rows).lanelets["a"]
+    assert np.hypot(*(lane.left - lane.right).T)[:2] == pytest.approx([3, 3.2])
+
+
+def test_a_limit_may_be_in_any_row_and_again_in_others(tmp_path):
+    rows = ("a,0,0,", "a,9,0,36", "a,19,0,36")
+    assert lanes(tmp_path, "lane,x,y,limit_kmh", *rows).lanelets["a"].limit_mps == 10
+
+
 def test_all_that_can_be_said(tmp_path):
     file = tmp_path / "lanes.csv"
     file.write_text(EVERY_COLUMN_OF_LANES)
@@ -78,6 +89,7 @@ def test_lanes_whose_ends_meet_follow_each_other(tmp_path):
         ("lane,x,y,type", ["a,0,0,urbn", "a,9,0,"], 2, "is of type `urbn`"),
         ("lane,x,y,left_mark", ["a,0,0,", "a,9,0,dashed"], 3, "its `left_mark` is `dashed`"),
         ("lane,x,y,type", ["a,0,0,urban", "a,9,0,rural"], 3, "its `type` is another"),
+        ("lane,x,y,limit_kmh", ["a,0,0,50", "a,9,0,70"], 3, "its `limit_kmh` is another"),
         ("lane,x,y,successors", ["a,0,0,b", "a,9,0,"], 2, "has `b`, which is no lane"),
     ],
 )
@@ -91,6 +103,9 @@ def test_ways_out(tmp_path):
     assert (
         message(tmp_path, "lane,x,y,type", "a,0,0,urbn", "a,9,0,").help == "did you mean `urban`?"
     )
+    two = message(tmp_path, "lane,x,y,limit_kmh", "a,0,0,50", "a,5,0,", "a,9,0,70")
+    assert two.message.endswith("than in the rows above of lane `a`: `50` and `70`")
+    assert two.help == "where something changes, begin another lane"
 
 
 def test_numbers_out_of_range_are_said_as_given(tmp_path):

@@ -53,6 +53,8 @@ def test_the_good_one(tmp_path):
         ('id="1" length="100"', 'id="1" length="9e6"', "a road is longer than 1,000 km"),
         ("<planView>", "<plan>", "not well-formed"),
         ('hdg="1"', 'hdg="inf"', "`hdg` is `inf`"),
+        ('hdg="1"', 'hdg="0_1"', "`hdg` is `0_1`"),
+        ('hdg="1"', 'hdg="１"', "`hdg` is `１`"),
         ('curvEnd="0.02"', 'curvEnd="1e7"', "a road turns round 95,492,966 times"),
         ('curvEnd="0.02"', "", "has no `curvEnd`"),
         ('bU="30"', 'bU="thirty"', "`bU` is `thirty`"),

@@ -198,6 +198,41 @@ def test_cones_stand_for_good(tmp_path):
     assert (cone.standing, len(cone.states), cone.object_types) == (True, 1, ("obstacle",))
 
 
+def test_where_nobody_was_seen_anything_may_be_written(tmp_path):
+    """As NaN, in arrays and in lists."""
+    dictionary = copy.deepcopy(DICTIONARY)
+    state = dictionary["tracks"]["70"]["state"]
+    state["valid"][40:43] = 0
+    expected = read(tmp_path, copy.deepcopy(dictionary)).participants[0]
+    for key in ("position", "velocity", "heading", "length", "width"):
+        state[key] = np.array(state[key], dtype=float)
+        state[key][40:43] = np.nan
+    state["heading"] = state["heading"].tolist()
+    found = read(tmp_path, dictionary).participants[0]
+    assert list(found.states.items()) == list(expected.states.items())
+    assert len(found.states) == 81
+
+
+def test_ids_may_be_whole_numbers(tmp_path):
+    dictionary = copy.deepcopy(DICTIONARY)
+    ego = read(tmp_path, copy.deepcopy(dictionary)).ego
+    dictionary["tracks"] = {int(name): track for name, track in dictionary["tracks"].items()}
+    assert ego
+    assert read(tmp_path, dictionary).ego == ego
+
+
+def test_states_of_a_light_that_are_no_words_have_no_colour(tmp_path):
+    """Lists of several lengths among them."""
+    dictionary = copy.deepcopy(DICTIONARY)
+    shown = dictionary["dynamic_map_states"]["2"]["state"]
+    shown["object_state"] = [["a"], ["a", "b"], *list(shown["object_state"])[2:]]
+    lights = [
+        light for lane in read(tmp_path, dictionary).lanelets.values() for light in lane.lights
+    ]
+    assert lights
+    assert not any(light.colour_at(step) for light in lights for step in (0, 1))
+
+
 def _set(*keys_and_value):
     *keys, last, value = keys_and_value
 
@@ -238,6 +273,9 @@ def _set(*keys_and_value):
         (_set("map_features", "1", "polyline", [[10**18, 0]]), "a number that is not below"),
         (_set("map_features", "1", "polyline", [[10**400, 0]]), "a whole number of 167 bytes"),
         (_set("map_features", "1", "exit_lanes", [[1]]), "is no text"),
+        (_set("map_features", "1", "exit_lanes", [[1], [1, 2]]), "exit_lanes / 0` is no text"),
+        (_set("map_features", "1", "speed_limit_mph", [[1], [1, 2]]), "rows of different lengths"),
+        (_set("tracks", 70, DICTIONARY["tracks"]["70"]), "`tracks` has the key `70` twice"),
         (_set("map_features", "1", "left_boundaries", [{"lane_start_index": "x"}]), "no whole"),
         (_set("map_features", "41", "polygon", np.zeros((2, 2))), "fewer than 3 corners"),
         (_set("dynamic_map_states", "2", "state", "object_state", ["a"] * 82), "82 states for 81"),

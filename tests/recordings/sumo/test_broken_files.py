@@ -43,6 +43,9 @@ def problem_with(file, net=None):
         ('x="21"', 'x="1e9"', "`x` of a `vehicle` is `1e9`"),
         ('x="21" y="-4.8"', 'x="21" y="nan"', "`y` of a `vehicle` is `nan`"),
         ('x="21"', 'x="here"', "`x` of a `vehicle` is `here`"),
+        ('x="21"', 'x="2_1"', "`x` of a `vehicle` is `2_1`"),
+        ('x="21"', 'x="２１"', "`x` of a `vehicle` is `２１`"),
+        ('time="0.10"', 'time="0_0.10"', "`time` of a `timestep` is `0_0.10`"),
         ('speed="10.0" lane="in_1"', 'lane="in_1"', "a `vehicle` has no `speed`"),
         ('lane="in_1"', 'acceleration="much" lane="in_1"', "`acceleration` of a `vehicle` is"),
         ('lane="in_1"', 'signals="left" lane="in_1"', "`signals` of a `vehicle` is `left`"),
@@ -149,8 +152,10 @@ def test_another_roads_net(tmp_path, fcd, says):
     assert (found.code, says in found.message) == ("R0615", True)
 
 
-def test_degrees_of_longitude_and_latitude(tmp_path):
-    head = '<fcd-output.geo value="true"/>'
+@pytest.mark.parametrize("word", ["true", "1", "Yes", "on", "x", "T"])
+def test_degrees_of_longitude_and_latitude(tmp_path, word):
+    """SUMO has several words for true."""
+    head = f'<fcd-output.geo value="{word}"/>'
     found = problem_with(written(tmp_path, data(moment(0, body()), head=head)))
     assert "degrees of longitude and latitude" in found.message
     assert "--fcd-output.geo" in found.help

@@ -61,6 +61,36 @@ def test_the_last_state_lasts(tmp_path):
     assert [light.colour_at(step) for step in (0, 7, 8, 5000)] == ["red", "red", "green", "green"]
 
 
+LATE = [moment(k + 0.5, body(x=20 + 5 * k, lane="in_1")) for k in range(9)]
+"""What SUMO writes with --begin 0.5 and steps of 1 s."""
+
+
+@pytest.mark.parametrize("offset", range(4))
+def test_a_programme_goes_on_while_times_begin_between_two_steps(tmp_path, offset):
+    """Of 2 s of green and 2 s of red: at each moment the light is that of its time."""
+    logic = (
+        f'<tlLogic id="x" type="static" programID="0" offset="{offset}">'
+        '<phase duration="2" state="G"/><phase duration="2" state="r"/></tlLogic>'
+    )
+    (light,) = (
+        read_sumo(written(tmp_path, data(*LATE), NET.replace(LOGIC, logic))).lanelets["in_1"].lights
+    )
+    expected = ["green" if (k + 0.5 - offset) % 4 < 2 else "red" for k in range(9)]
+    assert [light.colour_at(step) for step in range(9)] == expected
+
+
+def test_states_are_those_of_times_that_begin_between_two_steps(tmp_path):
+    path = written(tmp_path, data(*LATE), NET)
+    rows = "".join(
+        f'<tlsState time="{k + 0.5}" id="x" programID="0" phase="0" state="{letter}"/>'
+        for k, letter in enumerate("GGyrrrGyr")
+    )
+    (tmp_path / "x.tls.xml").write_text(f"<tlsStates>{rows}</tlsStates>", encoding="utf-8")
+    (light,) = read_sumo(path).lanelets["in_1"].lights
+    shown = [light.colour_at(step)[0] for step in range(9)]
+    assert shown == ["g", "g", "y", "r", "r", "r", "g", "y", "r"]
+
+
 @pytest.mark.parametrize(
     ("rows", "said"),
     [

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from rulec import RulecError
 from rulec.recordings.polylines import parallel_line
 from rulec.recordings.recording import Light
 from rulec.recordings.sumo.lanelets import net_lanelets
@@ -49,7 +50,10 @@ def test_neighbours_by_index_from_the_kerb_on(tmp_path):
         return one.left_of, one.right_of
 
     assert beside_in_1(ROAD_NET) == ("in_2", "in_0")
-    assert beside_in_1(ROAD_NET.replace("<net ", '<net lefthand="true" ')) == ("in_0", "in_2")
+    for word in ("true", "1", "yes", "On", "x", "t"):
+        left = ROAD_NET.replace("<net ", f'<net lefthand="{word}" ')
+        assert beside_in_1(left) == ("in_0", "in_2")
+    assert beside_in_1(ROAD_NET.replace("<net ", '<net lefthand="no" ')) == ("in_2", "in_0")
     found = lanelets(tmp_path)
     assert (found[":x_0_0"].left_of, found["in_2"].left_of) == (":x_0_1", None)
 
@@ -153,6 +157,13 @@ def test_stop_signs(tmp_path, state, signs):
         'via=":x_0_0" dir="s" state="m"', f'via=":x_0_0" dir="s" state="{state}"'
     )
     assert lanelets(tmp_path, text)["in_1"].signs == signs
+
+
+@pytest.mark.parametrize("number", ["1_0", "１０"])
+def test_a_number_is_one_as_formats_write_it(tmp_path, number):
+    """Python reads these as 10."""
+    with pytest.raises(RulecError, match=f"`speed` of a `lane` is `{number}`"):
+        lanelets(tmp_path, lane(speed=number))
 
 
 def test_a_lane_without_length_is_passed_over(tmp_path):

@@ -178,6 +178,14 @@ def test_time_begins_with_the_simulation(tmp_path):
     assert list(only(recording).states) == [7200, 7201]
 
 
+def test_time_may_begin_between_two_multiples_of_the_step(tmp_path):
+    """As with --begin 0.5."""
+    recording = read(tmp_path, *(moment(k + 0.5, body(x=50 + 10 * k)) for k in (0, 1, 3, 4)))
+    assert recording.step_s == 1.0
+    assert [list(one.states) for one in recording.participants] == [[0, 1], [3, 4]]
+    assert any("times count from 0.5 s" in remark for remark in recording.remarks)
+
+
 @pytest.mark.parametrize(("time", "step_s", "step"), [(0, 1.0, 0), (5, 1.0, 5), (0.3, 0.1, 3)])
 def test_one_moment_only(tmp_path, time, step_s, step):
     recording = read(tmp_path, moment(time, body()))

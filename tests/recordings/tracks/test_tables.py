@@ -127,6 +127,18 @@ def test_lamps_ego_and_who_stands(tmp_path):
     assert (recording.ego, parked.standing, list(parked.states)) == ("a", True, [0])
 
 
+def test_a_lamp_that_no_row_of_a_track_tells_leaves_its_others_known(tmp_path):
+    """What is not told of one track is of another, and is never off."""
+    head = f"{HEAD},brake_light,left_indicator,horn"
+    rows = ["a,0,20,0,1,0,", "a,0.1,21,0,1,1,", "b,0,40,0,1,,", "b,0.1,41,0,0,,"]
+    rows += ["c,0,60,0,,,", "c,0.1,61,0,,,", "d,0,80,0,,1,", "d,0.1,81,0,0,1,"]
+    a, b, c, d = read(tmp_path, head, *rows).participants
+    assert a.shows == {"brake_light", "left_indicator"}
+    assert (b.shows, b.lamps) == ({"brake_light"}, {0: {"brake_light"}, 1: frozenset()})
+    assert (c.shows, c.lamps) == (frozenset(), {})
+    assert (d.shows, d.lamps) == ({"brake_light", "left_indicator"}, {1: {"left_indicator"}})
+
+
 @pytest.mark.parametrize(
     ("times", "step_s", "steps"),
     [
@@ -470,6 +482,8 @@ def test_speeds_with_a_sign_that_headings_deny(tmp_path):
         ("a,0,1e400,0,1", "leave the row out, or write the number that is meant"),
         ("a,0,inf,0,1", "leave the row out, or write the number that is meant"),
         ("a,0,one,0,1", "it has a row for each time of each track"),
+        ("a,0,1_0,0,1", "it has a row for each time of each track"),
+        ("a,0,１０,0,1", "it has a row for each time of each track"),
     ],
 )
 def test_what_stands_in_the_place_of_a_number(tmp_path, row, way_out):

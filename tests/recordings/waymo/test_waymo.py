@@ -1,5 +1,7 @@
 """Scenarios of Waymo's, written by hand: what a recording makes of them."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -197,6 +199,45 @@ def test_who_drives_backwards_has_a_speed_below_0(tmp_path):
     states = [w.state(-0.1 * k, 0.0, 0.0, (-1.0, 0.0)) for k in range(81)]
     (body,) = read(tmp_path, w.crossing(tracks=[(70, w.VEHICLE, states)])).participants
     assert body.states[5].speed == -1.0
+
+
+JITTER = np.random.default_rng(1).uniform(-0.02, 0.02, 81)
+
+
+@pytest.mark.parametrize("late", [JITTER, np.arange(81) % 2 * 0.02, np.arange(81) * 0.001])
+def test_times_may_be_off_by_a_quarter_of_a_step(tmp_path, late):
+    """From one to the next, that may be half a step; and clocks may be slow."""
+    times = (0.1 * np.arange(81) + late).tolist()
+    recording = read(tmp_path, w.crossing(times=times))
+    assert recording.step_s == pytest.approx(0.1, abs=0.0011)
+    assert list(recording.participants[0].states) == list(range(81))
+
+
+@pytest.mark.parametrize("late", [0.03, 0.05, -0.04])
+def test_times_that_are_farther_off_are_refused(tmp_path, late):
+    """From place to place, by turns."""
+    times = [0.1 * k + late * (k % 4 == 3) - late * (k % 4 == 1) for k in range(81)]
+    with pytest.raises(RulecError, match="its times are uneven"):
+        read(tmp_path, w.crossing(times=times))
+
+
+def test_what_was_not_valid_may_be_anything(tmp_path):
+    nothing = w.state(float("nan"), 0.0, 0.0, (10.0, 0.0), valid=False)
+    states = [w.state(k - 40.0, 0.0, 0.0, (10.0, 0.0)) for k in range(80)]
+    body = read(tmp_path, w.crossing(tracks=[(70, w.VEHICLE, [*states, nothing])])).participants[0]
+    assert list(body.states) == list(range(80))
+
+
+def test_a_line_with_points_that_almost_coincide_warns_nobody(tmp_path):
+    """GEOS divides by the squares of distances."""
+    features = [
+        w.lane(1, w.straight(-60, 0), right_lines=[(0, 12, 21, 2)]),
+        w.road_line(21, [(0, -1.75), (-3e-255, -1.75), (-60, -1.75)], kind=2),
+    ]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        lanelets = read(tmp_path, w.crossing(features=features, lights=[])).lanelets
+    assert lanelets["1"].right[:, 1] == pytest.approx(-1.75)
 
 
 def test_several_scenarios_in_a_file(tmp_path):

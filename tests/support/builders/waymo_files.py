@@ -40,9 +40,9 @@ def single(number, value):
     return field(number, 5, struct.pack("<f", value))
 
 
-def state(x, y, heading=0.0, speed=(0.0, 0.0), size=(4.5, 1.9)):
+def state(x, y, heading=0.0, speed=(0.0, 0.0), size=(4.5, 1.9), *, valid=True):
     """An object's state."""
-    return {"x": x, "y": y, "heading": heading, "speed": speed, "size": size}
+    return {"x": x, "y": y, "heading": heading, "speed": speed, "size": size, "valid": valid}
 
 
 def _state(one):
@@ -56,7 +56,7 @@ def _state(one):
         *(single(5 + k, value) for k, value in enumerate((*one["size"], 1.5))),
         single(8, one["heading"]),
         *(single(9 + k, value) for k, value in enumerate(one["speed"])),
-        whole(11, 1),
+        whole(11, int(one["valid"])),
     )
 
 

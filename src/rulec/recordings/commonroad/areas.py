@@ -157,6 +157,9 @@ def wanted_of_point(ways: Sequence[Way]) -> Sequence[int] | None:
 
 def usual_numbers(texts: Texts) -> list[float] | None:
     """The numbers in texts, as ``Tree.number`` reads them; None if any text is invalid."""
+    # In bytes, Python reads no digits of other scripts
+    if b"_" in b"".join(texts):
+        return None
     try:
         # Adding 0 turns -0 into 0.
         numbers = [float(text) + 0.0 for text in texts]

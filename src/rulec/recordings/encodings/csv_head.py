@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import zlib
 
+from rulec.recordings.encodings.xml_element import number_in
+
 PARQUET = (".parquet", ".pq")
 """Suffixes of Parquet files."""
 
@@ -44,7 +46,7 @@ def separator_of(head: str) -> str:
 def is_number(text: str) -> bool:
     """Whether a text is a number."""
     try:
-        float(text)
+        number_in(text)
     except ValueError:
         return False
     return True

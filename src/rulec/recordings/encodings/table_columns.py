@@ -13,7 +13,7 @@ from numpy import bool_, float64, int64
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError, nearest_name
-from rulec.recordings.encodings.xml_element import LARGEST, short
+from rulec.recordings.encodings.xml_element import LARGEST, number_in, short
 from rulec.value_display import short_repr
 
 MOST_ROWS = 20_000_000
@@ -228,6 +228,10 @@ def checked_numbers(values: Sequence[str], largest: float = LARGEST) -> tuple[Fl
     Booleans become 1 and 0 if the column holds nothing else.
     """
     try:
+        # One look at all of them: what ``number_in`` refuses in each
+        whole = "".join(values)
+        if "_" in whole or not whole.isascii():
+            raise ValueError
         numbers = np.fromiter(map(float, values), float, len(values))
     except ValueError:
         spelt = {value: _number(value) for value in set(values)}
@@ -241,7 +245,7 @@ def checked_numbers(values: Sequence[str], largest: float = LARGEST) -> tuple[Fl
 def _number(text: str) -> float:
     """A number; NaN for an empty text, infinity for one that is not a number."""
     try:
-        return float(text)
+        return number_in(text)
     except ValueError:
         return np.nan if text.strip().casefold() in _EMPTY else np.inf
 

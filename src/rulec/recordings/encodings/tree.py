@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.file_format import FileFormat
-from rulec.recordings.encodings.xml_element import LARGEST, short
+from rulec.recordings.encodings.xml_element import LARGEST, number_in, short
 
 MOST_ELEMENTS = 1_000_000
 """Limit on the elements in one child of the root, about 300 MB of memory."""
@@ -96,7 +96,7 @@ class Tree:
         """The number in the text or, with ``key``, in an attribute; it must not be huge."""
         text = self.attribute(key) if key else self.text
         try:
-            value = float(text)
+            value = number_in(text)
         except ValueError:
             value = LARGEST
         if not abs(value) < LARGEST or len(text) == LONGEST_TEXT:
@@ -106,6 +106,7 @@ class Tree:
     def whole(self) -> int:
         """The whole number in the text, which must not be huge."""
         try:
+            number_in(self.text)
             value = int(self.text)
         except ValueError:
             value = int(LARGEST)

@@ -51,7 +51,7 @@ class XmlElement:
     def as_number(self, key: str, text: str) -> float:
         """The number in a text, which must not be huge."""
         try:
-            value = float(text)
+            value = number_in(text)
         except ValueError:
             value = LARGEST
         if not abs(value) < LARGEST:
@@ -63,6 +63,17 @@ class XmlElement:
         """The error (R0610) at the parser's current position."""
         expected = expected and f"expected {expected}"
         return self.form.refused(self.path, why, self.parser.CurrentLineNumber, expected=expected)
+
+
+def number_in(text: str) -> float:
+    """The number in a text. Raises ValueError.
+
+    Python would also read ``1_0`` and the digits of other scripts, which no format has: whatever
+    wrote them meant something else.
+    """
+    if "_" in text or not text.strip().isascii():
+        raise ValueError(text)
+    return float(text)
 
 
 def short(text: str) -> str:

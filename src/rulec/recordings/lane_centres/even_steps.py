@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from rulec.recordings.recording import MOST_STEPS, SPARSEST
 
 MOST_OFF = 0.25
-"""How far a time may be off its step, as a fraction of the step."""
+"""How far a time may be off its place, as a fraction of the step."""
 
 _MILLISECONDS = 1000.0
 
@@ -17,8 +17,10 @@ _MILLISECONDS = 1000.0
 def even_steps(times_s: NDArray[float64]) -> tuple[float, NDArray[int64]]:
     """The time step (s), in whole milliseconds, and the step number of each time.
 
-    The step is the median interval between times; for a single time it is 0.1 s. Steps may be
-    missing. Raises ValueError with the reason if the times do not fit.
+    The step is the usual interval between times; for a single time it is 0.1 s. Steps may be
+    missing. Times fit if each is close to its place: at a multiple of the step after the time
+    before it, or on the grid that fits all of them. Raises ValueError with the reason if they do
+    not.
     """
     if not len(times_s):
         raise ValueError("there are no times")
@@ -29,13 +31,18 @@ def even_steps(times_s: NDArray[float64]) -> tuple[float, NDArray[int64]]:
     between = np.diff(times_s)
     if between.min() <= 0:
         raise ValueError("its times do not ascend")
-    step_s = round(float(np.median(between)) * _MILLISECONDS) / _MILLISECONDS
+    interval = _usual_interval(times_s)
+    step_s = round(interval * _MILLISECONDS) / _MILLISECONDS
     if step_s <= 0:
         raise ValueError("its times are less than half a millisecond apart")
     # From the intervals: with a slow or fast clock, times since the start would be a step off
     counts = np.round(between / step_s)
     off = np.abs(between / step_s - counts)
-    if off.max() > MOST_OFF or counts.min() < 1:
+    numbers = np.append(0.0, np.cumsum(counts))
+    # Two times may each be off by as much, in opposite directions; but most intervals are even
+    shifted = np.ptp((times_s - times_s[0]) / interval - numbers)
+    is_near = np.median(off) <= MOST_OFF and shifted <= 2 * MOST_OFF
+    if (off.max() > MOST_OFF and not is_near) or counts.min() < 1:
         at = int(np.argmax(off))
         raise ValueError(
             f"its times are uneven: {between[at]:g} s from one to the next is not a multiple of "
@@ -43,4 +50,16 @@ def even_steps(times_s: NDArray[float64]) -> tuple[float, NDArray[int64]]:
         )
     if counts.sum() > min(MOST_STEPS, SPARSEST * len(times_s)):
         raise ValueError(f"its {len(times_s)} times are spread over {counts.sum():.0f} steps")
-    return step_s, np.concatenate(([0], np.cumsum(counts))).astype(int64)
+    return step_s, numbers.astype(int64)
+
+
+def _usual_interval(times_s: NDArray[float64]) -> float:
+    """The usual time (s) from one step to the next, measured over many of them.
+
+    From one to the next only, it would be too long or too short where every other time is late.
+    """
+    between = np.diff(times_s)
+    counts = np.maximum(np.round(between / np.median(between)), 1)
+    numbers = np.append(0.0, np.cumsum(counts))
+    half = len(times_s) // 2
+    return float(np.median((times_s[half:] - times_s[:-half]) / (numbers[half:] - numbers[:-half])))

@@ -77,11 +77,11 @@ def _by_side(
     for part in side.boundaries:
         own = slice(part.start, part.end + 1)
         if part.line in lines:
-            widths[own] = _sound(shapely.distance(points[own], lines[part.line]))
+            widths[own] = _sound(_distances(points[own], lines[part.line]))
     for beside in side.neighbours:
         own = slice(beside.start, beside.end + 1)
         if beside.lane in centres:
-            halves = _sound(shapely.distance(points[own], centres[beside.lane]) / 2)
+            halves = _sound(_distances(points[own], centres[beside.lane]) / 2)
             widths[own] = np.where(np.isnan(widths[own]), halves, widths[own])
     return widths
 
@@ -114,11 +114,18 @@ def _near_its_line(
     if part.line not in lines:
         yield part
         return
-    away = shapely.distance(points[part.start : part.end + 1], lines[part.line])
+    away = _distances(points[part.start : part.end + 1], lines[part.line])
     near = np.concatenate(([False], ~np.isnan(_sound(away)), [False]))
     edges = np.flatnonzero(np.diff(near.astype(np.int8))).reshape(-1, 2) + part.start
     for start, end in edges.tolist():
         yield replace(part, start=start, end=end - 1)
+
+
+def _distances(points: NDArray[np.object_], line: shapely.LineString) -> Widths:
+    # GEOS divides by the square of a segment's length, which may be almost 0
+    with np.errstate(all="ignore"):
+        distances: Widths = shapely.distance(points, line)
+    return distances
 
 
 def _by_area(lane: CentreLane) -> HalfWidths:

@@ -12,6 +12,7 @@ from math import isfinite
 from types import MappingProxyType
 
 from rulec.recordings.encodings.speed_units import KMH, SPEED_UNITS
+from rulec.recordings.encodings.xml_element import number_in
 from rulec.recordings.recording import BUSES_ONLY, CYCLES_TOO, TAXIS_TOO, LaneMark
 
 _Tags = Mapping[str, str]
@@ -101,7 +102,7 @@ def velocity(text: str) -> float | None:
     number = text.rstrip("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ/ ")
     unit = _UNITS.get(text[len(number) :].strip().lower())
     try:
-        value = float(number)
+        value = number_in(number)
     except ValueError:
         return None
     return value * unit if unit is not None and isfinite(value) and value >= 0 else None

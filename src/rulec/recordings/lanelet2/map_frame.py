@@ -21,7 +21,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.files.read_files import opened
-from rulec.recordings.encodings.xml_element import LARGEST, short
+from rulec.recordings.encodings.xml_element import LARGEST, number_in, short
 from rulec.recordings.lanelet2 import projections
 from rulec.recordings.lanelet2.osm_file import LANELET2, OsmFile
 from rulec.recordings.recording import Points
@@ -159,7 +159,7 @@ def _number(path: Path, info: dict[str, str], key: str, default: float) -> float
     if not info.get(key):
         return default
     try:
-        value = float(info[key])
+        value = number_in(info[key])
     except ValueError:
         value = nan
     if not (isfinite(value) and abs(value) < LARGEST):

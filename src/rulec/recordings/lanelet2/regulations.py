@@ -31,6 +31,7 @@ _SHORTEST_M = 0.5
 
 _GOES_FIRST = frozenset({"PRIORITY", "RIGHT_OF_WAY"})
 _YES = ("yes", "true", "1")
+_NAMES_LANELETS = ("all_way_stop", "right_of_way")
 
 
 @dataclass(slots=True)
@@ -233,7 +234,9 @@ def _right_of_way_signs(
 
 def _drawn_stop_lines(survey: Surveyed, rules: Mapping[str, LaneRules]) -> None:
     """Give stop lines of the map that no rule refers to to the lanelets that they cross."""
-    drawn = (way.id for way in survey.file.ways.values() if way.tags.get("type") == "stop_line")
+    ways = survey.file.ways.values()
+    used = _lines_of_rules(survey)
+    drawn = (x.id for x in ways if x.tags.get("type") == "stop_line" and x.id not in used)
     lines = [line for line in map(survey.line, drawn) if line is not None]
     open_lanes = [x for x in lanes(survey.entries) if rules[x.id].stop_line is None]
     if not lines or not open_lanes:
@@ -254,6 +257,17 @@ def _drawn_stop_lines(survey: Surveyed, rules: Mapping[str, LaneRules]) -> None:
                 reached[entry.id] = along, line
     for name, (_, line) in reached.items():
         _draw(survey.entries[name], rules[name], line)
+
+
+def _lines_of_rules(survey: Surveyed) -> frozenset[str]:
+    """The ways that are lines of rules to which a lanelet refers, or which name lanelets."""
+    referred = {name for entry in survey.entries.values() for name in entry.rules}
+    return frozenset(
+        way
+        for element in regulatory_elements(survey.file)
+        if element.id in referred or element.tags.get("subtype") in _NAMES_LANELETS
+        for way in element.refs("ref_line", "way")
+    )
 
 
 def _crosses(middle: shapely.LineString, along: float, line: Points) -> bool:

@@ -31,7 +31,7 @@ from rulec.recordings.lanes.lanes_along import (
     linked,
     with_ends_that_meet,
 )
-from rulec.recordings.polylines import line_length, without_repeats
+from rulec.recordings.polylines import arc_lengths, line_length, without_repeats
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, Points, Side
 from rulec.recordings.road_map import RoadMap
 
@@ -155,15 +155,13 @@ class _LaneTable:
         left_mark, right_mark = (
             self._one_of(side, own, get_args(LaneMark)) for side in ("left_mark", "right_mark")
         )
-        limit = self.named.number("limit_mps")
-        limits = [] if limit is None else limit[own][~np.isnan(limit[own])].tolist()
         return lanelet_along(
             name,
             centre,
             width,
             types=frozenset((*types, *(["intersection"] if junction else []))),
             signs=frozenset(word.upper() for word in self._words("signs", own)),
-            limit_mps=limits[0] if limits else None,
+            limit_mps=self._limit(own),
             left_mark=cast("LaneMark | None", left_mark),
             right_mark=cast("LaneMark | None", right_mark),
             successors=self._words("successors", own),
@@ -193,7 +191,9 @@ class _LaneTable:
         known = np.flatnonzero(~np.isnan(stated))
         if not len(known):
             return kept, np.full(len(kept), USUAL_WIDTH_M)
-        filled = np.interp(np.arange(len(own)), known, stated[known])
+        # By the distance: points lie closer together where a lane bends
+        at = arc_lengths(points)
+        filled = np.interp(at, at[known], stated[known])
         first = np.array([int(np.argmax((points == point).all(axis=1))) for point in kept])
         return kept, filled[first]
 
@@ -205,12 +205,33 @@ class _LaneTable:
         codes = [code for code in dict.fromkeys(texts.codes[own].tolist()) if texts.names[code]]
         if len(codes) > 1:
             row = int(own[np.argmax(texts.codes[own] == codes[1])])
-            both = " and ".join(f"`{short(texts.names[code])}`" for code in codes[:2])
-            lane = short(self.lane.names[int(self.lane.codes[own[0]])])
-            why = f"its `{name}` is another than in the rows above of lane `{lane}`: {both}"
-            way_out = "separate several with blanks; where something changes, begin another lane"
-            raise self.columns.wrong(row, why, help_text=way_out)
+            raise self._two_values(row, name, [texts.names[code] for code in codes[:2]])
         return texts.names[codes[0]] if codes else ""
+
+    def _limit(self, own: NDArray[np.intp]) -> float | None:
+        """The limit of a lane (m/s): one row suffices, others repeat it or are empty."""
+        limit = self.named.number("limit_mps")
+        stated = own[:0] if limit is None else own[~np.isnan(limit[own])]
+        if limit is None or not len(stated):
+            return None
+        others = stated[limit[stated] != limit[stated[0]]]
+        if len(others):
+            (kind,) = (kind for kind in LANE_COLUMNS if kind.name == "limit_mps")
+            given, _ = self.named.as_given(kind)
+            values = self.columns.numbers[given][[stated[0], others[0]]]
+            raise self._two_values(int(others[0]), given, [f"{value:g}" for value in values])
+        return float(limit[stated[0]])
+
+    def _two_values(self, row: int, name: str, values: Sequence[str]) -> RulecError:
+        both = " and ".join(f"`{short(value)}`" for value in values)
+        why = (
+            f"its `{short(name)}` is another than in the rows above of lane "
+            f"`{short(self.lane.of(row))}`: {both}"
+        )
+        way_out = "where something changes, begin another lane"
+        if name in self.named.texts:
+            way_out = f"separate several with blanks; {way_out}"
+        return self.columns.wrong(row, why, help_text=way_out)
 
     def _words(self, name: str, own: NDArray[np.intp]) -> tuple[str, ...]:
         return tuple(self._text(name, own).split())

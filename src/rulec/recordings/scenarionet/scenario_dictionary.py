@@ -5,8 +5,9 @@ https://scenarionet.readthedocs.io/en/latest/description.html describes the cont
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from itertools import chain
+from collections import Counter
+from dataclasses import dataclass, field, replace
+from itertools import chain, compress
 from pathlib import Path
 from typing import Any
 
@@ -66,15 +67,40 @@ class KeyedValue:
         if not isinstance(self.value, dict):
             raise self.wrong("is no dictionary")
         self._spend(len(self.value))
-        return [(str(key), self._below(str(key), value)) for key, value in self.value.items()]
+        names = list(map(str, self.value))
+        if len(set(names)) < len(names):
+            ((twice, _),) = Counter(names).most_common(1)
+            raise self.wrong(f"has the key `{short(twice)}` twice, as a text and as a number")
+        return [
+            (name, self._below(name, value))
+            for name, value in zip(names, self.value.values(), strict=True)
+        ]
 
     def elements(self) -> list[KeyedValue]:
         """The elements of a list, a tuple, or an array along its first axis."""
+        value = self._row()
+        return [self._below(str(number), item) for number, item in enumerate(value)]
+
+    def chosen(self, flags: NDArray[np.bool_], flags_name: str) -> KeyedValue:
+        """The elements of a list, tuple or array that are flagged; it has as many as ``flags``."""
+        value = self._row()
+        if len(value) != len(flags):
+            raise self.wrong(f"has {len(value)} states, `{flags_name}` has {len(flags)}")
+        if isinstance(value, np.ndarray):
+            return replace(self, value=value[flags])
+        return replace(self, value=list(compress(value, flags.tolist())))
+
+    def _row(self) -> list[Any] | tuple[Any, ...] | NDArray[Any]:
         value = self.value
-        if not isinstance(value, list | tuple | np.ndarray) or np.ndim(value) == 0:
+        # ``np.ndim`` would make an array of a list, whose elements may differ in length
+        is_row = (
+            value.ndim > 0 if isinstance(value, np.ndarray) else isinstance(value, list | tuple)
+        )
+        if not is_row:
             raise self.wrong("is no list")
         self._spend(len(value))
-        return [self._below(str(number), item) for number, item in enumerate(value)]
+        row: list[Any] | tuple[Any, ...] | NDArray[Any] = value
+        return row
 
     def text(self) -> str:
         """A text; a whole number is converted to one."""

@@ -94,7 +94,7 @@ def _lane(name: str, kind: str, entry: KeyedValue, known: DataSet) -> CentreLane
     heights = centre[:, 2] if known.whole_map else np.full(len(centre), np.nan)
     centre = np.column_stack((centre[:, :2], heights))
     mph = entry.get("speed_limit_mph") if known.whole_map else None
-    limit = 0.0 if mph is None else float(mph.column()[0]) if np.ndim(mph.value) else _number(mph)
+    limit = 0.0 if mph is None else _number(mph)
     outline = entry.get("polygon")
     area = None if outline is None else outline.places()[:, :2]
     sides = [
@@ -118,6 +118,9 @@ def _lane(name: str, kind: str, entry: KeyedValue, known: DataSet) -> CentreLane
 
 
 def _number(entry: KeyedValue) -> float:
+    """A number, or the first of several."""
+    if isinstance(entry.value, list | tuple | np.ndarray):
+        return next(iter(entry.column().tolist()), 0.0)
     if not isinstance(entry.value, int | float | np.number) or not abs(entry.value) < np.inf:
         raise entry.wrong("is no number")
     return float(entry.value)

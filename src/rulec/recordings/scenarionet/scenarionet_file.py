@@ -73,7 +73,7 @@ def read_scenarionet(path: Path) -> Recording:
     bodies = tuple(_participants(scenario, known, ego, (step_s, steps), remarks))
     if not bodies:
         raise scenario.child("tracks").wrong("contains no road users")
-    if ego and ego not in scenario.child("tracks").value:
+    if ego and ego not in map(str, scenario.child("tracks").value):
         raise metadata.wrong(f"says that ego is `{ego[:40]}`, who is not in `tracks`")
     title = f" of {known.title}" if known.title else ""
     recording = Recording(
@@ -143,12 +143,9 @@ def _boxes(state: KeyedValue, steps: NDArray[int64]) -> BoxTrack:
         raise state.wrong(f"has {len(valid)} states for {len(steps)} times")
 
     def rows(key: str) -> NDArray[float64]:
-        entry = state.child(key)
-        values = entry.places()[:, :2] if key in ("position", "velocity") else entry.column()
-        if len(values) != len(valid):
-            raise entry.wrong(f"has {len(values)} states, `valid` has {len(valid)}")
-        chosen: NDArray[float64] = values[valid]
-        return chosen
+        # What is not valid may be anything, such as NaN
+        entry = state.child(key).chosen(valid, "valid")
+        return entry.places()[:, :2] if key in ("position", "velocity") else entry.column()
 
     sizes = np.column_stack((rows("length"), rows("width")))
     if len(sizes) and np.median(sizes, axis=0).min() <= 0:

@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 
 from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.recordings.encodings.safe_xml import scan
-from rulec.recordings.encodings.xml_element import LARGEST, XmlElement, short
+from rulec.recordings.encodings.xml_element import LARGEST, XmlElement, number_in, short
 from rulec.recordings.recording_messages import NET_MISSING
 from rulec.recordings.sumo.fcd_content import (
     BODIES,
@@ -70,8 +70,8 @@ def read_fcd_as_xml(path: Path) -> FloatingCarData:
 def _add(data: FloatingCarData, element: XmlElement) -> None:
     name, attributes = element.name, element.attributes
     try:
-        row = x, y, angle, speed = tuple(map(float, _place_of(attributes)))
-        acceleration = float(attributes.get("acceleration", "nan"))
+        row = x, y, angle, speed = tuple(map(number_in, _place_of(attributes)))
+        acceleration = number_in(attributes.get("acceleration", "nan"))
         key = attributes["id"]
     except (KeyError, ValueError):
         raise _wrong(element) from None

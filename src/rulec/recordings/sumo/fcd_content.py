@@ -34,6 +34,9 @@ _LEAVES_OUT = re.compile(
 """Options that make floating-car data contain only a part of the traffic."""
 
 
+_TRUE = frozenset({"true", "1", "yes", "on", "x", "t"})
+
+
 @dataclass(frozen=True, slots=True)
 class FcdHead:
     """SUMO's configuration, from a comment at the head of its output.
@@ -46,6 +49,11 @@ class FcdHead:
     additional: tuple[str, ...] = ()
     geographic: bool = False
     leaves_out: tuple[str, ...] = ()
+
+
+def is_true(text: str) -> bool:
+    """Whether a text is true to SUMO, which reads the same words everywhere."""
+    return text.lower() in _TRUE
 
 
 def _unescaped(text: str) -> str:
@@ -68,7 +76,7 @@ def fcd_head(comment: str) -> FcdHead:
         options.get("net-file", ""),
         (*routes, *additional),
         additional,
-        options.get("fcd-output.geo") in ("true", "1", "yes", "on"),
+        is_true(options.get("fcd-output.geo", "")),
         tuple(sorted(set(_LEAVES_OUT.findall(comment)))),
     )
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from math import ceil
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from rulec.recordings.encodings.file_format import XmlFormat
 from rulec.recordings.encodings.safe_xml import scan
 from rulec.recordings.encodings.xml_element import XmlElement, short
 from rulec.recordings.recording import LONGEST_M, Light, Points, Side
+from rulec.recordings.sumo.fcd_content import is_true
 
 NET = XmlFormat("a SUMO net", "SUMO's program `netconvert` makes such files", root="net")
 
@@ -20,6 +22,9 @@ LANE_WIDTH_M = 3.2
 """SUMO's default, used where a net gives no width."""
 
 WIDEST_M = 100.0
+
+_HAIR = 1e-6
+"""So much of a step may times that are multiples of it be off, from their decimals."""
 
 COLOURS: Mapping[str, str] = {
     "r": "red",
@@ -109,21 +114,30 @@ class SignalProgramme:
         return any(0 <= link < len(letters) and letters[link] == "s" for _, letters in self.phases)
 
     def light(self, link: int, step_s: float) -> Light | None:
-        """The light of a link in time steps; None if the programme has no phase for it."""
+        """The light of a link in time steps; None if the programme has no phase for it.
+
+        A phase has the steps that lie in it, from its begin on.
+        """
         phases: list[tuple[str, int]] = []
-        ends, done = 0.0, 0
+        begin = _step_from(self.begin, step_s)
+        ends, done = self.begin, begin
         for duration, letters in self.phases:
             if not 0 <= link < len(letters):
                 return None
             ends += duration
-            steps = round(ends / step_s) - done
+            steps = _step_from(ends, step_s) - done
             done += steps
             colour = COLOURS.get(letters[link], "inactive")
             if phases and phases[-1][0] == colour:
                 phases[-1] = colour, phases[-1][1] + steps
             elif steps:
                 phases.append((colour, steps))
-        return Light(round(self.begin / step_s), tuple(phases)) if phases else None
+        return Light(begin, tuple(phases)) if phases else None
+
+
+def _step_from(time_s: float, step_s: float) -> int:
+    """The first step at a time, or after it."""
+    return ceil(time_s / step_s - _HAIR)
 
 
 @dataclass(slots=True)
@@ -164,6 +178,14 @@ class SumoNet:
                 light = programmes[0].light(connection.link, step_s)
                 if light is not None:
                     yield connection, light
+
+    def begin_later(self, late_s: float) -> None:
+        """Let all programmes begin so much (s) later, for steps that count from another time."""
+        for name, programmes in self.programmes.items() if late_s else ():
+            self.programmes[name] = [
+                programme and replace(programme, begin=programme.begin + late_s)
+                for programme in programmes
+            ]
 
     def unknown_lights(self) -> list[str]:
         """The lights whose programme is unknown."""
@@ -212,7 +234,7 @@ def read_net(path: Path) -> SumoNet:
         lights.begin(element)
         match element.name:
             case "net":
-                net.side = "left" if element.get("lefthand") in ("true", "1") else "right"
+                net.side = "left" if is_true(element.get("lefthand")) else "right"
             case "edge":
                 function, kind, start, end = map(element.get, ("function", "type", "from", "to"))
                 edge = NetEdge(element.text("id"), function, kind, start, end)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy import float64, intp
 from numpy.typing import NDArray
 
-from rulec.recordings.encodings.xml_element import LARGEST
+from rulec.recordings.encodings.xml_element import LARGEST, number_in
 from rulec.recordings.sumo.fcd_content import BODIES
 from rulec.trace.formats.byte_words import (
     BYTES,
@@ -206,7 +206,7 @@ def _numbers(texts: TextPlaces) -> NDArray[float64]:
     values, is_read = short_decimals(words, lengths.clip(1, BYTES))
     np.negative(values, out=values, where=is_minus)
     for n in np.flatnonzero(~(is_read & is_short)).tolist():
-        values[n] = float(texts[n])
+        values[n] = number_in(texts[n])
     return values
 
 

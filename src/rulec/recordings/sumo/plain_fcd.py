@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
 from rulec.files.read_files import opened
-from rulec.recordings.encodings.xml_element import LARGEST
+from rulec.recordings.encodings.xml_element import LARGEST, number_in
 from rulec.recordings.sumo.fcd_content import (
     FCD,
     LONGEST_ID,
@@ -162,7 +162,7 @@ class _Lines:
             raise NotPlainError
         pieces = line.split('"')
         if pieces[0].lstrip(" ") == _STEP and pieces[2:] in ([">"], ["/>"]):
-            moment = round(float(pieces[1]) * MICROSECONDS)
+            moment = round(number_in(pieces[1]) * MICROSECONDS)
             known = self.data.moments
             if self._is_in_step or (known and moment <= known[-1]):
                 raise NotPlainError

@@ -95,6 +95,8 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     for file in light_states_beside(path, data.head):
         shown = read_light_states(file).items()
         net.programmes.update({name: [programme] for name, programme in shown})
+    start_s = data.moments[0] % round(step_s * MICROSECONDS) / MICROSECONDS
+    net.begin_later(-start_s)
     lanelets = net_lanelets(net, step_s)
     _check_near(path, participants, lanelets.values())
     return Recording(
@@ -104,7 +106,7 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
         participants=participants,
         form="SUMO data",
         side=net.side,
-        remarks=(*_remarks(unknown, net), *_left_out(data)),
+        remarks=(*_remarks(unknown, net), *_left_out(data), *_start(start_s)),
         complete=COMPLETE - _TRAFFIC if data.head.leaves_out else COMPLETE,
         rounding=rounding,
     )
@@ -184,6 +186,11 @@ def _left_out(data: FloatingCarData) -> Iterator[str]:
         yield f"only part of the traffic is recorded, because of {options}: the rest is unknown"
 
 
+def _start(start_s: float) -> Iterator[str]:
+    if start_s:
+        yield f"times count from {start_s:g} s, as SUMO's steps do not begin at a multiple of them"
+
+
 def _list(names: list[str]) -> str:
     more = len(names) - _NAMED
     return ", ".join(names[:_NAMED] + ([f"{more} more"] if more > 0 else []))
@@ -220,18 +227,20 @@ def _check_near(
 def time_step(path: Path, moments: list[int]) -> float:
     """The time step (s): the shortest time between two moments of the file.
 
-    Moments may be missing, as when there is no traffic, but none may lie between two steps. For a
-    single moment it is the longest step of which both a second and its time are multiples. Raises
-    RulecError R0610 for moments that are too far apart, or not all multiples of the step.
+    Moments may be missing, as when there is no traffic, but none may lie between two steps. The
+    first may lie between two multiples of the step, as with SUMO's --begin. For a single moment it
+    is the longest step of which both a second and its time are multiples. Raises RulecError R0610
+    for moments that are too far apart, or uneven.
     """
     if len(moments) < 2:
         return gcd(MICROSECONDS, *moments) / MICROSECONDS
     step = min(after - before for before, after in pairwise(moments))
-    off = next((moment for moment in moments if moment % step), None)
+    off = next((moment for moment in moments if (moment - moments[0]) % step), None)
     if off is not None:
         why = (
-            f"its times are uneven: {off / MICROSECONDS:g} s is not a multiple of "
-            f"{step / MICROSECONDS:g} s, the shortest time from one to the next"
+            f"its times are uneven: from {moments[0] / MICROSECONDS:g} s to "
+            f"{off / MICROSECONDS:g} s is not a multiple of {step / MICROSECONDS:g} s, the "
+            "shortest time from one to the next"
         )
         way_out = "have SUMO write every step, or every n-th one (--device.fcd.period)"
         raise FCD.refused(path, why, help_text=way_out)

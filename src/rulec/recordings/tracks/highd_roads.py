@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.recordings.encodings.table_columns import NamedColumns
-from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.encodings.xml_element import number_in, short
 from rulec.recordings.lanes.lanes_along import lanelet_along
 from rulec.recordings.recording import LONGEST_M, Lanelet
 from rulec.recordings.road_map import RoadMap
@@ -63,7 +63,7 @@ def _marks(about: NamedColumns, name: str) -> list[float]:
     """The positions of a carriageway's marks by ascending y (m), as in the file."""
     text = about.texts[name].names[int(about.texts[name].codes[0])]
     try:
-        marks = sorted(float(part) for part in text.split(";") if part.strip())
+        marks = sorted(number_in(part) for part in text.split(";") if part.strip())
     except ValueError:
         marks = []
     gaps = np.diff(marks)

@@ -160,13 +160,14 @@ class _Reading:
         for number, (start, end) in enumerate(pairwise(ends), 1):
             part = own[start:end]
             track = self._track(kind, part, length, width)
+            lamps = self._stated_lamps(part)
             yield tracked(
                 name if number == 1 else f"{name}_{number}",
                 kind,
                 track,
                 standing=standing,
-                lamps=self._lamps(part),
-                shows=frozenset(rows.lamps),
+                lamps=self._lit(part, lamps),
+                shows=frozenset(lamps),
             )
 
     def _size(self, kind: str, own: NDArray[np.intp]) -> tuple[float, float]:
@@ -233,18 +234,23 @@ class _Reading:
         other_way = (np.abs(moved) > _BACKING_MPS) & (moved * stated < 0)
         return np.where(other_way, -stated, stated)
 
-    def _lamps(self, own: NDArray[np.intp]) -> dict[int, frozenset[Lamp]]:
-        """The lit lamps by step; steps without information are missing."""
-        lamps: dict[int, frozenset[Lamp]] = {}
-        if not self.rows.lamps:
-            return lamps
-        values = {name: column[own] for name, column in self.rows.lamps.items()}
-        known = ~np.isnan(np.array([*values.values()])).any(axis=0)
+    def _stated_lamps(self, own: NDArray[np.intp]) -> dict[Lamp, Floats]:
+        """The lamps of which some row says whether they are lit, with a value for each row."""
+        values = {lamp: column[own] for lamp, column in self.rows.lamps.items()}
+        return {lamp: column for lamp, column in values.items() if not np.isnan(column).all()}
+
+    def _lit(
+        self, own: NDArray[np.intp], lamps: Mapping[Lamp, Floats]
+    ) -> dict[int, frozenset[Lamp]]:
+        """The lit ones of ``lamps`` by step; steps that leave one of them open are missing."""
+        if not lamps:
+            return {}
+        known = ~np.isnan(np.array([*lamps.values()])).any(axis=0)
         steps = self.rows.times.steps[own]
-        for at in np.flatnonzero(known).tolist():
-            lit = (name for name, column in values.items() if column[at] == 1)
-            lamps[int(steps[at])] = frozenset(lit)
-        return lamps
+        return {
+            int(steps[at]): frozenset(lamp for lamp, column in lamps.items() if column[at] == 1)
+            for at in np.flatnonzero(known).tolist()
+        }
 
     def _remarks(self) -> Iterator[str]:
         if self.rows.type is None:

@@ -6,7 +6,7 @@ from math import inf
 
 from rulec.recordings.encodings.speed_units import SPEED_UNITS
 from rulec.recordings.encodings.tree import Tree
-from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.encodings.xml_element import number_in, short
 from rulec.recordings.opendrive.content.elements import ContactPoint, Cubic, Orientation, Speed
 
 LONGEST_NAME = 200
@@ -69,7 +69,7 @@ def _coefficient(tree: Tree, key: str) -> float:
     """A finite number, or 0 if it is missing or empty."""
     written = text(tree, key)
     try:
-        value = float(written or 0.0)
+        value = number_in(written or "0")
     except ValueError:
         value = inf
     return value if abs(value) < _STEEPEST else tree.number(key)
