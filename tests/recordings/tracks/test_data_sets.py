@@ -10,6 +10,7 @@ from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
 from rulec.recordings.recording_files import is_recording, read_recordings
 from rulec.recordings.recording_format import RecordingSource
+from support.builders import osi_traces as osi
 from support.builders.sumo_files import ROAD_NET
 from support.builders.track_tables import (
     INTERACTION_HEAD,
@@ -243,6 +244,48 @@ def test_omega_prime(tmp_path):
     assert recording.step_s == 0.033
     assert recording.participants[0].states[3].acceleration == 1.0
     assert recording.participants[1].states[3].heading == pytest.approx(1.5)
+
+
+OSI_NUMBERS = [(role, subtype) for role in (-1, 2, 3, 4, 5) for subtype in (*range(24), 99)]
+
+
+def omega_prime_of(*numbers):
+    """Vehicles one behind the other, by their roles and subtypes."""
+    head = omega_prime().partition("\n")[0]
+    rows = [
+        f"{k * 33000000},{at},{10 * at + k / 3},0,0,10,0,0,0,0,0,4,2,1,0,0,0,2,{role},{subtype}"
+        for at, (role, subtype) in enumerate(numbers)
+        for k in range(3)
+    ]
+    return table(head, *rows)
+
+
+def test_omega_prime_has_the_types_of_a_trace_with_the_same_numbers(tmp_path):
+    """A trace leaves out what is -1 in a table."""
+    (tmp_path / "objects.csv").write_text(omega_prime_of(*OSI_NUMBERS))
+    (tmp_path / "lanes.csv").write_text(table("lane,x,y", "a,0,0", "a,2000,0"))
+    messages = []
+    for k in range(3):
+        bodies = [
+            osi.vehicle(at, 10 * at + k / 3, 0, vehicle=kind, **{"role": role} if role >= 0 else {})
+            for at, (role, kind) in enumerate(OSI_NUMBERS)
+        ]
+        road = osi.lane(1, [(0, 0), (2000, 0)]) if k == 0 else b""
+        messages.append(osi.ground_truth(k * 33_000_000, *bodies, road, host=0))
+    (tmp_path / "same.osi").write_bytes(osi.trace(messages))
+    trace, objects = (read_recording(tmp_path / name) for name in ("same.osi", "objects.csv"))
+    types = {one.id: one.type for one in trace.participants}
+    assert len(types) == len(OSI_NUMBERS)
+    assert {one.id: one.type for one in objects.participants} == types
+
+
+def test_types_of_omega_prime(tmp_path):
+    """A trailer of the police's is nobody on call, nor is a policeman on a bicycle."""
+    numbers = [(2, 18), (5, 9), (5, 11), (5, 4), (5, 7), (-1, -1), (5, "")]
+    (tmp_path / "objects.csv").write_text(omega_prime_of(*numbers))
+    (tmp_path / "lanes.csv").write_text(LANES)
+    types = [one.type for one in read_recording(tmp_path / "objects.csv").participants]
+    assert types == ["bicycle", "unknown", "bicycle", *["priorityVehicle"] * 2, *["unknown"] * 2]
 
 
 def test_any_map_will_do(tmp_path):

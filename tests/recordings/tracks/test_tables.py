@@ -498,6 +498,30 @@ def test_a_slip_in_a_name_is_said(tmp_path):
     assert "columns that are not read: `lenght` (is it `length`?)" in recording.remarks
 
 
+@pytest.mark.parametrize(
+    ("name", "near"),
+    [("extra", ""), ("recordings_of", ""), ("wdith", "width"), ("brakelight", "brake_light")],
+)
+def test_only_a_name_that_is_close_is_asked_about(tmp_path, name, near):
+    rows = driving(more=",1")
+    remarks = read(tmp_path, f"{HEAD},{name}", *rows).remarks
+    asked = [remark for remark in remarks if "not read" in remark]
+    assert asked == ([f"columns that are not read: `{name}` (is it `{near}`?)"] if near else [])
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be"])
+def test_text_in_utf_16_is_told_how_to_save_it(tmp_path, encoding):
+    """As Excel's Unicode text, with a mark at its beginning or without."""
+    file = written(tmp_path, "")
+    file.write_bytes(table(HEAD, *driving()).encode(encoding))
+    assert is_recording(str(file))
+    with pytest.raises(RulecError) as caught:
+        read_recording(file)
+    (found,) = caught.value.diagnostics
+    assert found.message.endswith("cannot be read as a table of tracks: it is text in UTF-16")
+    assert found.help == "save it in UTF-8"
+
+
 def test_a_track_of_another_rate(tmp_path):
     slow = [f"b,{k / 5},{20 + k},0" for k in range(5)]
     found = message(tmp_path, HEAD, *driving(), *slow)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import zlib
 
 from rulec.recordings.encodings.xml_element import number_in
+from rulec.trace.formats.stream_lines import utf16
 
 PARQUET = (".parquet", ".pq")
 """Suffixes of Parquet files."""
@@ -16,12 +17,17 @@ _SEPARATORS = ",;\t"
 
 
 def names_in(head: bytes) -> tuple[str, ...]:
-    """The names in the first line of a CSV file, in lower case; none if it is not text."""
+    """The names in the first line of a CSV file, in lower case; none if it is not text.
+
+    Text in UTF-16 has some, too: whoever reads the file then says how to save it.
+    """
     if head.startswith(PACKED):
         try:
             head = zlib.decompressobj(zlib.MAX_WBITS | 16).decompress(head, LONGEST_LINE)
         except zlib.error:
             return ()
+    if kind := utf16(head):
+        head = head.decode(kind, errors="replace").removeprefix("\ufeff").encode()
     line = head.removeprefix(b"\xef\xbb\xbf").partition(b"\n")[0]
     if b"\0" in line or line.lstrip()[:1] in (b"{", b"[", b"<"):
         return ()

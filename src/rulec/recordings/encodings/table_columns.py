@@ -21,6 +21,9 @@ MOST_ROWS = 20_000_000
 
 MOST_COLUMNS = 1000
 
+_ALIKE = 0.75
+"""A slip in a name: one letter of four or more is another, or two have changed places."""
+
 Floats = NDArray[float64]
 Refused = Callable[..., RulecError]
 """Makes a table's error from ``why``, the row's place or None, ``expected``, ``help_text``."""
@@ -178,7 +181,7 @@ def named_columns(table: ColumnTable, kinds: Sequence[ColumnKind]) -> NamedColum
 def unread_remark(unread: Iterable[str], kinds: Sequence[ColumnKind]) -> str:
     """A remark on unread columns whose names resemble those of known columns."""
     known = [kind.name for kind in kinds]
-    near = [(short(name), nearest_name(name.strip(), known)) for name in unread]
+    near = [(short(name), nearest_name(name.strip(), known, _ALIKE)) for name in unread]
     similar = [f"`{name}` (is it `{known_name}`?)" for name, known_name in near if known_name]
     return f"columns that are not read: {', '.join(similar)}" if similar else ""
 

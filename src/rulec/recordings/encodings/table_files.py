@@ -32,13 +32,14 @@ from rulec.recordings.encodings.table_columns import (
     MOST_ROWS,
     Columns,
     ColumnTable,
+    Refused,
     Texts,
     checked_numbers,
 )
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.recording_messages import NOT_A_RECORDING
 from rulec.trace.formats.arrow.parquet_columns import parquet_columns, parquet_names
-from rulec.trace.formats.stream_lines import foreign
+from rulec.trace.formats.stream_lines import foreign, utf16
 
 LARGEST_NUMBER = 1e19
 """Limit on numbers: nanoseconds since 1970 have nineteen digits."""
@@ -70,6 +71,8 @@ def open_table(path: Path, form: FileFormat, names: Sequence[str] = ()) -> Colum
             return columns_of(values, numbers, texts, refused)
 
         return ColumnTable(_checked_names(column_names, refused), refused, read_parquet)
+    if utf16(beginning):
+        raise _foreign(beginning, refused)
     with _lines(path, form, refused) as stream:
         head = stream.readline(LONGEST_LINE)
     if not head.strip():
@@ -118,12 +121,17 @@ def _lines(path: Path, form: FileFormat, refused: Any) -> Iterator[io.TextIOWrap
             yield io.TextIOWrapper(bounded, encoding="utf-8-sig", newline="")
         except UnicodeDecodeError:
             stream.seek(0)
-            kind = foreign(stream.read(_BEGINNING))
-            if kind is not None and not packed:
-                raise refused(f"it is {kind.noun}", help_text=kind.help) from None
-            raise refused("it is no text in UTF-8", help_text="save it in UTF-8") from None
+            raise _foreign(b"" if packed else stream.read(_BEGINNING), refused) from None
         except (OSError, EOFError, zlib.error) as reason:
             raise refused(f"it cannot be unpacked ({reason})") from None
+
+
+def _foreign(beginning: bytes, refused: Refused) -> RulecError:
+    """The error about a file that is no text in UTF-8."""
+    kind = foreign(beginning)
+    if kind is None:
+        return refused("it is no text in UTF-8", help_text="save it in UTF-8")
+    return refused(f"it is {kind.noun}", help_text=kind.help)
 
 
 class _Bounded(io.RawIOBase):

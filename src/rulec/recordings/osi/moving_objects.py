@@ -146,14 +146,21 @@ class MovingObject:
 
 def _kind_of(fields: Fields) -> str:
     """A moving object's type, in the words of recordings."""
-    kind = fields.get("type", "unknown")
+    vehicle = part(fields, "vehicle_classification")
+    return kind_of(fields.get("type", "unknown"), vehicle.get("type"), vehicle.get("role"))
+
+
+def kind_of(kind: str, vehicle: str | None, role: str | None) -> str:
+    """A moving object's type in the words of recordings, from OSI's type, subtype and role.
+
+    The latter two are None where they are missing.
+    """
     if kind == "pedestrian":
         return "pedestrian"
-    vehicle = part(fields, "vehicle_classification")
-    if kind == "animal" or "type" not in vehicle:
+    if kind == "animal" or vehicle is None:
         return "unknown"
-    kind_name = _KINDS.get(vehicle["type"], "unknown")
-    if vehicle.get("role") in _ON_CALL and kind_name in _DRIVEN and vehicle["type"] != "trailer":
+    kind_name = _KINDS.get(vehicle, "unknown")
+    if role in _ON_CALL and kind_name in _DRIVEN and vehicle != "trailer":
         return "priorityVehicle"
     return kind_name
 

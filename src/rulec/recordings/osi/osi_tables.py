@@ -49,6 +49,11 @@ MOVING_BASE: Table = {
     5: Field("acceleration", VECTOR),
 }
 
+OBJECTS = _words("unknown other vehicle pedestrian animal")
+ROLES = _words(
+    "unknown other civil ambulance fire police public_transport road_assistance"
+    " garbage_collection road_construction military"
+)
 VEHICLES = _words(
     "unknown other small_car compact_car car luxury_car van heavy_truck semitrailer trailer"
     " motorbike bicycle bus tram train wheelchair semitractor standup_scooter"
@@ -70,18 +75,12 @@ VEHICLE: Table = {
             9: Field("emergency_vehicle_illumination", LAMPS),
         },
     ),
-    5: Field(
-        "role",
-        _words(
-            "unknown other civil ambulance fire police public_transport road_assistance"
-            " garbage_collection road_construction military"
-        ),
-    ),
+    5: Field("role", ROLES),
 }
 MOVING_OBJECT: Table = {
     1: Field("id", ID),
     2: Field("base", MOVING_BASE),
-    3: Field("type", _words("unknown other vehicle pedestrian animal")),
+    3: Field("type", OBJECTS),
     6: Field("vehicle_classification", VEHICLE),
 }
 STATIONARY_OBJECT: Table = {

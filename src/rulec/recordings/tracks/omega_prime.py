@@ -16,6 +16,8 @@ from numpy import int64
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.table_columns import ColumnKind, NamedColumns, Texts, named_columns
 from rulec.recordings.encodings.table_files import open_table
+from rulec.recordings.osi.moving_objects import kind_of
+from rulec.recordings.osi.osi_tables import OBJECTS, ROLES, VEHICLES
 from rulec.recordings.recording import Recording
 from rulec.recordings.tracks.derived_motion import along
 from rulec.recordings.tracks.even_times import even_times
@@ -28,22 +30,8 @@ if TYPE_CHECKING:
 OMEGA_PRIME = FileFormat(
     "tracks in OMEGA-PRIME's columns", "see the specification of omega-prime", 4_000_000_000
 )
-_VEHICLE, _PEDESTRIAN = 2, 3
-_SUBTYPES = {
-    **dict.fromkeys((2, 3, 4, 5, 6), "car"),
-    **dict.fromkeys((7, 16), "truck"),
-    10: "motorcycle",
-    11: "bicycle",
-    12: "bus",
-    **dict.fromkeys((13, 14), "train"),
-    15: "pedestrian",
-    17: "bicycle",
-}
-_RESCUE_ROLES = (3, 4, 5)
-_KINDS: tuple[str, ...] = (
-    *("unknown", "car", "truck", "motorcycle", "bicycle", "bus", "train", "pedestrian"),
-    "priorityVehicle",
-)
+_MOST = 100
+"""More than any number of a type, role or subtype."""
 
 _COLUMNS = (
     ColumnKind("idx", {}, True, True),
@@ -84,14 +72,22 @@ def read_omega_prime(source: RecordingSource) -> Iterator[Recording]:
 
 
 def _types(named: NamedColumns) -> Texts:
-    """Our types, by OSI's numbers; trailers and others are unknown."""
-    nothing = np.full(len(named.numbers["type"]), -1.0)
+    """Our types, by OSI's numbers: those that a trace with the same numbers has."""
     kind = named.numbers["type"]
-    subtype, role = (named.numbers.get(name, nothing) for name in ("subtype", "role"))
-    codes = np.zeros(len(kind), dtype=int64)
-    codes[kind == _PEDESTRIAN] = _KINDS.index("pedestrian")
-    for number, own in _SUBTYPES.items():
-        codes[(kind == _VEHICLE) & (subtype == number)] = _KINDS.index(own)
-    rescue = (kind == _VEHICLE) & np.isin(role, _RESCUE_ROLES)
-    codes[rescue] = _KINDS.index("priorityVehicle")
-    return Texts(codes, _KINDS)
+    more = [named.numbers.get(name, np.full(len(kind), -1.0)) for name in ("subtype", "role")]
+    # An empty cell is as good as -1, which says that there is none
+    columns = [np.nan_to_num(column, nan=-1.0) for column in (kind, *more)]
+    numbers = [np.clip(column, -1, _MOST - 2).astype(int64) + 1 for column in columns]
+    together = (numbers[0] * _MOST + numbers[1]) * _MOST + numbers[2]
+    distinct, codes = np.unique(together, return_inverse=True)
+    return Texts(codes.astype(int64), tuple([_type(number) for number in distinct.tolist()]))
+
+
+def _type(together: int) -> str:
+    rest, role = divmod(together, _MOST)
+    kind, vehicle = divmod(rest, _MOST)
+    words = [
+        words.by_number.get(number - 1, words.other) if number else None
+        for words, number in ((OBJECTS, kind), (VEHICLES, vehicle), (ROLES, role))
+    ]
+    return kind_of(words[0] or "unknown", *words[1:])

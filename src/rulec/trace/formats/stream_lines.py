@@ -80,6 +80,7 @@ class Foreign(NamedTuple):
     help: str
 
 
+_UTF16_MARKS = {b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
 _UTF16 = Foreign("text in UTF-16", "save it in UTF-8")
 _BEGINNINGS = {
     b"\x1f\x8b": Foreign("data compressed with gzip", "unpack it with `gunzip`"),
@@ -95,8 +96,7 @@ _BEGINNINGS = {
     b"\xd0\xcf\x11\xe0": Foreign("an Excel or Word file", "save its sheet as CSV"),
     b"ARROW1": Foreign("Arrow (Feather)", "write it as Parquet, as `to_parquet` of pandas does"),
     b"PAR1": Foreign("Parquet", "add `--input-format parquet`"),
-    b"\xff\xfe": _UTF16,
-    b"\xfe\xff": _UTF16,
+    **dict.fromkeys(_UTF16_MARKS, _UTF16),
 }
 
 _TEXTS = "traces are JSON Lines, CSV or Parquet, and tables of recorded traffic CSV or Parquet"
@@ -113,14 +113,23 @@ def foreign(beginning: bytes) -> Foreign | None:
     """The kind of foreign file that begins like this; None for UTF-8 text."""
     some = beginning[:1000]
     kind = packed(beginning)
-    if kind is None and _is_utf16(some):
+    if kind is None and utf16(some):
         return _UTF16
     if kind is None and any(byte < 32 and byte not in _TEXT for byte in some):
         return Foreign("binary data", _TEXTS)
     return kind
 
 
-def _is_utf16(some: bytes) -> bool:
-    """Whether nearly every other byte is 0."""
-    zeros = sorted((some[::2].count(0), some[1::2].count(0)))
-    return len(some) > 3 and zeros[0] == 0 and zeros[1] * 2 > 0.9 * len(some)
+def utf16(beginning: bytes) -> str:
+    """Python's name for the UTF-16 of a text that begins like this; empty if it is none.
+
+    Without a mark at its beginning, nearly every other byte is 0.
+    """
+    some = beginning[:1000]
+    for mark, name in _UTF16_MARKS.items():
+        if some.startswith(mark):
+            return name
+    zeros = some[::2].count(0), some[1::2].count(0)
+    if len(some) < 4 or min(zeros) or max(zeros) * 2 <= 0.9 * len(some):
+        return ""
+    return "utf-16-be" if zeros[0] else "utf-16-le"
