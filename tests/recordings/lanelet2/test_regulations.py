@@ -176,7 +176,7 @@ def test_lines_across_a_lane_are_for_it(tmp_path):
 
 
 def test_the_line_of_a_rule_is_not_for_the_other_direction_as_well(tmp_path):
-    """The road behind it may be driven both ways; the one that no lanelet names is for all."""
+    """The road behind it may be driven both ways; a line of a rule for nobody is for all."""
     file = MapFile()
     line, other = (file.line((x, 0), (x, -3), type="stop_line") for x in (50, 90))
     rule = file.rule("traffic_light", [("ref_line", "way", line)])

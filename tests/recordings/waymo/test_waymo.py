@@ -213,6 +213,13 @@ def test_times_may_be_off_by_a_quarter_of_a_step(tmp_path, late):
     assert list(recording.participants[0].states) == list(range(81))
 
 
+def test_the_step_is_that_of_many_times(tmp_path):
+    """Of 81 intervals, most are 0.12 s, the others 0.08 s."""
+    times = [0.1 * k + 0.02 * (k % 2) for k in range(82)]
+    recording = read(tmp_path, w.crossing(times=times))
+    assert (recording.step_s, list(recording.participants[0].states)[-1]) == (0.1, 80)
+
+
 @pytest.mark.parametrize("late", [0.03, 0.05, -0.04])
 def test_times_that_are_farther_off_are_refused(tmp_path, late):
     """From place to place, by turns."""

@@ -6,7 +6,7 @@ does. Here they belong to the lanelets that end at the line, as in all recording
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -31,7 +31,6 @@ _SHORTEST_M = 0.5
 
 _GOES_FIRST = frozenset({"PRIORITY", "RIGHT_OF_WAY"})
 _YES = ("yes", "true", "1")
-_NAMES_LANELETS = ("all_way_stop", "right_of_way")
 
 
 @dataclass(slots=True)
@@ -78,12 +77,12 @@ def regulations(survey: Surveyed) -> dict[str, LaneRules]:
     elements = {x.id: _Element(survey, x) for x in regulatory_elements(survey.file)}
     for entry in survey.entries.values():
         for name in entry.rules:
-            if name in elements and elements[name].element.tags.get("dynamic") not in _YES:
+            if name in elements and not elements[name].is_dynamic:
                 elements[name].apply(entry, rules)
     for element in regulatory_elements(survey.file):
         if element.tags.get("subtype") == "right_of_way":
             _right_of_way_signs(survey, element, rules)
-    _drawn_stop_lines(survey, rules)
+    _drawn_stop_lines(survey, rules, _lines_of_rules(survey, elements.values()))
     return rules
 
 
@@ -106,6 +105,23 @@ class _Element:
         self.light = ObservedLight({})
         self.lines = [x for x in map(survey.line, element.refs("ref_line", "way")) if x is not None]
         self.signs = _signs(survey.file, element)
+
+    @property
+    def is_dynamic(self) -> bool:
+        """Whether it applies at some times only."""
+        return self.element.tags.get("dynamic") in _YES
+
+    @property
+    def names_lanelets(self) -> bool:
+        """Whether it says itself which lanelets it is for."""
+        return self.element.tags.get("subtype") in ("all_way_stop", "right_of_way")
+
+    @property
+    def has_line(self) -> bool:
+        """Whether the lanelets that refer to it end at its line."""
+        gives_way = any(sign.name in GIVE_WAY_SIGNS for sign in self.signs)
+        subtype = self.element.tags.get("subtype")
+        return not self.is_dynamic and (subtype == "traffic_light" or gives_way)
 
     def apply(self, entry: MapLanelet, rules: Mapping[str, LaneRules]) -> None:
         """Add the rule to the lanelets to which it applies."""
@@ -232,10 +248,11 @@ def _right_of_way_signs(
                     _draw(survey.entries[approach], rules[approach], line)
 
 
-def _drawn_stop_lines(survey: Surveyed, rules: Mapping[str, LaneRules]) -> None:
-    """Give stop lines of the map that no rule refers to to the lanelets that they cross."""
+def _drawn_stop_lines(
+    survey: Surveyed, rules: Mapping[str, LaneRules], used: Collection[str]
+) -> None:
+    """Give stop lines of the map to the lanelets that they cross; rules have used some already."""
     ways = survey.file.ways.values()
-    used = _lines_of_rules(survey)
     drawn = (x.id for x in ways if x.tags.get("type") == "stop_line" and x.id not in used)
     lines = [line for line in map(survey.line, drawn) if line is not None]
     open_lanes = [x for x in lanes(survey.entries) if rules[x.id].stop_line is None]
@@ -259,14 +276,15 @@ def _drawn_stop_lines(survey: Surveyed, rules: Mapping[str, LaneRules]) -> None:
         _draw(survey.entries[name], rules[name], line)
 
 
-def _lines_of_rules(survey: Surveyed) -> frozenset[str]:
-    """The ways that are lines of rules to which a lanelet refers, or which name lanelets."""
-    referred = {name for entry in survey.entries.values() for name in entry.rules}
+def _lines_of_rules(survey: Surveyed, elements: Iterable[_Element]) -> frozenset[str]:
+    """The ways that rules have as their lines, for the lanelets that the rules are for."""
+    lanelets = (entry for entry in survey.entries.values() if entry.is_lane)
+    referred = {name for entry in lanelets for name in entry.rules}
     return frozenset(
         way
-        for element in regulatory_elements(survey.file)
-        if element.id in referred or element.tags.get("subtype") in _NAMES_LANELETS
-        for way in element.refs("ref_line", "way")
+        for rule in elements
+        if rule.names_lanelets or (rule.has_line and rule.element.id in referred)
+        for way in rule.element.refs("ref_line", "way")
     )
 
 
