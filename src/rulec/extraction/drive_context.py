@@ -161,6 +161,17 @@ class DriveContext:
         own, ahead = (self._limits_at(*places) for places in (self.ego_places, front))
         return np.where(np.isfinite(ahead), np.maximum(own, ahead), own)
 
+    @cached_property
+    def limit_untold(self) -> Flags:
+        """Mask of states in which a sign may limit ego's speed, and the map does not tell how."""
+        front = self.places_at(self.ego_extents.s_max[0], self.ego_lane)
+        untold = [
+            np.array([self.road.limit_is_untold(*place) for place in places], dtype=bool)[number]
+            for places, number in (self.ego_places, front)
+        ]
+        either: Flags = untold[0] | untold[1]
+        return either
+
     def _limits_at(self, places: tuple[tuple[int, int], ...], number: NDArray[intp]) -> Floats:
         turned = np.radians(self.thresholds.turned_deg)
         limits = [self.road.limit_mps(*place, turned) for place in places]

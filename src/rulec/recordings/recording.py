@@ -172,6 +172,10 @@ class Lanelet:
     first: frozenset[str] | None = None
 
 
+LIMIT_SIGN, LEAST_SPEED_SIGN = "MAX_SPEED", "MIN_SPEED"
+"""Among ``untold_signs`` they leave the limit, or the minimum speed, unknown: it is not None there
+because no sign stands, but because the file does not tell what stands or for whom it holds."""
+
 CROSSWALK = "crosswalk"
 NO_LANES = frozenset({"sidewalk", CROSSWALK, "border", "parking", "restricted_area"})
 """Types of lanelets that are not part of the carriageway."""

@@ -242,6 +242,11 @@ def test_the_lowest_limit_holds_and_none_may_be_infinite(read):
         ("274", "1053-35", "UNKNOWN", None),  # when wet
         ("274", "1040-30", "UNKNOWN", None),  # at these hours
         ("276", "1049-13", "UNKNOWN", None),  # for vehicles of more than 3.5 t
+        ("274", "1010-51", "UNKNOWN", None),  # for lorries
+        ("276", "1042-33", "UNKNOWN", None),  # from Monday to Friday
+        ("274", "1020", "UNKNOWN", None),
+        ("274.1", "1040-30", "UNKNOWN", None),
+        ("275", "1010-51", "UNKNOWN", None),
     ],
 )
 def test_of_signs_that_hold_for_some_nothing_is_known(read, sign, plate, name, limit):
@@ -256,7 +261,57 @@ def test_of_signs_that_hold_for_some_nothing_is_known(read, sign, plate, name, l
         ("  <obstacle", f'<trafficSign id="7">{posts}</trafficSign><obstacle'),
     ).lanelets["1"]
     assert lanelet.signs - ({"UNKNOWN"} if limit else set()) == {name}
-    assert lanelet.limit_mps == limit
+    assert (lanelet.limit_mps, lanelet.minimum_mps) == (limit, None)
+    untold = {"276": "NO_OVERTAKING_START", "275": "MIN_SPEED"}.get(sign, "MAX_SPEED")
+    assert lanelet.untold_signs == (set() if limit else {untold})
+
+
+def posted(read, *elements, country="DEU_"):
+    """The lanelet with a post of these signs: ids and further elements."""
+    posts = "".join(
+        f"<trafficSignElement><trafficSignID>{number}</trafficSignID>{more}</trafficSignElement>"
+        for number, more in elements
+    )
+    return read(
+        ("ZAM_", country),
+        (RIGHT, f'{RIGHT}<trafficSignRef ref="7"/>'),
+        ("  <obstacle", f'<trafficSign id="7">{posts}</trafficSign><obstacle'),
+    ).lanelets["1"]
+
+
+VALUE = "<additionalValue>13.5</additionalValue>"
+
+
+def test_a_zone_limits_the_speed(read):
+    lanelet = posted(read, ("274.1", VALUE))
+    assert (lanelet.signs, lanelet.limit_mps) == ({"MAX_SPEED_ZONE_START"}, 13.5)
+
+
+@pytest.mark.parametrize(
+    ("number", "untold"),
+    [("274", "MAX_SPEED"), ("274.1", "MAX_SPEED"), ("275", "MIN_SPEED")],
+)
+def test_a_sign_without_its_number_is_there_all_the_same(read, number, untold):
+    lanelet = posted(read, (number, ""))
+    assert (lanelet.limit_mps, lanelet.minimum_mps) == (None, None)
+    assert lanelet.untold_signs == {untold}
+
+
+@pytest.mark.parametrize("plate", ["1000-32", "1002-20"])
+def test_plates_about_who_crosses_leave_signs_of_priority_as_they_are(read, plate):
+    lanelet = posted(read, ("206", ""), (plate, ""), ("274", VALUE))
+    assert lanelet.signs >= {"STOP"}
+    assert (lanelet.limit_mps, lanelet.untold_signs) == (None, {"MAX_SPEED"})
+
+
+@pytest.mark.parametrize(
+    ("country", "sign", "plate"),
+    [("USA_", "R2-1", "S4-2P"), ("FRA_", "B14", "M4d1"), ("ESP_", "r301", "S-820")],
+)
+def test_what_is_unknown_on_a_post_of_another_country_may_be_a_plate(read, country, sign, plate):
+    assert posted(read, (sign, VALUE), country=country).limit_mps == 13.5
+    lanelet = posted(read, (sign, VALUE), (plate, ""), country=country)
+    assert (lanelet.limit_mps, lanelet.untold_signs) == (None, {"MAX_SPEED"})
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from rulec.recordings.commonroad.traffic_signs import Sign
 from rulec.recordings.lanelet2.signs import sign_of
 from rulec.recordings.map_files import read_map
 from support.builders.lanelet2_files import SAMPLES, MapFile
@@ -118,11 +117,17 @@ def test_a_sign_at_the_line_behind_which_a_lanelet_begins(tmp_path):
         # Numbers of countries whose signs are not known here are not Germany's
         *[("at206", "UNKNOWN", None), ("xx206", "UNKNOWN", None), ("", "UNKNOWN", None)],
         *[("50 km/h", "MAX_SPEED", 50), ("30mph", "MAX_SPEED", 30 * 1.609344)],
+        # A zone begins and ends; the least speed
+        *[("de274.1-30", "MAX_SPEED_ZONE_START", 30), ("de274_1-20", "MAX_SPEED_ZONE_START", 20)],
+        *[("de274_2", "MAX_SPEED_ZONE_END", None), ("de275-60", "MIN_SPEED", 60)],
     ],
 )
 def test_signs(kind, name, kmh):
     expected = None if kmh is None else pytest.approx(kmh / 3.6)
-    assert sign_of(kind) == Sign(name, expected)
+    found = sign_of(kind)
+    assert (found.name, found.limit_mps) == (name, expected)
+    numbered = {"MAX_SPEED": "MAX_SPEED", "MAX_SPEED_ZONE_START": "MAX_SPEED"}
+    assert found.untold == ("" if kmh else numbered.get(name, ""))
 
 
 def test_limits_of_signs_go_before_those_of_tags(tmp_path):
@@ -134,8 +139,69 @@ def test_limits_of_signs_go_before_those_of_tags(tmp_path):
     both = road(file, 50, 90, rules=[by_sign, by_word])
     dynamic = road(file, 90, 99, rules=[changing], speed_limit="50")
     found = map_of(file, tmp_path).lanelets
-    kmh = {name: round(found[name].limit_mps * 3.6, 6) for name in (signs, both, dynamic)}
-    assert kmh == {signs: 30, both: 20, dynamic: 50}
+    kmh = {name: round(found[name].limit_mps * 3.6, 6) for name in (signs, both)}
+    assert kmh == {signs: 30, both: 20}
+    # It may show less than the tag says, or more
+    assert (found[dynamic].limit_mps, found[dynamic].untold_signs) == (None, {"MAX_SPEED"})
+
+
+@pytest.mark.parametrize("plate", ["de1040-30", "de1010-51", "de1042-33", "de1020"])
+@pytest.mark.parametrize("referred", [True, False])
+def test_a_limit_with_a_plate_is_not_one_for_everybody(tmp_path, plate, referred):
+    """Whether the rule refers to the plate, or it only stands below the sign."""
+    file = MapFile()
+    post = file.line((10, 5), (10.5, 5), type="traffic_sign", subtype="de274-30")
+    below = file.line((10, 4.8), (10.5, 4.8), type="traffic_sign", subtype=plate)
+    roles = [("refers", "way", post)] + [("refers", "way", below)] * referred
+    first = road(file, 0, 50, rules=[file.rule("speed_limit", roles)], speed_limit="50")
+    far = file.line((60, 5), (60.5, 5), type="traffic_sign", subtype="de276")
+    other = road(file, 50, 90, rules=[file.rule("traffic_sign", [("refers", "way", far)])])
+    found = map_of(file, tmp_path)
+    lanelet = found.lanelets[first]
+    assert (lanelet.limit_mps, lanelet.untold_signs) == (None, {"MAX_SPEED"})
+    assert lanelet.signs == {"UNKNOWN"}
+    assert any("on 1 lanelets only for some" in remark for remark in found.remarks)
+    # Elsewhere it is for nobody
+    assert found.lanelets[other].signs == {"NO_OVERTAKING_START"}
+
+
+@pytest.mark.parametrize(
+    ("kind", "plate", "signs", "untold"),
+    [
+        ("de206", "de1000-32", {"STOP"}, set()),
+        ("de206", "de1004-32", set(), {"STOP"}),
+        ("de276", "de1049-13", {"UNKNOWN"}, {"NO_OVERTAKING_START"}),
+        ("de274-30", "de1001-30", {"MAX_SPEED"}, set()),
+    ],
+)
+def test_what_plates_leave_of_signs(tmp_path, kind, plate, signs, untold):
+    file = MapFile()
+    posts = [
+        file.line((10, y), (10.5, y), type="traffic_sign", subtype=word)
+        for y, word in ((5, kind), (4.8, plate))
+    ]
+    rule = file.rule("traffic_sign", [("refers", "way", post) for post in posts])
+    name = road(file, 0, 50, rules=[rule])
+    lanelet = map_of(file, tmp_path).lanelets[name]
+    assert lanelet.signs - ({"UNKNOWN"} - signs) == signs
+    assert lanelet.untold_signs == untold
+
+
+def test_a_limit_without_a_number_leaves_that_of_a_tag(tmp_path):
+    file = MapFile()
+    rules = [signed(file, "de274_1")]
+    tagged = road(file, 0, 50, rules=rules, speed_limit="30")
+    plain = road(file, 50, 90, rules=rules)
+    found = map_of(file, tmp_path).lanelets
+    assert found[tagged].limit_mps == pytest.approx(30 / 3.6)
+    assert (found[plain].limit_mps, found[plain].untold_signs) == (None, {"MAX_SPEED"})
+
+
+def test_the_least_speed_is_no_limit(tmp_path):
+    file = MapFile()
+    name = road(file, 0, 50, rules=[signed(file, "de275-60")], speed_limit="100")
+    lanelet = map_of(file, tmp_path).lanelets[name]
+    assert (lanelet.minimum_mps, lanelet.limit_mps) == pytest.approx((60 / 3.6, 100 / 3.6))
 
 
 def test_a_line_for_several_lanes_is_parted(tmp_path):

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.tracks.matching.driven_route import pieces_of
 from rulec.extraction.tracks.tracks import Floats
-from rulec.recordings.recording import Lanelet, Points, Recording
+from rulec.recordings.recording import LIMIT_SIGN, Lanelet, Points, Recording
 from rulec.scenario.recorded.junction_lanelets import marks_junctions
 from rulec.scenario.recorded.lane_coordinates import (
     Lanes,
@@ -91,6 +91,20 @@ class DrivenRoad:
                 turned = abs(turn(*self.line.headings_at(ends).tolist()))
                 return before if before == after and turned <= most_turned else None
         return own
+
+    def limit_is_untold(self, piece: int, lane: int) -> bool:
+        """Whether a sign may limit the speed there, and the map does not tell how.
+
+        In a junction without a limit, a sign before or behind it may as well.
+        """
+        own = self.lanelet(piece, lane)
+        middle = (self.borders[piece] + self.borders[piece + 1]) / 2
+        places = [own]
+        for start, end in self.junctions:
+            if own.limit_mps is None and start < middle < end:
+                ends = np.array([start - _HAIR_M, end + _HAIR_M])
+                places += [self.lanelet(k, lane) for k in self.piece(ends).tolist()]
+        return any(LIMIT_SIGN in lanelet.untold_signs for lanelet in places)
 
     def turned(self, start: float, end: float, aside_m: float = _HAIR_M) -> float:
         """The angle (rad) by which the road turns to the left between two places.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 from typing import NamedTuple
@@ -11,7 +11,14 @@ import numpy as np
 
 from rulec.recordings import recording
 from rulec.recordings.commonroad.areas import read_points
-from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED, Sign, speed_limit
+from rulec.recordings.commonroad.traffic_signs import (
+    LIMITS,
+    MAX_SPEED,
+    MIN_SPEED,
+    UNKNOWN,
+    Sign,
+    speed_limit,
+)
 from rulec.recordings.encodings.tree import Tree
 
 _MARKS: Mapping[str, recording.LaneMark | None] = MappingProxyType(
@@ -133,7 +140,8 @@ def complete(
     elements = [element for number in entry.signs for element in signs.get(number, ())]
     lanelet = entry.lanelet
     limiting = [element for element in elements if element.limit_mps is not None]
-    limits = [sign.limit_mps for sign in limiting if sign.name == MAX_SPEED] + [lanelet.limit_mps]
+    limits = [sign.limit_mps for sign in limiting if sign.name in LIMITS] + [lanelet.limit_mps]
+    untold = _untold(elements, has_own=lanelet.limit_mps is not None)
     least = [sign.limit_mps for sign in limiting if sign.name == MIN_SPEED]
     inside = {"intersection"} if junction else set()
     ids = sorted(set(entry.lights), key=recording.id_order)
@@ -141,8 +149,22 @@ def complete(
         lanelet,
         types=lanelet.types | inside,
         signs=lanelet.signs | {element.name for element in elements},
-        limit_mps=min((limit for limit in limits if limit is not None), default=None),
+        limit_mps=None
+        if MAX_SPEED in untold
+        else min((limit for limit in limits if limit is not None), default=None),
+        untold_signs=untold,
         lights=tuple(lights[number] for number in ids if number in lights),
         junction=junction,
-        minimum_mps=max((speed for speed in least if speed is not None), default=None),
+        minimum_mps=None
+        if MIN_SPEED in untold
+        else max((speed for speed in least if speed is not None), default=None),
+    )
+
+
+def _untold(elements: Iterable[Sign], *, has_own: bool) -> frozenset[str]:
+    """The names of signs that may hold; a lanelet's own limit tells the number of a sign's."""
+    return frozenset(
+        sign.untold
+        for sign in elements
+        if sign.untold and not (sign.untold == MAX_SPEED and sign.name != UNKNOWN and has_own)
     )

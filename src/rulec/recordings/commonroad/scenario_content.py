@@ -181,7 +181,7 @@ def _lanelets(content: Content) -> dict[str, recording.Lanelet]:
 def _with_untold_signs(
     content: Content, lanelets: dict[str, recording.Lanelet]
 ) -> dict[str, recording.Lanelet]:
-    """The lanelets, with the priority signs found beside the carriageway as ``untold_signs``.
+    """The lanelets, with the priority signs beside the carriageway among ``untold_signs``.
 
     Published maps attach give-way signs to a sidewalk where it is nearer than the lane, so that the
     lanelets for which such signs hold are unknown.
@@ -199,6 +199,6 @@ def _with_untold_signs(
     return {
         number: lanelet
         if number in beside
-        else replace(lanelet, untold_signs=signs - lanelet.signs)
+        else replace(lanelet, untold_signs=lanelet.untold_signs | (signs - lanelet.signs))
         for number, lanelet in lanelets.items()
     }

@@ -7,16 +7,19 @@ tables contain signs about driving; all others are called ``UNKNOWN``.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from math import inf
 from types import MappingProxyType
 from typing import NamedTuple
 
 from rulec.recordings.encodings.speed_units import SPEED_UNITS
 from rulec.recordings.encodings.tree import Tree
+from rulec.recordings.recording import LEAST_SPEED_SIGN, LIMIT_SIGN, REGULATING
 
-MAX_SPEED = "MAX_SPEED"
-MIN_SPEED = "MIN_SPEED"
+MAX_SPEED = LIMIT_SIGN
+MIN_SPEED = LEAST_SPEED_SIGN
+ZONE = "MAX_SPEED_ZONE_START"
+LIMITS = frozenset({MAX_SPEED, ZONE})
 UNKNOWN = "UNKNOWN"
 _GERMAN_MAX_SPEED = "274"
 """Germany's id for a speed limit, which files of all countries use."""
@@ -143,6 +146,15 @@ _PLATES = _signs("""
 _FIRST_PLATE = 226
 """The number of the first plate; a plate says to whom or when the signs above it apply."""
 
+_PLATE = re.compile(r"1\d{3}(?!\d).*", re.ASCII)
+_PLATES_OF_PLACE = frozenset({"1001"})
+"""Germany's plates that only say for how many metres signs hold."""
+
+_PLATES_OF_WAYS = frozenset({"1000", "1002", "1008"})
+"""Germany's plates about directions and who crosses: signs of priority hold all the same."""
+
+_LIMITING = frozenset({*LIMITS, "MAX_SPEED_END", "MAX_SPEED_ZONE_END"})
+
 _LATER_IN_USA = ("STOP", "STOP_4_WAY", "NO_TURN_ON_RED", "ONEWAY")
 
 
@@ -163,30 +175,73 @@ _WITH_UNIT = re.compile(r"(\d{1,3}(?:\.\d{1,3})?) ?(kmh|km/h|mph|m/s)", re.ASCII
 
 
 class Sign(NamedTuple):
-    """A sign's name, and the speed limit or minimum speed (m/s) on it, if any."""
+    """A sign's name, and the speed limit or minimum speed (m/s) on it, if any.
+
+    ``untold`` is the name of a sign that is there, but holds only for some, at some times, or with
+    a number that the file does not give; its ``name`` is then ``UNKNOWN`` if a plate is the reason.
+    """
 
     name: str
     limit_mps: float | None = None
+    untold: str = ""
 
 
 def read_sign(tree: Tree, country: str) -> tuple[Sign, ...]:
     """The signs on a post, by a country's ids (ISO 3166).
 
-    All are ``UNKNOWN`` if a plate says to whom or when they apply.
+    Those are ``UNKNOWN`` of which a plate says for whom or when they apply.
     """
-    signs = tuple([_element(child, country) for child in tree.all("trafficSignElement")])
-    if not any(sign.name in _PLATES.values() for sign in signs):
-        return signs
-    return (Sign(UNKNOWN),) * len(signs)
+    elements = tree.all("trafficSignElement")
+    signs = [_element(child, country) for child in elements]
+    plates = [
+        _number(child)
+        for child, sign in zip(elements, signs, strict=True)
+        if sign.name in _PLATES.values() or is_plate(_number(child), country)
+    ]
+    return tuple([with_plates(sign, plates) for sign in signs])
+
+
+def is_plate(number: str, country: str) -> bool:
+    """Whether the sign with this id (of a country, ISO 3166) is a plate below another sign.
+
+    Germany's ids of plates are those from 1000 on, in files of all countries. Of other countries'
+    signs, those that are not known here may be plates.
+    """
+    if _PLATE.fullmatch(number):
+        return True
+    known = not country or country not in _COUNTRIES.keys() | _MORE.keys()
+    return bool(number) and not known and sign_name(number, country) == UNKNOWN
+
+
+def with_plates(sign: Sign, plates: Iterable[str]) -> Sign:
+    """The sign as plates with these ids below it leave it: untold if one says when it holds."""
+    if sign.name == UNKNOWN or not any(_qualifies(number, sign.name) for number in plates):
+        return sign
+    return Sign(UNKNOWN, untold="" if sign.name in _PLATES.values() else told_name(sign.name))
+
+
+def _qualifies(plate: str, name: str) -> bool:
+    kind = plate[:4]
+    return kind not in _PLATES_OF_PLACE and not (name in REGULATING and kind in _PLATES_OF_WAYS)
+
+
+def told_name(name: str) -> str:
+    """The name under which a sign's effect is known: a zone is a limit, and so is its end."""
+    return MAX_SPEED if name in _LIMITING else name
+
+
+def _number(tree: Tree) -> str:
+    number = tree.first("trafficSignID")
+    return "" if number is None else number.word
 
 
 def _element(tree: Tree, country: str) -> Sign:
     named = tree.first("signName")
     name = sign_name(tree.child("trafficSignID").word, country) if named is None else named.word
     value = tree.first("additionalValue")
-    if name not in (MAX_SPEED, MIN_SPEED) or value is None:
+    if name not in LIMITS | {MIN_SPEED}:
         return Sign(name)
-    return Sign(name, speed_limit(value))
+    return Sign(name, untold=told_name(name)) if value is None else Sign(name, speed_limit(value))
 
 
 def sign_name(number: str, country: str) -> str:

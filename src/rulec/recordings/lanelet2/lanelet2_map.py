@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED
 from rulec.recordings.lanelet2.first_ways import first_ways
 from rulec.recordings.lanelet2.map_frame import places_of
 from rulec.recordings.lanelet2.map_lanelets import MapLanelet, map_lanelets
@@ -62,6 +63,7 @@ def _lanelet(
     around = survey.topology
     own = () if entry.limit_mps is None else (entry.limit_mps,)
     limits = rules.limits if entry.is_lane and rules.limits else own
+    untold = frozenset(rules.untold | ({MAX_SPEED} if rules.unnumbered and not limits else set()))
     return Lanelet(
         id=entry.id,
         left=entry.left,
@@ -73,7 +75,9 @@ def _lanelet(
         right_of=around.right_of.get(entry.id),
         types=entry.types | ({"directed"} if rules.directed else frozenset()),
         signs=frozenset(rules.signs),
-        limit_mps=min(limits, default=None),
+        untold_signs=untold,
+        limit_mps=None if MAX_SPEED in untold else min(limits, default=None),
+        minimum_mps=None if MIN_SPEED in untold else max(rules.minima, default=None),
         lights=tuple(rules.lights),
         lights_to=_single(rules.lights_to),
         left_mark=entry.left_mark,

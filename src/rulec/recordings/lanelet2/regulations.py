@@ -12,11 +12,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
-from rulec.recordings.commonroad.traffic_signs import Sign
-from rulec.recordings.lanelet2.lane_tags import velocity
+from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED, UNKNOWN, told_name
 from rulec.recordings.lanelet2.map_lanelets import MapLanelet, lanes
 from rulec.recordings.lanelet2.osm_file import OsmFile, OsmRelation
-from rulec.recordings.lanelet2.signs import sign_of
+from rulec.recordings.lanelet2.signs import Plates, element_signs, plates_of, tells_speed
 from rulec.recordings.lanelet2.topology import Topology
 from rulec.recordings.recording import GIVE_WAY_SIGNS, ObservedLight, Points
 
@@ -35,11 +34,18 @@ _YES = ("yes", "true", "1")
 
 @dataclass(slots=True)
 class LaneRules:
-    """The rules that apply to a lanelet; lights are in the order of the file."""
+    """The rules that apply to a lanelet; lights are in the order of the file.
+
+    ``untold`` are names of signs that may hold, ``unnumbered`` says whether one limits the speed
+    without a number, which the lanelet's own tag may give.
+    """
 
     # Not frozen: rules are added one by one
     signs: set[str] = field(default_factory=set)
     limits: list[float] = field(default_factory=list)
+    minima: list[float] = field(default_factory=list)
+    untold: set[str] = field(default_factory=set)
+    unnumbered: bool = False
     lights: list[ObservedLight] = field(default_factory=list)
     lights_to: dict[str, list[ObservedLight]] = field(default_factory=dict)
     stop_line: Points | None = None
@@ -74,14 +80,15 @@ def regulations(survey: Surveyed) -> dict[str, LaneRules]:
     for element in regulatory_elements(survey.file):
         if element.tags.get("subtype") == "all_way_stop":
             _all_way_stop(survey, element, rules)
-    elements = {x.id: _Element(survey, x) for x in regulatory_elements(survey.file)}
+    plates = plates_of(survey.file, survey.points)
+    elements = {x.id: _Element(survey, x, plates) for x in regulatory_elements(survey.file)}
     for entry in survey.entries.values():
         for name in entry.rules:
-            if name in elements and not elements[name].is_dynamic:
+            if name in elements:
                 elements[name].apply(entry, rules)
     for element in regulatory_elements(survey.file):
         if element.tags.get("subtype") == "right_of_way":
-            _right_of_way_signs(survey, element, rules)
+            _right_of_way_signs(survey, elements[element.id], rules)
     _drawn_stop_lines(survey, rules, _lines_of_rules(survey, elements.values()))
     return rules
 
@@ -99,12 +106,12 @@ def regulatory_elements(file: OsmFile) -> Iterator[OsmRelation]:
 class _Element:
     """A regulatory element to which lanelets refer; they all share its one light."""
 
-    def __init__(self, survey: Surveyed, element: OsmRelation) -> None:
+    def __init__(self, survey: Surveyed, element: OsmRelation, plates: Plates) -> None:
         self.survey = survey
         self.element = element
         self.light = ObservedLight({})
         self.lines = [x for x in map(survey.line, element.refs("ref_line", "way")) if x is not None]
-        self.signs = _signs(survey.file, element)
+        self.signs = element_signs(survey.file, survey.points, element, plates)
 
     @property
     def is_dynamic(self) -> bool:
@@ -125,7 +132,14 @@ class _Element:
 
     def apply(self, entry: MapLanelet, rules: Mapping[str, LaneRules]) -> None:
         """Add the rule to the lanelets to which it applies."""
-        match self.element.tags.get("subtype", ""):
+        kind = self.element.tags.get("subtype", "")
+        if self.is_dynamic:
+            # What it shows is unknown, but not that it may limit the speed
+            names = {told_name(sign.untold or sign.name) for sign in self.signs}
+            if kind == "speed_limit" or (kind == "traffic_sign" and MAX_SPEED in names):
+                rules[entry.id].untold.add(MAX_SPEED)
+            return
+        match kind:
             case "traffic_light" if not entry.is_lane:
                 rules[entry.id].directed = True
             case "traffic_light":
@@ -137,29 +151,25 @@ class _Element:
                 self._add_signs(entry, rules)
 
     def _add_signs(self, entry: MapLanelet, rules: Mapping[str, LaneRules]) -> None:
-        limits = [sign.limit_mps for sign in self.signs if sign.limit_mps is not None]
-        rules[entry.id].limits += limits
+        own = rules[entry.id]
+        for sign in self.signs:
+            if sign.untold == MAX_SPEED and sign.name != UNKNOWN:
+                own.unnumbered = True
+            elif sign.untold and sign.untold not in GIVE_WAY_SIGNS:
+                own.untold.add(sign.untold)
+            elif sign.limit_mps is not None:
+                (own.minima if sign.name == MIN_SPEED else own.limits).append(sign.limit_mps)
+        if self.element.tags.get("subtype") == "speed_limit" and not tells_speed(self.signs):
+            own.unnumbered = True
         names = {sign.name for sign in self.signs}
-        rules[entry.id].signs |= names - GIVE_WAY_SIGNS
-        if names & GIVE_WAY_SIGNS:
+        own.signs |= names - GIVE_WAY_SIGNS
+        untold = GIVE_WAY_SIGNS.intersection(sign.untold for sign in self.signs)
+        if names & GIVE_WAY_SIGNS or untold:
             line = nearest_line(entry, self.lines)
             for name, _ in approaches(self.survey, entry, line):
                 rules[name].signs |= names & GIVE_WAY_SIGNS
+                rules[name].untold |= untold
                 _draw(self.survey.entries[name], rules[name], line)
-
-
-def _signs(file: OsmFile, element: OsmRelation) -> tuple[Sign, ...]:
-    kinds = [element.tags["sign_type"]] if "sign_type" in element.tags else []
-    ways = [file.ways[name] for name in element.refs("refers", "way") if name in file.ways]
-    kinds += [way.tags.get("subtype", "") for way in ways if way.tags.get("type") == "traffic_sign"]
-    signs = [sign_of(kind) for kind in dict.fromkeys(kinds) if kind]
-    if element.tags.get("subtype") == "speed_limit":
-        # Reads names of signs that are speeds, as Lanelet2 does
-        signs = [
-            Sign(sign.name, velocity(kind)) if sign.limit_mps is None else sign
-            for sign, kind in zip(signs, dict.fromkeys(filter(None, kinds)), strict=True)
-        ]
-    return tuple(signs)
 
 
 def _draw(entry: MapLanelet, rules: LaneRules, line: Points | None) -> None:
@@ -228,14 +238,15 @@ def _all_way_stop(survey: Surveyed, element: OsmRelation, rules: Mapping[str, La
 
 
 def _right_of_way_signs(
-    survey: Surveyed, element: OsmRelation, rules: Mapping[str, LaneRules]
+    survey: Surveyed, own_element: _Element, rules: Mapping[str, LaneRules]
 ) -> None:
     """Add the signs of a right of way to the lanelets that give way or have priority.
 
     At traffic lights, a right of way applies only while the lights are out of order.
     """
-    signs = {sign.name for sign in _signs(survey.file, element)}
-    lines = [x for x in map(survey.line, element.refs("ref_line", "way")) if x is not None]
+    element, lines = own_element.element, own_element.lines
+    signs = {sign.name for sign in own_element.signs}
+    untold = {sign.untold for sign in own_element.signs}
     for role, own in (("yield", GIVE_WAY_SIGNS), ("right_of_way", _GOES_FIRST)):
         for name in element.refs(role, "relation"):
             if name not in survey.entries:
@@ -245,6 +256,7 @@ def _right_of_way_signs(
             for approach, _ in approaches(survey, entry, line):
                 if not rules[approach].lights:
                     rules[approach].signs |= signs & own
+                    rules[approach].untold |= untold & own
                     _draw(survey.entries[approach], rules[approach], line)
 
 
@@ -296,8 +308,14 @@ def _crosses(middle: shapely.LineString, along: float, line: Points) -> bool:
     return bool(abs(ahead @ across) < 0.7 * np.hypot(*ahead) * np.hypot(*across))
 
 
-def remarks_on(rules: Iterable[LaneRules]) -> Iterator[str]:
-    """Remarks on what the map does not contain about its lights."""
+def remarks_on(rules: Collection[LaneRules]) -> Iterator[str]:
+    """Remarks on what the map does not contain about its lights and limits."""
     lights = {id(light) for own in rules for light in own.lights}
     if lights:
         yield f"the map does not contain what its {len(lights)} traffic lights show"
+    limited = sum(MAX_SPEED in own.untold for own in rules)
+    if limited:
+        yield (
+            f"signs limit the speed on {limited} lanelets only for some or at some times, as "
+            "plates say or because they change: the limit is unknown there"
+        )

@@ -32,6 +32,7 @@ from rulec.recordings.recording import (
     BUSES_ONLY,
     CROSSWALK,
     CYCLES_TOO,
+    LEAST_SPEED_SIGN,
     STOP_SIGNS,
     TAXIS_TOO,
     Lanelet,
@@ -101,14 +102,20 @@ def _crossing_zone(context: DriveContext) -> SignalColumns:
 def _limit(context: DriveContext) -> SignalColumns:
     if not map_contents(context).limits:
         return SignalColumns()
-    return SignalColumns({"limit": rounded(np.minimum(context.limit_mps * KMH, NO_LIMIT_KMH))})
+    return SignalColumns(
+        {"limit": rounded(np.minimum(context.limit_mps * KMH, NO_LIMIT_KMH))},
+        unknown={"limit": context.limit_untold},
+    )
 
 
 def _minimum_limit(context: DriveContext) -> SignalColumns:
     if not map_contents(context).minima:
         return SignalColumns()
     least = own_lanelets(context).values(lambda at: at.minimum_mps or 0.0)
-    return SignalColumns({"minimum_limit": rounded(np.array(least) * KMH)})
+    return SignalColumns(
+        {"minimum_limit": rounded(np.array(least) * KMH)},
+        unknown={"minimum_limit": _may_hold(context, {LEAST_SPEED_SIGN})},
+    )
 
 
 def _signs(context: DriveContext) -> SignalColumns:

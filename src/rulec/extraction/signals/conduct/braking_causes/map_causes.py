@@ -99,7 +99,7 @@ def map_reasons(context: DriveContext, asked: Flags, reach: Floats) -> MapReason
         may |= (front >= start - reach) & (rear <= end)
     # Beyond its map the road is unknown
     may |= (front + reach > road.borders[-1]) | (rear < road.borders[0])
-    may |= speed * KMH > context.limit_mps * KMH + _SLOWER_KMH
+    may |= (speed * KMH > context.limit_mps * KMH + _SLOWER_KMH) | context.limit_untold
     return MapReasons(may | does, does, freely & ~may)
 
 
@@ -197,8 +197,12 @@ def road_reasons(
     different = distinct(codes)
     told = [road.limit_mps(code // width, code % width, turned) for code in different.tolist()]
     known = np.array([np.inf if limit is None else limit for limit in told])
-    limits, seen = known[different.searchsorted(codes)], ahead <= reach
-    lower = (limits < speed) | (limits < context.limit_mps[states])
+    untold = np.array(
+        [road.limit_is_untold(*divmod(code, width)) for code in different.tolist()], dtype=bool
+    )
+    number = different.searchsorted(codes)
+    limits, seen = known[number], ahead <= reach
+    lower = (limits < speed) | (limits < context.limit_mps[states]) | untold[number]
     too_fast = (
         seen & (limits * KMH + _SLOWER_KMH < speed * KMH) & (limits < context.limit_mps[states])
     )
