@@ -63,6 +63,25 @@ def test_72_kmh_are_too_fast_in_town(tmp_path, law, kind, too_fast):
     assert ("speed_limit" in rules(found.violations)) == too_fast
 
 
+@pytest.mark.parametrize(
+    ("more", "plate", "wrong"),
+    [
+        ({"value": 30}, (), True),
+        ({"value": 30}, ({"id": "p", "s": 40, "orientation": "+", "type": "1040-30"},), None),
+        *[({}, (), None), ({"subtype": "100"}, (), False), ({"subtype": "60"}, (), None)],
+    ],
+)
+def test_72_kmh_past_a_sign_that_may_be_another_limit(tmp_path, law, more, plate, wrong):
+    """Neither an offence nor surely none, where the map does not tell what the sign says."""
+    sign = {"id": "a", "s": 40, "orientation": "+", "type": "274"} | more
+    elsewhere = '<type s="0" type="rural"><speed max="100" unit="km/h"/></type>'
+    west = '<type s="0" type="rural"/>' + signals(sign, *plate)
+    found = verdict(tmp_path, law, 20.0, end_m=96.0, west=west, straight=elsewhere)
+    assert ("speed_limit" in rules(found.violations)) == (wrong is True)
+    assert ("speed_limit" in rules(found.open)) == (wrong is None)
+    assert "speed_limit" not in rules(found.not_judged)
+
+
 @pytest.mark.parametrize("posted", [True, False])
 def test_a_stop_sign(tmp_path, law, posted):
     found = verdict(tmp_path, law, 10.0, west=signals(*([STOP] if posted else [])))

@@ -82,14 +82,18 @@ def road(
 
 
 def signals(*each):
-    """The signals of a road, each a dictionary of attributes; ``lanes`` is its validity."""
+    """The signals of a road, each a dictionary of attributes.
+
+    ``lanes`` is its validity, ``inside`` are further elements in it.
+    """
     written = []
     for one in each:
         attributes = dict(one)
         lanes, tag = attributes.pop("lanes", None), attributes.pop("tag", "signal")
+        inside = attributes.pop("inside", "")
         words = " ".join(f'{key}="{value}"' for key, value in attributes.items())
         valid = "" if lanes is None else f'<validity fromLane="{lanes[0]}" toLane="{lanes[1]}"/>'
-        written.append(f"<{tag} {words}>{valid}</{tag}>")
+        written.append(f"<{tag} {words}>{valid}{inside}</{tag}>")
     return f"<signals>{''.join(written)}</signals>"
 
 

@@ -134,6 +134,14 @@ D-1), lists of Swedish signs (B1, B2, B4, C31, D3), the MUTCD (R1-2, R4-1), and 
 CATALOGUED = frozenset({*_COUNTRIES, *_MORE} - {"CHN", "ITA"})
 """The countries, besides Germany, of whose catalogues at least one sign is known here."""
 
+LIMITS_KNOWN = frozenset(
+    country
+    for table in (_COUNTRIES, _MORE)
+    for country, signs in table.items()
+    if MAX_SPEED in signs.values()
+)
+"""Those of them whose sign for a speed limit is known."""
+
 _PLATES = _signs("""
 1020-30 ADDITION_RESIDENTS_PERMITTED, 1022-10 ADDITION_BICYCLES_PERMITTED,
 1024-10 ADDITION_CARS_PERMITTED, 1026-36 ADDITION_AGRICULTURE_PERMITTED,
@@ -153,7 +161,14 @@ _PLATES_OF_PLACE = frozenset({"1001"})
 _PLATES_OF_WAYS = frozenset({"1000", "1002", "1008"})
 """Germany's plates about directions and who crosses: signs of priority hold all the same."""
 
-_LIMITING = frozenset({*LIMITS, "MAX_SPEED_END", "MAX_SPEED_ZONE_END"})
+_BEGUN: Mapping[str, str] = MappingProxyType(
+    {
+        **dict.fromkeys((ZONE, "MAX_SPEED_END", "MAX_SPEED_ZONE_END"), MAX_SPEED),
+        "ALL_MAX_SPEED_AND_OVERTAKING_END": MAX_SPEED,
+        "MIN_SPEED_END": MIN_SPEED,
+        "NO_OVERTAKING_END": "NO_OVERTAKING_START",
+    }
+)
 
 _LATER_IN_USA = ("STOP", "STOP_4_WAY", "NO_TURN_ON_RED", "ONEWAY")
 
@@ -226,8 +241,8 @@ def _qualifies(plate: str, name: str) -> bool:
 
 
 def told_name(name: str) -> str:
-    """The name under which a sign's effect is known: a zone is a limit, and so is its end."""
-    return MAX_SPEED if name in _LIMITING else name
+    """The name of what a sign begins or ends: a zone is a limit, and so is its end."""
+    return _BEGUN.get(name, name)
 
 
 def _number(tree: Tree) -> str:

@@ -8,10 +8,11 @@ import numpy as np
 import shapely
 
 from rulec.recordings.opendrive.content.elements import MapRoad, RoadObject
-from rulec.recordings.opendrive.lane_furniture import Posted, drivable, piece_at
+from rulec.recordings.opendrive.lane_furniture import drivable, piece_at
 from rulec.recordings.opendrive.lane_lines import places_beside, span_at
 from rulec.recordings.opendrive.pieces import RoadPiece
 from rulec.recordings.opendrive.plan_view import places_on
+from rulec.recordings.opendrive.posted_signs import Posted
 from rulec.recordings.opendrive.signal_catalogues import CROSSWALK, WALKERS_LIGHTS
 from rulec.recordings.recording import LONGEST_M, Lanelet, Points
 from rulec.recordings.road_map import crosswalk

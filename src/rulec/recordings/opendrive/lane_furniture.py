@@ -2,32 +2,39 @@
 
 Lights, stop and give-way signs and stop lines belong to the lane before their junction, also where
 the file puts them on the roads within the junction, at the beginning of its ways. Other signs apply
-from their position to the end of their road.
+from their position to the end of their road, and never before it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
+from rulec.recordings.commonroad.traffic_signs import (
+    MAX_SPEED,
+    MIN_SPEED,
+    UNKNOWN,
+    ZONE,
+    Sign,
+    told_name,
+)
 from rulec.recordings.opendrive.content.elements import (
     MapRoad,
     OpenDrive,
     Orientation,
     RoadObject,
-    RoadSignal,
 )
 from rulec.recordings.opendrive.lane_lines import span_at
 from rulec.recordings.opendrive.lane_links import LaneKey, LaneLinks
 from rulec.recordings.opendrive.lane_types import NO_LANE, lane_types
 from rulec.recordings.opendrive.pieces import RoadPiece, directions
+from rulec.recordings.opendrive.posted_signs import Posted
 from rulec.recordings.opendrive.signal_catalogues import (
+    AT_LINE,
     HOLDS_ON,
     PRIORITY_SIGNS,
     is_light,
     is_stop_line,
-    sign_of,
 )
 from rulec.recordings.recording import NO_LANES
 
@@ -37,28 +44,50 @@ AT_JUNCTION_M = 40.0
 _HAIR_M = 1e-6
 
 
-class Posted(NamedTuple):
-    """A road's own signal or a referenced one, and the place and lanes where it applies."""
-
-    signal: RoadSignal
-    s: float
-    orientation: Orientation
-    lanes: tuple[tuple[int, int], ...] | None
-
-
 @dataclass(slots=True)
 class LaneFurniture:
     """Signals along a lane; ``lit_to`` are the ways on that a light is for, if the file says so.
 
-    ``stop_line`` is the lane in which the line lies, and its ``s``.
+    ``untold`` are the names of signs that may apply: there is one, but the file does not say for
+    whom, when, or with which number. ``stop_line`` is the lane in which the line lies, and its
+    ``s``.
     """
 
     # Not frozen: signals are added one by one
     signs: set[str] = field(default_factory=set)
+    untold: set[str] = field(default_factory=set)
     limit_mps: float | None = None
+    minimum_mps: float | None = None
     lit: bool = False
     lit_to: set[LaneKey] = field(default_factory=set)
     stop_line: tuple[LaneKey, float] | None = None
+
+    def add(self, sign: Sign) -> None:
+        """Add a sign to those that are told or untold."""
+        if sign.untold:
+            self.untold.add(sign.untold)
+        if sign.name != UNKNOWN:
+            self.signs.add(sign.name)
+
+    def hold(self, sign: Sign) -> None:
+        """Let a sign apply from here on, and end those that it ends."""
+        ended = HOLDS_ON.get(sign.name, frozenset())
+        effect = sign.untold or told_name(sign.name)
+        self.signs -= ended
+        if sign.name == UNKNOWN:
+            # Whether another one still applies is unknown
+            self.signs.discard(effect)
+        if not sign.untold:
+            self.untold -= {effect, *ended}
+        if effect == MAX_SPEED or MAX_SPEED in ended:
+            self.limit_mps = sign.limit_mps
+        if effect == MIN_SPEED or MIN_SPEED in ended:
+            self.minimum_mps = sign.limit_mps
+        if MAX_SPEED in ended and ZONE in self.signs:
+            # What ended was within a zone, whose limit holds again
+            self.untold.add(MAX_SPEED)
+        if not ended:
+            self.add(sign)
 
 
 @dataclass(slots=True)
@@ -73,35 +102,18 @@ class _Street:
         return self.by_lane.setdefault(key, LaneFurniture())
 
 
-def posted_on(content: OpenDrive) -> dict[str, list[Posted]]:
-    """Road -> the signals that apply on it."""
-    by_id = {x.id: x for road in content.roads.values() for x in road.signals}
-    return {
-        road.id: [
-            *(Posted(x, x.s, x.orientation, x.lanes) for x in road.signals),
-            *(
-                Posted(by_id[x.id], x.s, x.orientation, x.lanes)
-                for x in road.references
-                if x.id in by_id
-            ),
-        ]
-        for road in content.roads.values()
-    }
-
-
 def sign_places(road: MapRoad, posted: Iterable[Posted]) -> list[float]:
     """The values of ``s`` at which signals make something begin or end, where the road is cut."""
     return [x.s for x in posted if _parts(road, x)]
 
 
 def _parts(road: MapRoad, posted: Posted) -> bool:
-    sign = sign_of(posted.signal)
-    if sign is not None and sign.name in HOLDS_ON:
+    if any(HOLDS_ON.keys() & {sign.name, sign.untold} for sign in posted.signs):
         return True
     left = {"+": road.length - posted.s, "-": posted.s}
     ahead = left.get(posted.orientation, min(left.values()))
     stands_alone = ahead > AT_JUNCTION_M and not road.junction
-    return stands_alone and (sign is not None or is_light(posted.signal, ()))
+    return stands_alone and (bool(posted.signs) or is_light(posted.signal, ()))
 
 
 def lane_furniture(
@@ -129,8 +141,8 @@ def _place_signal(
 ) -> None:
     _hold_on(street, road, posted, forward=True)
     light, line = is_light(posted.signal, controlled), is_stop_line(posted.signal)
-    sign = sign_of(posted.signal)
-    if not (light or line or (sign is not None and sign.name not in HOLDS_ON)):
+    signs = [sign for sign in posted.signs if _is_at_line(sign)]
+    if not (light or line or signs):
         return
     for key in _posted_lanes(street, road, posted):
         for entry, way in _entries(street, road, key, posted.s):
@@ -141,28 +153,27 @@ def _place_signal(
                     own.lit_to.add(way)
             elif line:
                 own.stop_line = key, posted.s
-            elif sign is not None:
-                own.signs.add(sign.name)
-        if sign is not None and sign.name in PRIORITY_SIGNS and not road.junction:
-            for onward in _onward(street, key, posted.s):
-                street.at(onward).signs.add(sign.name)
+            for sign in signs:
+                own.add(sign)
+        for sign in signs:
+            if (sign.untold or sign.name) in PRIORITY_SIGNS and not road.junction:
+                for onward in _onward(street, key, posted.s):
+                    street.at(onward).add(sign)
+
+
+def _is_at_line(sign: Sign) -> bool:
+    return (sign.untold or sign.name) in AT_LINE
 
 
 def _hold_on(street: _Street, road: MapRoad, posted: Posted, *, forward: bool) -> None:
-    """Apply a sign from its place onward, to lanes driven in the given direction of the road."""
-    sign = sign_of(posted.signal)
-    if sign is None or sign.name not in HOLDS_ON:
+    """Apply signs from their place onward, to lanes driven in the given direction of the road."""
+    signs = [sign for sign in posted.signs if not _is_at_line(sign)]
+    if not signs:
         return
-    begun = HOLDS_ON[sign.name]
     for key in _posted_lanes(street, road, posted):
         for onward in _onward(street, key, posted.s) if key.forward == forward else ():
-            own = street.at(onward)
-            # This sign ends the effect of another one
-            own.signs -= begun
-            if "MAX_SPEED" in begun or sign.name == "MAX_SPEED":
-                own.limit_mps = sign.limit_mps
-            if not begun:
-                own.signs.add(sign.name)
+            for sign in signs:
+                street.at(onward).hold(sign)
 
 
 def _posted_lanes(street: _Street, road: MapRoad, posted: Posted) -> list[LaneKey]:

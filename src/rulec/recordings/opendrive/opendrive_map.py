@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
+from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.opendrive.content.elements import Lane, OpenDrive, record_at
 from rulec.recordings.opendrive.content.file_reader import OPENDRIVE, read_file
@@ -18,7 +19,6 @@ from rulec.recordings.opendrive.junction_ways import Crossroads, crossroads
 from rulec.recordings.opendrive.lane_furniture import (
     LaneFurniture,
     lane_furniture,
-    posted_on,
     sign_places,
 )
 from rulec.recordings.opendrive.lane_lines import Lines, lane_borders, places_beside, span_at
@@ -33,9 +33,18 @@ from rulec.recordings.opendrive.lane_types import (
     road_types,
 )
 from rulec.recordings.opendrive.pieces import RoadPiece, directions, neighbour, pieces_of
+from rulec.recordings.opendrive.posted_signs import posted_on, sign_remarks
 from rulec.recordings.opendrive.signal_catalogues import country_of
 from rulec.recordings.opendrive.turning_speeds import without_turning_speeds
-from rulec.recordings.recording import LONGEST_M, Lanelet, ObservedLight, Points, Side, is_lane
+from rulec.recordings.recording import (
+    LONGEST_M,
+    REGULATING,
+    Lanelet,
+    ObservedLight,
+    Points,
+    Side,
+    is_lane,
+)
 from rulec.recordings.road_map import RoadMap
 
 MOST_PLACES = 2_000_000
@@ -123,7 +132,7 @@ def read_opendrive_map(path: Path) -> RoadMap:
         lanelets=lanelets,
         side=side,
         country=_country(content),
-        remarks=tuple(_remarks(content, side, slow_turns)),
+        remarks=(*_remarks(content, side, slow_turns), *sign_remarks(content, posted)),
     )
 
 
@@ -182,6 +191,9 @@ def _lanelet(whole: _Whole, key: LaneKey) -> Lanelet:
         mark_beside(piece.section, key.lane, piece.middle, left=side == key.forward)
         for side in (True, False)
     ]
+    has_own = limit_at(piece.section, lane, piece.middle) is not None
+    # The lane's own limit comes before those of signs
+    untold = own.untold - (own.signs & REGULATING) - ({MAX_SPEED} if has_own else set())
     return Lanelet(
         id=whole.id_of(key),
         left=left,
@@ -193,7 +205,9 @@ def _lanelet(whole: _Whole, key: LaneKey) -> Lanelet:
         right_of=_beside(whole, key, left=False),
         types=frozenset(_types(whole, piece, lane)),
         signs=frozenset(own.signs),
-        limit_mps=_limit(piece, lane, own),
+        untold_signs=frozenset(untold),
+        limit_mps=None if MAX_SPEED in untold else _limit(piece, lane, own),
+        minimum_mps=None if MIN_SPEED in untold else own.minimum_mps,
         lights=(UNSEEN,) if own.lit else (),
         lights_to={whole.id_of(way): UNSEEN for way in own.lit_to if whole.is_there(way)},
         left_mark=marks[0],

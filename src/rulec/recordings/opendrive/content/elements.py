@@ -8,7 +8,7 @@ numbered outward.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, TypeVar
 
 ContactPoint = Literal["start", "end"]
@@ -132,16 +132,30 @@ class RoadLink:
     contact: ContactPoint | None
 
 
+@dataclass(frozen=True, slots=True)
+class SignalSpeed:
+    """What semantics (since 1.8) say about speeds, in the standard's words.
+
+    ``value_mps`` is None where there is no number, or none in a unit of speed.
+    """
+
+    type: str
+    value_mps: float | None
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RoadSignal:
     """A signal on a road.
 
     ``lanes``: ranges of the lanes that it applies to, None if the file gives none; ``value`` is the
-    number as written, in ``unit``.
+    number as written, in ``unit``. ``linked`` are the ids of signals that it names. Its semantics
+    have a condition if it ``is_qualified``, and others if it ``has_meaning``. ``board`` are the
+    signs on it; what a variable board shows is not in the file.
     """
 
     id: str
     s: float
+    t: float
     orientation: Orientation
     type: str
     subtype: str
@@ -150,6 +164,12 @@ class RoadSignal:
     value: float | None
     unit: str
     lanes: tuple[tuple[int, int], ...] | None
+    linked: tuple[str, ...] = ()
+    speeds: tuple[SignalSpeed, ...] = ()
+    is_qualified: bool = False
+    has_meaning: bool = False
+    board: tuple[RoadSignal, ...] = ()
+    has_variable_board: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -248,6 +268,7 @@ class OpenDrive:
     """The content of a file; ``controllers`` map to the ids of the signals that they control.
 
     ``may_have_rules``: whether roads in the file's version may give the side of traffic.
+    ``included`` are files that are named in its place, and not read.
     """
 
     # Not frozen: it is filled as the file is read
@@ -255,3 +276,4 @@ class OpenDrive:
     junctions: dict[str, RoadJunction]
     controllers: dict[str, tuple[str, ...]]
     may_have_rules: bool = True
+    included: list[str] = field(default_factory=list)

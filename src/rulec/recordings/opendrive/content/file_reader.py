@@ -35,7 +35,10 @@ def _add(content: OpenDrive, tree: Tree) -> None:
             if version not in ("", "1"):
                 why = f"its version is {short(version)}.{short(minor)}"
                 raise tree.wrong(why, "1.4 to 1.8")
+        case "include":
+            content.included.append(text(tree, "file"))
         case "road":
+            content.included += [text(x, "file") for x in tree.all("include")]
             road = read_road(tree)
             if road.id in content.roads:
                 raise tree.wrong(f"there are two roads `{short(road.id)}`")

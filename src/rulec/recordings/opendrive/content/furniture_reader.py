@@ -2,8 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from rulec.recordings.encodings.speed_units import SPEED_UNITS
 from rulec.recordings.encodings.tree import Tree
-from rulec.recordings.opendrive.content.elements import RoadObject, RoadSignal, SignalReference
+from rulec.recordings.opendrive.content.elements import (
+    RoadObject,
+    RoadSignal,
+    SignalReference,
+    SignalSpeed,
+)
 from rulec.recordings.opendrive.content.tree_values import (
     length,
     name,
@@ -14,6 +22,8 @@ from rulec.recordings.opendrive.content.tree_values import (
 )
 
 _MOST_CORNERS = 10_000
+_MOST_LINKS = 100
+_CONDITION = "supplementary"
 
 
 def read_signals(road: Tree) -> tuple[tuple[RoadSignal, ...], tuple[SignalReference, ...]]:
@@ -26,14 +36,29 @@ def read_signals(road: Tree) -> tuple[tuple[RoadSignal, ...], tuple[SignalRefere
 
 
 def _signal(tree: Tree) -> RoadSignal:
-    # Some tools write a text where there is no value
-    try:
-        value = float(text(tree, "value"))
-    except ValueError:
-        value = 0.0
+    own = _sign(tree, name(tree), length(tree, "s"), number(tree, "t", 0.0))
+    boards = [sign for board in tree.all("staticBoard") for sign in board.all("sign")]
+    linked = [text(x, "id") for x in tree.all("dependency")]
+    linked += [
+        text(x, "elementId") for x in tree.all("reference") if text(x, "elementType") != "object"
+    ]
+    return replace(
+        own,
+        linked=tuple(linked[:_MOST_LINKS]),
+        board=tuple([_sign(x, own.id, own.s, own.t) for x in boards[:_MOST_LINKS]]),
+        has_variable_board=tree.first("vmsBoard") is not None,
+    )
+
+
+def _sign(tree: Tree, key: str, s: float, t: float) -> RoadSignal:
+    """A signal, or a sign on the board of one."""
+    meanings = [x for group in tree.all("semantics") for x in group.children]
+    conditions = [x for x in meanings if x.name.startswith(_CONDITION)]
+    value = _value(tree)
     return RoadSignal(
-        id=name(tree),
-        s=length(tree, "s"),
+        id=key,
+        s=s,
+        t=t,
         orientation=orientation(tree),
         type=text(tree, "type"),
         subtype=text(tree, "subtype"),
@@ -42,7 +67,30 @@ def _signal(tree: Tree) -> RoadSignal:
         value=value if 0.0 < value < 1000.0 else None,
         unit=text(tree, "unit"),
         lanes=validity(tree),
+        speeds=tuple([_speed(x) for x in meanings if x.name == "speed"]),
+        is_qualified=any(map(_qualifies, conditions)),
+        has_meaning=len(meanings) > len(conditions),
     )
+
+
+def _value(tree: Tree) -> float:
+    # Some tools write a text where there is no value
+    try:
+        return float(text(tree, "value"))
+    except ValueError:
+        return 0.0
+
+
+def _speed(tree: Tree) -> SignalSpeed:
+    value, unit = _value(tree), SPEED_UNITS.get(text(tree, "unit").lower())
+    is_known = unit is not None and 0.0 < value < 1000.0
+    return SignalSpeed(text(tree, "type"), value * unit if unit and is_known else None)
+
+
+def _qualifies(condition: Tree) -> bool:
+    """Whether a condition says for whom or when a sign holds, and not only for how many metres."""
+    kind = condition.name.removeprefix(_CONDITION)
+    return kind != "Explanatory" and (kind, text(condition, "type")) != ("Distance", "for")
 
 
 def _reference(tree: Tree) -> SignalReference:
