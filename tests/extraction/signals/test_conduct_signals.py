@@ -331,9 +331,16 @@ def test_one_ahead_is_a_reason_for_who_would_run_into_it(leader, expected):
             # Who has become so slow need not brake for it any more
             "TTTT??",
         ),
+        (
+            [
+                straight(1, 0, 110, successors=(2,), limit_mps=30.0),
+                straight(2, 110, 900, predecessors=(1,), untold_signs=frozenset({"MAX_SPEED"})),
+            ],
+            "??????",
+        ),
         ([lanelet(1, [(0, 0), (120, 0), (200, 60), (400, 400)])], "??????"),
     ],
-    ids=["a junction", "an end", "a lower limit", "a bend"],
+    ids=["a junction", "an end", "a lower limit", "an untold limit", "a bend"],
 )
 def test_the_map_may_make_ego_brake(road, expected):
     route = tuple(x.id for x in road)

@@ -52,6 +52,44 @@ def test_the_least_speed_of_the_lanelet_under_ego():
     assert "minimum_limit" not in map_signals(context([90, 110], first={"limit_mps": 9.0})).world
 
 
+def test_the_limit_is_unknown_where_a_sign_may_be_another():
+    """Also as soon as ego's front is past it, from where a higher limit would apply."""
+    untold = {"untold_signs": frozenset({"MAX_SPEED"})}
+    drive = context([90, 97, 99, 110], first={"limit_mps": 50 / 3.6}, second=untold)
+    assert map_signals(drive).unknown["limit"].tolist() == [False, False, True, True]
+    nowhere = context([90, 110], first={"limit_mps": 50 / 3.6})
+    assert not map_signals(nowhere).unknown["limit"].any()
+
+
+def test_the_limit_of_a_junction_is_unknown_where_that_before_it_is():
+    road = [
+        straight(1, 0, 100, successors=(2,), untold_signs=frozenset({"MAX_SPEED"})),
+        straight(
+            2, 100, 120, predecessors=(1,), successors=(3,), types=frozenset({"intersection"})
+        ),
+        straight(3, 120, 220, predecessors=(2,), limit_mps=14.0),
+    ]
+    body = vehicle(7, {0: (110, 0), 1: (150, 0)})
+    found = map_signals(context_of(recording(road, [body]), ("1", "2", "3")))
+    assert found.unknown["limit"].tolist() == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("sign", "told", "word"),
+    [
+        ("MIN_SPEED", {"minimum_mps": 20.0}, "minimum_limit"),
+        (
+            "NO_OVERTAKING_START",
+            {"signs": frozenset({"NO_OVERTAKING_START"})},
+            "no_overtaking_sign",
+        ),
+    ],
+)
+def test_what_a_sign_says_is_unknown_where_it_may_hold(sign, told, word):
+    drive = context([90, 110], first=told, second={"untold_signs": frozenset({sign})})
+    assert map_signals(drive).unknown[word].tolist() == [False, True]
+
+
 @pytest.mark.parametrize(
     ("after", "turned", "limit"),
     [(70, 0, 70.0), (50, 0, NO_LIMIT_KMH), (None, 0, NO_LIMIT_KMH), (70, 90, NO_LIMIT_KMH)],

@@ -112,6 +112,11 @@ def test_one_gets_no_slower_than_the_limit_beyond_asks(limit_mps, known):
     assert told(road, slowed(-10, 8, 5)) == (known, not known)
 
 
+def test_one_may_brake_for_a_limit_that_the_map_does_not_tell():
+    road = [*NORTH[:2], replace(NORTH[2], untold_signs=frozenset({"MAX_SPEED"}))]
+    assert told(road, slowed(-10, 8, 5)) == (False, True)
+
+
 @pytest.mark.parametrize(("late_s", "known"), [(0.2, True), (0.65, True), (0.8, False)])
 def test_one_that_comes_at_once_is_endangered_whatever_it_slows_down_for(late_s, known):
     """It brakes for its sign from 8 to 4 m/s and comes to ego's way, 3 m before the middle."""

@@ -20,7 +20,7 @@ from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.junctions import Junction, JunctionWay, approaches, entry_lights
 from rulec.extraction.tracks.tracks import Floats
-from rulec.recordings.recording import GIVE_WAY_SIGNS, STOP_SIGNS
+from rulec.recordings.recording import GIVE_WAY_SIGNS, LIMIT_SIGN, STOP_SIGNS
 from rulec.scenario.recorded.reference_line import turn
 
 _BENDS_MPS2 = 2.0
@@ -157,7 +157,10 @@ def _slows_at_line(context: DriveContext, braking: _Braking) -> bool:
 
 
 def _slows_for_limit(context: DriveContext, braking: _Braking) -> bool:
-    """Whether a participant gets as slow as a limit at or beyond a junction asks, and no slower."""
+    """Whether a participant gets as slow as a limit at or beyond a junction asks, and no slower.
+
+    One that the map does not tell may ask for any speed.
+    """
     passages, lanelets = context.surroundings.passages, context.recording.lanelets
     row, first = braking.rows[1], braking.first
     speed = passages.tracks.speed[row]
@@ -166,8 +169,11 @@ def _slows_for_limit(context: DriveContext, braking: _Braking) -> bool:
         if not (passage.first <= soon and passage.last >= first):
             continue
         way = passages.way(passage)
-        beyond = (lanelets[name].limit_mps for name in way.names | way.exits if name in lanelets)
-        lowest = min((limit for limit in beyond if limit is not None), default=np.inf)
+        beyond = [lanelets[name] for name in way.names | way.exits if name in lanelets]
+        if any(LIMIT_SIGN in lanelet.untold_signs for lanelet in beyond):
+            return True
+        limits = (lanelet.limit_mps for lanelet in beyond)
+        lowest = min((limit for limit in limits if limit is not None), default=np.inf)
         if lowest < _AS_FAST * speed[first] and speed[braking.slowest] > _AS_FAST * lowest:
             return True
     return False
