@@ -132,6 +132,8 @@ PLATE = {"id": "p", "s": 60, "t": -4, "orientation": "+", "type": "1040", "subty
         ({}, PLATE),
         ({}, PLATE | {"type": "1010", "subtype": "51", "t": -4.2}),
         ({}, PLATE | {"type": "1053-35", "subtype": "-1"}),
+        # Some tools give all signals one id, or plates no direction
+        ({}, PLATE | {"id": "a", "orientation": "none"}),
         # Elsewhere, but linked
         ({"inside": '<dependency id="p" type="supplementary"/>'}, PLATE | {"t": 9}),
         ({"inside": '<reference elementType="signal" elementId="p"/>'}, PLATE | {"t": 9}),

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import product
 from typing import NamedTuple
 
 from rulec.recordings.commonroad.traffic_signs import (
@@ -76,16 +77,11 @@ def posted_on(content: OpenDrive) -> dict[str, list[Posted]]:
     own: dict[str, list[Posted]] = {}
     signs: dict[str, tuple[Sign, ...]] = {}
     for road in content.roads.values():
-        below = _posts(road.signals)
+        posts = _posts(road.signals)
         own[road.id] = []
         for signal in road.signals:
-            plates = [
-                number
-                for post in _places_around(signal)
-                for name, number in below.get(post, ())
-                if name != signal.id
-            ]
-            signs[signal.id] = _shown(signal, (*plates, *linked.get(signal.id, ())))
+            plates = *_below(signal, posts), *linked.get(signal.id, ())
+            signs[signal.id] = _shown(signal, plates)
             own[road.id].append(
                 Posted(signal, signal.s, signal.orientation, signal.lanes, signs[signal.id])
             )
@@ -113,26 +109,32 @@ def _linked_plates(by_id: Mapping[str, RoadSignal]) -> dict[str, list[str]]:
     return plates
 
 
-_Post = tuple[int, int, Orientation]
+_Place = tuple[int, int]
 
 
-def _posts(signals: Iterable[RoadSignal]) -> dict[_Post, list[tuple[str, str]]]:
-    """Places along a road -> the ids and numbers of plates there."""
-    posts: dict[_Post, list[tuple[str, str]]] = defaultdict(list)
+def _posts(signals: Iterable[RoadSignal]) -> dict[_Place, list[tuple[RoadSignal, str]]]:
+    """Places along a road -> the plates there, and their numbers."""
+    posts: dict[_Place, list[tuple[RoadSignal, str]]] = defaultdict(list)
     for signal in signals:
         if number := plate_number(signal):
-            posts[_place(signal)].append((signal.id, number))
+            posts[_place(signal)].append((signal, number))
     return posts
 
 
-def _place(signal: RoadSignal) -> _Post:
-    return round(signal.s / _ON_POST_M), round(signal.t / _ON_POST_M), signal.orientation
+def _place(signal: RoadSignal) -> _Place:
+    return round(signal.s / _ON_POST_M), round(signal.t / _ON_POST_M)
 
 
-def _places_around(signal: RoadSignal) -> Iterator[_Post]:
-    s, t, orientation = _place(signal)
-    around = (-1, 0, 1)
-    yield from ((s + ahead, t + aside, orientation) for ahead in around for aside in around)
+def _below(
+    signal: RoadSignal, posts: Mapping[_Place, Iterable[tuple[RoadSignal, str]]]
+) -> Iterator[str]:
+    """The numbers of plates on a signal's post that do not face the other way."""
+    s, t = _place(signal)
+    for ahead, aside in product((-1, 0, 1), repeat=2):
+        for plate, number in posts.get((s + ahead, t + aside), ()):
+            faces = {signal.orientation, plate.orientation} != {"+", "-"}
+            if faces and plate is not signal:
+                yield number
 
 
 def _shown(signal: RoadSignal, plates: Iterable[str]) -> tuple[Sign, ...]:
