@@ -37,6 +37,7 @@ def unknown(lanelet):
         # Of the old catalogue, of the new one
         *[({"subtype": "55"}, 50), ({"subtype": "62"}, 120), ({"subtype": "100"}, 100)],
         *[({"subtype": "70"}, 70), ({"subtype": "130"}, 130), ({"subtype": "30"}, 30)],
+        *[({"type": "274-100"}, 100), ({"type": "274.1-20"}, 20)],
         *[({"value": 20, "unit": "mph"}, 20 * 1.609344), ({"value": 36, "unit": "KM/H"}, 36)],
         ({"inside": '<semantics><speed type="maximum" value="80" unit="km/h"/></semantics>'}, 80),
         ({"inside": '<semantics><speed type="maximum" value="10" unit="m/s"/></semantics>'}, 36),
@@ -60,7 +61,13 @@ def test_numbers_that_are_read(tmp_path, changes, kmh):
     "changes",
     [
         # 100 km/h in the old catalogue, and 60 in the new one
-        *[{"subtype": "60"}, {"subtype": "50"}, {}, {"value": 20, "unit": "mi/h"}],
+        *[
+            {"subtype": "60"},
+            {"subtype": "50"},
+            {"type": "274-60"},
+            {},
+            {"value": 20, "unit": "mi/h"},
+        ],
         {"inside": '<semantics><speed type="maximum" value="80" unit="knots"/></semantics>'},
         {"dynamic": "yes", "value": 30},
         {

@@ -146,8 +146,15 @@ def _names(signal: RoadSignal, country: str) -> Iterator[str]:
 
 
 def _numbers(signal: RoadSignal) -> tuple[str, str, str]:
-    kind, subtype = signal.type, signal.subtype
+    kind, subtype = _parts(signal)
     return f"{kind}-{subtype}", f"{kind}.{subtype}", kind
+
+
+def _parts(signal: RoadSignal) -> tuple[str, str]:
+    """A signal's type and subtype; some files write the whole German number as the type."""
+    kind, parted, subtype = signal.type.partition("-")
+    is_whole = bool(kind and parted) and country_of(signal.country) in _GERMAN
+    return (kind, subtype) if is_whole else (signal.type, signal.subtype)
 
 
 def is_german_plate(signal: RoadSignal) -> bool:
@@ -190,8 +197,8 @@ def _limit(signal: RoadSignal, country: str, name: str) -> float | None:
         usual = "mph" if country in ("USA", "GBR") else "km/h"
         unit = SPEED_UNITS.get(signal.unit.lower() or usual)
         return None if unit is None else signal.value * unit
-    digits = signal.subtype if signal.subtype.isascii() and signal.subtype.isdigit() else ""
-    number = int(digits) if 0 < len(digits) < 4 else 0
+    _, digits = _parts(signal)
+    number = int(digits) if digits.isascii() and digits.isdigit() and len(digits) < 4 else 0
     if country not in _GERMAN or name == MIN_SPEED:
         return None
     if name == MAX_SPEED and number in _OLD_LIMITS:
