@@ -306,3 +306,75 @@ def mutants(formula):
 def test_whatever_is_changed_in_a_formula_changes_its_sentence(formula, language):
     for one in mutants(formula):
         assert (said(one, language) == said(formula, language)) == (one == formula), one
+
+
+def unrelated(*_):
+    return False
+
+
+@pytest.mark.parametrize(
+    ("language", "weakly", "ever_since"),
+    [
+        (
+            ENGLISH,
+            (
+                "“horn” does not hold, and this is so for ever, or only until, at some time, "
+                "“fog” holds."
+            ),
+            "“horn” does not hold, and this has been so ever since “fog” holds.",
+        ),
+        (
+            GERMAN,
+            (
+                "Es gilt: „horn“ gilt nicht, und zwar für immer oder nur, bis irgendwann gilt: "
+                "„fog“ gilt."
+            ),
+            "Es gilt: „horn“ gilt nicht, und zwar seitdem galt: „fog“ gilt.",
+        ),
+        (
+            FRENCH,
+            (
+                "Ceci : « horn » n'est pas vrai, et cela pour toujours, ou seulement jusqu'à ce "
+                "que, à un moment, ceci : « fog » est vrai."
+            ),
+            "Ceci : « horn » n'est pas vrai, et cela depuis que ceci : « fog » est vrai.",
+        ),
+    ],
+)
+def test_what_does_not_hold_for_ever_never_holds(language, weakly, ever_since):
+    """`does not hold for ever` would say that it ends some day."""
+    silent = Unary(NOT, HORN)
+    for operator, said in ((BinaryOperator.WEAK_UNTIL, weakly), (BinaryOperator.SINCE, ever_since)):
+        assert in_one_line(sentence(Binary(operator, silent, FOG), (), unrelated, language)) == said
+
+
+def test_two_counts_are_compared_in_words():
+    buses = Count("x", "bus", Atom("near", ("x",)))
+    slow = Comparison(
+        ((Fraction(1), QuantityTerm("pace", ("y",))),), "<", Fraction(5), "pace(y) < 5"
+    )
+    cars = Count("y", "car", Binary(AND, Atom("near", ("y",)), slow))
+    text = "count x: bus (near(x)) >= 2 * count y: car (near(y) and pace(y) < 5)"
+    compared = Comparison(((Fraction(1), buses), (Fraction(-2), cars)), ">=", Fraction(0), text)
+    english = (
+        "At all times the number of buses x (for which “near” holds of x) is at least 2 times the "
+        "number of cars y (for which “near” holds of y and the pace of y is less than 5)."
+    )
+    german = (
+        "Immer gilt: die Zahl der Objekte der Art „bus“ x (für die gilt: „near“ gilt für x) "
+        "beträgt mindestens 2 mal die Zahl der Objekte der Art „car“ y (für die gilt: „near“ gilt "
+        "für y und „pace“ von y beträgt weniger als 5)."
+    )
+    for language, said in ((ENGLISH, english), (GERMAN, german)):
+        assert in_one_line(sentence(Unary(ALWAYS, compared), (), unrelated, language)) == said
+
+
+def test_a_count_of_what_takes_a_list_stays_a_formula():
+    deep = Binary(OR, Binary(AND, HORN, FOG), Binary(AND, FOG, BESIDE))
+    text = "count x: bus (…) >= count y: car (near(y))"
+    terms = (
+        (Fraction(1), Count("x", "bus", deep)),
+        (Fraction(-1), Count("y", "car", Atom("near", ("y",)))),
+    )
+    said = in_one_line(sentence(Comparison(terms, ">=", Fraction(0), text), (), unrelated))
+    assert said == f"“{text}” is true at the start."

@@ -59,6 +59,7 @@ ENGLISH = Language(
     there_is="there is {} {} for which",
     there_is_no="there is {} {} for which",
     there_are="there are {} {} for which",
+    number_of="the number of {} {} (for which {})",
     type_words=TypeWords(
         every="every {}", other="every other {}", one="a {}", none="no {}", noun="{}", plural="{}"
     ),
@@ -122,9 +123,11 @@ ENGLISH = Language(
             "{left} until, at some time {span}, {right}",
         ),
         BinaryOperator.WEAK_UNTIL: BinaryWords(
-            "{left} for ever, or only until, at some time, {right}",
-            "{left} at all times {first}, or only until, at some time {span}, {right}",
-            "{left} for ever, or only until, at some time {span}, {right}",
+            # Of what does not hold, `for ever` alone would say that it may hold some day.
+            "{left}, and this is so for ever, or only until, at some time, {right}",
+            "{left}, and this is so at all times {first}, or only until, at some time {span}, "
+            "{right}",
+            "{left}, and this is so for ever, or only until, at some time {span}, {right}",
         ),
         BinaryOperator.RELEASE: BinaryWords(
             "unless released before by a moment at which {left}, at all times {right}",
@@ -140,9 +143,9 @@ ENGLISH = Language(
             "{span} {right}",
         ),
         BinaryOperator.SINCE: BinaryWords(
-            "{left} ever since {right}",
-            "{left} ever since a moment {span} at which {right}",
-            "{left} ever since a moment {span} at which {right}",
+            "{left}, and this has been so ever since {right}",
+            "{left}, and this has been so ever since a moment {span} at which {right}",
+            "{left}, and this has been so ever since a moment {span} at which {right}",
         ),
     },
     iff="{} if and only if {}",

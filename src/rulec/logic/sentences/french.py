@@ -53,6 +53,7 @@ FRENCH = Language(
     there_is="il y a {} {} avec ceci :",
     there_is_no="il n'y a {} {} avec ceci :",
     there_are="il y a {} {} avec ceci :",
+    number_of="l'effectif des {} {} (avec ceci : {})",
     type_words=TypeWords(
         every="tout objet « {} »",
         other="tout autre objet « {} »",
@@ -122,12 +123,12 @@ FRENCH = Language(
             "ceci : {left}, jusqu'à ce que, à un moment {span}, ceci : {right}",
         ),
         BinaryOperator.WEAK_UNTIL: BinaryWords(
-            "ceci : {left}, pour toujours, ou seulement jusqu'à ce que, à un moment, ceci : "
-            "{right}",
-            "ceci : {left}, à tout moment {first}, ou seulement jusqu'à ce que, à un moment "
-            "{span}, ceci : {right}",
-            "ceci : {left}, pour toujours, ou seulement jusqu'à ce que, à un moment {span}, "
+            "ceci : {left}, et cela pour toujours, ou seulement jusqu'à ce que, à un moment, "
             "ceci : {right}",
+            "ceci : {left}, et cela à tout moment {first}, ou seulement jusqu'à ce que, à un "
+            "moment {span}, ceci : {right}",
+            "ceci : {left}, et cela pour toujours, ou seulement jusqu'à ce que, à un moment "
+            "{span}, ceci : {right}",
         ),
         BinaryOperator.RELEASE: BinaryWords(
             "sauf libération préalable par un instant avec ceci : {left}, à tout moment : {right}",
@@ -145,9 +146,9 @@ FRENCH = Language(
             "moment {span} : {right}",
         ),
         BinaryOperator.SINCE: BinaryWords(
-            "ceci : {left}, depuis que ceci : {right}",
-            "ceci : {left}, depuis un instant {span} où ceci : {right}",
-            "ceci : {left}, depuis un instant {span} où ceci : {right}",
+            "ceci : {left}, et cela depuis que ceci : {right}",
+            "ceci : {left}, et cela depuis un instant {span} où ceci : {right}",
+            "ceci : {left}, et cela depuis un instant {span} où ceci : {right}",
         ),
     },
     iff="ceci : {}, si et seulement si ceci : {}",

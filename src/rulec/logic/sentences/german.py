@@ -52,6 +52,7 @@ GERMAN = Language(
     there_is="es gibt {} {}, sodass gilt:",
     there_is_no="es gibt {} {}, sodass gilt:",
     there_are="es gibt {} {}, sodass gilt:",
+    number_of="die Zahl der {} {} (für die gilt: {})",
     type_words=TypeWords(
         every="jedes Objekt der Art „{}“",
         other="jedes andere Objekt der Art „{}“",

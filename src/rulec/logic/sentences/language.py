@@ -108,6 +108,7 @@ class Language:
     there_is: str
     there_is_no: str
     there_are: str
+    number_of: str
     type_words: TypeWords
     plural: Callable[[str], str] = str
     types: Mapping[str, TypeWords] = field(default_factory=dict)

@@ -7,7 +7,7 @@ labels, as in contracts. Different formulas get different sentences.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
 
@@ -170,12 +170,22 @@ def _clause(formula: ltl.Formula, language: Language, *, holds: bool) -> str | N
         case ltl.Atom():
             return wording.atom_clause(formula, language, holds=holds)
         case ltl.Comparison():
-            return wording.comparison_clause(formula, language, holds=holds)
+            bodies = dict(_bodies(formula, language))
+            return wording.comparison_clause(formula, language, bodies, holds=holds)
         case ltl.Constant(value):
             return language.constants[value is not holds]
         case ltl.Same(left, right):
             return language.same[not holds].format(left, right)
     return None
+
+
+def _bodies(formula: ltl.Comparison, language: Language) -> Iterator[tuple[ltl.Count, str]]:
+    """What each count of a comparison is about, if that is short enough for a line."""
+    for _, term in formula.terms:
+        if isinstance(term, ltl.Count):
+            body = phrase(term.body, language, inside=True)
+            if body.shape <= Shape.JOINED:
+                yield term, body.text
 
 
 def _after(lead: str, scope: Phrase, language: Language, *, denies: bool = False) -> Phrase:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
@@ -62,15 +62,40 @@ def atom_clause(atom: Atom, language: Language, *, holds: bool) -> str:
     return language.atom_of[not holds].format(spoken(atom.name), of)
 
 
-def comparison_clause(comparison: Comparison, language: Language, *, holds: bool) -> str:
-    """A clause stating that the comparison holds, or that it does not."""
-    text = comparison_text(comparison)
-    signs = _SIGN.findall(text)
+def comparison_clause(
+    comparison: Comparison, language: Language, bodies: Mapping[Count, str], *, holds: bool
+) -> str:
+    """A clause stating that the comparison holds, or that it does not.
+
+    ``bodies`` has a clause for what each of its counts is about, if there is one.
+    """
+    whole = text = comparison_text(comparison)
     terms = [term for _, term in comparison.terms]
-    if len(signs) != 1 or any(isinstance(term, Count) for term in terms):
-        return language.truth[not holds].format(text)
+    counts = [term for term in terms if isinstance(term, Count)]
+    # What is counted may be compared, too: its signs are not those of this comparison.
+    for number, count in enumerate(counts):
+        text = text.replace(term_text(count), _counted_at(number))
+    signs = _SIGN.findall(text)
+    if len(signs) != 1 or not all(_is_spoken(text, n, bodies, counts) for n in range(len(counts))):
+        return language.truth[not holds].format(whole)
     left, right = (_aloud(side.strip(), terms, language) for side in text.split(signs[0]))
-    return language.relations[signs[0]][not holds].format(left, right)
+    clause = language.relations[signs[0]][not holds].format(left, right)
+    for number, count in enumerate(counts):
+        plural = language.type_of(count.type, spoken(count.type)).plural
+        noun = language.number_of.format(plural, count.variable, bodies[count])
+        clause = clause.replace(_counted_at(number), noun)
+    return clause
+
+
+def _counted_at(number: int) -> str:
+    """The placeholder for a comparison's n-th count."""
+    return chr(0xF000 + number)
+
+
+def _is_spoken(
+    text: str, number: int, bodies: Mapping[Count, str], counts: Sequence[Count]
+) -> bool:
+    return _counted_at(number) in text and counts[number] in bodies
 
 
 def _aloud(text: str, terms: Sequence[Term], language: Language) -> str:
