@@ -1,5 +1,6 @@
 """What fits at the cursor: by the grammar, by types, by who it is about."""
 
+import pytest
 from lsprotocol import types as lsp
 
 from support.editor import at, shown
@@ -111,3 +112,23 @@ def test_a_call_shows_its_parameters(editor):
     )
     params.position = at(BOOK, "always (")
     assert editor.ask(lsp.TEXT_DOCUMENT_SIGNATURE_HELP, params) is None
+
+
+@pytest.mark.parametrize("tail", ["", " }\n}\n"])
+def test_an_example_has_objects_of_its_own(editor, tail):
+    """Also while its braces, and those of its rule, are still open."""
+    head = BOOK[: BOOK.rindex("}")]
+    for typed, expected in (
+        ("accept (two: vehicle) { stopped(two) and ", {"stopped(two)", "stopped(o)"}),
+        ("accept (two: vehicle) { stopped(two) and stopped(", {"two", "o", "who"}),
+        ("accept (two: pedestrian) { stopped(", {"two", "o", "who"}),
+    ):
+        text = f"{head}  {typed}{tail}"
+        found = completed(editor, "objects.rules", text, at(text, typed))
+        assert expected <= found.keys(), typed
+
+
+def test_an_open_rule_has_its_variables(editor):
+    text = "rulebook begun\nextends vienna\nhard rule r(v: vehicle) {\n  require stopped(v) and "
+    found = completed(editor, "open.rules", text, at(text, "stopped(v) and "))
+    assert "stopped(v)" in found

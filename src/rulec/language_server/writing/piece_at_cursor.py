@@ -19,7 +19,7 @@ class PieceAtCursor:
 
     ``tokens`` are the piece's tokens, ``kind`` is its syntactic kind; ``accepted`` are the
     grammar's terminals that can follow. ``in_rule`` and ``in_vocabulary``: it is inside their
-    braces.
+    braces. ``heads`` are the tokens of the heads that it is under: of its rule, and its example.
     """
 
     start: int
@@ -28,6 +28,7 @@ class PieceAtCursor:
     accepted: frozenset[str]
     in_rule: bool
     in_vocabulary: bool
+    heads: tuple[Token, ...] = ()
 
     def text(self, back: int = 1) -> str:
         """The text of a token, counted back from the cursor; empty before the piece."""
@@ -87,13 +88,19 @@ def _is_balanced(tokens: list[Token]) -> bool:
 def _in_rule(rule: RulePieces, start: int, read: tuple[str, list[Token]]) -> PieceAtCursor:
     part = rule.body[-1] if rule.body else None
     ended = read[1][-1].text == "}"
+    heads = _inside(rule.head, read[1])
     if part is None or (ended and _is_balanced(_tokens_of(part, read[1]))):
         return _none_yet(start, "clause", in_rule=True)
     if isinstance(part, ExamplePieces):
         if part.states:
-            return _of("state", part.states[-1], start, read, in_rule=True)
-        return _of("example_head", part.head, start, read, in_rule=True)
-    return _of("clause", part, start, read, in_rule=True)
+            heads += _inside(part.head, read[1])
+            return _of("state", part.states[-1], start, read, in_rule=True, heads=heads)
+        return _of("example_head", part.head, start, read, in_rule=True, heads=heads)
+    return _of("clause", part, start, read, in_rule=True, heads=heads)
+
+
+def _inside(piece: Piece, tokens: list[Token]) -> tuple[Token, ...]:
+    return tuple(tokens[piece.first : piece.last])
 
 
 def _none_yet(
@@ -127,9 +134,10 @@ def _of(
     *,
     in_rule: bool = False,
     in_vocabulary: bool = False,
+    heads: tuple[Token, ...] = (),
 ) -> PieceAtCursor:
     before, tokens = read
-    inside = tuple(tokens[piece.first : piece.last])
+    inside = _inside(piece, tokens)
     text = before[inside[0].start :] if inside else ""
     return PieceAtCursor(
         start,
@@ -138,4 +146,5 @@ def _of(
         accepted=accepted_after(kind, text),
         in_rule=in_rule,
         in_vocabulary=in_vocabulary,
+        heads=heads,
     )

@@ -169,8 +169,8 @@ def _scope(names: DocumentNames, piece: PieceAtCursor, offset: int) -> dict[str,
                     scope |= {o.name.text: o.type.text for o in example.objects if o.type}
         case tree.DefineItem(parameters=parameters):
             scope = {x.name.text: x.type.text if x.type else "" for x in parameters}
-    # Text just written may not be in a tree yet: look for `name: type` before the cursor.
-    tokens = piece.tokens
+    # What is being written may not be in a tree yet: look for `name: type` before the cursor.
+    tokens = (*piece.heads, *piece.tokens)
     for number in range(len(tokens) - 2):
         if tokens[number + 1].text == ":" and tokens[number].kind == "word":
             scope[tokens[number].text] = tokens[number + 2].text
