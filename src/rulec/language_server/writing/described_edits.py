@@ -26,6 +26,11 @@ _CHANGED_BY = re.compile(r"`(?P<head>(?:set|redefine) \w+) = …`")
 _SCOPE = re.compile(r"\b(?:throughout|at\s+start|at\s+end|at\s+some\s+point|initially)\b")
 _QUANTIFIED = re.compile(r"\b(?:every|some|no)\s+\w+\s*:\s*\w+[^()]*\(\s*$")
 _BEFORE_VARIABLE = re.compile(r"\b(?:every|some|no|count|least|most)\s+$")
+_DATE = re.compile(r"\d[\d./-]*\d")
+_BINDS_LOOSELY = re.compile(
+    rf"\b(?:or|xor|implies|iff|then|if|{_CLAUSES})\b|in\s+force|[|^>#]", re.IGNORECASE
+)
+"""Signs that `and` would part otherwise than a new clause does, and clauses in between."""
 _OPERATOR = re.compile(r"\w+(?:\s*\[[^]]*\])?\s+")
 
 
@@ -49,7 +54,8 @@ def described_edits(
         begin = text.rfind("confirm rule", 0, start)
         if begin >= 0:
             yield _edit("Override the rule", begin, begin + len("confirm rule"), match[1])
-    if "leave this out" in help_text or help_text == "keep one of them":
+    is_law = own in ("require", "when", "unless")  # what of it is law, only the author knows
+    if help_text.endswith("or leave this out") or (help_text == "keep one of them" and not is_law):
         behind = _NEXT_CLAUSE.search(text, end)
         last = behind.start() if behind else len(text)
         yield _edit(f"Leave out this `{own}`", len(text[:start].rstrip()), last, "")
@@ -86,8 +92,21 @@ def described_edits(
         yield _edit(f"Leave out `is {own}`", len(text[:begin].rstrip()), end, "")
     if "give it a weight" in help_text and (match := re.search(r"\b0+(?:\.0*)?\b", own)):
         yield _edit("Write `1`", start + match.start(), start + match.end(), "1")
-    for words in re.findall(r"`([^`…]+)`", help_text):
-        yield from _beginning_before(words, text, start, end)
+    if match := re.search(r"^declare it as `([^`…]+)`", help_text):
+        yield from _as_declared(match[1], text, start)
+    if match := re.search(r"the (?:rule|definition)'s only variable is `(\w+)`$", help_text):
+        yield _edit(f"Write `{match[1]}`", start, end, match[1])
+    if match := re.search(r"^a date is written year-month-day: `(\d{4}-\d\d-\d\d)`", help_text):
+        day = _DATE.match(text, start)
+        if day is not None:
+            yield _edit(f"Write `{match[1]}`", *day.span(), match[1])
+    if help_text.startswith("join them by `and`"):
+        yield from _joined(text, start, end)
+    if help_text.startswith("keep one of them, or put a `;`"):
+        joint = re.search(r"\s*\band\s+$", text[:start])
+        if joint is not None:
+            yield _edit(f"Leave out `and {own}`", joint.start(), end, "")
+            yield _edit(f"Put `;` before `{own}`", joint.start(), start, "; ")
 
 
 def declares_in_formula(text: str, start: int) -> bool:
@@ -162,8 +181,12 @@ def _changing(head: str, text: str, start: int) -> Iterator[Edit]:
 
 def _another_scope(help_text: str, text: str, start: int, end: int) -> Iterator[Edit]:
     for scope in re.findall(r"`([a-z ]+)`", help_text):
-        if _SCOPE.fullmatch(scope) and (match := _SCOPE.search(text, start, end)):
+        if not _SCOPE.fullmatch(scope):
+            continue
+        if match := _SCOPE.search(text, start, end):
             yield _edit(f"Write `{scope}`", *match.span(), scope)
+        else:
+            yield _edit(f"Put `{scope}` behind it", end, end, f" {scope}")
 
 
 def _operator_outside(text: str, start: int, end: int) -> Iterator[Edit]:
@@ -175,13 +198,18 @@ def _operator_outside(text: str, start: int, end: int) -> Iterator[Edit]:
         yield _edit(f"Put `{word}` around it", quantified.start(), end, moved)
 
 
-def _beginning_before(words: str, text: str, start: int, end: int) -> Iterator[Edit]:
-    """A replacement whose first word is already in the text before the place."""
-    first, space, _ = words.partition(" ")
-    if ": " in words:
-        # As it is declared in the head of its rule
-        declared = [*re.finditer(rf"\b{re.escape(first)}\s*\w+", text[:start])]
-        if declared:
-            yield _edit(f"Write `{words}`", *declared[-1].span(), words)
-    elif space and (match := re.search(rf"\b{re.escape(first)}\s+$", text[:start])):
-        yield _edit(f"Write `{words}`", match.start(), end, words)
+def _as_declared(words: str, text: str, start: int) -> Iterator[Edit]:
+    """A variable's type, as it is declared in the head of its rule."""
+    name, _, _ = words.partition(":")
+    declared = [*re.finditer(rf"\b{re.escape(name)}\s*:\s*\w+", text[:start])]
+    if declared:
+        yield _edit(f"Write `{words}`", *declared[-1].span(), words)
+
+
+def _joined(text: str, start: int, end: int) -> Iterator[Edit]:
+    """Two requirements as one, if `and` binds in it as it would between them."""
+    first = text.rfind("require", 0, start)
+    behind = _NEXT_CLAUSE.search(text, end)
+    both = text[first:start] + text[end : behind.start() if behind else len(text)]
+    if first >= 0 and not _BINDS_LOOSELY.search(both.removeprefix("require")):
+        yield _edit("Write `and`", start, end, "and")

@@ -259,8 +259,9 @@ def unfitting_exception(problem: str, item: tree.RuleItem, *, first_state_only: 
             unless.span,
             "an exception cannot hold `throughout` where `then` has a bound, such as `[<= 2 s]`",
             expected="expected `at start`, `at end` or `at some point` after it",
-            help="write one of these; or leave the bounds of `then` out; or write two rules, one "
-            "with the exception and one with the bounds",
+            help="write `at start`, `at end` or `at some point` behind it, whichever is meant; or "
+            "leave the bounds of `then` out; or write two rules, one with the exception and one "
+            "with the bounds",
             labels=labels,
         )
     return FORMULA_TOO_LARGE.at(

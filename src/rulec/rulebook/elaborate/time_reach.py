@@ -64,10 +64,15 @@ def operator_warnings(node: tree.Formula, overlay: Overlay) -> Iterator[Diagnost
 
 
 def covers(first: Diagnostic, warning: Diagnostic) -> bool:
-    """Whether the place, or the fix, of one warning covers the place of another one."""
+    """Whether the place, or the fix, of one warning covers the place of another one.
+
+    What stands behind an operator with two possible reaches is left until its author has chosen.
+    """
     place = first.place if first.fix is None else first.fix.place
     if place is None or warning.place is None or place.file != warning.place.file:
         return False
+    if say.leaves_reach_open(first):
+        return place.start <= warning.place.start
     return place.start <= warning.place.start < (place.end_line or 0, place.end_column or 0)
 
 

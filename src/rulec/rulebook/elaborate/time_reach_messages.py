@@ -28,8 +28,10 @@ NARROW_OPERATOR = Code(
     title="a temporal operator applies to less than what follows it",
     why="The operators `never`, `always` and `eventually` bind tighter than `and`, `or` and "
     "`implies`: `never a and b` means `(never a) and b`, which requires `b` only in the first "
-    "state. `rulec check --fix` puts what follows in parentheses. If you mean the other reading, "
-    "put the parentheses around the operator, as `rulec fmt` does, to make it visible.",
+    "state. `rulec check --fix` puts what follows in parentheses, except before `until` and its "
+    "kin: what is forbidden until a sign is written `not a until b`, for `never (a until b)` would "
+    "forbid the sign itself. If you mean the other reading, put the parentheses around the "
+    "operator, as `rulec fmt` does, to make it visible.",
     bad="rulebook example\nsignal a, b\nhard rule r { require always a implies b }\n",
     good="rulebook example\nsignal a, b\nhard rule r { require always (a implies b) }\n",
 )
@@ -98,15 +100,36 @@ def narrow_operator(prefix: tree.Prefix, follows: str, until: int) -> Diagnostic
     Of ``never a implies b`` that would be false: what is meant there is rather ``a and b``.
     """
     is_denial = prefix.operator == "never" and follows == "implies"
+    lasts = follows in _LASTING
     way_out = f"write `{prefix.operator} (… {'and' if is_denial else follows} …)`"
+    if lasts:
+        way_out = _only_so_long(prefix.operator, short(prefix.operand), follows)
     return NARROW_OPERATOR.at(
         prefix.span,
         f"`{prefix.operator}` speaks of this alone, not of what `{follows}` joins to it",
         expected=f"`{prefix.operator}` binds tighter than `{follows}`",
         help=f"{way_out}, or put parentheses around this",
         severity="warning",
-        fix=None if is_denial else parentheses_behind(prefix, until),
+        fix=None if is_denial or lasts else parentheses_behind(prefix, until),
     )
+
+
+def leaves_reach_open(diagnostic: Diagnostic) -> bool:
+    """Whether it is about an operator before `until` or its kin, which has no fix."""
+    return diagnostic.code == NARROW_OPERATOR.code and "says how long" in diagnostic.help
+
+
+_LASTING = ("until", "weak until", "release", "strong release", "since")
+"""Operators that say themselves how long something lasts."""
+
+
+def _only_so_long(operator: str, what: str, follows: str) -> str:
+    """How ``never a until b`` is written, which would forbid `b`, too, with parentheses around."""
+    no = "not " if operator == "never" else ""
+    either = f"`{no}{what} {follows} …`"
+    if follows == "until":
+        either += f", or `{no}{what} weak until …` if that need not come"
+    return f"`{follows}` says how long: write {either}"
 
 
 def two_readings(

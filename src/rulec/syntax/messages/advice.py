@@ -17,6 +17,7 @@ from rulec.syntax.keywords import (
     RESERVED,
     UNARY_OPERATORS,
 )
+from rulec.syntax.messages.decimal_points import advise_on_point
 from rulec.syntax.messages.in_comparisons import RELATIONS, sign_in_words
 from rulec.syntax.messages.in_formulas import (
     AGGREGATES,
@@ -118,8 +119,6 @@ def _inside(ctx: ParseContext) -> str:
     if match := _RANGE.fullmatch(text):
         return _both_ends(match[1], match[2], ctx.text_behind)
     if ctx.accepted == {"UNIT"}:
-        if text == "," and ctx.is_number(ctx.at + 1):
-            return ctx.with_a_point()
         if text == ".." or (text in _DASHES and ctx.is_number(ctx.at + 1)):
             return _both_ends(before, ctx.text_behind, ctx.text_at(ctx.at + 2))
         return f"say what it counts: `{before} s` or `{before} steps`"
@@ -369,6 +368,7 @@ def _invisible(ctx: ParseContext) -> str:
 
 _IN_ORDER: tuple[Callable[[ParseContext], str], ...] = (
     _invisible,
+    advise_on_point,
     _quotes,
     _comment,
     _ending,

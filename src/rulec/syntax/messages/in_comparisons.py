@@ -52,8 +52,6 @@ def advise_on_number(ctx: ParseContext) -> str:
     if len(ctx.text_before) == 1 and unicodedata.numeric(ctx.text_before, 0) % 1:
         return f"write `{unicodedata.numeric(ctx.text_before):g}` for `{ctx.text_before}`"
     around = ctx.is_number(ctx.at - 1) and ctx.is_number(ctx.at + 1)
-    if text == "," and around:
-        return ctx.with_a_point()
     if text == "of" and ctx.text_before == "%" and ctx.is_number(ctx.at - 2):
         share = f"{ctx.text_at(ctx.at - 2)} %"
         return f"for `{share} of` write `{share} *`"
@@ -98,7 +96,8 @@ def advise_on_comparison(ctx: ParseContext) -> str:
             return f"a value is written alone, such as `{words[0]}`; of an object it is {about}"
         return "quantities are compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
     if ctx.operator and ctx.is_number(ctx.at + 1) and (sign := _IN_WORDS.get((before, text))):
-        return f"how many follows what is counted: `count x: vehicle (…) {sign} 3`"
+        number = ctx.text_behind
+        return f"how many follows what is counted: `count x: vehicle (…) {sign} {number}`"
     at_sign = sign_in_words(text, ctx.text_behind) if ctx.operator and text == "at" else ""
     if at_sign and ctx.is_number(ctx.at + 2):
         lasting = f"how long something lasts is a bound, such as `historically[{at_sign} 3 s] p`"
@@ -117,6 +116,8 @@ def advise_on_comparison(ctx: ParseContext) -> str:
         return f"write `{_SIGNS[text]}`"
     if before == "-" and text == ">":
         return "write `->` without a space"
+    if before in ("<", ">") and text == "=":
+        return f"write `{before}=` without a space"
     if before == "=" and text == "!":
         return "write `!=`"
     if text == "**" or (before == "^" and ctx.is_number(ctx.at)):

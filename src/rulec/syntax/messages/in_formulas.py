@@ -121,7 +121,7 @@ def no_operator(ctx: ParseContext) -> tuple[int, str] | None:
     """
     opened = ctx.opened("(", ")")
     in_formula = ctx.kind in ("clause", "formula", "item")
-    if not opened or not in_formula or ctx.accepted != {"COMMA", "RPAR"} or ctx.text == ")":
+    if not opened or not in_formula or ctx.accepted != {"COMMA", "RPAR"} or ctx.text in (")", ":"):
         return None
     if near := did_you_mean(ctx.text_at(opened - 1), keywords.UNARY_OPERATORS):
         return opened - 1, near
@@ -140,7 +140,10 @@ def _arguments(ctx: ParseContext) -> str:
     if ctx.accepted == {"NAME"} and ctx.text_before == "," and ctx.text == ")":
         return "delete the `,`"
     if ctx.accepted == {"COMMA", "RPAR"} and ctx.text == ":":
-        return f"types are given where variables are declared: leave out `: {ctx.text_behind}`"
+        return (
+            "types are given where variables are declared, as in the rule's head: leave out "
+            f"`: {ctx.text_behind}`"
+        )
     if ctx.accepted == {"COMMA", "RPAR"} and ctx.text == "(":
         if opened and ctx.text_at(opened - 1).casefold() in ABSOLUTE:
             return NO_ABSOLUTE_VALUE
@@ -224,6 +227,9 @@ def _joined(ctx: ParseContext) -> str:
     member = behind is not None and behind.kind == "word" and behind.text not in keywords.RESERVED
     if ctx.operator and ctx.text == "." and member and ctx.before and ctx.touches():
         return of_owner(ctx.text_before, ctx.text_behind)
+    if ctx.operator and ctx.text == "," and ctx.text_behind in ("unless", "when"):
+        clause = ctx.text_behind
+        return f"`{clause}` is a clause after the whole formula: put the `)` in place of the `,`"
     more = behind is not None and behind.text not in {")", *keywords.CLAUSE_WORDS}
     if ctx.operator and more and ctx.text in (",", ";", "."):
         return "write `or` where one of them is enough, `and` where it takes all"

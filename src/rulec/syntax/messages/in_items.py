@@ -270,8 +270,6 @@ def advise_on_state(ctx: ParseContext) -> str:
     text = ctx.text
     if ctx.unexpected is None and "NAME" in ctx.accepted:
         return "say what holds in this state; a `;` only separates two states"
-    if text == "," and ctx.is_number(ctx.at - 1) and ctx.is_number(ctx.at + 1):
-        return ctx.with_a_point()
     if text == ",":
         return "states are separated by `;`, the facts of one state by `and`"
     if text in ("or", "|", "||"):

@@ -11,12 +11,20 @@ EGO: Final = ("ego", "self", "this", "me", "host")
 
 _OBLIGATIONS: Final = ("must", "shall", "should", "may", "can")
 _CONJUNCTIONS: Final = {
-    "before": "for `p before q` write `not q weak until p`",
-    "after": "for `q after p` write `not q weak until p`",
+    "before": "for `p before q` write {}",
+    "after": "for `q after p` write {}",
     **dict.fromkeys(("while", "whenever"), "for `q while p` write `p implies q`"),
     "only": "for `p only if q` write `p implies q`",
     **dict.fromkeys(("twice", "thrice"), "for `p twice` write `p then not p then p`"),
 }
+_IN_ORDER_OF_TIME: Final = {
+    False: "`not q weak until p`",
+    True: "`q implies previously once p`",
+}
+"""How what comes first is said of whole traces, and of any one state, as within `always`.
+
+With `always` before it, the first would also ask for it anew in every later state.
+"""
 _COMPARING: Final = {
     **dict.fromkeys(("exceeds", "exceed", "exceeding", "above", "over"), ">"),
     **dict.fromkeys(("below", "under"), "<"),
@@ -43,7 +51,7 @@ def advise_on_sentence(ctx: ParseContext) -> str:
     if before in EGO and ctx.is_word() and (subject := _predicate(ctx)):
         return f"what is about ego is written alone: `{subject}`"
     if text in _CONJUNCTIONS:
-        return _CONJUNCTIONS[text]
+        return _CONJUNCTIONS[text].format(_IN_ORDER_OF_TIME[_in_every_state(ctx)])
     if text in _COMPARING and behind:
         return f"for `{text}` write `{_COMPARING[text]}`"
     plural = len(before) > 2 and before.endswith("s") and before not in keywords.RESERVED
@@ -51,6 +59,11 @@ def advise_on_sentence(ctx: ParseContext) -> str:
         number, singular = ctx.text_at(ctx.at - 2), before[:-1]
         return f"how many is said by `count x: {singular} ({text}(x)) >= {number}`"
     return ""
+
+
+def _in_every_state(ctx: ParseContext) -> bool:
+    """Whether the place is within `always` or `never`."""
+    return any(token.text in ("always", "never", "G") for token in ctx.tokens[: ctx.at])
 
 
 def advise_on_pair(ctx: ParseContext) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rulec.diagnostics import Diagnostic, Span
+from rulec.diagnostics import Diagnostic, Fix, Span
 from rulec.diagnostics.code import Code
 
 UNKNOWN_ESCAPE = Code(
@@ -52,6 +52,8 @@ def unknown_escape(place: Span, escaped: str) -> Diagnostic:
         place,
         f"`\\{escaped}` means nothing in a text",
         help='`\\"` is a quote and `\\\\` a backslash',
+        # Only the backslash is there already; that a quote is meant, no other sign says.
+        fix=Fix(place.place, f"\\\\{escaped}"),
     )
 
 

@@ -9,6 +9,7 @@ from rulec.diagnostics.code import Code
 from rulec.syntax import keywords
 from rulec.syntax.file_pieces import Piece, span_of
 from rulec.syntax.messages.advice import advise
+from rulec.syntax.messages.decimal_points import point_fix
 from rulec.syntax.messages.in_formulas import no_operator
 from rulec.syntax.messages.in_items import other_clause, other_word
 from rulec.syntax.messages.parse_context import (
@@ -130,6 +131,7 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
         expected=in_words(accepted),
         help=advise(ctx),
         labels=_open_parenthesis(source, ctx),
+        fix=point_fix(ctx),
     )
 
 

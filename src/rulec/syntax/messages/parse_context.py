@@ -138,11 +138,6 @@ class ParseContext:
     def text_behind(self) -> str:
         return self.text_at(self.at + 1)
 
-    def with_a_point(self) -> str:
-        """Advice on a comma between two numbers; dots before it are thousands separators."""
-        whole = self.text_before.replace(".", "")
-        return f"write a point: `{whole}.{self.text_behind}`"
-
     def is_number(self, index: int) -> bool:
         token = self.token(index)
         return token is not None and token.kind == "number"
