@@ -8,6 +8,7 @@ import sys
 import pytest
 
 HOVER = "textDocument/hover"
+COMMAND = "workspace/executeCommand"
 SOMEWHERE = {"textDocument": {"uri": "file:///a.rules"}, "position": {"line": 0, "character": 0}}
 BEGINNING = {"processId": None, "rootUri": None, "capabilities": {}}
 
@@ -66,6 +67,15 @@ def wire():
         (message(id=1, method=HOVER, params={"textDocument": 3}), 1, -32602),
         (message(id="a", method=HOVER), "a", -32602),
         (message(id=1, method="rulec/nothing", params={}), 1, -32601),
+        (message(id=5, method=COMMAND, params={"command": "rulec.runExamples"}), 5, -32602),
+        (
+            message(
+                id=6, method=COMMAND, params={"command": "rulec.inEnglish", "arguments": [1, 2]}
+            ),
+            6,
+            -32602,
+        ),
+        (message(id=7, method=COMMAND, params={"command": "nothing"}), 7, -32602),
         ("{abc}", None, -32700),
         ("[]", None, -32600),
         ("3", None, -32600),

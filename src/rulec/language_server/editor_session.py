@@ -22,6 +22,7 @@ from rulec.language_server.workspace.editor_workspace import (
     EditorWorkspace,
 )
 from rulec.language_server.workspace.text_positions import TextPositions
+from rulec.syntax.incremental.parsed_text import MOST_CHARACTERS
 from rulec.version import __version__
 
 _IDLE_S = 0.3
@@ -44,6 +45,7 @@ class EditorSession(LanguageServer):
         self.findings: dict[str, dict[str, list[Diagnostic]]] = {}
         self.answers = KnownAnswers()
         self.waiting: list[asyncio.TimerHandle] = []
+        self.large: dict[str, asyncio.TimerHandle] = {}
 
     def report_server_error(self, error: Exception, source: Any) -> None:
         """Report an error in a message: to the client that sent it, or else to the log."""
@@ -66,6 +68,33 @@ class EditorSession(LanguageServer):
             self.publish(file)
         return checked
 
+    def check_changed(self, document: Document) -> None:
+        """Check a document that has changed: at once, or if it is large, once typing pauses.
+
+        A large text is always read as a whole, so older versions are not checked any more.
+        """
+        if waiting := self.large.pop(document.uri, None):
+            waiting.cancel()
+        if len(document.text) <= MOST_CHARACTERS:
+            self.check(document)
+            return
+        loop = asyncio.get_running_loop()
+        self.large[document.uri] = loop.call_later(_IDLE_S, self._check_large, document.uri)
+
+    def _check_large(self, uri: str) -> None:
+        self.large.pop(uri, None)
+        if document := self.editor.documents.get(uri):
+            self.check(document)
+            self._ask_again()
+
+    def _ask_again(self) -> None:
+        """Have the editor ask for what it got no answer to while a check was waited for."""
+        workspace = self.client_capabilities.workspace
+        if workspace and workspace.code_lens and workspace.code_lens.refresh_support:
+            self.workspace_code_lens_refresh(None)
+        if workspace and workspace.inlay_hint and workspace.inlay_hint.refresh_support:
+            self.workspace_inlay_hint_refresh(None)
+
     def publish(self, uri: str) -> None:
         """Send everything that has been found in a file."""
         document = self.editor.document(uri)
@@ -83,7 +112,7 @@ class EditorSession(LanguageServer):
     def check_others(self, uri: str) -> None:
         """Check the other open documents, now that typing has paused."""
         for document in list(self.editor.documents.values()):
-            if document.uri != uri:
+            if document.uri != uri and document.uri not in self.large:
                 self.check(document)
 
     def check_others_later(self, uri: str) -> None:
@@ -102,9 +131,9 @@ class EditorSession(LanguageServer):
         gc.collect()
 
     def names(self, uri: str) -> tuple[DocumentNames, TextPositions] | None:
-        """The names in a document, and the positions of its text."""
+        """The names in a document, and the positions of its text; None while a check is due."""
         document = self.editor.document(uri)
-        if document is None:
+        if document is None or uri in self.large:
             return None
         try:
             names = names_in_document(self.editor.check(document))

@@ -74,7 +74,7 @@ def _documents(server: EditorSession) -> None:
     def changed(params: lsp.DidChangeTextDocumentParams) -> None:
         uri = params.text_document.uri
         text = server.workspace.get_text_document(uri).source
-        server.check(server.editor.open(uri, text, params.text_document.version))
+        server.check_changed(server.editor.open(uri, text, params.text_document.version))
         server.check_others_later(uri)
 
     @server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)
@@ -187,7 +187,7 @@ def _writing(server: EditorSession) -> None:
     def actions(params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
         uri = params.text_document.uri
         document = server.editor.document(uri)
-        if document is None:
+        if document is None or uri in server.large:
             return []
         try:
             checked = server.editor.check(document)

@@ -8,6 +8,7 @@ from typing import Any
 from lsprotocol import types as lsp
 from pygls.exceptions import (
     JsonRpcException,
+    JsonRpcInvalidParams,
     JsonRpcInvalidRequest,
     JsonRpcServerNotInitialized,
 )
@@ -21,6 +22,15 @@ def _is_no_refusal(record: logging.LogRecord) -> bool:
 
 # Editors show each error logged by pygls as a crash of the server, even for an invalid new name.
 logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_no_refusal)
+
+
+_TAKEN = "a command takes two texts: a document's address and a rule's name"
+
+
+def _names_a_rule(message: Any) -> bool:
+    """Whether a command has its arguments, without which pygls would call it all the same."""
+    arguments = getattr(getattr(message, "params", None), "arguments", None) or ()
+    return len(arguments) == 2 and all(isinstance(one, str) for one in arguments)
 
 
 class StrictProtocol(LanguageServerProtocol):
@@ -42,6 +52,8 @@ class StrictProtocol(LanguageServerProtocol):
         if getattr(message, "jsonrpc", "") != self.VERSION:
             number = message.get("id") if isinstance(message, dict) else number
             self.refuse(number, JsonRpcInvalidRequest("this is no message of JSON-RPC 2.0"))
+        elif is_begun and method == lsp.WORKSPACE_EXECUTE_COMMAND and not _names_a_rule(message):
+            self.refuse(number, JsonRpcInvalidParams(_TAKEN))
         elif is_begun and not (self._shutdown and method and number is not None):
             super().handle_message(message)
         elif number is not None and is_begun:
