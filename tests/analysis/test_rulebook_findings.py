@@ -314,12 +314,52 @@ def test_weaker_than_what_is_extended(tmp_path):
         ("R0806", "rule `s` is softer"),
     ]
     assert found[1].notes == ("`base` forbids: { wet and fog }",)
-    # One is overridden in line 3, the other is softened and stands in the base.
+    # One is overridden in line 3, the other stands in the base and is softened in line 4.
     assert [(one.place.file, one.place.line) for one in found[1:]] == [
         (str(path), 3),
-        (str(path), 2),
+        (str(path), 4),
     ]
     assert [one.place.file for one in found[2].labels] == [str(tmp_path / "base.rules")]
+
+
+def test_the_line_that_weakens_an_inherited_rule(tmp_path):
+    base, path = tmp_path / "base.rules", tmp_path / "example.rules"
+    base.write_text(
+        "rulebook base\nuse road\noption strict = on\nparam most = 50 km/h\n"
+        "define quick = speed > most\ndefine idle = tunnel\n"
+        "hard rule r { require never (quick or idle) }\n"
+        "hard rule s { require never (congested and strict) }\n"
+        "hard rule t { require never stop_sign }\n"
+        "hard rule u { require never red_light }\n"
+    )
+    path.write_text(
+        "rulebook example\nextends base\nset strict = off\nset most = 60 km/h\n"
+        "redefine idle = tunnel and congested\n"
+        'soften rule t because "the treaty allows it"\nsoften rule u\n'
+    )
+    found = [one for one in analyze(path) if one.code == "R0806"]
+    places = {one.message.split()[1]: one.place.line for one in found}
+    assert places == {"`r`": 4, "`s`": 3, "`u`": 7}
+    (of_two,) = [one for one in found if "`r`" in one.message]
+    assert [(label.place.line, label.message) for label in of_two.labels] == [
+        (5, "this changes it, too"),
+        (7, "the rule is inherited from here"),
+    ]
+
+
+def test_a_reason_to_soften_is_none_to_set(tmp_path):
+    (tmp_path / "base.rules").write_text(
+        "rulebook base\nuse road\nparam most = 50 km/h\n"
+        "hard rule r { require always (speed <= most) }\n"
+    )
+    path = tmp_path / "example.rules"
+    path.write_text(
+        "rulebook example\nextends base\nset most = 60 km/h\n"
+        'soften rule r because "the treaty allows it"\n'
+    )
+    (only,) = analyze(path)
+    assert only.message.startswith("rule `r` is laxer")
+    assert (only.code, only.place.line) == ("R0806", 3)
 
 
 def test_of_what_type_the_objects_are_that_a_weaker_rule_leaves_out(tmp_path):

@@ -1,8 +1,15 @@
-"""A stored session of typing: what is shown after its keys is what `rulec check` says."""
+"""A stored session of typing: what is shown after its keys is what `rulec check` says.
+
+Of a text that is too large to be read piece by piece, only the newest version is checked.
+"""
+
+import asyncio
 
 import pytest
+from lsprotocol import types as lsp
 
-from rulec.language_server.editor_session import REST_S
+from rulec.language_server import editor_session
+from rulec.language_server.editor_session import REST_S, EditorSession
 from rulec.language_server.workspace.editor_workspace import EditorWorkspace
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.loader import diagnose
@@ -36,3 +43,58 @@ def test_what_is_shown_is_what_check_says(session, tmp_path):
         checked = workspace.check(workspace.open(path.as_uri(), text))
         if number % 5 == 0:
             assert checked.findings == found(text, path), number
+
+
+LARGE = "file:///nowhere/large.rules"
+TEXT = "rulebook large\nsignal p default false\nhard rule r {{ require never p }}\n# {}\n"
+
+
+@pytest.fixture
+def large_texts(monkeypatch):
+    """A session in which every text is large, with the versions that it has checked."""
+    monkeypatch.setattr(editor_session, "MOST_CHARACTERS", 10)
+    monkeypatch.setattr(editor_session, "_IDLE_S", 0.01)
+    session, checked = EditorSession(), []
+    monkeypatch.setattr(session, "publish", lambda uri: None)
+    monkeypatch.setattr(session, "_ask_again", lambda: checked.append("asked again"))
+    check = session.check
+    monkeypatch.setattr(
+        session, "check", lambda document: (checked.append(document.version), check(document))
+    )
+    return session, checked
+
+
+def test_only_the_newest_version_is_checked(large_texts):
+    session, checked = large_texts
+
+    async def typing():
+        for version in range(2, 7):
+            session.check_changed(session.editor.open(LARGE, TEXT.format(version), version))
+            assert session.names(LARGE) is None
+            session.check_others("")
+        assert checked == []
+        await asyncio.sleep(0.1)
+
+    asyncio.run(typing())
+    assert checked == [6, "asked again"]
+    assert session.names(LARGE) is not None
+
+
+def test_what_is_closed_meanwhile_is_not_checked(large_texts):
+    session, checked = large_texts
+
+    async def typing():
+        session.check_changed(session.editor.open(LARGE, TEXT.format(2), 2))
+        session.editor.close(LARGE)
+        await asyncio.sleep(0.1)
+
+    asyncio.run(typing())
+    assert checked == []
+
+
+def test_a_text_that_is_not_large_is_checked_at_once(large_texts, monkeypatch):
+    session, checked = large_texts
+    monkeypatch.setattr(editor_session, "MOST_CHARACTERS", 1000)
+    session.check_changed(session.editor.open(LARGE, TEXT.format(2), 2))
+    assert checked == [2]
+    assert isinstance(session.names(LARGE)[1].whole(), lsp.Range)

@@ -135,6 +135,7 @@ class RulebookQuestions(RulebookVerbs):
         ``on_progress`` is called with the number of questions answered so far. ``spread`` answers
         them in advance, as the command does in several processes.
         """
+        from rulec.analysis.lint.changing_lines import changing_lines
         from rulec.analysis.lint.rulebook_findings import rulebook_findings
         from rulec.rulebook.allowances import without_allowed
         from rulec.rulebook.loader import read_rulebook
@@ -150,6 +151,7 @@ class RulebookQuestions(RulebookVerbs):
             on_progress,
             extends.span if extends else None,
             spread,
+            changing_lines(loaded.books),
         )
         return without_allowed(findings)
 

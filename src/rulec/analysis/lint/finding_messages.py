@@ -73,7 +73,7 @@ WEAKER_THAN_BASE = Code(
     title="a rule is weaker than in the extended rulebook",
     why="The rulebook that this one extends, for instance a treaty, forbids something that this "
     "one allows, or a hard rule has become soft. The trace shows what. Rules that are dropped "
-    "with a reason are not reported.",
+    "or softened with a reason are not reported.",
     bad="rulebook example\nextends esterle2019\n"
     "override rule R3 (p: pedestrian) { unless CONGESTED throughout }\n",
     good="rulebook example\nextends esterle2019\n"

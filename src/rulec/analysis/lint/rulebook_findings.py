@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from rulec.analysis.diff.rule_comparison import RuleComparison
 from rulec.analysis.lint import finding_messages
+from rulec.analysis.lint.changing_lines import Change
 from rulec.analysis.lint.conflict_findings import (
     Occurring,
     conflict_questions,
@@ -40,6 +41,7 @@ def rulebook_findings(
     tell: Callable[[float], object] = lambda _: None,
     extends: Span | None = None,
     spread: Spread | None = None,
+    changes: Mapping[str, Change] | None = None,
 ) -> tuple[Diagnostic, ...]:
     """All findings about a rulebook: by rule, then about several rules.
 
@@ -49,6 +51,7 @@ def rulebook_findings(
         extends: the place where it says so.
         tell: called with the number of questions about rules answered so far.
         spread: computes answers in advance, for example in other processes.
+        changes: by inherited rule, the lines of the rulebook that change it.
 
     Raises RulecError if a rule cannot be compiled.
     """
@@ -95,10 +98,12 @@ def rulebook_findings(
     for number, (base, sides) in enumerate(zip(bases, of_bases, strict=True)):
         for name, side in sides.items():
             comparison = answers.compared(name, number)
-            diagnostic = _weaker(by_name[name], own[name], side, base, comparison)
+            change = (changes or {}).get(name)
+            diagnostic = _weaker(by_name[name], (own[name], side), base, comparison, change)
             if diagnostic is not None:
                 is_own = by_name[name].book == book.name
-                diagnostics.append(diagnostic if is_own else _inherited(diagnostic, extends))
+                inherited_by = _changed(diagnostic, change) or _inherited(diagnostic, extends)
+                diagnostics.append(diagnostic if is_own else inherited_by)
     return tuple(diagnostics)
 
 
@@ -255,6 +260,16 @@ def _inherited(diagnostic: Diagnostic, extends: Span | None) -> Diagnostic:
     return replace(diagnostic, place=extends.place, labels=(rule, *diagnostic.labels))
 
 
+def _changed(diagnostic: Diagnostic, change: Change | None) -> Diagnostic | None:
+    """The finding for an inherited rule, at the first line that changes it, if there is one."""
+    if change is None or diagnostic.place is None:
+        return None
+    first, *others = change.lines
+    rule = Label(diagnostic.place, "the rule is inherited from here")
+    more = tuple(Label(line.place, "this changes it, too") for line in others)
+    return replace(diagnostic, place=first.place, labels=(*more, rule, *diagnostic.labels))
+
+
 def _types_of(trace: Trace, own: AnalyzedRule, inherited: AnalyzedRule) -> str:
     """The types of a trace's objects, if two rules are about objects of different types."""
     now, before = (
@@ -269,17 +284,20 @@ def _types_of(trace: Trace, own: AnalyzedRule, inherited: AnalyzedRule) -> str:
 
 def _weaker(
     rule: Rule,
-    own: AnalyzedRule,
-    inherited: AnalyzedRule,
+    compared: tuple[AnalyzedRule, AnalyzedRule],
     base: Rulebook,
     comparison: RuleComparison,
+    change: Change | None,
 ) -> Diagnostic | None:
+    own, inherited = compared
     if comparison.undecided:
         problem = UndecidedError(comparison.undecided)
         return finding_messages.undecided_diagnostic(
             rule, f"it is as strict as in `{base.name}`", problem
         )
-    softer = inherited.rule.strength == "hard" and rule.strength == "soft"
+    # As for a dropped rule, a reason says that the law wants it so.
+    explained = change is not None and change.softened_why
+    softer = inherited.rule.strength == "hard" and rule.strength == "soft" and not explained
     if not comparison.second_forbids and not softer:
         return None
     how = "laxer" if comparison.second_forbids else "softer"
