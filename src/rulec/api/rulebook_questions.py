@@ -151,7 +151,7 @@ class RulebookQuestions(RulebookVerbs):
             on_progress,
             extends.span if extends else None,
             spread,
-            changing_lines(loaded.books),
+            changes=changing_lines(loaded.books),
         )
         return without_allowed(findings)
 

@@ -38,7 +38,8 @@ UNKNOWN_UNIT = Code(
     "R0209",
     title="a unit of measure is unknown",
     why="Numbers have units. The units of quantities, parameters and comparisons must be known so "
-    "that they can be converted exactly. Units are case-sensitive.",
+    "that they can be converted exactly. Units are case-sensitive. A plain number, such as how "
+    "many passengers there are, is declared `in m/m`.",
     bad="rulebook example\nquantity speed in KMH default 0\n"
     "hard rule r { require always speed <= 50 KMH }\n",
     good="rulebook example\nquantity speed in km/h default 0\n"
@@ -253,6 +254,11 @@ def unknown_unit(unit: str, span: Span, quantity: str = "") -> Diagnostic:
         number = span.text.removesuffix(unit).strip()
         if not way_out and number and unit.isidentifier():
             way_out = f"for a product write `{number} * {unit}`; units are such as `m`, `km/h`, `s`"
+        elif not (way_out or number):
+            way_out = (
+                "units are such as `m`, `km/h`, `s`, `m/s^2`, `t`, `%`; how many there are of "
+                "something, such as passengers, is in `m/m`, which leaves a plain number"
+            )
     return UNKNOWN_UNIT.at(
         span,
         f"there is no unit `{unit}`",
