@@ -66,6 +66,8 @@ def test_what_a_title_does_not_say_stays(code, fixed):
         ("ego_mass <= 3,500 kg", []),
         ("ego_mass <= 3,500kg", []),
         ("speed <= 1e3,5 km/h", []),
+        ("speed <= 3.5,2 km/h", []),
+        ("speed <= 1,2,3 km/h", []),
         # A list, or the two ends of a bound
         ("always[3,4 s] beside(v)", []),
         ("speed <= 1, 5 km/h", []),

@@ -10,6 +10,9 @@ from rulec.syntax.messages.parse_context import ParseContext
 from rulec.syntax.scanner import Token
 
 _DECIMALS: Final = re.compile(r"(\d+)([A-Za-z%]*)", re.ASCII)
+_WHOLE: Final = re.compile(r"\d+|\d{1,3}(\.\d{3})+", re.ASCII)
+"""A whole number, whose points part thousands."""
+
 _THOUSANDS: Final = 3
 """The number of digits behind a comma that may part thousands."""
 
@@ -17,6 +20,8 @@ _THOUSANDS: Final = 3
 def advise_on_point(ctx: ParseContext) -> str:
     """Advice on a comma or a point beside a number; empty if there is none."""
     if ctx.text == "," and ctx.is_number(ctx.at - 1) and ctx.is_number(ctx.at + 1):
+        if ctx.text_at(ctx.at + 2) == ",":
+            return "a number's digits are written together, such as `1000000`"
         return _with_a_point(ctx.text_before, ctx.text_behind, touching=_is_one_number(ctx))
     if ctx.text == "." and ctx.is_number(ctx.at - 1) and ctx.touches() and ctx.operator:
         number = ctx.text_before
@@ -31,7 +36,7 @@ def point_fix(ctx: ParseContext) -> Fix | None:
         return None
     if ctx.text == "," and first is not None and last is not None and _is_one_number(ctx):
         whole, rest = first.text.replace(".", ""), _DECIMALS.fullmatch(last.text)
-        if whole.isdecimal() and rest and not _may_be_thousands(first.text, rest[1]):
+        if _WHOLE.fullmatch(first.text) and rest and not _may_be_thousands(first.text, rest[1]):
             return _fix(ctx, first, last, f"{whole}.{last.text}")
     if ctx.text == "." and ctx.quantity and ctx.is_number(ctx.at + 1) and last is not None:
         beside = first is not None and first.end == ctx.unexpected.start
@@ -71,5 +76,6 @@ def _with_a_point(whole: str, rest: str, *, touching: bool) -> str:
             f"say which is meant: `{whole}{rest}{unit}` if the comma parts thousands, "
             f"`{fewer}{unit}` if it parts decimals"
         )
-    number = f": `{digits}.{rest}{unit}`" if digits.isdecimal() else ", and no exponent"
-    return f"write a point{number}"
+    if _WHOLE.fullmatch(whole):
+        return f"write a point: `{digits}.{rest}{unit}`"
+    return "a number has digits and one point, such as `1000.5`"
