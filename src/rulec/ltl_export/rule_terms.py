@@ -135,6 +135,6 @@ def fresh_identifier(text: str, taken: set[str]) -> str:
 def _in_words(proposition: ltl.Proposition, phrases: Mapping[str, str]) -> str:
     spoken = spoken_formula(proposition, phrases)
     if isinstance(spoken, ltl.Comparison):
-        return comparison_clause(spoken, ENGLISH, {}, holds=True)
+        return comparison_clause(spoken, ENGLISH, holds=True)
     assert isinstance(spoken, ltl.Atom)
     return atom_clause(spoken, ENGLISH, holds=True)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from types import MappingProxyType
 from typing import Literal
 
 from rulec.logic.formula import (
@@ -62,8 +63,15 @@ def atom_clause(atom: Atom, language: Language, *, holds: bool) -> str:
     return language.atom_of[not holds].format(spoken(atom.name), of)
 
 
+_NO_COUNTS: Mapping[Count, str] = MappingProxyType({})
+
+
 def comparison_clause(
-    comparison: Comparison, language: Language, bodies: Mapping[Count, str], *, holds: bool
+    comparison: Comparison,
+    language: Language,
+    bodies: Mapping[Count, str] = _NO_COUNTS,
+    *,
+    holds: bool,
 ) -> str:
     """A clause stating that the comparison holds, or that it does not.
 
