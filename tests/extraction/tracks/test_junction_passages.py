@@ -1,5 +1,7 @@
 """When somebody is where ways through a junction meet."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -66,3 +68,79 @@ def test_the_direction_in_which_one_comes_that_turns_round_at_once(seen_from):
     (passage,) = passages.of_row[0]
     assert abs(passages.tracks.heading[0, passage.first]) > 0.5
     assert passage.heading == pytest.approx(0.0, abs=0.2)
+
+
+RAILS = {"junction": "j", "types": frozenset({"intersection", "rail"})}
+
+
+def ways_taken(lanes, *bodies, step_s=0.5):
+    """By participant the lanelets of the ways it takes and whether they are sure, and the strays."""
+    found = recording(lanes, bodies, step_s=step_s)
+    passages = junction_passages(found, tracks_of(found, USUAL))
+    taken = {
+        body.id: [(set(passages.way(x).names), x.sure) for x in passages.of_row.get(row, ())]
+        for row, body in enumerate(found.participants)
+    }
+    return taken, passages.astray
+
+
+def on_a_line(y, kind, speed=10.0, length=4.0):
+    places = {k: (-60.0 + speed * k / 2, y) for k in range(int(240 / speed))}
+    return vehicle(7, places, kind, speed=speed, length=length)
+
+
+@pytest.mark.parametrize(
+    ("y", "kind", "way"),
+    [
+        (0.0, "train", {"1"}),
+        (4.0, "train", {"2"}),
+        (0.3, "train", {"1"}),
+        (2.1, "train", {"2"}),
+        (0.0, "car", {"1"}),
+        (1.5, "car", {"1"}),
+    ],
+)
+def test_trams_also_run_on_lanes_that_others_share_and_cars_on_no_rails(y, kind, way):
+    """The lane is at y = 0, the track at y = 4; a little off between them a tram is on rails."""
+    lanes = [straight(1, -12, 12, **INSIDE), straight(2, -12, 12, 4.0, **RAILS)]
+    taken, astray = ways_taken(lanes, on_a_line(y, kind, length=30.0 if kind == "train" else 4.0))
+    assert taken == {"7": [(way, True)]}
+    assert not astray
+
+
+def test_a_car_on_rails_alone_is_on_no_way():
+    taken, astray = ways_taken([straight(2, -12, 12, **RAILS)], on_a_line(0.0, "car"))
+    assert taken == {"7": []}
+    assert list(astray) == [0]
+
+
+@pytest.mark.parametrize("speed", [6.0, 15.0, 31.0, 41.0])
+@pytest.mark.parametrize(("kind", "length"), [("train", 80.0), ("train", 200.0), ("car", 4.0)])
+def test_who_passes_through_a_small_junction_in_a_step_or_two(speed, kind, length):
+    """At the highest speeds the middle is never in it; a train's moves there but a few metres."""
+    way = straight(1, -4, 4, **RAILS) if kind == "train" else straight(1, -4, 4, **INSIDE)
+    taken, astray = ways_taken([way], on_a_line(0.0, kind, speed, length))
+    assert taken == {"7": [({"1"}, True)]}
+    assert not astray
+
+
+def test_how_one_turned_between_two_states_is_not_sure():
+    lanes = [
+        lanelet(1, [(-3, 0), (3, 0)], **INSIDE),
+        lanelet(2, [(-3, 0), (0, 0.5), (3, 3)], **INSIDE),
+    ]
+    places = {0: (-14, 0), 1: (-4, 0), 2: (5.5, 4.5), 3: (12, 11)}
+    turning = vehicle(7, places, speed=20.0, heading=0.0)
+    states = {k: replace(x, heading=(0.0, 0.0, 0.8, 0.8)[k]) for k, x in turning.states.items()}
+    taken, _ = ways_taken(lanes, replace(turning, states=states))
+    assert [sure for _, sure in taken["7"]] == [False]
+
+
+def test_when_one_is_at_the_meeting_of_ways_that_it_passes_in_a_step():
+    """Interpolated: 15 m in a step, its front 40 m ahead of its middle, at x = -3 and 3 + 80."""
+    lanes = [straight(1, -4, 4, **RAILS), lanelet(2, [(0, -4), (0, 4)], **INSIDE)]
+    found = recording(lanes, [on_a_line(0.0, "train", 30.0, 80.0)], step_s=0.5)
+    passages = junction_passages(found, tracks_of(found, USUAL))
+    (passage,) = passages.of_row[0]
+    expected = (-3 - 40 + 60) / 15, (3 + 40 + 60) / 15
+    assert passages.occupied(passage, (1.0, 7.0)) == pytest.approx(expected)

@@ -9,7 +9,7 @@ Before the way begins, the place is the negative distance to it.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -26,12 +26,11 @@ from rulec.extraction.tracks.junctions import (
     junctions_of,
     places_along,
 )
-from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
-from rulec.recordings.polylines import places_in
+from rulec.extraction.tracks.matching.junction_stays import Stay, body_length, junction_stays
+from rulec.extraction.tracks.tracks import Floats, Tracks
 from rulec.recordings.recording import Recording
 from rulec.recordings.track import TrackOutlines, outlines_on_track
 from rulec.scenario.recorded.reference_line import turn
-from rulec.trace.plain_arrays import distinct
 
 _FARTHEST_M = 2.5
 """A participant whose average distance (m) from a way's middle line is larger is not on it."""
@@ -40,6 +39,8 @@ _SURE_M = 0.4
 """A way is certain if every way that parts from it is farther away by at least this (m)."""
 
 _LARGEST_TURN = np.pi / 3
+
+_ALONG = np.radians(15.0)
 
 _ALIKE = 0.5
 """Ways whose turns differ by less than this (rad) lead to the same road."""
@@ -86,7 +87,7 @@ class JunctionPassages:
         for row, body in enumerate(bodies):
             outlines = outlines_on_track(body)
             if outlines is None:
-                found[row] = _length(body.outlines, body.states)
+                found[row] = body_length(body)
             else:
                 rigid[row] = outlines
         if rigid:
@@ -220,16 +221,6 @@ def _gets_to(places: Floats, place: float) -> float | None:
     return float(after - 1 + (place - before) / step) if step > 0 else float(after)
 
 
-def _length(outlines: object, states: object) -> float:
-    step = next(iter(outlines))  # type: ignore[call-overload]
-    outline = outlines[step]  # type: ignore[index]
-    state = states.get(step)  # type: ignore[attr-defined]
-    if state is None:
-        return float(np.ptp(outline, axis=0).max())
-    ahead = outline @ np.array([np.cos(state.heading), np.sin(state.heading)])
-    return float(np.ptp(ahead))
-
-
 def junction_passages(
     recording: Recording, tracks: Tracks, junctions: tuple[Junction, ...] | None = None
 ) -> JunctionPassages:
@@ -242,29 +233,13 @@ def junction_passages(
     of_row: dict[int, list[Passage]] = defaultdict(list)
     through: dict[int, list[Passage]] = defaultdict(list)
     astray: dict[int, list[tuple[int, int, int]]] = defaultdict(list)
-    moving = np.array(
-        [
-            not body.standing and "pedestrian" not in body.object_types
-            for body in tracks.participants
-        ],
-        dtype=bool,
-    )
-    rows, columns = (tracks.present & moving[:, None]).nonzero()
-    if junctions and len(rows):
-        areas = [junction.area for junction in junctions]
-        at, where = places_in(areas, tracks.x[rows, columns], tracks.y[rows, columns])
-        for number in distinct(where).tolist():
-            inside = np.zeros(tracks.present.shape, dtype=bool)
-            chosen = at[where == number]
-            inside[rows[chosen], columns[chosen]] = True
-            for row in inside.any(axis=1).nonzero()[0].tolist():
-                for first, last in _stays(inside[row], tracks, row):
-                    passage = _passage(junctions[number].ways, tracks, row, (first, last), number)
-                    if passage is None:
-                        astray[number].append((row, first, last))
-                    else:
-                        of_row[row].append(passage)
-                        through[number].append(passage)
+    for stay in junction_stays([junction.area for junction in junctions], tracks):
+        passage = _passage(junctions[stay.junction].ways, tracks, stay)
+        if passage is None:
+            astray[stay.junction].append((stay.row, stay.first, stay.last))
+        else:
+            of_row[stay.row].append(passage)
+            through[stay.junction].append(passage)
     ordered = {
         row: tuple(sorted(passages, key=lambda passage: passage.first))
         for row, passages in of_row.items()
@@ -286,31 +261,6 @@ def _lanelets_until(way: JunctionWay, place: shapely.Point) -> tuple[str, ...]:
     return tuple(lanelet.id for lanelet in way.lanelets[: int(np.argmin(away)) + 1])
 
 
-def _runs(flags: Flags) -> Iterator[tuple[int, int]]:
-    edges = np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)).nonzero()[0]
-    yield from ((int(start), int(end) - 1) for start, end in edges.reshape(-1, 2))
-
-
-def _stays(inside: Flags, tracks: Tracks, row: int) -> Iterator[tuple[int, int]]:
-    """The first and last column of each stay of a participant in a junction.
-
-    ``inside`` is the mask of its middle. The middle of a long vehicle cuts corners, and may leave
-    the junction there while the body does not: the stay lasts until it has moved by its own length.
-    """
-    runs = list(_runs(inside))
-    body = tracks.participants[row]
-    length = _length(body.outlines, body.states) if len(runs) > 1 else 0.0
-    first, last = runs[0]
-    for begins, ends in runs[1:]:
-        away = slice(last, begins + 1)
-        way = np.hypot(np.diff(tracks.x[row, away]), np.diff(tracks.y[row, away])).sum()
-        if not (tracks.present[row, away].all() and way < length):
-            yield first, last
-            first = begins
-        last = ends
-    yield first, last
-
-
 def _touches(tracks: Tracks, row: int, columns: tuple[int, int]) -> bool:
     """Whether a participant's middle is in a junction too briefly to tell which way it takes.
 
@@ -319,7 +269,7 @@ def _touches(tracks: Tracks, row: int, columns: tuple[int, int]) -> bool:
     first, last = columns
     x, y = tracks.x[row, first : last + 1], tracks.y[row, first : last + 1]
     body = tracks.participants[row]
-    return float(np.hypot(np.diff(x), np.diff(y)).sum()) < _length(body.outlines, body.states) / 2
+    return float(np.hypot(np.diff(x), np.diff(y)).sum()) < body_length(body) / 2
 
 
 def _heading(tracks: Tracks, row: int, first: int, way: JunctionWay) -> float:
@@ -328,7 +278,7 @@ def _heading(tracks: Tracks, row: int, first: int, way: JunctionWay) -> float:
     The direction in which its way begins, if it was not recorded there.
     """
     body, x, y = tracks.participants[row], tracks.x[row], tracks.y[row]
-    half = _length(body.outlines, body.states) / 2
+    half = body_length(body) / 2
     for column in range(first, -1, -1):
         if not tracks.present[row, column]:
             break
@@ -337,42 +287,63 @@ def _heading(tracks: Tracks, row: int, first: int, way: JunctionWay) -> float:
     return way.headings[0]
 
 
-def _passage(
-    ways: Sequence[JunctionWay], tracks: Tracks, row: int, columns: tuple[int, int], junction: int
-) -> Passage | None:
-    first, last = columns
+def _may_use(way: JunctionWay, tracks: Tracks, row: int) -> bool:
+    """Road vehicles stay off ways for rails alone; trams also run on lanes that others share."""
+    return not way.on_rails or _on_rails(tracks, row)
+
+
+def _on_rails(tracks: Tracks, row: int) -> bool:
+    return "rail_vehicle" in tracks.participants[row].object_types
+
+
+def _follows(tracks: Tracks, stay: Stay, way: JunctionWay) -> bool:
+    """Whether a rail vehicle is in its way's direction at both ends of it.
+
+    Such a body cuts no corner, however long it is.
+    """
+    ends = tracks.heading[stay.row, [stay.first, stay.last]]
+    return _on_rails(tracks, stay.row) and bool(
+        (np.abs(turn(np.array(way.headings), ends)) < _ALONG).all()
+    )
+
+
+def _passage(ways: Sequence[JunctionWay], tracks: Tracks, stay: Stay) -> Passage | None:
+    row, first, last = stay.row, stay.first, stay.last
     own = slice(first, last + 1)
     points = shapely.points(tracks.x[row, own], tracks.y[row, own])
     begins, ends = float(tracks.heading[row, first]), float(tracks.heading[row, last])
-    on_rails = "rail_vehicle" in tracks.participants[row].object_types
     away = np.full(len(ways), np.inf)
     present = tracks.present[row]
     whole = first > 0 and last + 1 < len(present) and bool(present[first - 1] and present[last + 1])
     fitting = [
         number
         for number, way in enumerate(ways)
-        if way.on_rails == on_rails
+        if _may_use(way, tracks, row)
         and abs(turn(way.headings[0], begins)) < _LARGEST_TURN
         and (not whole or abs(turn(way.headings[1], ends)) < _LARGEST_TURN)
     ]
-    for longer in (False, True):
+    # Where a lane and a track are as near, a train is on the track
+    rather = [_SURE_M * (_on_rails(tracks, row) and not way.on_rails) for way in ways]
+    for longer in (not stay.seen, True):
         for number in fitting:
             line = ways[number].line
             line = extended(line, points) if longer else line
             away[number] = shapely.distance(line, points).mean()
-        best = int(np.argmin(away)) if len(away) else 0
+        best = int(np.argmin(away + rather)) if len(away) else 0
         if fitting and away[best] <= _FARTHEST_M:
             break
     else:
         return None
     close: NDArray[intp] = (away < away[best] + _SURE_M).nonzero()[0]
     sure = whole or all(_is_alike(ways[k], ways[best], points[-1]) for k in close.tolist())
-    sure = sure and not (whole and _touches(tracks, row, (first - 1, last + 1)))
+    if whole and _touches(tracks, row, (first - 1, last + 1)):
+        sure = _follows(tracks, stay, ways[best])
     return Passage(
         row=row,
-        junction=junction,
+        junction=stay.junction,
         way=best,
-        sure=sure,
+        # Nobody saw how one turned that was in the junction between two states only
+        sure=sure and (stay.seen or abs(turn(begins, ends)) < _ALIKE),
         first=first,
         last=last,
         heading=_heading(tracks, row, first, ways[best]),

@@ -93,9 +93,9 @@ def _conflicts(context: DriveContext) -> SignalColumns:
                     other = context.surroundings.tracks.participants[met.other.row].id
                     for state in range(from_then.start, from_then.stop):
                         whom[kind][state] = (*whom[kind][state], other)
-        for side in filter(None, might_come(context, passage)):
-            if side != ONCOMING or turns_far(context, passage):
-                strangers[side][approach(context, passage)] = True
+        for row, side in might_come(context, passage):
+            for kind in _perhaps(context, passage, row, side):
+                strangers[kind][approach(context, passage)] = True
         if not passage.sure:
             for name in possible:
                 strangers[name][approach(context, passage)] = True
@@ -107,6 +107,29 @@ def _conflicts(context: DriveContext) -> SignalColumns:
     not_told[_RING] |= without_junction(context) & ~conflicts[_RING]
     world: dict[str, SignalColumn] = {**conflicts, **when.world}
     return SignalColumns(world, unknown=not_told | dict(when.unknown), whom=whom)
+
+
+def _perhaps(context: DriveContext, own: Passage, row: int, side: str) -> Iterator[str]:
+    """The conflicts that there may be with a participant whose way through a junction is unknown.
+
+    ``side``: where it may come from. Who does not turn crosses no way of those that drive along it.
+    """
+    along = side in ("", ONCOMING)
+    if _is_on_rails(context, row):
+        least = np.radians(context.thresholds.turned_deg)
+        turned = context.surroundings.passages.way(own).turned
+        yield from () if along and abs(turned) < least else (_RAIL,)
+        return
+    if not along or (side == ONCOMING and turns_far(context, own)):
+        yield side
+    way, ring = context.surroundings.passages.way(own), context.surroundings.ring(context.side)
+    if side and way.exits & ring and not way.entries & ring:
+        yield _RING
+
+
+def _is_on_rails(context: DriveContext, row: int) -> bool:
+    body = context.surroundings.passages.tracks.participants[row]
+    return "rail_vehicle" in body.object_types
 
 
 @once
@@ -291,17 +314,18 @@ def _is_seen(present: Flags, first: int, last: int) -> bool:
 
 
 def _kinds(context: DriveContext, own: Passage, other: Passage) -> tuple[str, ...]:
-    passages = context.surroundings.passages
-    if "rail_vehicle" in passages.tracks.participants[other.row].object_types:
+    if _is_on_rails(context, other.row):
         return (_RAIL,)
-    way = passages.way(other)
+    passages, ring = context.surroundings.passages, context.surroundings.ring(context.side)
+    way, own_way = passages.way(other), passages.way(own)
+    came_on = way.entries | {lanelet.id for lanelet in before_joining(way, own_way)}
+    if came_on & ring and not own_way.entries & ring:
+        # On a small ring they come towards ego, or nearly in its direction
+        return (FROM_SIDES[0 if context.side == "right" else 1], _RING)
     side = side_of(float(np.degrees(turn(own.heading, other.heading))))
     if not side or (side == ONCOMING and not gives_way_to(context, own, other)):
         return ()
-    own_way = passages.way(own)
-    came_on = way.entries | {lanelet.id for lanelet in before_joining(way, own_way)}
-    ring = bool(came_on & context.surroundings.ring(context.side))
-    return (side, _RING) if ring else (side,)
+    return (side, _RING) if came_on & ring else (side,)
 
 
 priority_signals = SignalPasses(

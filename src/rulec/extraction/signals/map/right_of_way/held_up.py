@@ -209,7 +209,9 @@ def _is_train(context: DriveContext, own: Passage, other: Passage) -> bool:
     """Whether a train comes to a level crossing: there ego waits as soon as it is near."""
     passages, lanelets = context.surroundings.passages, context.recording.lanelets
     on_crossing = any("level_crossing" in lanelets[x].types for x in passages.way(own).names)
-    return on_crossing and passages.way(other).on_rails
+    # Its track may be a lane that buses share
+    body = passages.tracks.participants[other.row]
+    return on_crossing and "rail_vehicle" in body.object_types
 
 
 def _brakes_for(

@@ -65,8 +65,8 @@ def may_meet(context: DriveContext) -> bool:
     return False
 
 
-def might_come(context: DriveContext, own: Passage) -> Iterator[str]:
-    """The sides from which participants may come whose way through the junction is unknown.
+def might_come(context: DriveContext, own: Passage) -> Iterator[tuple[int, str]]:
+    """The rows of participants whose way through the junction is unknown, and their sides.
 
     Those on no way of the map, or whose track ends before the junction, be it that they stop there
     for ego. In a simulation, one that is gone before the end has arrived somewhere.
@@ -78,7 +78,7 @@ def might_come(context: DriveContext, own: Passage) -> Iterator[str]:
     for row, first, last in passages.astray.get(own.junction, ()):
         if row != own.row and last >= own.first and first <= latest:
             through.add(row)
-            yield side_of(float(np.degrees(turn(own.heading, tracks.heading[row, first]))))
+            yield row, side_of(float(np.degrees(turn(own.heading, tracks.heading[row, first]))))
     rows, ends, back = _lost_from_sight(context)
     moved_in, longest = drives_in(context, own, own.last), context.thresholds.held_up_s / step_s
     # A participant with a known way is in the junction on that way, unless it was unseen there
@@ -89,7 +89,8 @@ def might_come(context: DriveContext, own: Passage) -> Iterator[str]:
         times = own.first, min(latest, seen)
         columns = [column for column in {end, moved_in} if column <= min(end, latest)]
         if any(_would_come(context, own, row, column, times) for column in columns):
-            yield side_of(float(np.degrees(turn(own.heading, float(tracks.heading[row, end])))))
+            heading = float(tracks.heading[row, end])
+            yield row, side_of(float(np.degrees(turn(own.heading, heading))))
 
 
 def _would_come(
