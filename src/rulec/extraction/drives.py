@@ -363,9 +363,9 @@ class Drives:
     def _road_places(
         self, road: DrivenRoad, tracks: Tracks, extents: RoadExtents, elsewhere: Flags
     ) -> RoadPlaces:
-        fastest = self._tracks.fastest[tracks.rows]
+        moving = self._surroundings.in_traffic[tracks.rows]
         limits = self._thresholds
-        return RoadPlaces(road, tracks, extents, limits, elsewhere=elsewhere, fastest=fastest)
+        return RoadPlaces(road, tracks, extents, limits, elsewhere=elsewhere, in_traffic=moving)
 
     def _elsewhere(self, road: DrivenRoad, rows: NDArray[intp], columns: slice) -> Flags:
         """Mask of the participants in ``rows`` on lanelets outside the road, in some columns."""

@@ -48,12 +48,17 @@ Lamp = Literal[
     "blue_light",
     "horn",
     "doors",
+    "left_doors",
+    "right_doors",
     "dipped_beam",
     "main_beam",
     "front_fog_lamp",
     "rear_fog_lamp",
 ]
-"""What a vehicle shows to others: its lamps, its horn, and open doors."""
+"""What a vehicle shows to others: its lamps, its horn, and open doors.
+
+``doors`` are open on any side; where a source tells on which, also those of that side are.
+"""
 
 
 def id_order(identifier: str) -> tuple[int, str]:

@@ -192,6 +192,14 @@ def bus(lamps, starts=30, steps=STEPS, shows=(*INDICATORS, "doors")):
     )
 
 
+def three_lanes():
+    return [
+        straight(1, -200, 300, left_of=2),
+        straight(2, -200, 300, 4, right_of=1, left_of=3),
+        straight(3, -200, 300, 8, right_of=2),
+    ]
+
+
 def lamps_of_a_stop(signals_from=24, doors_until=20):
     return {
         k: ({"doors"} if k < doors_until else set())
@@ -208,6 +216,30 @@ def test_a_bus_that_signals_and_leaves_its_stop():
     assert leaves[32:] == ["False"] * 8
     boards = told("boarding", lanes(), ego, bus(lamps_of_a_stop()), route=("1",))
     assert boards == ["True"] * 20 + ["False"] * 20
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+@pytest.mark.parametrize("heading", [0.0, np.pi], ids=["along", "against"])
+@pytest.mark.parametrize("lane", [0, 1], ids=["at its right", "at its left"])
+@pytest.mark.parametrize("doors", ["left_doors", "right_doors", "both", "untold"])
+def test_passengers_board_where_ego_passes_only_if_the_doors_there_are_open(
+    doors, lane, heading, side
+):
+    """The tram stands in the middle one of three lanes, from x = -10 to 10."""
+    road = three_lanes()
+    ego = steady(7, -100, 8.0 * lane, 5, STEPS)
+    lit = {"both": {"left_doors", "right_doors"}, "untold": set()}.get(doors, {doors})
+    body = vehicle(8, dict.fromkeys(range(STEPS), (0.0, 4.0)), "train", length=20, heading=heading)
+    tram = replace(
+        body,
+        lamps=dict.fromkeys(range(STEPS), frozenset({"doors", *lit})),
+        shows=frozenset({"doors"} if doors == "untold" else {"doors", "left_doors", "right_doors"}),
+    )
+    own = {0: "right_doors", 1: "left_doors"}[lane if heading == 0 else 1 - lane]
+    boards = told("boarding", road, ego, tram, side=side, route=("1",))
+    beside = (np.abs(-100 + 2.5 * np.arange(STEPS)) < 12).tolist()
+    is_open = doors in ("both", "untold", own)
+    assert boards == [str(is_open or not near) for near in beside]
 
 
 def test_a_bus_that_has_not_left_when_the_drive_ends():

@@ -561,3 +561,62 @@ def test_one_that_stops_for_ego_does_not_brake_for_its_bend(least_mps, known):
     signals = turning_into_ego_s_road(driven)
     side = "conflict_from_right"
     assert (signals.world[side] & ~signals.unknown[side]).any() == known
+
+
+def with_a_tram(road, comes_s, way=EAST, heading=np.pi / 2, x=0.0):
+    """``signals`` with a tram of 30 m, whose front is in ego's way ``comes_s`` after the start."""
+    ego = vehicle(7, {k: (-20 + 5 * k, 0) for k in STEPS}, speed=10)
+    sign = 1 if heading > 0 else -1
+    places = {k: (x, sign * (-2 - 15 + 10 * (k / 2 - comes_s))) for k in STEPS}
+    tram = vehicle(8, places, "train", length=30.0, speed=10, heading=heading)
+    found = replace(recording([*way, *road], [ego, tram]), complete=frozenset({"YIELD"}))
+    return priority_signals(context_of(found, route=("1", "2", "3")))
+
+
+def on_tracks(road, *types):
+    return [replace(x, types=x.types | frozenset(types)) for x in road]
+
+
+@pytest.mark.parametrize("types", [(), ("busLane",), ("rail", "restricted_area")])
+@pytest.mark.parametrize(("road", "heading"), [(NORTH, np.pi / 2), (SOUTH, -np.pi / 2)])
+@pytest.mark.parametrize(("comes_s", "conflict"), [(2.5, True), (2.9, True), (6.5, False)])
+def test_trams_on_lanes_that_others_share(types, road, heading, comes_s, conflict):
+    found = with_a_tram(on_tracks(road, *types), comes_s, heading=heading)
+    assert found.world["conflict_with_rail"][3] == conflict
+    assert not found.unknown["conflict_with_rail"].any()
+    assert not found.world["conflict_from_left"].any()
+    assert not found.world["conflict_from_right"].any()
+
+
+@pytest.mark.parametrize(("x", "unknown"), [(0.0, True), (30.0, False)])
+def test_a_tram_in_the_junction_on_no_way_of_it_may_be_in_conflict(x, unknown):
+    """The map has no way across; 30 m farther on the tram is not in the junction."""
+    found = with_a_tram([], 2.5, x=x)
+    assert not found.world["conflict_with_rail"].any()
+    assert found.unknown["conflict_with_rail"][3] == unknown
+
+
+@pytest.mark.parametrize("step_s", [0.1, 0.5, 1.0])
+@pytest.mark.parametrize("train_mps", [9.0, 21.0, 34.0])
+@pytest.mark.parametrize(("comes_s", "conflict"), [(1.3, True), (2.2, True), (9.0, False)])
+def test_trains_at_a_level_crossing(step_s, train_mps, comes_s, conflict):
+    """It comes ``comes_s`` after ego's front; its middle may be on the road in no state."""
+    rails = frozenset({"level_crossing"})
+    lanes = [
+        straight(1, -200, -4, successors=(2,)),
+        straight(2, -4, 4, predecessors=(1,), successors=(3,), types=rails, junction="x"),
+        straight(3, 4, 200, predecessors=(2,)),
+        lanelet(4, [(0, -400), (0, -2)], successors=(5,)),
+        lanelet(5, [(0, -2), (0, 2)], predecessors=(4,), successors=(6,), junction="x"),
+        lanelet(6, [(0, 2), (0, 400)], predecessors=(5,)),
+    ]
+    lanes = lanes[:3] + on_tracks(lanes[3:5], "rail", "level_crossing") + lanes[5:]
+    times = np.arange(0, 20, step_s)
+    ego = vehicle(7, {k: (-6 + 8 * (t - 8), 0) for k, t in enumerate(times)}, speed=8)
+    places = {k: (0, -42 + train_mps * (t - 8 - comes_s)) for k, t in enumerate(times)}
+    train = vehicle(8, places, "train", length=80.0, speed=train_mps, heading=np.pi / 2)
+    found = replace(recording(lanes, [ego, train], step_s=step_s), complete=frozenset({"rail"}))
+    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    entered = round(8 / step_s)
+    assert signals.world["conflict_with_rail"][entered] == conflict
+    assert not signals.unknown["conflict_with_rail"][: entered + 1].any()

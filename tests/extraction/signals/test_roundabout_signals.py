@@ -268,6 +268,59 @@ def test_who_comes_around(style, at_s, conflict):
     assert not found.unknown["conflict_on_roundabout"][entered]
 
 
+def small_ring(angle, on_map=True):
+    """Ego (1, 2) joins a ring (4, 5, 3) on which others come in a direction (degrees)."""
+    end, inside = np.array([4.0, -3.0]), {"types": INSIDE, "junction": "x"}
+    ahead, mean, away = (np.radians(x) for x in (angle, (angle - 45) / 2, -45))
+    start = end - 7 * np.array([np.cos(mean), np.sin(mean)])
+    before = start - 60 * np.array([np.cos(ahead), np.sin(ahead)])
+    beyond = end + 60 * np.array([np.cos(away), np.sin(away)])
+    own = joining((-4, 0), 0, end, -45)
+    its = joining(start, angle, end, -45)
+    ring = {"types": frozenset({"roundabout"})}
+    lanes = [
+        straight(1, -90, -4, successors=(2,)),
+        lanelet(2, own, predecessors=(1,), successors=(3,), **inside),
+        lanelet(3, [end, beyond], predecessors=(2, 5), **ring),
+        lanelet(4, [before, start], successors=(5,), **ring),
+        lanelet(5, its, predecessors=(4,), successors=(3,), **inside),
+    ]
+    lines = [
+        np.concatenate(([first], line, [beyond]))
+        for first, line in (((-90, 0), own), (before, its))
+    ]
+    # Both at 5 m/s, the other one's middle where the ways join a second after ego's
+    joins = [np.hypot(*np.diff(line[:-1], axis=0).T).sum() for line in lines]
+    ego, other = (
+        along(number, line, np.clip(join + 5 * (TIMES - at_s), 0.0, None))
+        for number, line, join, at_s in zip((7, 8), lines, joins, (7.0, 8.0), strict=True)
+    )
+    shown = lanes if on_map else lanes[:4]
+    found = replace(recording(shown, [ego, other]), step_s=STEP_S)
+    return replace(found, complete=frozenset({"roundabout"}))
+
+
+@pytest.mark.parametrize("angle", [-175, -150, -138, -90, -45, -20])
+def test_who_comes_around_a_small_ring_comes_from_its_side_whatever_the_angle(angle):
+    found = small_ring(angle)
+    right = priority_signals(context_of(found, ("1", "2", "3"))).world
+    left = priority_signals(context_of(mirrored_recording(found), ("1", "2", "3"), "left")).world
+    # Ego drives in at 5 s and leaves the place where the ways join at 7.5 s
+    entered = round(5.5 / STEP_S)
+    assert right["conflict_on_roundabout"][entered]
+    assert left["conflict_on_roundabout"][entered]
+    assert right["conflict_from_left"][entered]
+    assert left["conflict_from_right"][entered]
+    assert not right["conflict_from_right"].any()
+    assert not right["in_way_of_oncoming"].any()
+
+
+@pytest.mark.parametrize("angle", [-150, -90])
+def test_who_is_at_the_ring_on_no_way_of_the_map_may_come_around(angle):
+    signals = priority_signals(context_of(small_ring(angle, on_map=False), ("1", "2", "3")))
+    assert signals.unknown["conflict_on_roundabout"][round(5.5 / STEP_S)]
+
+
 def test_without_a_junction_on_the_map_nobody_knows():
     found = both_sides(priority_signals, seen("none", circling(7.3)))
     (entered,) = np.flatnonzero(

@@ -74,7 +74,7 @@ RAILS = {"junction": "j", "types": frozenset({"intersection", "rail"})}
 
 
 def ways_taken(lanes, *bodies, step_s=0.5):
-    """By participant the lanelets of the ways it takes and whether they are sure, and the strays."""
+    """By participant the ways it takes and whether they are sure; and who is on none."""
     found = recording(lanes, bodies, step_s=step_s)
     passages = junction_passages(found, tracks_of(found, USUAL))
     taken = {

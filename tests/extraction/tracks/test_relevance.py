@@ -1,5 +1,6 @@
 """The participants that count for ego."""
 
+from dataclasses import replace
 from math import pi, radians, sin
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 from rulec.extraction.drives import Drives
 from support.builders.drive_contexts import context_of, steady
-from support.builders.recordings import recording
+from support.builders.recordings import recording, straight
 from support.generators.random_recordings import lanes
 
 
@@ -50,6 +51,49 @@ def test_oncoming_vehicles_beside_the_lanes_count_if_they_ever_move():
     assert "8" in relevant(steady(8, 90, 8, speed=-5))
     assert "8" not in relevant(steady(8, 90, 8, speed=-0.1, heading=pi))
     assert "8" not in relevant(steady(8, 90, 8, speed=5))
+
+
+@pytest.mark.parametrize(
+    ("kind", "y", "heading", "counts"),
+    [
+        ("train", -3.6, 0.0, True),
+        ("train", 7.9, 0.0, True),
+        ("train", -6.0, 0.0, False),
+        ("train", -13.6, 1.2, False),
+        ("bus", -3.6, 0.0, False),
+    ],
+)
+def test_trams_on_tracks_next_to_the_lanes_count(kind, y, heading, counts):
+    """The lanes reach from y = -2 to 6; a railway farther beside the road is none of its own."""
+    for speed in (0.0, 8.0):
+        body = steady(8, 40, y, kind=kind, width=2.6, length=20.0, speed=speed, heading=heading)
+        assert ("8" in relevant(body)) is counts
+
+
+def beside(*others, y=8.0):
+    """Whether one counts that faces ego; the lane of the other direction has its middle at 8."""
+    road = [*lanes(2), straight(9, 300, -100, 8.0)]
+    context = context_of(recording(road, [steady(7, 0, 0), *others]))
+    return "8" in [
+        body.id
+        for body, flags in zip(context.tracks.participants, context.relevant, strict=True)
+        if flags.any()
+    ]
+
+
+@pytest.mark.parametrize(("y", "counts"), [(8.0, True), (8.4, True), (8.9, False), (12.0, False)])
+def test_one_that_always_waits_in_the_other_lane_counts_and_one_that_parks_does_not(y, counts):
+    assert beside(steady(8, 60, y, speed=0, heading=pi)) is counts
+    # The wrong way round in that lane, or a box that never was a driver's, is no traffic
+    assert not beside(steady(8, 60, y, speed=0))
+    assert not beside(steady(8, 60, y, speed=0, heading=pi, standing=True))
+
+
+@pytest.mark.parametrize("lamp", ["hazard_lights", "blue_light", "doors", None])
+def test_one_that_always_stands_with_lamps_on_or_doors_open_counts(lamp):
+    bus = steady(8, 60, 9.5, speed=0, heading=pi, kind="bus")
+    lit = frozenset({lamp} if lamp else {"brake_light"})
+    assert beside(replace(bus, lamps=dict.fromkeys(range(4), lit))) is (lamp is not None)
 
 
 def test_ego_never_counts_for_itself():

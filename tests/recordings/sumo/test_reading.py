@@ -244,7 +244,9 @@ def test_a_person_may_be_called_like_a_vehicle(tmp_path):
         (2 + 8, {"left_indicator", "brake_light"}),
         (4, {"hazard_lights"}),
         (16 + 2048, {"blue_light"}),
-        (512, {"doors"}),
+        (512, {"doors", "left_doors"}),
+        (1024, {"doors", "right_doors"}),
+        (512 + 1024, {"doors", "left_doors", "right_doors"}),
     ],
 )
 def test_lamps(tmp_path, signals, lit):

@@ -40,10 +40,11 @@ def context_of(
     if elsewhere is None:
         elsewhere = np.zeros(tracks.present.shape, dtype=bool)
     extents = road_extents(tracks, road)
-    fastest = tracks.fastest
-    places = RoadPlaces(road, tracks, extents, limits, elsewhere=elsewhere, fastest=fastest)
+    around = Surroundings(found, tracks, limits)
+    moving = around.in_traffic
+    places = RoadPlaces(road, tracks, extents, limits, elsewhere=elsewhere, in_traffic=moving)
     driven = slice(int(columns[0]), int(columns[-1]) + 1 if until is None else until)
-    return drive_context(Surroundings(found, tracks, limits), places, side, row, driven)
+    return drive_context(around, places, side, row, driven)
 
 
 def told_on_both_sides(signals, found, route, **thresholds):

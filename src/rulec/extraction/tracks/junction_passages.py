@@ -186,11 +186,14 @@ class JunctionPassages:
         return max(place - float(front), 0.0)
 
     def front_enters(self, passage: Passage) -> int:
-        """The last column in which it was at least half its length before its place in ``first``.
+        """``front_came`` for the first column of a passage."""
+        return self.front_came(passage.row, passage.first)
+
+    def front_came(self, row: int, first: int) -> int:
+        """The last column in which one was at least half its length before where it is in another.
 
         The column in which its track begins, if there is none.
         """
-        row, first = passage.row, passage.first
         absent = (~self.tracks.present[row, :first]).nonzero()[0]
         begin = int(absent[-1]) + 1 if len(absent) else 0
         came = self.travelled[row, first] - self.travelled[row, begin:first]

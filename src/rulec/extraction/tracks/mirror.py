@@ -9,6 +9,8 @@ from rulec.recordings import recording as model
 _LAMPS: dict[model.Lamp, model.Lamp] = {
     "left_indicator": "right_indicator",
     "right_indicator": "left_indicator",
+    "left_doors": "right_doors",
+    "right_doors": "left_doors",
 }
 _BROAD_LINES = {
     model.BROAD_LEFT: model.BROAD_RIGHT,

@@ -13,12 +13,9 @@ from numpy.typing import NDArray
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.lane_sets import LaneSets, lane_sets, lanes_touched
 from rulec.extraction.tracks.road_extents import RoadExtents, and_row
-from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
+from rulec.extraction.tracks.tracks import Flags, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.trace.cells import Cells
-
-KMH = 3.6
-"""km/h in one m/s."""
 
 _ACROSS = np.pi / 4
 """Traffic from another road drives across if its angle to the road is larger than this."""
@@ -32,6 +29,11 @@ _SOME_TIMES = 32
 _SOON_S = 2.0
 """Participants count this long (s), in addition to ``away_s``, before they come near a road."""
 
+_NEXT_TO_M = 2.0
+"""Bodies on tracks next to a lane are nearer to it than this (m)."""
+
+_ALONG_COSINE = 0.9
+
 _ONCOMING_COSINE = -0.7
 """Cosine of the angle to the road beyond which a vehicle counts as oncoming."""
 
@@ -40,8 +42,8 @@ _ONCOMING_COSINE = -0.7
 class RoadPlaces:
     """The places of participants on a road, a row each, by step.
 
-    ``elsewhere``: whether a participant drives on lanelets outside the road. ``fastest`` is each
-    one's greatest speed (m/s) in the whole recording.
+    ``elsewhere``: whether a participant drives on lanelets outside the road. ``in_traffic``:
+    whether it moves in the whole recording, or stands there as nobody does that parks.
     """
 
     road: DrivenRoad
@@ -49,7 +51,7 @@ class RoadPlaces:
     extents: RoadExtents
     thresholds: Thresholds
     elsewhere: Flags
-    fastest: Floats
+    in_traffic: Flags
 
     def and_one(self, other: RoadPlaces, row: int, tracks: Tracks) -> RoadPlaces:
         """These places, followed by one row of ``other``; ``tracks`` are the joined ones."""
@@ -58,7 +60,7 @@ class RoadPlaces:
             tracks=tracks,
             extents=self.extents.and_one(other.extents, row),
             elsewhere=and_row(self.elsewhere, other.elsewhere, row),
-            fastest=and_row(self.fastest, other.fastest, row),
+            in_traffic=and_row(self.in_traffic, other.in_traffic, row),
         )
         # Values already derived for each row need not be derived again
         for name in ("lanes_there", "touched", "on_lanes", "crosses", "counts", "seen"):
@@ -114,17 +116,22 @@ class RoadPlaces:
     def counts(self) -> Flags:
         """Mask of participants that count for an ego that is near.
 
-        On the lanes everybody does; beside them only vulnerable road users, and oncoming vehicles
-        that move at some time.
+        On the lanes everybody does; beside them only vulnerable road users, oncoming vehicles that
+        are not parked, and trams that run along the road on tracks next to the lanes.
         """
         beside = self.thresholds.beside_road_m
         close = (self.extents.left_of_max[..., 0] > -beside) & (
             self.extents.left_of_min[..., -1] < beside
         )
         flags: Flags = close & self.tracks.of_type("vulnerable_user")[:, None]
-        moves = self.fastest * KMH >= self.thresholds.standing_kmh
-        others = Cells.at(close & moves[:, None] & ~flags & ~self.on_lanes)
+        others = Cells.at(close & self.in_traffic[:, None] & ~flags & ~self.on_lanes)
         flags.ravel()[others.places] = np.cos(others.of(self.extents.turned)) < _ONCOMING_COSINE
+        rails = self.tracks.of_type("rail_vehicle").nonzero()[0]
+        if len(rails):
+            next_to = (self.extents.left_of_max[rails, :, 0] > -_NEXT_TO_M) & (
+                self.extents.left_of_min[rails, :, -1] < _NEXT_TO_M
+            )
+            flags[rails] |= next_to & (np.cos(self.extents.turned[rails]) > _ALONG_COSINE)
         flags |= self.on_lanes
         flags &= ~self.crosses
         return flags

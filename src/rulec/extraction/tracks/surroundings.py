@@ -19,6 +19,9 @@ from rulec.recordings.recording import Lanelet, Recording, Side, WholeRecording,
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_beside, lanelet_area, lanes_beside
 
+KMH = 3.6
+"""km/h in one m/s."""
+
 SAME_CARRIAGEWAY_M = 1.5
 OTHER_CARRIAGEWAY_M = 30.0
 """Greatest distances (m) between the lanes of a carriageway, and the carriageways of a road."""
@@ -27,6 +30,14 @@ _AGAINST = np.radians(135.0)
 
 _DRIFT_M = 1.5
 """Boxes of standing participants drift by up to this."""
+
+_IN_TRAFFIC = frozenset({"hazard_lights", "blue_light", "doors", "left_doors", "right_doors"})
+"""Nobody leaves a parked vehicle with these on or open."""
+
+_IN_LANE_M = 0.5
+"""Who waits in a lane is no farther (m) from its middle line; who parks stands at its edge."""
+
+_ALONG_LANE = np.radians(30.0)
 
 _HAIR = 1e-9
 """Upper bound on rounding errors of a cosine."""
@@ -64,6 +75,7 @@ class Surroundings:
         joined.__dict__["passages"] = self.passages.and_one(other.passages, row, tracks)
         for name in ("tolerances", "_lanes", "_both_ways"):
             joined.__dict__[name] = getattr(self, name)
+        joined.__dict__["waits"] = np.append(self.waits, other.waits[row])
         return joined
 
     @cached_property
@@ -104,6 +116,41 @@ class Surroundings:
             farthest = max(np.hypot(*(corners - corner).T).max() for corner in corners)
             still[row] = farthest <= _DRIFT_M
         return still
+
+    @cached_property
+    def in_traffic(self) -> Flags:
+        """Mask of participants, by row, that move at some time or ``waits`` says so of."""
+        moves: Flags = self.tracks.fastest * KMH >= self.thresholds.standing_kmh
+        return moves | self.waits
+
+    @cached_property
+    def waits(self) -> Flags:
+        """Mask of vehicles, by row, that stand for as long as they are recorded and do not park.
+
+        They run on rails, show lamps or open doors as nobody does that parks, or stand in the
+        middle of a lane and in its direction.
+        """
+        tracks = self.tracks
+        still = self.stays & tracks.of_type("vehicle") & tracks.present.any(axis=1)
+        found: Flags = still & tracks.of_type("rail_vehicle")
+        for row in (still & ~found).nonzero()[0].tolist():
+            body = tracks.participants[row]
+            lit = any(_IN_TRAFFIC & lamps for lamps in body.lamps.values())
+            found[row] = lit or (not body.standing and self._stands_in_lane(row))
+        return found
+
+    def _stands_in_lane(self, row: int) -> bool:
+        """Whether a participant is, when first seen, in the middle of a lane of its direction."""
+        column = int(self.tracks.present[row].argmax())
+        place = shapely.Point(self.tracks.x[row, column], self.tracks.y[row, column])
+        lanes, tree = self._lanes
+        near = [lanes[index] for index in tree.query(place, predicate="intersects").tolist()]
+        at, heading = np.array([place]), float(self.tracks.heading[row, column])
+        return any(
+            shapely.distance(shapely.LineString(lane.centre), place) <= _IN_LANE_M
+            and abs(turn(heading, float(directions_beside(lane, at)[0]))) < _ALONG_LANE
+            for lane in near
+        )
 
     def ring(self, side: Side) -> frozenset[str]:
         """The lanelets of roundabouts, for traffic that keeps to ``side``."""

@@ -62,7 +62,8 @@ _LAMPS: tuple[tuple[int, frozenset[Lamp]], ...] = (
     (2, frozenset({"left_indicator"})),
     (4, frozenset({"hazard_lights"})),
     (8, frozenset({"brake_light"})),
-    (512 | 1024, frozenset({"doors"})),
+    (512, frozenset({"doors", "left_doors"})),
+    (1024, frozenset({"doors", "right_doors"})),
     (2048 | 4096, frozenset({"blue_light"})),
 )
 """Bits of SUMO's ``signals`` -> lamps; only those that others can see and that rules use."""

@@ -38,8 +38,29 @@ def _boarding(context: DriveContext) -> SignalColumns:
         nobody = np.zeros(context.relevant.shape, dtype=bool)
         return SignalColumns(about={"boarding": nobody}, unknown={"boarding": nobody})
     stops = public & stands(context)
-    doors, told = lit_lamps(context, "doors")
+    doors, told = _open_doors(context)
+    doors &= ~_doors_away(context)
     return SignalColumns(about={"boarding": stops & doors}, unknown={"boarding": stops & ~told})
+
+
+def _open_doors(context: DriveContext) -> tuple[Flags, Flags]:
+    """Masks of participants with doors open on any side, and of those of which that is recorded."""
+    of_sides = [lit_lamps(context, lamp) for lamp in ("doors", "left_doors", "right_doors")]
+    is_open, told = (np.any(flags, axis=0) for flags in zip(*of_sides, strict=True))
+    return is_open, told
+
+
+def _doors_away(context: DriveContext) -> Flags:
+    """Mask of participants beside ego whose doors on its side are known to be shut."""
+    beside = relations.station(context) == relations.BESIDE
+    ego_at_right = relations.lateral(context) == relations.RIGHT_OF
+    ego_at_left = relations.lateral(context) == relations.LEFT_OF
+    (left, told), (right, _) = (lit_lamps(context, lamp) for lamp in ("left_doors", "right_doors"))
+    # Who comes towards ego has it at its own other side
+    against = np.abs(context.extents.turned) > np.pi / 2
+    left, right = np.where(against, right, left), np.where(against, left, right)
+    away: Flags = told & beside & ((ego_at_right & ~right) | (ego_at_left & ~left))
+    return away
 
 
 def _warning_lights(context: DriveContext) -> SignalColumns:
@@ -171,7 +192,7 @@ def _buses_leave(context: DriveContext, buses: NDArray[intp]) -> tuple[Flags, Fl
     still = stands(context)[buses]
     leaves = still & context.spans.within(moves(context)[buses], steps)
     lit, told = (flags[buses] for flags in _far_indicator(context))
-    doors, doors_told = (flags[buses] for flags in lit_lamps(context, "doors"))
+    doors, doors_told = (flags[buses] for flags in _open_doors(context))
     at_stop = context.spans.within_last(doors, steps)
     known = told & doors_told
     # What a bus does after it is lost from sight is unknown

@@ -159,7 +159,11 @@ def _stays_aside(context: DriveContext) -> Flags:
     still = vehicles[context.stays[vehicles]]
     if len(still):
         others = context.extents.part(still, slice(None))
+        waits = context.surroundings.waits[context.tracks.rows[still]]
+        on_rails = context.tracks.of_type("rail_vehicle")[still][:, None]
         out = (others.middle_from(first) < 0) | (others.middle_from(end) > 0)
+        # Nobody that waits in a lane of the other direction is parked beside ego's
+        out &= ~(waits[:, None] & (on_rails | (np.abs(others.turned) > np.pi / 2)))
         wide = [context.tracks.participants[row].type not in _TWO_WHEELED for row in still.tolist()]
         out |= np.array(wide)[:, None] & _at_edge(others, context.there[still])
         aside[still] = context.spans.all(out | ~context.relevant[still])
@@ -189,7 +193,8 @@ def on_shoulder(context: DriveContext) -> SignalColumns:
         beyond = -others.middle_from(there.argmax(axis=2))
     else:
         beyond = others.middle_from(there.shape[2] - there[..., ::-1].argmax(axis=2))
-    vehicles = context.tracks.of_type("vehicle")[:, None] & there.any(axis=2)
+    on_wheels = context.tracks.of_type("vehicle") & ~context.tracks.of_type("rail_vehicle")
+    vehicles = on_wheels[:, None] & there.any(axis=2)
     along = vehicles & ~context.elsewhere & (np.abs(np.sin(others.turned)) < _ALONG)
     inside = those_on_lanes(context, SHOULDER, along)
     stands = context.tracks.speed * KMH < context.thresholds.standing_kmh

@@ -76,7 +76,8 @@ def might_come(context: DriveContext, own: Passage) -> Iterator[tuple[int, str]]
     through = {x.row for x in passages.through[own.junction]}
     latest = _leaves_at_latest(context, own) + context.thresholds.yielding_s / step_s
     for row, first, last in passages.astray.get(own.junction, ()):
-        if row != own.row and last >= own.first and first <= latest:
+        # The front of a long body gets there long before its middle
+        if row != own.row and last >= own.first and passages.front_came(row, first) <= latest:
             through.add(row)
             yield row, side_of(float(np.degrees(turn(own.heading, tracks.heading[row, first]))))
     rows, ends, back = _lost_from_sight(context)
