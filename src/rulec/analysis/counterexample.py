@@ -3,7 +3,8 @@
 A rule forbids a trace if it is violated for some objects. It is then also violated by the trace of
 these objects alone, during the states in which all of them are present; so traces with only the
 objects of one rule show whether another rule forbids everything that the first one does. The other
-rule is evaluated for all choices of these objects that fit its variables.
+rule is evaluated for all choices of these objects that fit its variables. Objects have the declared
+types of the variables, and where counts tell subtypes apart, also those (``object_typings``).
 """
 
 from __future__ import annotations
@@ -12,9 +13,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import chain, product
 
+from rulec.analysis.object_typings import answers_for_types
+from rulec.analysis.possible_traces import is_possible
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.alphabet import joined
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
@@ -47,20 +50,59 @@ def counterexample(
 
     ``given`` must hold in its states, in addition to the known facts. Raises UndecidedError.
     """
-    return Contest(forbidding, allowing, given).trace()
+    found = shortest_contest(forbidding, allowing, given)
+    return None if found is None else found[1]
+
+
+def shortest_contest(
+    forbidding: AnalyzedRule, allowing: Sequence[AnalyzedRule], given: Sequence[Axiom] = ()
+) -> tuple[Contest, Trace] | None:
+    """The contest for those types of objects that have the shortest trace, and the trace.
+
+    Raises UndecidedError.
+    """
+    universe = _universe(forbidding, allowing, given)
+    contests: list[tuple[Contest, Trace]] = []
+
+    def trace_for(objects: Mapping[str, str]) -> Trace | None:
+        own = replace(universe, objects=objects)
+        contest = Contest(forbidding, allowing, given, own)
+        trace = contest.trace()
+        if trace is not None:
+            contests.append((contest, trace))
+        return trace
+
+    asked = answers_for_types(
+        universe.objects, (forbidding, *allowing), universe.vocabulary, trace_for
+    )
+    problem: UndecidedError | None = None
+    for _, answer in asked:
+        if isinstance(answer, UndecidedError):
+            problem = problem or answer
+        elif answer is not None and len(answer.states) == 1:
+            break  # none is shorter
+    if contests:
+        return min(contests, key=lambda pair: len(pair[1].states))
+    if problem is not None:
+        raise problem
+    return None
 
 
 class Contest:
-    """A forbidding rule, allowing ones, and states where they may differ. Raises UndecidedError."""
+    """A forbidding rule, allowing ones, and states where they may differ. Raises UndecidedError.
+
+    The ``universe`` has the forbidding rule's objects, of the declared types unless it is given.
+    """
 
     def __init__(
         self,
         forbidding: AnalyzedRule,
         allowing: Sequence[AnalyzedRule],
         given: Sequence[Axiom] = (),
+        universe: ObjectUniverse | None = None,
     ) -> None:
         self.forbidding, self._allowing, self._given = forbidding, allowing, tuple(given)
-        self._universe = _universe(forbidding, allowing, given)
+        self._universe = universe or _universe(forbidding, allowing, given)
         own = {variable.name: variable.name for variable in forbidding.rule.variables}
         bound = [(forbidding.rule.machine, own, False)]
         bound += [
@@ -84,10 +126,9 @@ class Contest:
         alphabet = self._alphabet.as_usual(axioms)
         if self._word(alphabet) is None:
             return None
-        given = (*self._given, *axioms)
         if not alphabet.is_exact:
-            return counterexample(self.forbidding, self._allowing, given)
-        return self._trace(alphabet, universe, given)
+            return self._given_also(axioms).trace()
+        return self._trace(alphabet, universe, (*self._given, *axioms))
 
     def not_below_zero(self) -> Contest:
         """The same contest, without negative numbers that no rule or default suggests.
@@ -103,7 +144,7 @@ class Contest:
             if isinstance(item := declared[name], Quantity) and (item.default or 0) >= 0
         }
         axioms = [said_not_below_zero(name, Itself(item)) for name, item in quantities.items()]
-        return Contest(self.forbidding, self._allowing, (*self._given, *axioms))
+        return self._given_also(axioms)
 
     def within_limits(self, trace: Trace) -> Iterator[Contest]:
         """The same contest without what is beyond a limit in a trace, for each number in turn.
@@ -128,8 +169,15 @@ class Contest:
                 below: ltl.Relation = "<" if last == value else "<="
                 above: ltl.Relation = ">" if last == value else ">="
                 axiom = _bounded(name, item, below if value > usual else above, last)
-                yield Contest(self.forbidding, self._allowing, (*self._given, axiom))
+                yield self._given_also([axiom])
                 break
+
+    def _given_also(self, axioms: Sequence[Axiom]) -> Contest:
+        """The same contest, for objects of the same types, with further axioms."""
+        given = (*self._given, *axioms)
+        universe = _universe(self.forbidding, self._allowing, given)
+        own = replace(universe, objects=self._universe.objects)
+        return Contest(self.forbidding, self._allowing, given, own)
 
     def _trace(
         self, alphabet: JointAlphabet, universe: ObjectUniverse, given: tuple[Axiom, ...]
@@ -144,8 +192,9 @@ class Contest:
             )
 
         step = common_step((self.forbidding, *self._allowing))
+        possible = partial(is_possible, universe=universe)
         try:
-            return synthesize_trace(alphabet.states_of(word), universe, step, shows)
+            return synthesize_trace(alphabet.states_of(word), universe, step, shows, possible)
         except ChangingConstantsError as changing:
             reads = [alphabet.read_of(name) for name in changing.names]
             axioms = [_said_of_constant(read, universe.vocabulary) for read in reads if read]
@@ -154,7 +203,8 @@ class Contest:
                 raise
         # A trace has one value for each constant: take the shortest trace for any values.
         every = product(*axioms)
-        traces = (counterexample(self.forbidding, self._allowing, (*given, *x)) for x in every)
+        before = len(self._given)
+        traces = (self._given_also((*given[before:], *x)).trace() for x in every)
         counterexamples = [trace for trace in traces if trace is not None]
         return min(counterexamples, key=lambda trace: len(trace.states), default=None)
 
@@ -165,7 +215,10 @@ class Contest:
             with suppress(UndecidedError):
                 if shortest_word(self._monitors, self._verdicts, letters) is None:
                     return None
-        return shortest_word(self._monitors, self._verdicts, letters, alphabet.can_be_read)
+        word = shortest_word(self._monitors, self._verdicts, letters, alphabet.can_be_read)
+        if word is None:
+            alphabet.require_complete()
+        return word
 
 
 def _said_of_constant(read: Read, vocabulary: Vocabulary) -> list[Axiom]:

@@ -19,6 +19,7 @@ from rulec.logic.formula import Count, Formula, Term
 from rulec.logic.free_names import variables_of
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses import letter_functions
+from rulec.witnesses.counted_types import bodies_for, can_add, types_counted
 from rulec.witnesses.object_universe import EXTRA, Itself, ObjectUniverse
 from rulec.witnesses.relevant_axioms import (
     GroundAxiom,
@@ -136,11 +137,19 @@ class CountedObjectKinds:
 
     There are many states, so what does not depend on the state is computed once. It is derived from
     another universe's kinds (``before``) if that universe's axioms are the first ones of this.
+    ``known`` are the subjects that the states tell; if it is given, UndecidedError is raised where
+    anything else decides which objects there can be.
     """
 
-    def __init__(self, universe: ObjectUniverse, before: CountedObjectKinds | None = None) -> None:
+    def __init__(
+        self,
+        universe: ObjectUniverse,
+        before: CountedObjectKinds | None = None,
+        known: Set[Subject] | None = None,
+    ) -> None:
         self.universe = universe
         self._before = before
+        self._known: Set[Subject] | None = before._known if before else known
         first = len(before.universe.axioms) if before else 0
         self._own = replace(universe, axioms=universe.axioms[first:])
         self._fitting: dict[object, list[_FittingType]] = {}
@@ -156,6 +165,14 @@ class CountedObjectKinds:
             for candidate in self._of_type(fitting.counted, state)
         ]
 
+    def may_miss_some(self, state: JointState) -> bool:
+        """Whether objects may count in states that differ from this one only in some number.
+
+        That is so if their numbers are compared with the state's, of which it has but one choice.
+        """
+        types = self._types(tuple(_counts_of(state)), ())
+        return any(rest for fitting in types for _, rest in fitting.counted.inputs)
+
     def _types(self, counts: tuple[Count, ...], types: tuple[str, ...]) -> Sequence[_FittingType]:
         key = counts, types
         if key not in self._fitting:
@@ -164,21 +181,21 @@ class CountedObjectKinds:
                 if self._before
                 else list(self._first_types(counts, types))
             )
+            for fitting in self._fitting[key]:
+                if can_add(fitting.bodies):
+                    self._require_known(fitting.counted)
         return self._fitting[key]
+
+    def _require_known(self, counted: _CountedType) -> None:
+        """Raise UndecidedError if a state would be asked for a value that it does not tell."""
+        read = tuple([counted.reads[place] for place, rest in counted.inputs if rest is None])
+        if self._known is not None and not subjects_read(read) <= self._known:
+            raise UndecidedError("which objects count depends on facts about too much else")
 
     def _first_types(self, counts: Sequence[Count], types: Sequence[str]) -> Iterator[_FittingType]:
         vocabulary = self.universe.vocabulary
-        fitting = [
-            kind
-            for kind in vocabulary.types
-            if kind in types or any(vocabulary.is_subtype(kind, count.type) for count in counts)
-        ]
-        for kind in sorted(fitting, key=lambda fit: len(list(vocabulary.ancestors(fit)))):
-            bodies = {
-                place: letter_functions.plain_body_of(count, EXTRA, Itself(vocabulary))
-                for place, count in enumerate(counts)
-                if vocabulary.is_subtype(kind, count.type)
-            }
+        for kind in types_counted(counts, types, vocabulary):
+            bodies = bodies_for(kind, counts, vocabulary)
             places = len(counts), *bodies
             yield _fitting_type(
                 kind,

@@ -17,6 +17,7 @@ from rulec.resource_limits import SEARCH
 from rulec.rulebook.rulebook_model import Axiom
 from rulec.witnesses import letter_functions, state_synthesis
 from rulec.witnesses.counted_objects import CountedObjectKinds, fewest_counted_objects
+from rulec.witnesses.counted_types import facts_beside
 from rulec.witnesses.diagrams.decision_diagrams import DecisionDiagrams
 from rulec.witnesses.diagrams.plainest_ways import (
     Choices,
@@ -35,7 +36,8 @@ JointLetter = tuple[int, ...]
 """The letter class that each monitor reads."""
 
 Way = tuple[int, int, int, JointLetter]
-"""The number of non-default digits, a serial number, the digits, and the classes of counts."""
+"""The number of non-default digits, a serial number, the digits, and the classes of counts, and of
+what allows the objects that they count."""
 
 MOST_LETTERS = 20_000
 
@@ -66,12 +68,13 @@ class JointAlphabet:
             letter_functions.count_function(count, universe)
             for count in letter_functions.counts_read(reads)
         ]
-        read = [*monitors, *(count.function for count in self._counts)]
+        beside = facts_beside([function.count for function in self._counts], universe)
+        read = [*monitors, *(count.function for count in self._counts), *beside]
         relevant = relevant_axioms(axioms, [function.reads for function in read])
         functions = [*read, *(axiom.function for axiom in relevant)]
         self._joint = joint_reads(functions, vocabulary)
         self._n_monitors = len(monitors)
-        self._n_keys = len(monitors) + len(self._counts)
+        self._n_keys = len(read)
         self._n_numbers = sum(isinstance(read, NumberRead) for read in self._joint.reads)
         self._diagrams = DecisionDiagrams()
         roots = tuple(map(self._diagrams.of, functions, self._joint.views))
@@ -85,7 +88,7 @@ class JointAlphabet:
         self._usual = 0
         self.is_exact = True
         self._plain = KnownWays()
-        self._object_kinds = CountedObjectKinds(universe)
+        self._object_kinds = CountedObjectKinds(universe, None, subjects_read(self._joint.reads))
         self._numbers: dict[
             object, dict[state_synthesis.Subject, state_synthesis.Value] | None
         ] = {}
@@ -132,6 +135,7 @@ class JointAlphabet:
         """Find the candidates, and the ways to them."""
         self._steps_left = self._most_steps = SEARCH.value()
         self._states: dict[JointLetter, state_synthesis.JointState | None] = {}
+        self._may_miss_some = False
         ways_to = self._ways_to = dict[JointLetter, list[Way]]()
         choices = Choices(self._sizes, self._digits, self._defaults, self._usual)
         search = WaySearch(self._diagrams, choices, self._take, self._plain)
@@ -170,6 +174,14 @@ class JointAlphabet:
     def can_be_read(self, letter: JointLetter) -> bool:
         """Whether some state gives the letter. Raises UndecidedError."""
         return self.state(letter) is not None
+
+    def require_complete(self) -> None:
+        """Raise UndecidedError if some letter for which no state was found may have one.
+
+        Asked before it is concluded that there is no word.
+        """
+        if self._may_miss_some:
+            raise UndecidedError("which objects count depends on more than one number at once")
 
     def states_of(self, word: Iterable[JointLetter]) -> list[state_synthesis.JointState]:
         """A state for each letter of a word of possible letters."""
@@ -243,18 +255,21 @@ class JointAlphabet:
             _, _, chosen, classes = heappop(candidates)
             self._take(_COUNTS_TRIED if self._counts else 1)
             state = self._state(digits_chosen(chosen), classes)
-            if state is not None and fewest_counted_objects(state, self._object_kinds) is not None:
+            if state is None:
+                continue
+            if fewest_counted_objects(state, self._object_kinds) is not None:
                 return state
+            self._may_miss_some |= self._object_kinds.may_miss_some(state)
         return None
 
     def _state(
         self, chosen: Sequence[tuple[int, int]], classes: Sequence[int]
     ) -> state_synthesis.JointState | None:
-        """A state with these digits at these levels; ``classes`` are those of the counts."""
+        """A state with these digits at these levels; the first ``classes`` are of the counts."""
         vocabulary = self._universe.vocabulary
         counted = tuple(
             (function.count, function.counted[letter_class])
-            for function, letter_class in zip(self._counts, classes, strict=True)
+            for function, letter_class in zip(self._counts, classes, strict=False)
         )
         digits = [(self._joint.reads[level], digit) for level, digit in chosen]
         sums = [(read, digit) for read, digit in digits if isinstance(read, NumberRead)]

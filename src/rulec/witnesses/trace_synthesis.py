@@ -10,6 +10,7 @@ from typing import Any
 
 from rulec.diagnostics import RulecError
 from rulec.trace import Trace
+from rulec.vocabulary import Enumeration, Signal
 from rulec.vocabulary.vocabulary_model import default_value
 from rulec.witnesses.counted_objects import (
     CountedObjectKinds,
@@ -60,9 +61,12 @@ def synthesize_trace(
     universe: ObjectUniverse,
     step_s: Fraction,
     shows: Callable[[Trace], bool],
+    is_possible: Callable[[Trace], bool] = lambda _: True,
 ) -> Trace:
-    """Synthesise a trace through these states for which ``shows`` holds.
+    """Synthesise a possible trace through these states for which ``shows`` holds.
 
+    ``is_possible`` is asked where that does not follow from the states: objects added for counts
+    are chosen one by one, and one value of a constant replaces others.
     Raises UndecidedError if objects needed for counts prevent that, or if a constant would have to
     change.
     """
@@ -75,17 +79,19 @@ def synthesize_trace(
         written = tuple(_written(values, universe, all_objects, fill) for values in settled)
         trace = Trace("witness", float(step_s), all_objects, written)
         try:
-            if shows(trace):
+            if (not (types or changing) or is_possible(trace)) and shows(trace):
                 return trace
         except RulecError:
-            # Facts about several objects may exclude objects added for counts, or the value
-            # chosen for a constant.
+            # The facts that a rule knows may exclude objects added for counts, or the value chosen
+            # for a constant.
             if not types and not changing:
                 raise
     if changing:
         raise ChangingConstantsError(tuple(sorted({name for name, _ in changing})))
     if types:
-        raise UndecidedError("further objects, needed for counts, are subject to the rule, too")
+        raise UndecidedError(
+            "further objects, needed for counts, are subject to the rule, too, or to facts"
+        )
     raise AssertionError(f"a trace does not do what it is to show: {trace.states}")
 
 
@@ -125,8 +131,8 @@ def _settled(
 def _fills(universe: ObjectUniverse, types: Sequence[str]) -> Iterable[Mapping[str, Value]]:
     yield {}
     for name, declaration in universe.vocabulary.declarations.items() if types else ():
-        if declaration.parameters:
-            for value in getattr(declaration, "values", ()):
+        if declaration.parameters and isinstance(declaration, Signal | Enumeration):
+            for value in getattr(declaration, "values", (False, True)):
                 yield {name: value}
 
 

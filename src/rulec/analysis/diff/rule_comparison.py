@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from itertools import permutations
 from typing import Literal
 
-from rulec.analysis.counterexample import Contest, numbers_in
+from rulec.analysis.counterexample import Contest, numbers_in, shortest_contest
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.monitoring.state_view import value_in
 from rulec.rulebook.rulebook_model import Variable
@@ -75,16 +75,13 @@ def compare(first: AnalyzedRule, second: AnalyzedRule, most: int = 1) -> RuleCom
 
 def _compare(first: AnalyzedRule, second: AnalyzedRule, most: int) -> RuleComparison:
     try:
-        contest = Contest(first, [second])
-        first_trace = contest.trace()
-        converse = Contest(second, [first])
-        second_trace = converse.trace()
+        stricter, laxer = shortest_contest(first, [second]), shortest_contest(second, [first])
     except UndecidedError as problem:
         return RuleComparison("undecided", undecided=str(problem))
     return RuleComparison(
-        relation_of(first_trace, second_trace),
-        () if first_trace is None else _witnesses(contest, first_trace, most),
-        () if second_trace is None else _witnesses(converse, second_trace, most),
+        relation_of(stricter, laxer),
+        () if stricter is None else _witnesses(*stricter, most),
+        () if laxer is None else _witnesses(*laxer, most),
     )
 
 

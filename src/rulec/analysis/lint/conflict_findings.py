@@ -15,7 +15,7 @@ from rulec.analysis.lint.redundancy import small_premises
 from rulec.analysis.lint.related_rules import RelatedRules
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.analysis.trace_display import trace_note
-from rulec.diagnostics import Diagnostic, Label
+from rulec.diagnostics import Diagnostic, Label, named
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import Rule
@@ -110,6 +110,9 @@ def _cannot_be_kept(
     *firsts, last = names
     whole = [sides[name] for name in names]
     when = "at all" if clash.trace is None else "after some trace"
+    if clash.objects is not None:
+        exactly = named([f"{name}: {kind}" for name, kind in clash.objects.items()])
+        when = f"for objects of exactly these types: {exactly}"
     notes = () if clash.trace is None else trace_note("after the trace", clash.trace, whole)
     both = "both" if len(names) == 2 else "all"
     return CONFLICTING_RULES.at(
@@ -206,4 +209,4 @@ def _contradict(name: str, other: str, occurs: str, answers: RuleAnswers) -> boo
 def _never_kept(group: Sequence[str], answers: RuleAnswers) -> bool:
     """Whether rules, each of which can be kept, can never be kept together."""
     clash = answers.conflict(group)
-    return clash is not None and clash.trace is None
+    return clash == Conflict(None)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from rulec.analysis.counterexample import common_step
 from rulec.analysis.lint.harmless_states import have_harmless_state
+from rulec.analysis.object_typings import answers_for_types
+from rulec.analysis.possible_traces import is_possible
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.rulebook.rulebook_model import Variable
@@ -22,9 +25,13 @@ from rulec.witnesses.undecided import UndecidedError
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """A trace after which each rule could be kept, but not all; None if they never can be."""
+    """A trace after which each rule could be kept, but not all; None if they never can be.
+
+    That they never can be is so for all ``objects`` of some types, or, if it is None, for any.
+    """
 
     trace: Trace | None
+    objects: Mapping[str, str] | None = None
 
 
 Graph = Mapping[ProductState, Mapping[tuple[ProductState, frozenset[int]], JointLetter]]
@@ -39,7 +46,34 @@ def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
     """
     vocabulary = analyzed_rules[0].rulebook.vocabulary
     objects = common_objects([rule.rule.variables for rule in analyzed_rules], vocabulary)
-    universe = ObjectUniverse(objects, vocabulary, analyzed_rules[0].axioms)
+
+    def search(own: Mapping[str, str]) -> Conflict | None:
+        return _conflict(analyzed_rules, ObjectUniverse(own, vocabulary, axioms))
+
+    axioms = analyzed_rules[0].axioms
+    problem: UndecidedError | None = None
+    never: list[Mapping[str, str]] = []
+    is_never = True
+    for own, answer in answers_for_types(objects, analyzed_rules, vocabulary, search):
+        if isinstance(answer, UndecidedError):
+            problem = problem or answer
+        elif answer is None:
+            is_never = False
+        elif answer.trace is not None:
+            return answer
+        else:
+            never.append(own)
+        if len(analyzed_rules) > 2 and not never:
+            break  # only for pairs is it worth while to look for more
+    if problem is not None:
+        raise problem
+    if not never:
+        return None
+    return Conflict(None) if is_never else Conflict(None, never[0])
+
+
+def _conflict(analyzed_rules: Sequence[AnalyzedRule], universe: ObjectUniverse) -> Conflict | None:
+    """The conflict for objects of these types."""
     owners, monitors, functions = [], [], []
     for number, analyzed in enumerate(analyzed_rules):
         for binding in universe.bindings(analyzed.rule.variables):
@@ -50,6 +84,7 @@ def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
         return None
     alphabet = JointAlphabet(universe, functions)
     letters = alphabet.letters
+    alphabet.require_complete()
     if not letters:
         return None
     rules = []
@@ -66,12 +101,12 @@ def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
         return all(
             violation.step is None
             for analyzed in analyzed_rules
-            for violation in analyzed.violations(trace, vocabulary)
+            for violation in analyzed.violations(trace, universe.vocabulary)
         )
 
-    return Conflict(
-        synthesize_trace(alphabet.states_of(word), universe, common_step(analyzed_rules), is_open)
-    )
+    step, possible = common_step(analyzed_rules), partial(is_possible, universe=universe)
+    states = alphabet.states_of(word)
+    return Conflict(synthesize_trace(states, universe, step, is_open, possible))
 
 
 def common_objects(

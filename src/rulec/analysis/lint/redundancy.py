@@ -7,6 +7,7 @@ from contextlib import suppress
 from math import prod
 
 from rulec.analysis.counterexample import counterexample
+from rulec.analysis.object_typings import answers_for_types
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.diagnostics import RulecError
 from rulec.trace import Trace
@@ -29,12 +30,32 @@ def can_be_violated(analyzed: AnalyzedRule) -> bool:
 def can_be_kept(analyzed: AnalyzedRule) -> bool:
     """Whether some trace, with objects for the rule, keeps it. Raises UndecidedError."""
     objects = {variable.name: variable.type for variable in analyzed.rule.variables}
-    universe = ObjectUniverse(objects, analyzed.rulebook.vocabulary, analyzed.axioms)
+    vocabulary = analyzed.rulebook.vocabulary
+    problem: UndecidedError | None = None
+    for _, answer in answers_for_types(
+        objects,
+        [analyzed],
+        vocabulary,
+        lambda own: _can_be_kept(analyzed, ObjectUniverse(own, vocabulary, analyzed.axioms)),
+    ):
+        if isinstance(answer, UndecidedError):
+            problem = problem or answer
+        elif answer:
+            return True
+    if problem is not None:
+        raise problem
+    return False
+
+
+def _can_be_kept(analyzed: AnalyzedRule, universe: ObjectUniverse) -> bool:
+    """The same, for objects of these types."""
     bindings = universe.bindings(analyzed.rule.variables)
     machine = analyzed.rule.machine
     alphabet = JointAlphabet(universe, [monitor_function(machine, own) for own in bindings])
     machines, verdicts = [machine] * len(bindings), [True] * len(bindings)
     word = shortest_word(machines, verdicts, alphabet.candidates, alphabet.can_be_read)
+    if word is None:
+        alphabet.require_complete()
     return word is not None
 
 
