@@ -146,6 +146,14 @@ quantity speed in km/h
             ),
             ["R0804 `r` and `s` cannot both"],
         ),
+        # It implies a rule that others need none the less.
+        (
+            (
+                "hard rule r { require always (wet implies fog) } hard rule s { require never wet }"
+                " hard rule t { require always ((wet and fog) xor wet) }"
+            ),
+            ["R0803 `r` adds nothing: `s`", "R0804 `r` and `t`", "R0804 `s` and `t`"],
+        ),
         ("hard rule r { require never wet } soft rule s { require never wet }", ["R0803 `s`"]),
         (
             "soft rule r { require never wet } hard rule s { require never (wet and fog) }",

@@ -242,6 +242,19 @@ def test_what_facts_rule_out_is_not_missing_from_examples():
     assert found.missing_edges == ()
 
 
+def test_what_is_only_counted_shows_no_contradiction():
+    """Only a fact that counts is about objects that a rule merely counts."""
+    book = (
+        "rulebook a type car signal leads(v: car) default false fact {}\n"
+        "hard rule r {{ require always (count c: car (leads(c)) < 3) }}"
+    )
+    two = {"leads": {"v1": True, "v2": True}}
+    pairs = compile_rulebook(parse_rulebook(book.format("not (leads(v) and leads(w))")))
+    assert verify(Trace("t", 1, CARS, (two,)), pairs).satisfied
+    counting = compile_rulebook(parse_rulebook(book.format("count c: car (leads(c)) < 2")))
+    assert problem(two, rulebook=counting).code == "R0508"
+
+
 def test_numbers_are_not_suggested_against_a_fact():
     """59 km/h would do for the rule, but without lights no car is that fast; 0 km/h does."""
     book = parse_rulebook(

@@ -84,15 +84,12 @@ def rulebook_findings(
             diagnostics += alone
             if not alone:
                 good.append(name)
-    needless = [*_needless(good, by_name, answers, related)]
     hard = [name for name in good if by_name[name].strength == "hard"]
     conflicting = [*conflicts(hard, own, by_name, answers, related)]
     apart = [{one.place, *_labelled(one)} for one in conflicting if one.place is not None]
-    for name, finding in needless:
-        # Rules that contradict each other imply everything.
-        if not any(rules <= _labelled(finding) for rules in apart):
-            is_own = by_name[name].book == book.name
-            diagnostics.append(finding if is_own else _to_drop(name, finding, extends))
+    for name, finding in _needless(good, by_name, answers, related, apart):
+        is_own = by_name[name].book == book.name
+        diagnostics.append(finding if is_own else _to_drop(name, finding, extends))
     diagnostics += conflicting
     diagnostics += contradictions(hard, own, by_name, occurring, answers=answers, related=related)
     for number, (base, sides) in enumerate(zip(bases, of_bases, strict=True)):
@@ -200,8 +197,12 @@ def _needless(
     rules: Mapping[str, Rule],
     answers: RuleAnswers,
     related: RelatedRules,
+    apart: Sequence[Set[SourceLocation]],
 ) -> Iterator[tuple[str, Diagnostic]]:
-    """Rules that can all be left out together without changing what is forbidden, by name."""
+    """Rules that can all be left out together without changing what is forbidden, by name.
+
+    ``apart`` has the places of rules that cannot be kept together.
+    """
     left = set(names)
     diagnostics: list[tuple[str, Diagnostic]] = []
     for name in reversed(names):
@@ -213,10 +214,12 @@ def _needless(
             )
             diagnostics.append((name, undecided))
             continue
-        if premises:
-            diagnostics.append(
-                (name, _implied(rules[name], [rules[premise] for premise in premises]))
-            )
+        if not premises:
+            continue
+        finding = _implied(rules[name], [rules[premise] for premise in premises])
+        # Rules that contradict each other imply everything, so the rule still counts.
+        if not any(contradicting <= _labelled(finding) for contradicting in apart):
+            diagnostics.append((name, finding))
             left.remove(name)
     yield from reversed(diagnostics)
 
