@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rulec import analyze, diff
 from rulec.analysis.counterexample import counterexample
 from rulec.analysis.diff.rule_comparison import compare
 from rulec.analysis.lint.conflict_search import Conflict, conflict
@@ -218,3 +219,19 @@ def test_numbers_of_counted_objects_and_of_others_are_not_told_apart():
     head += "fact way(v) >= 0 m\nhard rule r { require never some z: thing (way(z) < gap) }\n"
     (found,) = rulebook_findings(parse_rulebook(head), [])
     assert found.code == "R0807"
+
+
+def test_a_witness_says_of_what_type_an_object_is(tmp_path, monkeypatch):
+    """That nothing in its states shows."""
+    base = HEAD + "hard rule r (u: thing) { require always (every z: car (z = u implies loud(u))) }"
+    (tmp_path / "counted.rules").write_text(base)
+    law = "always (loud(u) or not loud(u))"
+    own = f"rulebook own\nextends counted\noverride rule r (u: thing) {{ require {law} }}"
+    (tmp_path / "own.rules").write_text(own)
+    monkeypatch.chdir(tmp_path)
+    found = analyze("./own.rules")
+    (weaker,) = [one for one in found if one.code == "R0806"]
+    assert weaker.notes == ("`counted` forbids, for `u: car`: { true }",)
+    result = diff("./own.rules", "./counted.rules")
+    ((_, _, table),) = result.tables(result.pairs[0])
+    assert (table.rows[0].title, table.rows[0].values) == ("type of u", ("car",))

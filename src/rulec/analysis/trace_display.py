@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 from rulec.analysis.counterexample import declarations_read
 from rulec.analysis.shared_compilation import AnalyzedRule
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.diagnostics import named
 from rulec.logic.formula import Atom
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.state_view import value_in
@@ -38,15 +40,23 @@ class TraceTable:
     rows: tuple[SignalRow, ...]
 
 
-def trace_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> TraceTable:
-    """The table of a trace's values for these declarations and all its objects."""
+def trace_table(
+    trace: Trace, names: Set[str], vocabulary: Vocabulary, types: Mapping[str, str] | None = None
+) -> TraceTable:
+    """The table of a trace's values for these declarations and all its objects.
+
+    Preceded by the ``types`` of some objects.
+    """
     starts = [
         number
         for number, state in enumerate(trace.states)
         if number == 0 or state != trace.states[number - 1]
     ]
     ends = [*(start - 1 for start in starts[1:]), len(trace.states) - 1]
-    rows = []
+    rows = [
+        SignalRow(f"type of {name}", "", (kind,) * len(starts))
+        for name, kind in (types or {}).items()
+    ]
     for (name, items), declaration in subjects_of(vocabulary, trace.objects, names):
         if len(set(items)) == len(items):
             values: tuple[Any, ...] = tuple(
@@ -66,7 +76,19 @@ def trace_note(title: str, trace: Trace, rules: Sequence[AnalyzedRule]) -> tuple
     names = frozenset(name for analyzed in rules for name in declarations_read(analyzed.rule))
     vocabulary = rules[0].rulebook.vocabulary
     states = "; ".join(_state(state, trace, names, vocabulary) for state in trace.states)
-    return (f"{title}: {{ {states} }}",)
+    own = special_types(trace, [analyzed.rule for analyzed in rules])
+    special = [f"{name}: {kind}" for name, kind in own.items()]
+    return (f"{title}{', for ' + named(special) if special else ''}: {{ {states} }}",)
+
+
+def special_types(trace: Trace, rules: Iterable[CompiledRule]) -> dict[str, str]:
+    """The types of those of the rules' objects that are of a type that no rule declares."""
+    variables = [variable for rule in rules for variable in rule.variables]
+    names = {variable.name for variable in variables}
+    types = {variable.type for variable in variables}
+    return {
+        name: kind for name, kind in trace.objects.items() if name in names and kind not in types
+    }
 
 
 def _state(state: State, trace: Trace, names: frozenset[str], vocabulary: Vocabulary) -> str:

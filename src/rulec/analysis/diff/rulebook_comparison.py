@@ -13,7 +13,7 @@ from rulec.analysis.counterexample import declarations_read, shared_vocabulary
 from rulec.analysis.diff.rule_comparison import RuleComparison, RuleRelation, compare
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory, ConstantKind
 from rulec.analysis.shared_compilation import at_one_step, compile_shared
-from rulec.analysis.trace_display import TraceTable, trace_table
+from rulec.analysis.trace_display import TraceTable, special_types, trace_table
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.logic.free_names import names_in
 from rulec.rulebook.rulebook_model import Remark, Rule, Rulebook, cited_law
@@ -133,7 +133,8 @@ class RulebookDiff(Rows):
             (pair.comparison.second_forbids, books[::-1]),
         ):
             for trace in traces:
-                yield forbids, allows, trace_table(trace, names, words.vocabulary)
+                types = special_types(trace, pair.machines)
+                yield forbids, allows, trace_table(trace, names, words.vocabulary, types)
 
     def rows(self) -> list[dict[str, Any]]:
         """One row per rule, whether both rulebooks have it or only one."""
