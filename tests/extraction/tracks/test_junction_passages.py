@@ -144,3 +144,11 @@ def test_when_one_is_at_the_meeting_of_ways_that_it_passes_in_a_step():
     (passage,) = passages.of_row[0]
     expected = (-3 - 40 + 60) / 15, (3 + 40 + 60) / 15
     assert passages.occupied(passage, (1.0, 7.0)) == pytest.approx(expected)
+
+
+def test_who_is_put_elsewhere_between_two_states_has_passed_nothing():
+    """As simulators put vehicles that are stuck behind their obstacle, or at their way's end."""
+    places = {0: (-300, 0), 1: (-290, 0), 2: (290, 0), 3: (300, 0)}
+    taken, astray = ways_taken([straight(1, -4, 4, **INSIDE)], vehicle(7, places, speed=20.0))
+    assert taken == {"7": []}
+    assert not astray

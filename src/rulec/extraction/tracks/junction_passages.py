@@ -236,7 +236,8 @@ def junction_passages(
     of_row: dict[int, list[Passage]] = defaultdict(list)
     through: dict[int, list[Passage]] = defaultdict(list)
     astray: dict[int, list[tuple[int, int, int]]] = defaultdict(list)
-    for stay in junction_stays([junction.area for junction in junctions], tracks):
+    areas = [junction.area for junction in junctions]
+    for stay in junction_stays(areas, tracks, recording.step_s):
         passage = _passage(junctions[stay.junction].ways, tracks, stay)
         if passage is None:
             astray[stay.junction].append((stay.row, stay.first, stay.last))

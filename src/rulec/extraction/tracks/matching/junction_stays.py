@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
-from numpy import intp
+from numpy import float64, intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.tracks import Flags, Tracks
@@ -17,6 +17,9 @@ from rulec.trace.plain_arrays import distinct
 
 _THROUGH_M = 2.0
 """Who drives less far (m) through a junction between two states only touches its edge."""
+
+_FASTEST_MPS = 150.0
+"""Who is faster between two states was put elsewhere, as simulators do, and passed nothing."""
 
 
 class Stay(NamedTuple):
@@ -33,7 +36,9 @@ class Stay(NamedTuple):
     seen: bool
 
 
-def junction_stays(areas: Sequence[shapely.Geometry], tracks: Tracks) -> Iterator[Stay]:
+def junction_stays(
+    areas: Sequence[shapely.Geometry], tracks: Tracks, step_s: float
+) -> Iterator[Stay]:
     """The stays, in the order of the junctions' areas, of all participants that move on wheels."""
     moving = [
         not body.standing and "pedestrian" not in body.object_types for body in tracks.participants
@@ -43,7 +48,7 @@ def junction_stays(areas: Sequence[shapely.Geometry], tracks: Tracks) -> Iterato
     if not areas or not len(rows):
         return
     at, where = places_in(areas, tracks.x[rows, columns], tracks.y[rows, columns])
-    before, through = _between_states(areas, tracks, drive)
+    before, through = _between_states(areas, tracks, drive, _FASTEST_MPS * step_s)
     for number in distinct(np.append(where, through)).tolist():
         inside, seen = np.zeros((2, *tracks.present.shape), dtype=bool)
         chosen = at[where == number]
@@ -67,30 +72,39 @@ def body_length(body: Participant) -> float:
 
 
 def _between_states(
-    areas: Sequence[shapely.Geometry], tracks: Tracks, drive: Flags
+    areas: Sequence[shapely.Geometry], tracks: Tracks, drive: Flags, most_m: float
 ) -> tuple[tuple[NDArray[intp], NDArray[intp]], NDArray[intp]]:
     """Who passes through an area and is outside it both before and after: row and column before.
 
-    And the numbers of the areas. Trains cross a road within a step of half a second.
+    And the numbers of the areas. Nobody drives ``most_m`` in a step, but trains cross a road within
+    a step of half a second.
     """
-    far = np.hypot(np.diff(tracks.x, axis=1), np.diff(tracks.y, axis=1)) > _THROUGH_M
+    way = np.hypot(np.diff(tracks.x, axis=1), np.diff(tracks.y, axis=1))
+    far = (way > _THROUGH_M) & (way < most_m)
     rows, columns = (far & drive[:, :-1] & drive[:, 1:]).nonzero()
-    ends = np.array(
-        [
-            [tracks.x[rows, columns], tracks.y[rows, columns]],
-            [tracks.x[rows, columns + 1], tracks.y[rows, columns + 1]],
-        ]
-    ).transpose(2, 0, 1)
+    ends = np.array([[array[rows, columns + k] for array in (tracks.x, tracks.y)] for k in (0, 1)])
+    at, number = _boxes_that_meet(shapely.bounds(areas), ends.min(axis=0), ends.max(axis=0))
+    ends = ends.transpose(2, 0, 1)[at]
     steps, own = shapely.linestrings(ends), np.array(areas, dtype=object)
-    at, number = shapely.STRtree(own).query(steps)
     shapely.prepare(own)
-    crossed = shapely.intersects(own[number], steps[at])
+    crossed = shapely.intersects(own[number], steps)
     for end in (0, 1):
-        points = shapely.points(ends[at[crossed], end])
+        points = shapely.points(ends[crossed, end])
         crossed[crossed] = ~shapely.intersects(own[number[crossed]], points)
-    within = shapely.length(shapely.intersection(own[number[crossed]], steps[at[crossed]]))
+    within = shapely.length(shapely.intersection(own[number[crossed]], steps[crossed]))
     crossed[crossed] = within >= _THROUGH_M
     return (rows[at[crossed]], columns[at[crossed]]), number[crossed]
+
+
+def _boxes_that_meet(
+    areas: NDArray[float64], low: NDArray[float64], high: NDArray[float64]
+) -> tuple[NDArray[intp], NDArray[intp]]:
+    """Which of the boxes from ``low`` to ``high`` (2, n) meet which areas' bounds (m, 4)."""
+    met = [
+        ((high[0] >= left) & (low[0] <= right) & (high[1] >= bottom) & (low[1] <= top)).nonzero()[0]
+        for left, bottom, right, top in areas.tolist()
+    ]
+    return np.concatenate(met), np.repeat(np.arange(len(met)), list(map(len, met)))
 
 
 def _runs(flags: Flags) -> Iterator[tuple[int, int]]:
