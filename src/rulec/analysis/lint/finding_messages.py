@@ -46,7 +46,8 @@ CONFLICTING_RULES = Code(
     "R0804",
     title="hard rules cannot all be satisfied",
     why="After a trace that violates none of the rules, or from the start, every continuation "
-    "violates one of them, although each of them alone could be satisfied.",
+    "violates one of them, although each of them alone could be satisfied. If counts tell subtypes "
+    "apart, this may be so only for objects of exactly the types that are named.",
     bad="rulebook example\nsignal wet, slow\n"
     "hard rule caution { require always (wet implies next slow) }\n"
     "hard rule flow { require never (wet and next slow) }\n",
@@ -106,7 +107,9 @@ NOT_DECIDED = Code(
     "R0807",
     title="a question about a rule was not decided",
     why="The product of automata can have too many states to search, and counts inside counts are "
-    "not analysed. The question is left open: the answer is not no.",
+    "not analysed. Objects to be counted are found one by one, so a question may also be left open "
+    "if a count compares a number of each object with a number of something else, or if a fact is "
+    "about two counted objects. The question is left open: the answer is not no.",
     bad=_NESTED.format(inner="some d: car (near(c, d))"),
     good=_NESTED.format(inner="near(c, c)"),
     kind="analyzed",
