@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rulec import read_recording
+from rulec import read_recording, verify_recording
 from rulec.api.rulebook_compilation import machines
 from rulec.recordings.recording import Weather
 from support.builders import osi_traces as osi
@@ -142,21 +142,52 @@ def test_a_solid_line_that_is_driven_over(tmp_path, kind, is_wrong):
 
 def test_signs(read):
     signs = osi.sign(1, 17, [1]) + osi.sign(2, 52, [1], 30) + osi.sign(3, 52, [2], 20, 4)
-    # Below a limit it says for whom, a lane of which nothing is known, and a unit
-    signs += osi.sign(4, 52, [1], 10, supplements=[15]) + osi.sign(5, 17, [77])
-    signs += osi.sign(6, 56, [2], supplements=[2]) + osi.sign(7, 52, [3], 30, 2)
+    # A lane of which nothing is known, below a ban that nothing is, and a unit that is none
+    signs += osi.sign(5, 17, [77]) + osi.sign(6, 56, [2], supplements=[2])
+    signs += osi.sign(7, 52, [3], 30, 2)
     found = read(b"", static=ROAD + signs).lanelets
     assert found["1"].signs == {"STOP", "MAX_SPEED"}
     assert found["1"].limit_mps == pytest.approx(30 / 3.6)
     assert found["2"].signs == {"MAX_SPEED", "NO_OVERTAKING_START"}
     assert found["2"].limit_mps == pytest.approx(20 * 1609.344 / 3600)
     assert (found["3"].signs, found["3"].limit_mps) == ({"MAX_SPEED"}, None)
+    assert [found[k].untold_signs for k in "123"] == [set(), set(), {"MAX_SPEED"}]
 
 
-def test_signs_that_change_are_left_out(read):
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_what_says_for_whom_it_holds_may_hold(read, order):
+    """Below a limit of 10 it says for whom, and beside it stands one for all; so below a stop."""
+    limits = osi.sign(1, 52, [1], 30), osi.sign(2, 52, [1], 10, supplements=[15])
+    signs = limits[order[0]] + limits[order[1]] + osi.sign(3, 17, [2], supplements=[15])
+    found = read(b"", static=ROAD + signs).lanelets
+    assert found["1"].limit_mps is None
+    assert found["1"].signs == {"MAX_SPEED"}
+    assert found["2"].signs == set()
+    assert [found[k].untold_signs for k in "12"] == [{"MAX_SPEED"}, {"STOP"}]
+
+
+def test_what_signs_show_that_change_is_unknown(read):
     found = read(osi.sign(1, 52, [1], 80), osi.sign(1, 52, [1], 60))
     assert found.lanelets["1"].limit_mps is None
-    assert "signs that change are left out: 1" in found.remarks
+    assert found.lanelets["1"].untold_signs == {"MAX_SPEED"}
+    assert "what signs show that change is unknown: 1" in found.remarks
+
+
+@pytest.mark.parametrize(
+    ("more", "is_judged"),
+    [({}, True), ({"supplements": [15]}, False), ({"unit": 2}, False)],
+    ids=["for all", "for some", "in no unit"],
+)
+def test_a_limit_that_may_hold_is_no_reason_for_a_verdict(tmp_path, more, is_judged):
+    """At 36 km/h, where 30 hold, or might."""
+    road = ROAD + osi.sign(1, 52, [1, 2, 3], 30, **more)
+    cars = [osi.vehicle(7, 10.0 + k, 0.0, 0.0, None) for k in range(20)]
+    messages = [osi.ground_truth(k * STEP, car, road) for k, car in enumerate(cars)]
+    file = tmp_path / "driven.osi"
+    file.write_bytes(osi.trace(messages))
+    (judged,) = verify_recording(read_recording(file), "de").answers()
+    assert ("speed_limit" in {x.rule for x in judged.answer.violations}) is is_judged
+    assert ("speed_limit" in {x.rule for x in judged.answer.not_judged}) is not is_judged
 
 
 def test_a_stop_line_lies_across_its_lanes(read):

@@ -93,9 +93,8 @@ def _lanelets(
 ) -> dict[str, Lanelet]:
     """The lanelets with their signs, lights and road markings."""
     lanelets = with_lights(network.lanelets, content.bulbs.values(), network.of_lane, grid)
-    signs = content.static["traffic_sign"].items()
-    constant = [fields for key, fields in signs if key not in content.changing_signs]
-    lanelets = with_signs(lanelets, constant, network.of_lane, file)
+    signs = content.static["traffic_sign"]
+    lanelets = with_signs(lanelets, signs, network.of_lane, content.changing_signs, file)
     marks = content.static["road_marking"]
     lanelets = with_stop_lines(lanelets, marks.values(), network.of_lane, file)
     return with_crossings(lanelets, marks, network.of_lane, file)
@@ -136,7 +135,7 @@ def _remarks(content: TraceContent, grid: TimeGrid) -> Iterator[str]:
     if lost:
         yield f"traffic lights are assigned to no lane, and left out: {_list(lost)}"
     if content.changing_signs:
-        yield f"signs that change are left out: {_list(sorted(content.changing_signs))}"
+        yield f"what signs show that change is unknown: {_list(sorted(content.changing_signs))}"
 
 
 def _network_remarks(network: LaneNetwork) -> Iterator[str]:

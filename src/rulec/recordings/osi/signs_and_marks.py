@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 import shapely
 
+from rulec.recordings.commonroad.traffic_signs import LIMITS, told_name
 from rulec.recordings.encodings.speed_units import SPEED_UNITS
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.osi.message_fields import Fields, assigned_lanes, number, part, places
 from rulec.recordings.polylines import arc_lengths
-from rulec.recordings.recording import Lanelet, Points
+from rulec.recordings.recording import LIMIT_SIGN, Lanelet, Points
 from rulec.recordings.road_map import crosswalk
 
 _NAMES: Mapping[str, str] = {
@@ -33,7 +34,6 @@ _NAMES: Mapping[str, str] = {
 }
 """OSI sign type -> name in recordings; other signs do not concern driving, or end something."""
 
-_LIMITS = frozenset({"MAX_SPEED", "MAX_SPEED_ZONE_START"})
 _PAINTED = frozenset({"painted_traffic_sign", "symbolic_traffic_sign"})
 _CROSSING = "crossing_"
 _NARROWEST_M = 0.5
@@ -48,26 +48,42 @@ def limit_of(value: Fields, file: WireFile) -> float | None:
 
 
 def with_signs(
-    lanelets: Mapping[str, Lanelet], signs: Iterable[Fields], of_lane: _Lanes, file: WireFile
+    lanelets: Mapping[str, Lanelet],
+    signs: Mapping[str, Fields],
+    of_lane: _Lanes,
+    changing: Container[str],
+    file: WireFile,
 ) -> dict[str, Lanelet]:
-    """The lanelets with the signs that are assigned to their lanes.
+    """The lanelets with the signs, by their ids, that are assigned to their lanes.
 
-    A sign with a supplementary sign applies only to some hours, places or vehicles and is left out.
+    A sign with a supplementary sign applies only to some hours, places or vehicles, and of those
+    that are ``changing`` it is not known when they show what: they may apply, or not.
     """
     signed = dict(lanelets)
-    for fields in signs:
+    for key, fields in signs.items():
         sign = part(fields, "main_sign", "classification")
         name = _NAMES.get(sign.get("type", "unknown"))
-        if name is None or sign.get("is_out_of_service") or _is_qualified(fields):
+        if name is None or (sign.get("is_out_of_service") and key not in changing):
             continue
-        limit = limit_of(part(sign, "value"), file) if name in _LIMITS else None
-        for key in _lanelets_of(sign, of_lane):
-            own = signed[key]
-            limits = [x for x in (own.limit_mps, limit) if x is not None]
-            signed[key] = replace(
-                own, signs=own.signs | {name}, limit_mps=min(limits, default=None)
-            )
+        limit = limit_of(part(sign, "value"), file) if name in LIMITS else None
+        is_sure = key not in changing and not _is_qualified(fields)
+        for own in _lanelets_of(sign, of_lane):
+            signed[own] = _with_sign(signed[own], name, limit, is_sure=is_sure)
     return signed
+
+
+def _with_sign(own: Lanelet, name: str, limit_mps: float | None, *, is_sure: bool) -> Lanelet:
+    """A lanelet with one more sign, which surely applies or may; its limit may be unreadable."""
+    untold = own.untold_signs
+    if not is_sure or (name in LIMITS and limit_mps is None and own.limit_mps is None):
+        untold |= {told_name(name)}
+    limits = [x for x in (own.limit_mps, limit_mps if is_sure else None) if x is not None]
+    return replace(
+        own,
+        signs=own.signs | {name} if is_sure else own.signs,
+        untold_signs=untold,
+        limit_mps=None if LIMIT_SIGN in untold else min(limits, default=None),
+    )
 
 
 def _is_qualified(fields: Fields) -> bool:
