@@ -118,7 +118,8 @@ def test_a_traceback_shows_each_way_out_once():
         Diagnostic("R0703", "there is no `DE`", help="did you mean `de`?"),
         Diagnostic("R0703", "there is no `de `", help="did you mean `de`?"),
         Diagnostic("R0701", "it cannot be read"),
+        Diagnostic("R0617", "`side` is `up`", expected="expected `left`, `right`"),
     ]
     error = pickle.loads(pickle.dumps(RulecError(said)))
-    assert error.__notes__ == ["help: did you mean `de`?"]
+    assert error.__notes__ == ["help: did you mean `de`?", "expected `left`, `right`"]
     assert RulecError(said[2]).__notes__ == []

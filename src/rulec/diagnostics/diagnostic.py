@@ -91,12 +91,13 @@ class RulecError(Rows, Exception):
         text = "; ".join(_one_line(d) for d in self.diagnostics)
         super().__init__(text.encode(errors="backslashreplace").decode())
         # Tracebacks show the notes below the error, from Python 3.11 on
+        shown = self.diagnostics[:20]
         ways_out = dict.fromkeys(
-            diagnostic.help for diagnostic in self.diagnostics[:20] if diagnostic.help
+            f"help: {one.help}" if one.help else one.expected
+            for one in shown
+            if one.help or one.expected
         )
-        self.__notes__ = [
-            f"help: {text.encode(errors='backslashreplace').decode()}" for text in ways_out
-        ]
+        self.__notes__ = [text.encode(errors="backslashreplace").decode() for text in ways_out]
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:

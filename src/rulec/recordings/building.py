@@ -264,9 +264,10 @@ def build_recording(
     """A recording of lanelets and participants, with a time step of ``step_s`` seconds.
 
     Predecessors are added from successors, and the reverse; likewise neighbours. ``side`` is the
-    side of traffic, None if unknown; ``complete`` names kinds of things of which the lanelets
-    contain all, such as ``STOP`` for signs. Raises RulecError R0617 with all mistakes: wrong shapes
-    of arrays, invalid numbers, and ids that are duplicate or refer to nothing.
+    side of traffic, None if unknown; ``complete`` names kinds of things of which the recording has
+    all, such as ``STOP`` for signs (``docs/own_recordings.md``). Raises RulecError R0617 with all
+    mistakes: wrong shapes of arrays, invalid numbers, and ids that are duplicate or refer to
+    nothing.
     """
     lanes, bodies = tuple(lanelets), tuple(participants)
     for part in (*lanes, *bodies):
