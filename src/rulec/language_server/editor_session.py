@@ -45,7 +45,7 @@ class EditorSession(LanguageServer):
         self.findings: dict[str, dict[str, list[Diagnostic]]] = {}
         self.answers = KnownAnswers()
         self.waiting: list[asyncio.TimerHandle] = []
-        self.large: dict[str, asyncio.TimerHandle] = {}
+        self.checks_due: dict[str, asyncio.TimerHandle] = {}
 
     def report_server_error(self, error: Exception, source: Any) -> None:
         """Report an error in a message: to the client that sent it, or else to the log."""
@@ -73,16 +73,16 @@ class EditorSession(LanguageServer):
 
         A large text is always read as a whole, so older versions are not checked any more.
         """
-        if waiting := self.large.pop(document.uri, None):
+        if waiting := self.checks_due.pop(document.uri, None):
             waiting.cancel()
         if len(document.text) <= MOST_CHARACTERS:
             self.check(document)
             return
         loop = asyncio.get_running_loop()
-        self.large[document.uri] = loop.call_later(_IDLE_S, self._check_large, document.uri)
+        self.checks_due[document.uri] = loop.call_later(_IDLE_S, self._check_large, document.uri)
 
     def _check_large(self, uri: str) -> None:
-        self.large.pop(uri, None)
+        self.checks_due.pop(uri, None)
         if document := self.editor.documents.get(uri):
             self.check(document)
             self._ask_again()
@@ -112,7 +112,7 @@ class EditorSession(LanguageServer):
     def check_others(self, uri: str) -> None:
         """Check the other open documents, now that typing has paused."""
         for document in list(self.editor.documents.values()):
-            if document.uri != uri and document.uri not in self.large:
+            if document.uri != uri and document.uri not in self.checks_due:
                 self.check(document)
 
     def check_others_later(self, uri: str) -> None:
@@ -133,7 +133,7 @@ class EditorSession(LanguageServer):
     def names(self, uri: str) -> tuple[DocumentNames, TextPositions] | None:
         """The names in a document, and the positions of its text; None while a check is due."""
         document = self.editor.document(uri)
-        if document is None or uri in self.large:
+        if document is None or uri in self.checks_due:
             return None
         try:
             names = names_in_document(self.editor.check(document))

@@ -187,7 +187,7 @@ def _writing(server: EditorSession) -> None:
     def actions(params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
         uri = params.text_document.uri
         document = server.editor.document(uri)
-        if document is None or uri in server.large:
+        if document is None or uri in server.checks_due:
             return []
         try:
             checked = server.editor.check(document)

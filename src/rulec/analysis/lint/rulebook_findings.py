@@ -86,8 +86,8 @@ def rulebook_findings(
                 good.append(name)
     hard = [name for name in good if by_name[name].strength == "hard"]
     conflicting = [*conflicts(hard, own, by_name, answers, related)]
-    apart = [{one.place, *_labelled(one)} for one in conflicting if one.place is not None]
-    for name, finding in _needless(good, by_name, answers, related, apart):
+    conflict_places = [{one.place, *_labelled(one)} for one in conflicting if one.place is not None]
+    for name, finding in _needless(good, by_name, answers, related, conflict_places):
         is_own = by_name[name].book == book.name
         diagnostics.append(finding if is_own else _to_drop(name, finding, extends))
     diagnostics += conflicting
@@ -197,11 +197,11 @@ def _needless(
     rules: Mapping[str, Rule],
     answers: RuleAnswers,
     related: RelatedRules,
-    apart: Sequence[Set[SourceLocation]],
+    conflict_places: Sequence[Set[SourceLocation]],
 ) -> Iterator[tuple[str, Diagnostic]]:
     """Rules that can all be left out together without changing what is forbidden, by name.
 
-    ``apart`` has the places of rules that cannot be kept together.
+    ``conflict_places`` has the places of rules that cannot be kept together.
     """
     left = set(names)
     diagnostics: list[tuple[str, Diagnostic]] = []
@@ -218,7 +218,7 @@ def _needless(
             continue
         finding = _implied(rules[name], [rules[premise] for premise in premises])
         # Rules that contradict each other imply everything, so the rule still counts.
-        if not any(contradicting <= _labelled(finding) for contradicting in apart):
+        if not any(contradicting <= _labelled(finding) for contradicting in conflict_places):
             diagnostics.append((name, finding))
             left.remove(name)
     yield from reversed(diagnostics)

@@ -232,7 +232,7 @@ def with_plates(sign: Sign, plates: Iterable[str]) -> Sign:
     """The sign as plates with these ids below it leave it: untold if one says when it holds."""
     if sign.name == UNKNOWN or not any(_qualifies(number, sign.name) for number in plates):
         return sign
-    return Sign(UNKNOWN, untold="" if sign.name in _PLATES.values() else told_name(sign.name))
+    return Sign(UNKNOWN, untold="" if sign.name in _PLATES.values() else effect_name(sign.name))
 
 
 def _qualifies(plate: str, name: str) -> bool:
@@ -240,7 +240,7 @@ def _qualifies(plate: str, name: str) -> bool:
     return kind not in _PLATES_OF_PLACE and not (name in REGULATING and kind in _PLATES_OF_WAYS)
 
 
-def told_name(name: str) -> str:
+def effect_name(name: str) -> str:
     """The name of what a sign begins or ends: a zone is a limit, and so is its end."""
     return _BEGUN.get(name, name)
 
@@ -256,7 +256,7 @@ def _element(tree: Tree, country: str) -> Sign:
     value = tree.first("additionalValue")
     if name not in LIMITS | {MIN_SPEED}:
         return Sign(name)
-    return Sign(name, untold=told_name(name)) if value is None else Sign(name, speed_limit(value))
+    return Sign(name, untold=effect_name(name)) if value is None else Sign(name, speed_limit(value))
 
 
 def sign_name(number: str, country: str) -> str:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
-from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED, UNKNOWN, told_name
+from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED, UNKNOWN, effect_name
 from rulec.recordings.lanelet2.map_lanelets import MapLanelet, lanes
 from rulec.recordings.lanelet2.osm_file import OsmFile, OsmRelation
 from rulec.recordings.lanelet2.signs import Plates, element_signs, plates_of, tells_speed
@@ -135,7 +135,7 @@ class _Element:
         kind = self.element.tags.get("subtype", "")
         if self.is_dynamic:
             # What it shows is unknown, but not that it may limit the speed
-            names = {told_name(sign.untold or sign.name) for sign in self.signs}
+            names = {effect_name(sign.untold or sign.name) for sign in self.signs}
             if kind == "speed_limit" or (kind == "traffic_sign" and MAX_SPEED in names):
                 rules[entry.id].untold.add(MAX_SPEED)
             return

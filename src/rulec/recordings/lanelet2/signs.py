@@ -14,9 +14,9 @@ from rulec.recordings.commonroad.traffic_signs import (
     UNKNOWN,
     ZONE,
     Sign,
+    effect_name,
     is_plate,
     national_sign,
-    told_name,
     with_plates,
 )
 from rulec.recordings.encodings.speed_units import KMH
@@ -54,7 +54,7 @@ def sign_of(kind: str) -> Sign:
         tried = (*spelled, *(word.upper() for word in spelled))
         names = (national_sign(word, country) for word in tried)
         name = next((name for name in names if name != UNKNOWN), UNKNOWN)
-        return Sign(name, untold=told_name(name) if name in LIMITS | {MIN_SPEED} else "")
+        return Sign(name, untold=effect_name(name) if name in LIMITS | {MIN_SPEED} else "")
     speed = velocity(kind)
     return Sign(UNKNOWN) if speed is None else Sign(MAX_SPEED, speed)
 

@@ -16,7 +16,7 @@ from rulec.recordings.commonroad.traffic_signs import (
     UNKNOWN,
     ZONE,
     Sign,
-    told_name,
+    effect_name,
 )
 from rulec.recordings.opendrive.content.elements import (
     MapRoad,
@@ -72,7 +72,7 @@ class LaneFurniture:
     def hold(self, sign: Sign) -> None:
         """Let a sign apply from here on, and end those that it ends."""
         ended = HOLDS_ON.get(sign.name, frozenset())
-        effect = sign.untold or told_name(sign.name)
+        effect = sign.untold or effect_name(sign.name)
         self.signs -= ended
         if sign.name == UNKNOWN:
             # Whether another one still applies is unknown

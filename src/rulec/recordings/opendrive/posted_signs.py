@@ -18,7 +18,7 @@ from rulec.recordings.commonroad.traffic_signs import (
     UNKNOWN,
     ZONE,
     Sign,
-    told_name,
+    effect_name,
     with_plates,
 )
 from rulec.recordings.encodings.xml_element import short
@@ -177,12 +177,12 @@ def _meant(speed: SignalSpeed) -> Sign:
     return Sign(
         name,
         speed.value_mps if numbered else None,
-        told_name(name) if numbered and speed.value_mps is None else "",
+        effect_name(name) if numbered and speed.value_mps is None else "",
     )
 
 
 def _effect(sign: Sign) -> str:
-    return sign.untold or told_name(sign.name)
+    return sign.untold or effect_name(sign.name)
 
 
 def _hidden(sign: Sign) -> Sign:

@@ -17,9 +17,9 @@ from rulec.recordings.commonroad.traffic_signs import (
     MIN_SPEED,
     UNKNOWN,
     Sign,
+    effect_name,
     is_plate,
     national_sign,
-    told_name,
 )
 from rulec.recordings.encodings.speed_units import KMH, SPEED_UNITS
 from rulec.recordings.opendrive.content.elements import RoadSignal
@@ -134,7 +134,7 @@ def catalogue_sign(signal: RoadSignal) -> Sign:
     if name not in _NUMBERED:
         return Sign(name)
     limit = _limit(signal, country, name)
-    return Sign(name, limit, told_name(name) if limit is None else "")
+    return Sign(name, limit, effect_name(name) if limit is None else "")
 
 
 def _names(signal: RoadSignal, country: str) -> Iterator[str]:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import shapely
 
-from rulec.recordings.commonroad.traffic_signs import LIMITS, told_name
+from rulec.recordings.commonroad.traffic_signs import LIMITS, effect_name
 from rulec.recordings.encodings.speed_units import SPEED_UNITS
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.osi.message_fields import Fields, assigned_lanes, number, part, places
@@ -76,7 +76,7 @@ def _with_sign(own: Lanelet, name: str, limit_mps: float | None, *, is_sure: boo
     """A lanelet with one more sign, which surely applies or may; its limit may be unreadable."""
     untold = own.untold_signs
     if not is_sure or (name in LIMITS and limit_mps is None and own.limit_mps is None):
-        untold |= {told_name(name)}
+        untold |= {effect_name(name)}
     limits = [x for x in (own.limit_mps, limit_mps if is_sure else None) if x is not None]
     return replace(
         own,

@@ -94,7 +94,7 @@ def _conflicts(context: DriveContext) -> SignalColumns:
                     for state in range(from_then.start, from_then.stop):
                         whom[kind][state] = (*whom[kind][state], other)
         for row, side in might_come(context, passage):
-            for kind in _perhaps(context, passage, row, side):
+            for kind in _possible_conflicts(context, passage, row, side):
                 strangers[kind][approach(context, passage)] = True
         if not passage.sure:
             for name in possible:
@@ -109,7 +109,7 @@ def _conflicts(context: DriveContext) -> SignalColumns:
     return SignalColumns(world, unknown=not_told | dict(when.unknown), whom=whom)
 
 
-def _perhaps(context: DriveContext, own: Passage, row: int, side: str) -> Iterator[str]:
+def _possible_conflicts(context: DriveContext, own: Passage, row: int, side: str) -> Iterator[str]:
     """The conflicts that there may be with a participant whose way through a junction is unknown.
 
     ``side``: where it may come from. Who does not turn crosses no way of those that drive along it.

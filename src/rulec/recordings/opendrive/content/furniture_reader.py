@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from rulec.recordings.encodings.speed_units import SPEED_UNITS
 from rulec.recordings.encodings.tree import Tree
+from rulec.recordings.encodings.xml_element import number_in
 from rulec.recordings.opendrive.content.elements import (
     RoadObject,
     RoadSignal,
@@ -76,7 +77,7 @@ def _sign(tree: Tree, key: str, s: float, t: float) -> RoadSignal:
 def _value(tree: Tree) -> float:
     # Some tools write a text where there is no value
     try:
-        return float(text(tree, "value"))
+        return number_in(text(tree, "value"))
     except ValueError:
         return 0.0
 
