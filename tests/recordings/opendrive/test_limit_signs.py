@@ -78,7 +78,7 @@ def test_numbers_that_are_read(tmp_path, changes, kmh):
         {"type": "-1", "inside": "<vmsBoard/>"},
         {"country": "AT", "type": "52.10a", "value": 30, "unit": "km/h"},
         {"country": "AT", "type": "52.10a"},
-        {"country": "FR", "type": "B30", "value": 30, "unit": "km/h"},
+        {"country": "FR", "type": "C4a", "value": 30, "unit": "km/h"},
     ],
 )
 def test_a_sign_that_is_not_read_hides_the_limit_of_the_road(tmp_path, changes):
@@ -201,6 +201,50 @@ def test_a_zone_limits_the_speed_until_its_end(tmp_path, zone):
     assert of[1].signs == {"MAX_SPEED"}
     assert "MAX_SPEED_ZONE_START" in of[2].signs
     assert of[3].signs == frozenset()
+
+
+@pytest.mark.parametrize(
+    ("country", "limit", "ends"),
+    [
+        ("BE", "C43", ("C45", "C46")),
+        ("CH", "2.30", ("2.53", "2.58")),
+        ("ES", "R301", ("R501", "R500")),
+        ("ES", "R-301", ("R-501", "R-500")),
+        ("FR", "B14", ("B33", "B31")),
+        ("FR", "B30", ("B51",)),
+        ("GB", "670", ("671",)),
+        ("NL", "A1", ("A2", "F8")),
+        ("PL", "B-33", ("B-34", "B-42")),
+        ("PL", "B-43", ("B-44",)),
+        ("RU", "3.24", ("3.25", "3.31")),
+        ("SE", "C31", ("C32",)),
+    ],
+)
+def test_other_countries_signs_end_a_limit(tmp_path, country, limit, ends):
+    for end in ends:
+        signs = [
+            THIRTY | {"s": 20, "type": limit, "country": country},
+            LIMIT | {"id": "b", "type": end, "country": country},
+        ]
+        lanelets = map_with(tmp_path, *signs).lanelets
+        of = [lanelets[f"1.{piece}.-1"] for piece in range(3)]
+        assert [x.limit_mps and round(x.limit_mps / KMH) for x in of] == [50, 30, 50], end
+        assert [unknown(x) for x in of] == [False, False, False], end
+
+
+@pytest.mark.parametrize(
+    ("country", "ban", "end"),
+    [("BE", "C35", "C37"), ("CH", "2.44", "2.55"), ("FR", "B3", "B34"), ("NL", "F1", "F2")]
+    + [("ES", "r305", "R502"), ("PL", "B-25", "B-27"), ("SE", "C27", "C28")],
+)
+def test_other_countries_signs_end_a_ban_of_overtaking(tmp_path, country, ban, end):
+    signs = [
+        LIMIT | {"s": 20, "type": ban, "country": country},
+        LIMIT | {"id": "b", "type": end, "country": country},
+    ]
+    lanelets = map_with(tmp_path, *signs).lanelets
+    assert lanelets["1.1.-1"].signs == {"NO_OVERTAKING_START"}
+    assert lanelets["1.2.-1"].signs == frozenset()
 
 
 def test_what_ends_within_a_zone_leaves_its_limit(tmp_path):
