@@ -6,6 +6,7 @@ import pty
 import stat
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -155,6 +156,19 @@ def test_a_pattern_that_nothing_is_called_like(pattern, folder, capsys):
     assert "R0733" in err
 
 
+@pytest.mark.parametrize(
+    "name", ["plain.rules", "with blanks.rules", "über.rules", "a\nb.rules", "##[error]x.rules"]
+)
+def test_patch_applies_a_diff_whatever_the_file_is_called(tmp_path, monkeypatch, capsys, name):
+    monkeypatch.chdir(tmp_path)
+    file = Path(name)
+    file.write_text(UGLY)
+    status, out, _ = fmt(capsys, "--diff", f"./{name}")
+    assert status == 1
+    subprocess.run(["patch", "-p0"], input=out.encode(), check=True, capture_output=True)
+    assert file.read_text() == GOOD
+
+
 def test_standard_input(folder, capsys, monkeypatch):
     as_input(monkeypatch, UGLY.encode())
     assert fmt(capsys, "-") == (0, GOOD, "")
@@ -163,7 +177,7 @@ def test_standard_input(folder, capsys, monkeypatch):
     as_input(monkeypatch, UGLY.encode())
     status, out, _ = fmt(capsys, "-", "--diff")
     assert status == 1
-    assert out.startswith("--- standard input\n+++ standard input\n")
+    assert out.startswith("--- standard input\t\n+++ standard input\t\n")
     as_input(monkeypatch, GOOD.encode())
     assert fmt(capsys, "-", "--check") == (0, "", "")
     as_input(monkeypatch, WRONG.encode())

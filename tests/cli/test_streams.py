@@ -99,8 +99,17 @@ def test_a_message_that_cannot_be_written_keeps_its_status():
     assert shell('"$@" 2>/dev/full', "maneuvers").returncode == 2
 
 
+def test_an_answer_for_which_standard_output_is_closed_is_an_error(tmp_path):
+    for arguments in (MANEUVERS, ["list"], ["--version"]):
+        done = shell('"$@" >&-', *arguments)
+        assert done.returncode == 2
+        assert b"standard output cannot be written to" in done.stderr
+    file = tmp_path / "b.rules"
+    file.write_text("rulebook b\nsignal  p\nhard rule r { require always p }\n")
+    assert shell('"$@" >&-', "fmt", str(file)).returncode == 0  # it has nothing to say there
+
+
 def test_closed_streams():
-    assert shell('"$@" >&-', *MANEUVERS).returncode == 0
     assert shell('"$@" 2>&-', *MANEUVERS).returncode == 0
     assert shell('"$@" 2>&-', *TRACES).stdout.count(b"\n") == 4240
     done = shell('"$@" <&-', "verify", "-", "-r", "esterle2019")

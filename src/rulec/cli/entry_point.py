@@ -96,9 +96,10 @@ def _prepare() -> None:
         # Exit with cleanup of unfinished work, unless the signal is ignored, as under nohup.
         if signal.getsignal(number) is signal.SIG_DFL:
             signal.signal(number, _leave)
-    # A closed standard stream is None.
+    # A closed standard stream is None. An answer that cannot be written is an error, as if stdout
+    # were there and refused it.
     sys.stdin = sys.stdin or open(os.devnull)  # noqa: SIM115, PTH123 - open for good
-    sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115, PTH123
+    sys.stdout = sys.stdout or open(os.open(os.devnull, os.O_RDONLY), "w")  # noqa: SIM115, PTH123
     sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115, PTH123
     for stream in (sys.stdout, sys.stderr):
         # File names may have characters that the terminal's encoding lacks.

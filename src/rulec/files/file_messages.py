@@ -302,5 +302,5 @@ def refused(problem: OSError, *, is_gone: bool) -> Diagnostic:
     return NO_OUTPUT.at(
         SourceLocation("standard output"),
         f"standard output cannot be written to: {why}",
-        help="write to a file elsewhere, with -o FILE",
+        help="write to a file elsewhere, with `> FILE`, or `-o FILE` if the command has it",
     )

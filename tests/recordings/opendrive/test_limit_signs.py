@@ -234,8 +234,10 @@ def test_other_countries_signs_end_a_limit(tmp_path, country, limit, ends):
 
 @pytest.mark.parametrize(
     ("country", "ban", "end"),
-    [("BE", "C35", "C37"), ("CH", "2.44", "2.55"), ("FR", "B3", "B34"), ("NL", "F1", "F2")]
-    + [("ES", "r305", "R502"), ("PL", "B-25", "B-27"), ("SE", "C27", "C28")],
+    [
+        *[("BE", "C35", "C37"), ("CH", "2.44", "2.55"), ("FR", "B3", "B34"), ("NL", "F1", "F2")],
+        *[("ES", "r305", "R502"), ("PL", "B-25", "B-27"), ("SE", "C27", "C28")],
+    ],
 )
 def test_other_countries_signs_end_a_ban_of_overtaking(tmp_path, country, ban, end):
     signs = [

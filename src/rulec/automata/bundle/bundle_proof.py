@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from glob import glob, has_magic
 from pathlib import Path
 
-from rulec.automata.bundle.bundle_file import read_signed, refusal
+from rulec.automata.bundle.bundle_file import from_json, read_signed, refusal
 from rulec.automata.bundle.bundle_schema import FORMAT
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.files.file_messages import NOTHING_LEFT
@@ -99,6 +99,10 @@ def proofs_of_file(path: Path) -> list[RuleProof]:
     """
     data = read_signed(path)
     try:
-        return proofs_of(data)
+        proofs = proofs_of(data)
     except UnreadableError as problem:
         raise refusal(data, str(path), str(problem)) from None
+    if not any(proof.because for proof in proofs):
+        # What is no part of a proof, such as levels and weights, must be sound, too
+        from_json(data, str(path))
+    return proofs

@@ -16,8 +16,7 @@ from rulec.cli.standard_input import standard_input
 from rulec.files.read_files import MAX_SOURCE_BYTES
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_line, print_remark, print_result
-from rulec.report.text.outgoing import outgoing
-from rulec.report.text.terminal_text import counted, visible
+from rulec.report.text.terminal_text import counted
 from rulec.report.text.text_diff import as_diff, for_terminal
 from rulec.settings import exclusion, search_path
 
@@ -86,7 +85,7 @@ def _show(changed: Sequence[Formatted], *, diff: bool) -> None:
         if not diff:
             print_line(f"would change {file.name}")
             continue
-        text = as_diff(outgoing(visible(file.name)), file.before.decode(), file.after.decode())
+        text = as_diff(file.name, file.before.decode(), file.after.decode())
         if sys.stdout.isatty():
             print_result(for_terminal(text))
         else:
