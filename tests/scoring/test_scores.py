@@ -136,6 +136,89 @@ def test_margins_after_a_past_that_was_too_fast():
     assert by_speed[2].margin.value > 60
 
 
+@pytest.mark.parametrize(
+    ("kind", "limit_kmh", "kmh"),
+    [("urban", 70, 55), ("urban", 30, 20), ("country", 120, 90), ("country", 70, 45)],
+)
+def test_the_margin_of_a_kept_limit_is_to_the_one_that_applies(kind, limit_kmh, kmh):
+    lane = rulec.build_lanelet("l", [(-200, 0), (800, 0)], types=[kind], limit_mps=limit_kmh / 3.6)
+    t, speed = STEP_S * np.arange(7), kmh / 3.6
+    ego = rulec.build_participant("ego", "car", t, speed * t, 0 * t, step_s=STEP_S)
+    world = TrafficWorld(rulec.build_recording([lane], [ego], step_s=STEP_S, side="right"), "ego")
+    found = score(steady(speed, world.past[-1])[None], world, GERMAN, world.past)
+    (own,) = [one for one in found.margins(0) if one.rule == "speed_limit"]
+    assert (own.margin.text, own.margin.against) == ("speed", "limit")
+    assert own.margin.limit - own.margin.value == pytest.approx(limit_kmh - kmh, abs=0.01)
+
+
+def test_what_does_not_count_in_a_state_has_no_margin():
+    """Nobody is red, no line and no crossing is there, and no sign stands in the way of a limit."""
+    world = street([], speed=22.0)
+    found = score(steady(22.0, world.past[-1])[None], world, GERMAN, world.past)
+    told = {(one.rule, one.margin.text) for one in found.margins(0)}
+    assert ("speed_limit", "speed") in told
+    assert not {"limit", "ego_mass", "distance_to_crossing"} & {text for _, text in told}
+    assert "red_light" not in {rule for rule, _ in told}
+
+
+def test_a_margin_is_of_the_state_that_it_names():
+    # It rolls over the line of a stop sign: too fast before, and never slow enough
+    lanes = stop_sign_lanes()
+    t = 0.1 * np.arange(21)
+    ego = rulec.build_participant("ego", "car", t, 44 + 8 * t, 0 * t, step_s=0.1)
+    world = TrafficWorld(rulec.build_recording(lanes, [ego], step_s=0.1, side="right"), "ego")
+    ahead = 0.1 * np.arange(1, 121)
+    slows = np.minimum(ahead, 5)
+    x = 60 + 8 * slows - slows**2 / 2 + 3 * (ahead - slows)
+    speeds = np.maximum(8 - ahead, 3)
+    future = np.column_stack((x, 0 * x, 0 * x, speeds))
+    found = score(future[None], world, GERMAN, world.past)
+    own = [one for one in found.margins(0) if one.rule == "stop_sign" and one.violated]
+    assert own
+    for one in own:
+        assert one.margin.value == pytest.approx(3.6 * speeds[one.state], abs=0.4)
+
+
+def stop_sign_lanes():
+    def lane(name, *points, **more):
+        return rulec.build_lanelet(name, points, types=["urban"], limit_mps=50 / 3.6, **more)
+
+    line = [(100, 1.75), (100, -1.75)]
+    inside = {"junction": "J"}
+    return [
+        lane("in", (-300, 0), (100, 0), signs=["STOP"], stop_line=line, successors=["j"]),
+        lane("j", (100, 0), (120, 0), successors=["out"], foes=["cj"], **inside),
+        lane("out", (120, 0), (400, 0)),
+        lane("ci", (110, -200), (110, -10), successors=["cj"]),
+        lane("cj", (110, -10), (110, 10), successors=["co"], foes=["j"], **inside),
+        lane("co", (110, 10), (110, 200)),
+    ]
+
+
+@pytest.mark.parametrize("past_mps", [17.0, 12.0])
+@pytest.mark.parametrize(
+    ("peak_mps", "outcome"), [(13.95, "open"), (16.0, "violated"), (12.0, "kept")]
+)
+def test_a_past_that_was_too_fast_hides_nothing_that_comes_later(past_mps, peak_mps, outcome):
+    """It slows to 43 km/h, which ends what the past did, and then gains speed once more."""
+    lane = rulec.build_lanelet("l", [(-400, 0), (900, 0)], types=["urban"], limit_mps=50 / 3.6)
+    t = 0.1 * np.arange(41)
+    ego = rulec.build_participant("ego", "car", t, past_mps * t, 0 * t, step_s=0.1)
+    world = TrafficWorld(rulec.build_recording([lane], [ego], step_s=0.1, side="right"), "ego")
+    ahead = 0.1 * np.arange(1, 161)
+    knots, speeds = [0, 2, 4, 5, 7.5, 8.5, 16], [past_mps, 12, 12, peak_mps, peak_mps, 12, 12]
+    own = np.interp(ahead, knots, speeds)
+    x = world.past[-1, 0] + np.cumsum(own * 0.1)
+    found = score(np.column_stack((x, 0 * x, 0 * x, own))[None], world, GERMAN, world.past)
+    assert ("speed_limit" in {one.rule for one in found.violated_before}) == (past_mps > 14)
+    assert found.outcomes("speed_limit") == [outcome]
+
+
+def test_the_nearest_allowed_of_equals_is_itself():
+    equal = Scores(GERMAN, [candidate(k) for k in range(3)], (), np.zeros((3, 2, 4)), 1)
+    assert [equal.nearest_allowed(number) for number in range(3)] == [0, 1, 2]
+
+
 def test_a_candidate_that_leaps_does_not_take_all_memory():
     bend = 150 * np.array([(np.sin(a), 1 - np.cos(a)) for a in np.linspace(0, 2.6, 120)])
     lane = rulec.build_lanelet("bend", bend, types=["urban"], limit_mps=50 / 3.6)

@@ -7,7 +7,7 @@ metamathematics", 1952).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache, partial
@@ -143,6 +143,43 @@ def alias_of(variable: str, formula: ltl.Formula) -> str | None:
 def holds(formula: ltl.Formula, binding: ObjectBinding, state: PartialState) -> bool | Unknown:
     """The value of a formula in a state, perhaps unknown. TypeError for a temporal operator."""
     return evaluator_of(formula)(binding, state)
+
+
+def propositions_that_count(
+    formula: ltl.Formula, binding: ObjectBinding, state: PartialState
+) -> Iterator[ltl.Proposition]:
+    """The propositions of a state on which a formula may depend, whatever other states are like.
+
+    Without those that another operand makes of no account: with ``p`` false, those of ``q`` in
+    ``p and q``. They are in the formula's order, perhaps repeated.
+    """
+    match formula:
+        case ltl.Unary(_, operand):
+            yield from propositions_that_count(operand, binding, state)
+        case ltl.Binary(operator, left, right):
+            settles = _SETTLED_BY.get(operator, (None, None))
+            for own, other, settling in zip((left, right), (right, left), settles, strict=True):
+                if settling is None or _here(other, binding, state) is not settling:
+                    yield from propositions_that_count(own, binding, state)
+        case ltl.Atom() | ltl.Comparison():
+            yield formula
+
+
+_SETTLED_BY: Mapping[ltl.BinaryOperator, tuple[bool, bool]] = {
+    ltl.BinaryOperator.AND: (False, False),
+    ltl.BinaryOperator.OR: (True, True),
+    ltl.BinaryOperator.IMPLIES: (True, False),
+}
+"""By which value of the right operand the left one is of no account, and the other way round."""
+
+
+def _here(formula: ltl.Formula, binding: ObjectBinding, state: PartialState) -> bool | None:
+    """A formula's value in a state; None if it is unknown, or also of other states."""
+    try:
+        value = holds(formula, binding, state)
+    except TypeError:
+        return None
+    return None if isinstance(value, Unknown) else value
 
 
 @lru_cache(maxsize=_MOST)

@@ -40,7 +40,17 @@ class CandidateScore:
 
     @property
     def satisfied(self) -> bool | None:
-        """Whether no hard rule is violated; None if one is open or not judged throughout."""
+        """Whether no hard rule is violated; None if one is open or not judged, or ego off the road.
+
+        As in the verdict of ``verify_recording``, unless the past has violated something.
+        """
+        if self.satisfied_as_judged and any(rule.strength == "hard" for rule in self.not_judged):
+            return None
+        return self.satisfied_as_judged
+
+    @property
+    def satisfied_as_judged(self) -> bool | None:
+        """``satisfied`` by the rules that can be judged in this world, whatever the others say."""
         if any(violation.strength == "hard" for violation in self.violations):
             return False
         is_open = any(result.strength == "hard" for result in self.open)

@@ -6,7 +6,7 @@ half of a candidate is left to end it. What is violated later than that is viola
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -55,16 +55,20 @@ def judged_anew(
     ]
     answers = agreed_answers([one.since(begin) for one in futures], books)
     late = _mended_after(futures, known, books, steps)
-    new = _violated_again(futures, known, books, steps)
+    new, ended = _violated_again(futures, known, books, steps)
+    reopened = _open_again(futures, ended, books, begin)
     violations: dict[int, list[Violation]] = {}
     judged_from: dict[int, dict[RuleFor, int]] = {}
     doubtful: dict[int, list[OpenVerdict]] = {}
-    for future, again, answer in zip(futures, new, answers, strict=True):
+    for place, (future, again, answer) in enumerate(zip(futures, new, answers, strict=True)):
         number, own = future.number, dict(again)
         if isinstance(answer, Verdict):
             begins, asked = max(begin, future.first_step) - first, known - again.keys()
             own |= {rule_for(x): (begins, x) for x in answer.violations if rule_for(x) in asked}
+            sooner = {about: x for about, x in reopened[place].items() if about not in own}
+            asked -= sooner.keys()
             doubtful.setdefault(number, []).extend(x for x in answer.open if rule_for(x) in asked)
+            doubtful[number].extend(sooner.values())
         violations.setdefault(number, []).extend(at(x, begins) for begins, x in own.values())
         judged_from.setdefault(number, {}).update({x: begins for x, (begins, _) in own.items()})
     return [
@@ -98,6 +102,10 @@ class _Future(NamedTuple):
     def since(self, step: int) -> TraceArrays:
         """The drive from a step on, as if nothing before were known."""
         return self.trace.since(max(step - self.first_step, 0))
+
+    def at(self, step: int) -> TraceArrays:
+        """One state of the drive, as if nothing before and after were known."""
+        return self.trace.at([max(step - self.first_step, 0)])
 
 
 def _mended_after(
@@ -138,16 +146,19 @@ def _violated_again(
     known: Collection[RuleFor],
     books: Sequence[CompiledRulebook],
     steps: tuple[int, int],
-) -> list[dict[RuleFor, tuple[int, Violation]]]:
-    """For each future what it violates after the past's violation has ended.
+) -> tuple[list[dict[RuleFor, tuple[int, Violation]]], list[dict[RuleFor, int]]]:
+    """For each future what it violates after the past's violation has ended, and when it has.
 
-    And the state of the candidate from which that is judged, and from which its steps count. As
-    long as the past's goes on, a rule that is asked from some state on is violated after as many
-    states as it takes at least, and so it is if it is asked from the next one on.
+    With each violation comes the state of the candidate from which it is judged, and from which its
+    steps count. The second list has, of what is not violated surely again, the step from which it
+    is asked last. As long as the past's goes on, a rule that is asked from some state on is
+    violated after as many states as it takes at least, and so it is if it is asked from the next
+    one on.
     """
     first, begin = steps
     soonest = {rule.name: _least_states(rule) for rule in books[0].rules}
     found: list[dict[RuleFor, tuple[int, Violation]]] = [{} for _ in futures]
+    ended: list[dict[RuleFor, int]] = [{} for _ in futures]
     asked = {(n, about): first for n in range(len(futures)) for about in known}
     while asked:
         jobs = sorted({(n, step) for (n, _), step in asked.items()})
@@ -161,6 +172,7 @@ def _violated_again(
         for (n, about), step in asked.items():
             one = violations.get((n, step, about))
             if one is None or one.step is None:
+                ended[n][about] = step
                 continue
             begins = max(step, futures[n].first_step)
             if one.step >= soonest[about[0]]:
@@ -168,7 +180,58 @@ def _violated_again(
             elif begins + one.step + 1 < begin:
                 goes_on[n, about] = begins + one.step + 1
         asked = goes_on
+    return found, ended
+
+
+def _open_again(
+    futures: Sequence[_Future],
+    ended: Sequence[Mapping[RuleFor, int]],
+    books: Sequence[CompiledRulebook],
+    begin: int,
+) -> list[dict[RuleFor, OpenVerdict]]:
+    """For each future what is open after the past's violation has surely ended, before ``begin``.
+
+    ``ended`` has the steps from which nothing is surely violated. What is open from there on may be
+    the rest of the past's violation, until a state that by itself surely keeps the rule.
+    """
+    found: list[dict[RuleFor, OpenVerdict]] = [{} for _ in futures]
+    asked = {(n, about): step for n, own in enumerate(ended) for about, step in own.items()}
+    is_open = _open_from(futures, asked, books)
+    waiting = {key: asked[key] for key in is_open}
+    surely = {}
+    while waiting := {key: step for key, step in waiting.items() if step < begin}:
+        jobs = sorted({(n, step) for (n, _), step in waiting.items()})
+        answers = agreed_answers([futures[n].at(step) for n, step in jobs], books)
+        answer_to = dict(zip(jobs, answers, strict=True))
+        for key in list(waiting):
+            if _keeps(answer_to[key[0], waiting[key]], {key[1]}):
+                surely[key] = waiting.pop(key)
+            else:
+                waiting[key] += 1
+    for (n, about), verdict in _open_from(futures, surely, books).items():
+        found[n][about] = verdict
     return found
+
+
+def _open_from(
+    futures: Sequence[_Future],
+    asked: Mapping[tuple[int, RuleFor], int],
+    books: Sequence[CompiledRulebook],
+) -> dict[tuple[int, RuleFor], OpenVerdict]:
+    """What is open, by future and rule, if it is asked from a step on."""
+    jobs = sorted({(n, step) for (n, _), step in asked.items()})
+    answers = agreed_answers([futures[n].since(step) for n, step in jobs], books)
+    verdicts = {
+        (*job, rule_for(own)): own
+        for job, answer in zip(jobs, answers, strict=True)
+        if isinstance(answer, Verdict)
+        for own in answer.open
+    }
+    return {
+        (n, about): verdicts[n, step, about]
+        for (n, about), step in asked.items()
+        if (n, step, about) in verdicts
+    }
 
 
 def _least_states(rule: CompiledRule) -> int:

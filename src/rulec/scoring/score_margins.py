@@ -10,10 +10,12 @@ from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.extraction.traces.recorded_drive import Drive
 from rulec.logic import formula as ltl
 from rulec.logic.formula import atoms_of
+from rulec.logic.kleene import Unknown, propositions_that_count
 from rulec.monitoring.bindings import Cast
 from rulec.monitoring.explain.explained_parts import Deciding
 from rulec.monitoring.explain.explanation import explain
-from rulec.monitoring.explain.margins import Margin, margin_in
+from rulec.monitoring.explain.margins import Margin, choosing_comparisons, margin_in
+from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import RuleFor, Verdict, Violation, rule_for
 from rulec.scoring.candidate_score import CandidateScore
@@ -25,8 +27,9 @@ from rulec.value_display import short_repr
 class RuleMargin:
     """By how much a rule is violated or kept for some objects, in a state of the candidate.
 
-    For a violation it is the margin that decides it; otherwise it is in the state in which a
-    comparison of the rule comes nearest to changing its value.
+    For a violation it is a margin that decides it, in the state in which it does. Otherwise it is
+    in the state in which a comparison that counts there comes nearest to changing its value, as a
+    share of the larger of its sides.
     """
 
     __repr__ = short_repr
@@ -79,9 +82,8 @@ def _deciding(
     own = at(violation, -begins - cut)
     decided_by = {name: _DecidedSince(x, cut) for name, x in drive.decided_by.items()}
     explanation = explain(own, drive.arrays.since(cut).trace(), rules, decided_by, repaired=False)
-    for margin in explanation.margins():
-        state = explanation.decisive + cut + begins
-        yield RuleMargin(violation.rule, True, violation.binding, state, margin)
+    for margin, state in explanation.measured():
+        yield RuleMargin(violation.rule, True, violation.binding, state + cut + begins, margin)
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +117,7 @@ def _nearest(
             continue
         states = range(max(binding.first, soonest.get(about, 0) - begins), binding.last + 1)
         found = [
-            (margin.by, state, margin)
+            (margin.share, state, margin)
             for state in states
             for margin in _margins_in(rule, binding.objects, drive, state, rules)
         ]
@@ -130,21 +132,38 @@ def _margins_in(
     drive: Drive,
     state: int,
     rules: CompiledRulebook,
-) -> Iterator[Margin]:
-    view = StateView(drive.trace.states[state], {}, rules.vocabulary)
+) -> list[Margin]:
+    """The margins of what the rule depends on in a state.
+
+    A comparison that only selects what the rule requires, such as whether a sign gives a limit, is
+    left out if others remain.
+    """
+    trace = drive.trace
+    objects = present_in(state, trace.objects, trace.present)
+    view = StateView(trace.states[state], objects, rules.vocabulary)
     # A comparison that only triggers the rule is not a limit that it sets
     when = set() if rule.trigger is None else set(atoms_of(rule.trigger))
-    for atom in dict.fromkeys(atoms_of(rule.formula)):
-        if atom in when:
-            continue
-        if isinstance(atom, ltl.Comparison):
-            terms = [term for _, term in atom.terms]
-            told = [isinstance(x, ltl.QuantityTerm) and x.name in drive.kinds for x in terms]
-            margin = margin_in(atom, bound, view) if all(told) else None
-        elif isinstance(atom, ltl.Atom) and atom.name in drive.decided_by:
-            (item,) = (bound[variable] for variable in atom.arguments)
-            margin = drive.decided_by[atom.name].margin(item, state)
-        else:
-            margin = None
-        if isinstance(margin, Margin):
-            yield margin
+    counted = dict.fromkeys(propositions_that_count(rule.formula, bound, view))
+    margins = {
+        part: margin
+        for part in counted
+        if part not in when
+        and isinstance(margin := _margin_of(part, bound, drive, state, view), Margin)
+    }
+    choosing = choosing_comparisons(rule.formula)
+    asks = [margin for part, margin in margins.items() if part not in choosing]
+    return asks or list(margins.values())
+
+
+def _margin_of(
+    part: ltl.Proposition, bound: Mapping[str, str], drive: Drive, state: int, view: StateView
+) -> Margin | Unknown | None:
+    """The margin of a comparison, or of the number that decided a signal; None if it is untold."""
+    if isinstance(part, ltl.Comparison):
+        terms = [term for _, term in part.terms]
+        told = [isinstance(x, ltl.QuantityTerm) and x.name in drive.kinds for x in terms]
+        return margin_in(part, bound, view) if all(told) else None
+    if part.name in drive.decided_by:
+        (item,) = (bound[variable] for variable in part.arguments)
+        return drive.decided_by[part.name].margin(item, state)
+    return None

@@ -73,7 +73,8 @@ class Scores(Rows):
     def allowed(self) -> NDArray[bool_]:
         """Mask of the candidates that stay on the road, with no hard rule violated or open.
 
-        An open rule may be violated: straddling two lanes must not be an advantage.
+        An open rule may be violated: straddling two lanes must not be an advantage. Rules that
+        cannot be judged in this world, for any candidate, do not count.
         """
         return self.perhaps_allowed & ~self._are_hard(self._columns.open)
 
@@ -135,6 +136,8 @@ class Scores(Rows):
         By the mean distance (m) of their places. Raises IndexError for an unknown number.
         """
         number = self._known(number)
+        if self.allowed[number]:
+            return number
         allowed = self.allowed.nonzero()[0]
         if not len(allowed):
             return None

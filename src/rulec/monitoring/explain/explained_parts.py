@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import objects_counted
@@ -15,6 +15,9 @@ from rulec.trace import Value
 from rulec.vocabulary import Quantity
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
 
+Measured: TypeAlias = tuple[Margin, int]
+"""A margin, and the number of the state in which it was measured."""
+
 
 @dataclass(frozen=True, slots=True)
 class Observation:
@@ -23,8 +26,8 @@ class Observation:
     An unknown value is None, a number may be an interval. ``unit`` is that of a quantity. For a
     count, ``objects`` are those that counted in each state. For a signal that was decided by a
     number, ``margins`` are its known margins by state, and ``measured`` is the one where the signal
-    last decides. ``changed``: the rule distinguishes the value in the decisive state from the one
-    before. ``decides``: a part that decides reads it.
+    last decides, with the number of that state. ``changed``: the rule distinguishes the value in
+    the decisive state from the one before. ``decides``: a part that decides reads it.
     """
 
     text: str
@@ -34,7 +37,7 @@ class Observation:
     unit: str = ""
     objects: tuple[tuple[str, ...], ...] | None = None
     margins: tuple[Margin | None, ...] = ()
-    measured: Margin | None = None
+    measured: Measured | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +47,7 @@ class Part:
     ``changed``: its value in the decisive state differs from the one before. ``decides``: at some
     instant it is one of the parts that determine the outcome of the formula. ``margins`` are a
     comparison's by state; ``measured`` is that of the last state up to the decisive one, shown or
-    not, in which it decides.
+    not, in which it decides, with the number of that state.
     """
 
     formula: ltl.Formula
@@ -53,7 +56,7 @@ class Part:
     changed: bool
     decides: bool
     margins: tuple[Margin | None, ...] = ()
-    measured: Margin | None = None
+    measured: Measured | None = None
 
     @property
     def text(self) -> str:
@@ -125,19 +128,22 @@ def parts_of(
     truths: Mapping[ltl.Formula, list[bool]],
     deciding: Mapping[ltl.Formula, int],
     observed: ObservedStates,
+    numbers: Sequence[int],
     depth: int = 0,
 ) -> Iterator[Part]:
     """A formula and its parts, as written and with bounds in steps, each before its operands.
 
-    For parts that decide, ``deciding`` has the index of the last state in which they do.
+    For parts that decide, ``deciding`` has the index of the last state in which they do, among the
+    states with these ``numbers``.
     """
     written, stepped = formulas
     margins: tuple[Margin | None, ...] = ()
-    measured = None
+    measured: Measured | None = None
     if isinstance(written, ltl.Comparison):
         margins = observed.margins(written)
         if margins and stepped in deciding:
-            measured = observed.margin(written, deciding[stepped])
+            margin = observed.margin(written, deciding[stepped])
+            measured = None if margin is None else (margin, numbers[deciding[stepped]])
     yield Part(
         formula=written,
         depth=depth,
@@ -155,7 +161,7 @@ def parts_of(
         case _:
             operands = []
     for both in operands:
-        yield from parts_of(both, truths, deciding, observed, depth + 1)
+        yield from parts_of(both, truths, deciding, observed, numbers, depth + 1)
 
 
 def with_margins(
@@ -174,5 +180,7 @@ def with_margins(
         return fact
     numbers, item = decided_by[name], rest.removesuffix(")")
     margins = tuple([numbers.margin(item, state) for state in states])
-    measured = numbers.margin(item, decided_at[name]) if name in decided_at else None
+    at = decided_at.get(name)
+    margin = None if at is None else numbers.margin(item, at)
+    measured = None if at is None or margin is None else (margin, at)
     return replace(fact, margins=margins, measured=measured)

@@ -73,7 +73,11 @@ class Explanation:
     looked_at: tuple[int, int] | None = None
 
     def margins(self) -> list[Margin]:
-        """The comparisons of quantities that decide, each where it decides last.
+        """The comparisons of quantities that decide, each where it decides last."""
+        return [margin for margin, _ in self.measured()]
+
+    def measured(self) -> list[tuple[Margin, int]]:
+        """The margins of the comparisons that decide, each with the state where it decides last.
 
         A comparison is left out if it only says when the rule applies, such as that ego drives at
         all. One that only selects what the rule requires, such as whether a sign gives a limit, is
@@ -87,7 +91,8 @@ class Explanation:
         compared = [part for part in decisive if part.margins]
         asks = [part for part in compared if part.formula not in choosing] or compared
         margins += [part.measured for part in asks]
-        return [margin for margin in dict.fromkeys(margins) if margin is not None]
+        # Of one margin in several states, the first
+        return list({own[0]: own for own in reversed(margins) if own is not None}.values())[::-1]
 
     def __str__(self) -> str:
         """The rule, since when it cannot be kept, by how much, and what would have kept it."""
@@ -212,7 +217,7 @@ def explanation_of(
             with_margins(fact, decided_by, states, decided_at)
             for fact in facts_of(truths, deciding.keys(), observed)
         ),
-        parts=tuple(parts_of((rule.formula, formula), values, deciding, observed)),
+        parts=tuple(parts_of((rule.formula, formula), values, deciding, observed, numbers)),
         repair=None,
         vocabulary=subject.vocabulary,
         lasts=(numbers[first], numbers[last]),

@@ -16,6 +16,7 @@ from rulec.vocabulary import Quantity
 
 _Quantity = ltl.QuantityTerm
 _MOST_PLACES, _ROUNDED_UP, _HAIR = 7, 1.5, 1e-6
+_BASE = frozenset(("<", "<=", "="))
 _OTHERWISE: Mapping[ltl.Relation, ltl.Relation] = {
     "<": ">=",
     "<=": ">",
@@ -189,24 +190,29 @@ def margin_in(
 
 
 def choosing_comparisons(formula: ltl.Formula) -> Set[ltl.Formula]:
-    """The comparisons that occur in a formula both plain and negated, as in `a if c else b`."""
-    plain: set[ltl.Formula] = set()
-    negated: set[ltl.Formula] = set()
+    """The comparisons that occur in a formula both plain and negated, as in `a if c else b`.
 
-    def look(part: ltl.Formula, into: set[ltl.Formula]) -> None:
+    ``x >= 3`` counts as ``x < 3`` negated.
+    """
+    about: dict[ltl.Formula, object] = {}
+    signs: dict[object, set[bool]] = {}
+
+    def look(part: ltl.Formula, *, plain: bool) -> None:
         match part:
-            case ltl.Comparison():
-                into.add(part)
+            case ltl.Comparison(terms, relation, limit):
+                is_base = relation in _BASE
+                about[part] = terms, limit, relation if is_base else _OTHERWISE[relation]
+                signs.setdefault(about[part], set()).add(plain is is_base)
             case ltl.Unary(ltl.UnaryOperator.NOT, ltl.Comparison() as inner):
-                look(inner, negated)
+                look(inner, plain=not plain)
             case ltl.Unary(_, inner):
-                look(inner, plain)
+                look(inner, plain=plain)
             case ltl.Binary(_, left, right):
-                look(left, plain)
-                look(right, plain)
+                look(left, plain=plain)
+                look(right, plain=plain)
 
-    look(formula, plain)
-    return plain & negated
+    look(formula, plain=True)
+    return {part for part, own in about.items() if len(signs[own]) > 1}
 
 
 def _turned(margin: Margin) -> Margin:

@@ -104,7 +104,7 @@ def driven_counts(driven: TrajectoryScores | None) -> list[str]:
     """How many of the trajectories satisfy every hard rule, if there are several."""
     if driven is None or len(driven.of) < 2:
         return []
-    lawful = sum(score.satisfied is True for score in driven.of.values())
+    lawful = sum(score.satisfied_as_judged is True for score in driven.of.values())
     shown = f"{lawful} of the {len(driven.of)} shown"
     return [f"trajectories {shown} satisfy every hard rule that can be judged"]
 
@@ -128,7 +128,7 @@ def _as_driven(maneuver: Maneuver, driven: TrajectoryScores | None) -> list[str]
     if score.open:
         open_rules = dict.fromkeys(open_verdict.rule for open_verdict in score.open)
         parts.append(f"open: {first_of(list(open_rules), MOST_NAMED)}")
-    if score.satisfied:
+    if score.satisfied_as_judged:
         parts.insert(0, "satisfies every hard rule that can be judged")
     until = f" until {driven.until_s:g} s" if driven.is_cut else ""
     return [visible(f"   trajectory{until}: {'; '.join(parts)}")]

@@ -57,8 +57,9 @@ class TrajectoryData(JsonPart, frozen=True, kw_only=True):
 class TrajectoryVerdictData(JsonPart, frozen=True, kw_only=True):
     """The verdict on a trajectory as a drive in the recorded world, up to ``until_s``.
 
-    ``satisfied`` is null if no hard rule is violated and one is open, or ego leaves the road in
-    ``off_road`` of the recording's steps. A violation's ``lost_s`` is null if the end decides.
+    ``satisfied``, by the rules that can be judged, is null if no hard rule is violated and one is
+    open, or ego leaves the road in ``off_road`` of the recording's steps. A violation's ``lost_s``
+    is null if the end decides.
     """
 
     satisfied: bool | None

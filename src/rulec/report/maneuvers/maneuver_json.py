@@ -185,6 +185,7 @@ def _trajectory(
         verdict = filled(
             TrajectoryVerdictData,
             score,
+            satisfied=score.satisfied_as_judged,
             until_s=scores.until_s,
             violations=_violations(maneuvers, score.violations, scores.time_s),
             open=open_data(score.open, maneuvers.rules),
