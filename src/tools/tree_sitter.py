@@ -29,6 +29,10 @@ VALUES: Final = {"NUMBER": "numeral"}
 """Terminals renamed because a rule of the language's grammar has their name."""
 
 
+_SPACES = "[{}]".format("".join(f"\\u{code:04x}" for code in range(1 << 16) if chr(code).isspace()))
+"""What Python takes for a space: tree-sitter's own class lacks the no-break space, among others."""
+
+
 def tree_sitter_grammar() -> str:
     """Generate ``grammar.json``."""
     hidden = {name for name, _, stands_for_child in language_rules() if stands_for_child}
@@ -49,7 +53,7 @@ def tree_sitter_grammar() -> str:
             "unit": unit,
             "comment": _pattern(r"#[^\n]*"),
         },
-        "extras": [_pattern(r"\s"), _symbol("comment")],
+        "extras": [_pattern(_SPACES), _symbol("comment")],
         "conflicts": [],
         "precedences": [],
         "externals": [],

@@ -62,6 +62,20 @@ def tree_sitter(tmp_path, editors, program, done):
     return run
 
 
+def test_what_the_parser_takes_for_a_space_is_one():
+    (spaces, _) = json.loads(tree_sitter_grammar())["extras"]
+    for sign in map(chr, range(1 << 16)):
+        assert bool(re.fullmatch(spaces["value"], sign)) == bool(re.fullmatch(r"\s", sign))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("space", ["\u00a0", "\u2009", "\u3000", "\x1c", "\x85"])
+def test_tree_sitter_reads_other_spaces(tree_sitter, tmp_path, space):
+    text = f"rulebook a\nsignal p\nhard{space}rule r {{ require always p }}\n"
+    (tmp_path / "spaces.rules").write_text(text, encoding="utf-8")
+    tree_sitter("parse", "-p", ".", "--quiet", tmp_path / "spaces.rules")
+
+
 @pytest.mark.long
 def test_tree_sitter_reads_every_rulebook_that_ships(tree_sitter):
     answer = tree_sitter("parse", "-p", ".", "--quiet", "--stat", *BOOKS, *GOOD)
