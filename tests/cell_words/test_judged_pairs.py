@@ -3,7 +3,7 @@
 import pytest
 
 from rulec.api.rulebook_compilation import machines
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 from support.oracles.judged_pairs import judged_pairs
 
 FILES = sorted(RECORDINGS.glob("*.xml"))

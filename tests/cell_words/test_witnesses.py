@@ -20,7 +20,8 @@ from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.scenario import Choice
 from rulec.scenario.recorded.recorded_scene import seen_from_ego
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
-from support.builders.recordings import RECORDINGS, lanelet, recording, straight, vehicle
+from support.builders.recorded_data import RECORDINGS
+from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.driven_motions import paths_of
 from support.generators.motion_kinds import KINDS, of_a_kind
 from support.oracles.witness_drives import (

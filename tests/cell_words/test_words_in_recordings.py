@@ -11,7 +11,7 @@ from rulec import Choice, RulecError, compile_rulebook, load_scenario, navigatio
 from rulec.cell_words import cell_words
 from rulec.extraction.recording_verdicts import names_read
 from rulec.recordings.recording_files import read_recording
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 from support.generators.driven_motions import paths_of
 from support.generators.motion_kinds import KINDS, of_a_kind
 from support.oracles.witness_drives import (

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from rulec.cli.main import main
-from support.builders.recordings import BESIDE
+from support.builders.recorded_data import RECORDINGS
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "docs" / "pictures"
@@ -24,10 +24,10 @@ def test_a_picture_is_up_to_date(command, name, tmp_path, monkeypatch):
     assert (tmp_path / name).read_bytes() == (FOLDER / name).read_bytes()
 
 
-@pytest.mark.skipif(not BESIDE.is_dir(), reason="there are no shared recordings")
+@pytest.mark.skipif(not RECORDINGS.is_dir(), reason="there are no shared recordings")
 @pytest.mark.parametrize(("command", "name"), OF_RECORDINGS)
 def test_a_picture_of_a_recording_is_up_to_date(command, name, tmp_path, monkeypatch):
-    monkeypatch.chdir(BESIDE)
+    monkeypatch.chdir(RECORDINGS)
     main([*shlex.split(command), "-o", str(tmp_path / name)])
     assert (tmp_path / name).read_bytes() == (FOLDER / name).read_bytes()
 

@@ -11,7 +11,7 @@ from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTall
 from rulec.extraction.selection import RequestedDrives
 from rulec.monitoring.verdict import Verdict
 from rulec.monitoring.verify import verify
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 
 FILES = sorted(RECORDINGS.glob("*.xml"))
 if not FILES:

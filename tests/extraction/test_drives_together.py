@@ -6,7 +6,8 @@ from rulec.extraction.drives import Drives, NoDrive
 from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
 from support.builders.drive_contexts import steady
-from support.builders.recordings import RECORDINGS, lanelet, recording, straight, vehicle
+from support.builders.recorded_data import RECORDINGS
+from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
 
 

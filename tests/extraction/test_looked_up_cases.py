@@ -12,7 +12,7 @@ from rulec.api.rulebook_compilation import machines
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 
 FOLDER = RECORDINGS.parent / "commonroad_more"
 if not FOLDER.exists():

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from rulec import RulecError, load_scenario, navigation_graph
 from rulec.scenario import Box, ConstantAcceleration, Ego, MotionBounds, Obstacle, Road, Scenario
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 from support.generators.driven_motions import driven, paths_of
 from support.generators.random_scenarios import scenarios
 

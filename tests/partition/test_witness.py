@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from rulec import RulecError, compile_rulebook, find_maneuvers, load_scenario
 from rulec.scenario import Box, ConstantAcceleration, Ego, MotionBounds, Obstacle, Road, Scenario
 from rulec.scenario.motion import swept
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 from support.generators.driven_motions import cells_of
 from support.generators.random_scenarios import scenarios
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from rulec import read_recording
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 from support.environments import environment
 
 SENSOR = RECORDINGS.parent / "argoverse2" / "sensor"

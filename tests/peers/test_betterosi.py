@@ -14,7 +14,7 @@ import pytest
 import shapely
 
 from rulec import read_recording
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 from support.environments import environment
 
 pytestmark = pytest.mark.skipif(

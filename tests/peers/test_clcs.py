@@ -21,7 +21,7 @@ from rulec.scenario.recorded.ego_start import ego_start, reference_lanelet
 from rulec.scenario.recorded.reference_line import reference_line
 from rulec.scenario.recorded.route import lanelets_at, route
 from rulec.scenario.scenario_model import Choice
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 
 pytestmark = pytest.mark.skipif(
     os.environ.get("RULEC_TEST_PROFILE") != "long", reason="builds an environment: --long"

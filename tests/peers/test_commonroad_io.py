@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from rulec import read_recording
-from support.builders.recordings import RECORDINGS, SAMPLES
+from support.builders.recorded_data import RECORDINGS
+from support.builders.recordings import SAMPLES
 from support.environments import environment
 from support.oracles.commonroad_io import assert_equal
 

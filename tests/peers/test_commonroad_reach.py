@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from rulec import load_scenario, navigation_graph
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 
 pytestmark = pytest.mark.skipif(
     os.environ.get("RULEC_TEST_PROFILE") != "long", reason="builds an environment: --long"

@@ -16,7 +16,7 @@ import pytest
 from pyarrow import feather
 
 from rulec import read_recording
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 from support.environments import environment
 
 SENSOR = RECORDINGS.parent / "argoverse2" / "sensor"

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from rulec import read_recording
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 from support.environments import environment
 
 FILE = RECORDINGS.parent / "waymo" / "motion_data_one_scenario.tfrecord"

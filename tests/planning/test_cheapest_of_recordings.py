@@ -6,7 +6,7 @@ import pytest
 
 from rulec import compile_rulebook, find_maneuvers
 from rulec.scenario.motion import swept
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 
 NO_SCENES = {
     "DEU_Intersection",

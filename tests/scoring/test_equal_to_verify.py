@@ -22,7 +22,7 @@ from rulec.scoring.charges import columns_of
 from rulec.scoring.score import score
 from rulec.scoring.traffic_world import TrafficWorld
 from rulec.vocabulary.partial_values import UNKNOWN
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 from support.builders.scored_worlds import STEP_S, car, lit_junction, stop_junction, street
 
 GERMAN, BRITISH = machines("de"), machines("gb")

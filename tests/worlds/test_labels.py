@@ -7,7 +7,7 @@ import os
 
 import pytest
 
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 from support.worlds.judging import judged_recordings
 from support.worlds.not_yet import LABELS
 from support.worlds.scoring import Score

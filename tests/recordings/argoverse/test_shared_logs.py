@@ -9,7 +9,7 @@ from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 
 FOLDER = RECORDINGS.parent / "argoverse2"
 if not FOLDER.is_dir():

@@ -12,7 +12,7 @@ from rulec.planning.product.graph_product import count_paths
 from rulec.scenario import load_scenario
 from rulec.scenario.recorded.recorded_scene import seen_from_ego
 from rulec.scenario.scenario_model import Choice
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 
 FILES = sorted(RECORDINGS.glob("*.xml"))
 stem = attrgetter("stem")

@@ -13,7 +13,8 @@ from rulec import read_recording
 from rulec.cli.main import main
 from rulec.diagnostics import RulecError
 from rulec.recordings.commonroad import commonroad_protobuf
-from support.builders.recordings import RECORDINGS, SAMPLES
+from support.builders.recorded_data import RECORDINGS
+from support.builders.recordings import SAMPLES
 from support.builders.wire_bytes import counted, double, field, whole
 from support.oracles.same_recording import assert_same
 

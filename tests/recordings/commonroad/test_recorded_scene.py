@@ -8,7 +8,7 @@ import pytest
 from rulec import find_maneuvers
 from rulec.scenario import Choice, load_scenario
 from rulec.scenario.motion import swept
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 
 FILE = RECORDINGS / "USA_US101-1_1_T-1.xml"
 RECORDED = {"o1": "489", "o2": "484"}

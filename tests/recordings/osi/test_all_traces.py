@@ -33,7 +33,7 @@ from rulec.recordings.osi import osi_tables as tables
 from rulec.recordings.osi import trace_file
 from rulec.recordings.osi.message_fields import fields_of, ids_of, part
 from rulec.scenario.recorded.route import lanelet_area
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 
 FOLDER = RECORDINGS.parent / "osi"
 COUNTS = {

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rulec import read_recording
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 
 INTERACTION = RECORDINGS.parent / "interaction" / "vehicle_tracks_000.csv"
 OBJECTS = RECORDINGS.parent / "osi" / "pedestrian_objects.csv"

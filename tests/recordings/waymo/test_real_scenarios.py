@@ -12,7 +12,7 @@ from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
 from rulec.recordings.waymo.waymo_file import WAYMO
 from support.builders import scenarionet_files
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 from support.builders.scene_verdicts import verdicts
 
 FOLDER = RECORDINGS.parent

@@ -1,12 +1,10 @@
 """Lanelet2 maps made by hand, in metres (`local_x`, `local_y`) or degrees."""
 
-import os
 from dataclasses import dataclass, field
-from pathlib import Path
 
-_BESIDE = Path(__file__).resolve().parents[4] / "shared/data"
-_COMMONROAD = os.environ.get("RULEC_RECORDINGS")
-SAMPLES = (Path(_COMMONROAD).parent if _COMMONROAD else _BESIDE) / "lanelet2"
+from support.builders.recorded_data import DATA
+
+SAMPLES = DATA / "lanelet2"
 """Where maps of others are, if they are."""
 
 

@@ -1,13 +1,10 @@
 """OpenDRIVE files made by hand: roads of a few lanes, junctions, signals."""
 
-import os
 from math import pi
-from pathlib import Path
 
-_COMMONROAD = os.environ.get("RULEC_RECORDINGS")
-_BESIDE = Path(__file__).resolve().parents[4] / "shared/data"
-_SHARED = Path(_COMMONROAD).parent if _COMMONROAD else _BESIDE
-XODR = (*sorted(_SHARED.glob("opendrive/*.xodr")), *sorted(_SHARED.glob("osi/*.xodr")))
+from support.builders.recorded_data import DATA
+
+XODR = (*sorted(DATA.glob("opendrive/*.xodr")), *sorted(DATA.glob("osi/*.xodr")))
 """Real maps, if they are at hand."""
 
 

@@ -1,6 +1,5 @@
-"""Recordings made by hand, and where those that others have made are."""
+"""Recordings made by hand."""
 
-import os
 from dataclasses import replace
 from math import cos, sin
 from pathlib import Path
@@ -14,9 +13,6 @@ from rulec.recordings.recording import (
     Recording,
     TrackState,
 )
-
-BESIDE = Path(__file__).resolve().parents[4] / "shared/data/commonroad"
-RECORDINGS = Path(os.environ.get("RULEC_RECORDINGS", BESIDE))
 
 _TOP = Path(__file__).resolve().parents[3]
 _SAMPLES = _TOP / "tests/recordings/commonroad/samples"

@@ -1,11 +1,8 @@
 """SUMO's files made by hand: a road along x with a crossing, and who was on it."""
 
-import os
-from pathlib import Path
+from support.builders.recorded_data import DATA
 
-_BESIDE = Path(__file__).resolve().parents[4] / "shared/data"
-_COMMONROAD = os.environ.get("RULEC_RECORDINGS")
-SUMO = (Path(_COMMONROAD).parent if _COMMONROAD else _BESIDE) / "sumo"
+SUMO = DATA / "sumo"
 """Where the data of a real simulation are, if they are."""
 
 ROAD_NET = """\
@@ -60,6 +57,7 @@ ROAD_NET = """\
   <connection from=":x_w0" to=":x_c0" fromLane="0" toLane="0" dir="s" state="M"/>
 </net>
 """
+
 """Two lanes and a pavement to the east, one lane to the west, a zebra crossing at 200 to 204 m."""
 
 TYPES = """\

@@ -21,7 +21,7 @@ from rulec.monitoring.verdict import Verdict
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.trace.plain_unknowns import with_plain_unknowns
 from rulec.trace.trace_model import trace_of
-from support.builders.recordings import RECORDINGS
+from support.builders.recorded_data import RECORDINGS
 
 _RANDOM, _CHEAPEST = 40, 10
 
