@@ -584,8 +584,28 @@ def test_trams_on_lanes_that_others_share(types, road, heading, comes_s, conflic
     found = with_a_tram(on_tracks(road, *types), comes_s, heading=heading)
     assert found.world["conflict_with_rail"][3] == conflict
     assert not found.unknown["conflict_with_rail"].any()
-    assert not found.world["conflict_from_left"].any()
+
+
+@pytest.mark.parametrize(
+    ("road", "heading", "side", "other"),
+    [(NORTH, np.pi / 2, "right", "left"), (SOUTH, -np.pi / 2, "left", "right")],
+)
+@pytest.mark.parametrize(("comes_s", "conflict"), [(2.5, True), (2.9, True), (6.5, False)])
+def test_a_tram_comes_from_a_side_and_whether_it_has_the_order_of_all_is_open(
+    road, heading, side, other, comes_s, conflict
+):
+    found = with_a_tram(on_tracks(road, "rail"), comes_s, heading=heading)
+    assert found.unknown[f"conflict_from_{side}"][3] == conflict
+    assert not found.unknown[f"conflict_from_{other}"].any()
+    assert not any(found.world[f"conflict_from_{x}"].any() for x in (side, other))
+
+
+def test_a_tram_from_a_side_is_in_conflict_in_few_words_at_a_level_crossing():
+    over = [replace(x, types=x.types | {"level_crossing"}) if x.id == "2" else x for x in EAST]
+    found = with_a_tram(on_tracks(NORTH, "rail"), 2.5, way=over)
+    assert found.world["conflict_with_rail"][3]
     assert not found.world["conflict_from_right"].any()
+    assert not found.unknown["conflict_from_right"].any()
 
 
 @pytest.mark.parametrize(("x", "unknown"), [(0.0, True), (30.0, False)])

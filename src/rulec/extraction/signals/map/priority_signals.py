@@ -27,7 +27,7 @@ from rulec.extraction.signals.map.right_of_way.conflicts import (
     in_conflict,
     side_of,
 )
-from rulec.extraction.signals.map.right_of_way.held_up import drives_in
+from rulec.extraction.signals.map.right_of_way.held_up import drives_in, is_train
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import (
     gives_way_to,
     is_settled,
@@ -119,7 +119,8 @@ def _possible_conflicts(context: DriveContext, own: Passage, row: int, side: str
         least = np.radians(context.thresholds.turned_deg)
         turned = context.surroundings.passages.way(own).turned
         yield from () if along and abs(turned) < least else (_RAIL,)
-        return
+        if is_train(context, own, row):
+            return
     if not along or (side == ONCOMING and turns_far(context, own)):
         yield side
     way, ring = context.surroundings.passages.way(own), context.surroundings.ring(context.side)
@@ -128,8 +129,7 @@ def _possible_conflicts(context: DriveContext, own: Passage, row: int, side: str
 
 
 def _is_on_rails(context: DriveContext, row: int) -> bool:
-    body = context.surroundings.passages.tracks.participants[row]
-    return "rail_vehicle" in body.object_types
+    return "rail_vehicle" in context.surroundings.passages.tracks.participants[row].object_types
 
 
 @once
@@ -265,30 +265,25 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
         enters, leaves = (None if when is None else ceil(when) for when in ego)
         last = (leaves if leaves is not None else shift + context.states - 1) - shift
         first = max(span.start, begins - shift)
-        if not (kinds := _kinds(context, own, other)):
-            continue
-        ways = passages.way(own), passages.way(other)
-        from_side = set(kinds) <= set(_SIDES) - {ONCOMING}
-        settled = from_side and is_settled(context.recording, *ways)
-        if settled:
-            continue
-        together, comes_first = order_of_arrival(context, own, other)
-        yield Encounter(
-            kinds=kinds,
-            first=first,
-            enters=max((enters or 0) - shift, 0),
-            last=min(last, context.states - 1, _next(context, own) - 1),
-            known=known
+        known = (
+            known
             and own.sure
             and other.sure
-            and settled is not None
-            and not (ONCOMING in kinds and may_have_to_stop(context, own, other))
             and not _turned_in_later(context, own, other)
-            and _is_seen(passages.tracks.present[other.row], first + shift, latest),
-            other=other,
-            together=together,
-            comes_first=comes_first,
+            and _is_seen(passages.tracks.present[other.row], first + shift, latest)
         )
+        for kinds, told in _kinds(context, own, other):
+            together, comes_first = order_of_arrival(context, own, other)
+            yield Encounter(
+                kinds=kinds,
+                first=first,
+                enters=max((enters or 0) - shift, 0),
+                last=min(last, context.states - 1, _next(context, own) - 1),
+                known=known and told,
+                other=other,
+                together=together,
+                comes_first=comes_first,
+            )
 
 
 def _turned_in_later(context: DriveContext, own: Passage, other: Passage) -> bool:
@@ -313,9 +308,30 @@ def _is_seen(present: Flags, first: int, last: int) -> bool:
     return len(there) == 0 or len(there) == there[-1] - there[0] + 1
 
 
-def _kinds(context: DriveContext, own: Passage, other: Passage) -> tuple[str, ...]:
-    if _is_on_rails(context, other.row):
-        return (_RAIL,)
+def _kinds(
+    context: DriveContext, own: Passage, other: Passage
+) -> Iterator[tuple[tuple[str, ...], bool]]:
+    """The kinds of conflict with another one whose way meets ego's, and whether each is told.
+
+    Whether one on rails, for which laws have an order of its own, also has that of all other
+    traffic laws differ; no train at a level crossing has.
+    """
+    on_rails = _is_on_rails(context, other.row)
+    if on_rails:
+        yield (_RAIL,), True
+        if is_train(context, own, other.row):
+            return
+    if sides := _sides(context, own, other):
+        from_side = ONCOMING not in sides
+        ways = map(context.surroundings.passages.way, (own, other))
+        settled = from_side and is_settled(context.recording, *ways)
+        unsure = settled is None or (not from_side and may_have_to_stop(context, own, other))
+        if not settled:
+            yield sides, not (unsure or on_rails)
+
+
+def _sides(context: DriveContext, own: Passage, other: Passage) -> tuple[str, ...]:
+    """From where one comes, by the words for it; empty if ego has to let nobody pass there."""
     passages, ring = context.surroundings.passages, context.surroundings.ring(context.side)
     way, own_way = passages.way(other), passages.way(own)
     came_on = way.entries | {lanelet.id for lanelet in before_joining(way, own_way)}

@@ -96,7 +96,7 @@ def _held_up_until(
     last = min(enters, int(present[-1]))
     columns, comes = np.arange(first, last + 1), ceil(at)
     decides = min(max(_decides(context, own, enters) - first, 0), last - first)
-    train, late_s = _is_train(context, own, other), (at - until) * step_s
+    train, late_s = is_train(context, own, other.row), (at - until) * step_s
     if late_s < (limits.held_up_s if train else limits.yielding_s):
         drove_on = leaves is not None or _drives_on(context, own, comes)
         moved_in = min(max(passages.front_enters(own), first), last)
@@ -205,12 +205,12 @@ def _slows_for_itself(
     )
 
 
-def _is_train(context: DriveContext, own: Passage, other: Passage) -> bool:
-    """Whether a train comes to a level crossing: there ego waits as soon as it is near."""
+def is_train(context: DriveContext, own: Passage, row: int) -> bool:
+    """Whether one is a train at a level crossing: there ego waits as soon as it is near."""
     passages, lanelets = context.surroundings.passages, context.recording.lanelets
     on_crossing = any("level_crossing" in lanelets[x].types for x in passages.way(own).names)
     # Its track may be a lane that buses share
-    body = passages.tracks.participants[other.row]
+    body = passages.tracks.participants[row]
     return on_crossing and "rail_vehicle" in body.object_types
 
 
