@@ -13,6 +13,7 @@ from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.conduct.lanes_from_behind import come_into_lane
+from rulec.extraction.signals.conduct.leaving_rings import crossed_on_ring
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
     beyond_near_edge,
     comes_back_over_middle,
@@ -55,8 +56,8 @@ def _lane_change(context: DriveContext) -> SignalColumns:
 
     Its body then swings over the lanes of the road that it enters. Unknown, too, where a lane has
     just forked or two become one, since ego may follow either; where ego stands, as its places
-    drift; where it is back at once; and where its drive begins so near a mark that it may be
-    crossing.
+    drift; where it is back at once; where its drive begins so near a mark that it may be crossing;
+    and where it leaves a ring over a lane on which another one goes on.
     """
     changes = _changes(context)
     unknown = changes != context.spans.changes(context.steady_lane_from_beside)
@@ -69,6 +70,7 @@ def _lane_change(context: DriveContext) -> SignalColumns:
         pieces = context.road.piece(context.ego_extents.s[0, states])
         for change, piece in zip(states.tolist(), pieces.tolist(), strict=True):
             unknown[change] = _at_fork(context, change, piece) or _at_merge(context, change, piece)
+    unknown |= np.logical_or.reduce(crossed_on_ring(context))
     return SignalColumns({"lane_change": changes}, unknown={"lane_change": unknown})
 
 
@@ -175,6 +177,7 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
         just_stood = round(_JUST_STOOD_S / context.recording.step_s)
         stands |= _changes(context) & context.spans.within_last(stands, just_stood)
         unknown = np.where(clear, unsure, moot | stands)
+    unknown |= clear & np.logical_or.reduce(crossed_on_ring(context))
     return SignalColumns(
         {"lane_is_clear": clear},
         unknown={"lane_is_clear": unknown},

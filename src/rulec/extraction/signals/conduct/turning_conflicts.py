@@ -11,11 +11,12 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.conduct.leaving_rings import crossed_on_ring
 from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_passages
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.junction_passages import Passage
-from rulec.extraction.tracks.tracks import Floats
+from rulec.extraction.tracks.tracks import Flags, Floats
 
 _BEHIND_M, _ASIDE_M = 30.0, 8.0
 """A participant that goes on beside ego is at most this far behind it or aside when ego turns."""
@@ -30,7 +31,8 @@ _CREEPS_MPS = 0.5
 
 @drive_by_drive
 def _turns_in_way_of(context: DriveContext) -> SignalColumns:
-    met, unsure = np.zeros((2, *context.relevant.shape), dtype=bool)
+    met: Flags = np.zeros(context.relevant.shape, dtype=bool)
+    unsure = crossed_on_ring(context).copy()
     least = np.radians(context.thresholds.turned_deg)
     ring = context.surroundings.ring(context.side)
     for passage in own_passages(context):
