@@ -256,3 +256,38 @@ def test_the_zone_before_a_crossing_begins_within_the_tolerance():
         known = ~found.unknown["crossing_zone"]
         assert known.all() == (word != "?")
         assert not known.any() or set(found.world["crossing_zone"].tolist()) == {word}
+
+
+def shoulder_at(y, kind="shoulder"):
+    """A lanelet beside the road, 2.9 m wide about ``y``, that the map does not link to it."""
+    return lanelet(9, [(0, y), (200, y)], 2.9, types=frozenset({kind}))
+
+
+@pytest.mark.parametrize(
+    ("y", "word"),
+    [
+        (-1.5, "carriageway"),
+        # The road's edge is 2 m aside, the shoulder reaches from there to 4.9 m
+        (-2.2, "?"),
+        (-3.4, "hard_shoulder"),
+        (-4.8, "hard_shoulder"),
+        (-5.0, "?"),
+        (-6.0, "carriageway"),
+        (3.4, "carriageway"),
+    ],
+)
+def test_a_hard_shoulder_that_the_map_does_not_link_to_the_road(y, word):
+    body = vehicle(7, {k: (20 + 10 * k, y) for k in range(6)}, speed=20.0)
+    assert surfaces(body, [*LANES, shoulder_at(-3.45)]) == [word] * 6
+    mirrored = vehicle(7, {k: (20 + 10 * k, -y) for k in range(6)}, speed=20.0)
+    assert surfaces(mirrored, [*LANES, shoulder_at(3.45)]) == [word] * 6
+    assert surfaces(body, [*LANES, shoulder_at(-3.45, "sidewalk")]) == ["carriageway"] * 6
+
+
+def test_when_one_drives_onto_such_a_shoulder_and_back():
+    """Within two seconds it gets from surely on the road to surely on the shoulder."""
+    ys = [0, 0, -1.0, -1.8, -2.2, -3.4, -3.4, -3.4, -2.2, -1.8, -1.0, 0, 0]
+    body = vehicle(7, {k: (20 + 10 * k, y) for k, y in enumerate(ys)}, speed=20.0)
+    on_it = [y < -2.0 for y in ys]
+    words = ["hard_shoulder" if there else "carriageway" for there in on_it]
+    assert surfaces(body, [*LANES, shoulder_at(-3.45)]) == words

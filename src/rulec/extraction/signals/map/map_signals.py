@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
+    SHOULDER,
     lanelets_at,
     map_contents,
     own_lanelets,
@@ -26,7 +27,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded,
     rounded_outward,
 )
-from rulec.extraction.signals.signal_passes import SignalPasses, once_a_recording
+from rulec.extraction.signals.signal_passes import SignalPasses, once_a_recording, once_a_road
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import (
     BUSES_ONLY,
@@ -67,7 +68,7 @@ _AT_WORK = ("green_light", "amber_light", "red_light")
 _SURFACES = {
     "busLane": "bus_lane",
     CYCLE_LANE: "cycle_lane",
-    "shoulder": "hard_shoulder",
+    SHOULDER: "hard_shoulder",
     "level_crossing": "level_crossing",
 }
 """Type of a lanelet -> surface; later entries override earlier ones."""
@@ -216,7 +217,8 @@ def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
 def _surface(context: DriveContext) -> SignalColumns:
     """What ego is on: a crossing if any part of it is on one, else the surface at its middle.
 
-    Unknown where tolerances decide, or where no more than a corner, turned to it, is on the
+    That is of its road's lanes, or beside them of a hard shoulder which the map does not link to
+    them. Unknown where tolerances decide, or where no more than a corner, turned to it, is on the
     crossing: the direction of a body is known less well than its place, and some sources turn
     standing vehicles.
     """
@@ -230,6 +232,9 @@ def _surface(context: DriveContext) -> SignalColumns:
     if (context.steady_lane != context.ego_lane).any():
         others.append(_below_middle(context, middle, context.steady_lane))
     unknown = np.logical_or.reduce([other != surfaces for other in others])
+    beside, may_be = _on_shoulder_beside(context)
+    surfaces[beside & (surfaces == _PLAIN)] = _SURFACES[SHOULDER]
+    unknown |= may_be
     on_it, surely, perhaps = _on_crossing(context)
     unknown |= _may_share(context) & (surfaces == "bus_lane")
     surfaces[on_it] = "crossing"
@@ -265,6 +270,45 @@ def _below_middle(context: DriveContext, middle: Floats, lane: NDArray[intp]) ->
         for kind in kinds:
             surfaces[own.flags(_is_of(kind)) & ~may] = _SURFACES[kind]
     return surfaces
+
+
+def _on_shoulder_beside(context: DriveContext) -> tuple[Flags, Flags]:
+    """Masks of states with ego's middle beside its road's lanes, on a hard shoulder, and perhaps.
+
+    Perhaps where it is no farther from them, or from the shoulder, than an edge is certain.
+    """
+    on_it, perhaps = np.zeros((2, context.states), dtype=bool)
+    shoulders = _shoulders_beside(context)
+    if shoulders is None:
+        return on_it, perhaps
+    lanes, own = context.existing_lanes, context.ego_extents
+    first, end = lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)
+    beyond = np.maximum(-own.middle_from(first)[0], own.middle_from(end)[0])
+    (there,) = (beyond > 0.0).nonzero()
+    if not len(there):
+        return on_it, perhaps
+    error = context.tolerances.place_m + np.abs(context.map_offset_m)
+    error = np.broadcast_to(np.maximum(context.thresholds.changed_m, error), on_it.shape)[there]
+    places = shapely.points(context.ego.x[0, there], context.ego.y[0, there])
+    away = shapely.distance(places, shoulders)
+    on_it[there] = away == 0.0
+    perhaps[there] = np.where(away == 0.0, beyond[there] < error, away < error)
+    return on_it, perhaps
+
+
+@once_a_road
+def _shoulders_beside(context: DriveContext) -> shapely.Geometry | None:
+    """The area of the map's hard shoulders that are no lanes of ego's road; None without any."""
+    if SHOULDER not in map_contents(context).types:
+        return None
+    own = {x.id for row in context.road.rows for x in row if x is not None}
+    lanelets = context.recording.lanelets.values()
+    areas = [lanelet_area(x) for x in lanelets if SHOULDER in x.types and x.id not in own]
+    if not areas:
+        return None
+    area = shapely.union_all(areas)
+    shapely.prepare(area)
+    return area
 
 
 def _cycles_and_taxis(context: DriveContext) -> tuple[Flags, Flags]:
