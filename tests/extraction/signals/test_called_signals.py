@@ -129,6 +129,27 @@ def test_one_that_comes_on_a_road_across():
     assert set(near(crossing(-60, 10, lamps=()), road=road)) == {"False"}
 
 
+@pytest.mark.parametrize(
+    ("brakes_s", "mps2", "held_up"),
+    [(4.0, 4.0, True), (5.0, 3.0, True), (4.0, 1.0, False), (9.0, 4.0, False)],
+    ids=["hard", "as ego goes past", "gently", "once ego is gone"],
+)
+def test_one_that_brakes_on_a_road_across_may_be_held_up_by_ego(brakes_s, mps2, held_up):
+    """Ego goes over its road at 6 s; it would be there at 6.5 s if it did not brake."""
+    road = [*lanes(), lanelet(5, [(60, -200), (60, 200)])]
+    times = 0.5 * np.arange(STEPS)
+    speeds = np.clip(10 - mps2 * np.clip(times - brakes_s, 0, None), 2, None)
+    ys = -65 + np.concatenate(([0.0], np.cumsum(speeds[:-1] * 0.5)))
+    body = crossing(-65, 10)
+    moved = vehicle(8, {k: (60.0, y) for k, y in enumerate(ys)}, "priorityVehicle", heading=1.5708)
+    states = {k: replace(x, speed=float(speeds[k])) for k, x in moved.states.items()}
+    found = near(replace(body, states=states, outlines=moved.outlines), road=road)
+    assert "True" not in found
+    # From when ego is past it, for longer than laws give to clear the way
+    assert found[18:24] == ["?" if held_up else "False"] * 6
+    assert found[36:] == ["False"] * 4
+
+
 def test_one_that_is_ahead_and_drives_away_needs_nobody_s_way():
     assert near(ambulance(30))[0] == "False"
 

@@ -35,7 +35,7 @@ def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
     """Whether an emergency vehicle on call is near.
 
     Unknown for one that stands, does not sound a horn that the recording contains, is not beside
-    ego soon, or comes on a crossing road; and where ego itself is on call.
+    ego soon, or comes on a crossing road, or braked there; and where ego itself is on call.
     """
     on_call, not_told = _on_call(context)
     surely, perhaps = _surely_near(context), _crosses_near(context)
@@ -159,9 +159,11 @@ def _is_far(context: DriveContext) -> Flags:
 
 
 def _crosses_near(context: DriveContext) -> Flags:
-    """Mask of states in which an emergency vehicle draws near on a crossing road.
+    """Mask of states in which an emergency vehicle draws near on a crossing road, or braked there.
 
-    Whether it then needs ego's way is unknown: its road may be a crossing's, or a bridge's.
+    Whether it then needs ego's way is unknown: its road may be a crossing's, or a bridge's. If it
+    brakes hard as it draws near, or just after that, it may have been held up by ego, which need
+    not be near any more when it waits.
     """
     tracks, limits = context.surroundings.tracks, context.thresholds
     rows = tracks.of_type("emergency_vehicle").nonzero()[0]
@@ -175,8 +177,15 @@ def _crosses_near(context: DriveContext) -> Flags:
     closer = aside[0] * drifts[0] + aside[1] * drifts[1] < 0
     across = np.abs(np.cos(tracks.heading[places] - context.ego.heading[0]))
     across_way = across < np.cos(np.radians(limits.turned_deg))
-    near = np.hypot(*aside) < limits.approach_m
-    found: Flags = np.logical_or.reduce(called & closer & across_way & near)
+    near = called & across_way & (np.hypot(*aside) < limits.approach_m)
+    shortly, long = (
+        round(seconds / context.recording.step_s)
+        for seconds in (limits.passed_s, limits.preparing_s)
+    )
+    brakes = tracks.acceleration[places] < -limits.disturbing_mps2
+    held_up = near & brakes & context.spans.within_last(near & closer, shortly)
+    found: Flags = np.logical_or.reduce(near & closer)
+    found |= context.spans.within_last(np.logical_or.reduce(held_up), long)
     return found
 
 
