@@ -40,9 +40,9 @@ def steady_speed(mps=20.0):
     return np.full(STEPS, mps)
 
 
-def braking(begin, mps2):
-    """20 m/s, and for a second slower and slower."""
-    return np.interp(np.arange(STEPS), [begin, begin + 10], [20.0, 20.0 - mps2])
+def braking(begin, mps2, mps=20.0):
+    """First this fast, and for a second slower and slower."""
+    return np.interp(np.arange(STEPS), [begin, begin + 10], [mps, mps - mps2])
 
 
 def braking_from_behind(mps2):
@@ -50,10 +50,10 @@ def braking_from_behind(mps2):
     return np.interp(np.arange(STEPS), [28, 38], [28.0, 28.0 - mps2])
 
 
-def told(*others, road=None, route=("1",), **more):
+def told(*others, road=None, route=("1",), mps=20.0, **more):
     """Whether the lane is clear in the state of the change, "?" where that is unknown."""
     # At 1.33 m/s it is 0.3 m beyond the mark at 2 m after 1.73 s, and there all of the next state
-    ego = driving(7, 100, across(BEGINS, ENDS, 0.0, 4.0), steady_speed())
+    ego = driving(7, 100, across(BEGINS, ENDS, 0.0, 4.0), steady_speed(mps))
     found = recording(road or lanes(3), [ego, *others], step_s=STEP_S)
     words = told_on_both_sides(lane_change_signals, found, route, **more)
     changes = np.flatnonzero(np.array(words["lane_change"]) == "True")
@@ -123,6 +123,38 @@ def test_who_brakes_for_ego_that_comes_in_close_ahead_had_no_room(gap_m, mps2, c
     speeds = braking(CHANGE + 1, mps2) - 2.0
     other = driving(8, 96 - gap_m + 7.6, np.full(STEPS, 4.0), speeds)
     assert told(other) == clear
+
+
+@pytest.mark.parametrize(
+    ("gap_m", "begin", "mps2", "clear"),
+    [
+        # Ego's body comes over the mark in state 30: who brakes before may let it in
+        (1.5, 18, 5.0, "?"),
+        (1.5, 25, 5.0, "False"),
+        (1.5, 30, 5.0, "False"),
+        (1.5, 25, 1.4, "?"),
+        # Who has braked before ego begins has opened the gap, which ego takes
+        (1.5, 0, 4.0, "True"),
+        # 0.4 s behind ego, where only who brakes hard has had to
+        (3.0, 18, 5.0, "?"),
+        (3.0, 25, 5.0, "?"),
+        (3.0, 30, 5.0, "False"),
+        (3.0, 25, 1.4, "True"),
+        (3.0, 90, 0.0, "True"),
+        # 1.6 s
+        (12.0, 25, 5.0, "True"),
+    ],
+)
+def test_braking_that_opens_the_gap_does_not_make_it_one(gap_m, begin, mps2, clear):
+    """Both drive at 7.5 m/s, at which 0.3 s are 2.25 m."""
+    speeds = braking(begin, mps2, 7.5)
+    assert told(driving(8, 96 - gap_m, np.full(STEPS, 4.0), speeds), mps=7.5) == clear
+
+
+def test_who_would_be_ahead_of_ego_is_not_close_behind():
+    """It brakes hard, far ahead of ego, for reasons of its own."""
+    other = driving(8, 130, np.full(STEPS, 4.0), braking(25, 5.0, 7.5))
+    assert told(other, mps=7.5) == "True"
 
 
 @pytest.mark.parametrize(("mps2", "clear"), [(6.0, "False"), (0.0, "False")])

@@ -15,7 +15,7 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lanes_from_behind import comes_from_before
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.queues import lanes_that_go_on
-from rulec.extraction.tracks.tracks import Flags
+from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct, ranges
@@ -52,11 +52,12 @@ def squeezed(context: DriveContext, ways: Sequence[WayIn]) -> tuple[Flags, Flags
     """Masks of vehicles that ego leaves no room on these ways into lanes, and perhaps so.
 
     They are so near behind ego that they cannot react; or ego would have run into them, had they
-    gone on as they did when it began to move over, so that they had to make way (surely if they
-    were beside it when its body came over the mark, or then braked harder than ``disturbing_mps2``;
-    perhaps if they let it in, or have a slower vehicle ahead); or they would have had to brake that
-    hard, and did before ego was in their lane; or they do with ego close ahead, which is not slower
-    itself. Perhaps, too, where ego's lane ends: there drivers let each other in. Not those behind
+    gone on as they did when it began to move over, or been so near, so that they had to make way
+    (surely if they were beside it when its body came over the mark and would have met it, or then
+    braked harder than ``disturbing_mps2``; perhaps if they let it in, or have a slower vehicle
+    ahead); or they would have had to brake that hard, and did before ego was in their lane; or they
+    do with ego close ahead, which is not slower itself (perhaps if before its body came over the
+    mark). Perhaps, too, where ego's lane ends: there drivers let each other in. Not those behind
     ego that take another way than ego's where their lane forks: they brake for that.
     """
     changes = np.array([way.state for way in ways], dtype=intp)
@@ -122,6 +123,7 @@ def _gives_way(
     would: Flags = np.asarray(
         there & (own.s_min[0, changes] + place < high) & (low < own.s_max[0, changes] - place)
     )
+    would_be_close = there & _would_have_no_room(context, begins, changes)
     # Bounds of lanes bend with the road: places across it are those of the road's own line
     right, left = others.d_min[:, begins], others.d_max[:, begins]
     to_left = left + right - own.d_min[0, begins] - own.d_max[0, begins]
@@ -129,7 +131,9 @@ def _gives_way(
     would &= ~(to_left < 0) | (own.d_min[0, changes] < left - place)
     slower = others.along[:, begins] - others.along[:, changes]
     aside = np.abs(others.d_min[:, changes] + others.d_max[:, changes] - right - left)
-    would &= (slower > _SLOWED_MPS + context.tolerances.speed_mps) | (aside / 2 > _ASIDE_M + place)
+    makes_way = slower > _SLOWED_MPS + context.tolerances.speed_mps
+    would_be_close &= makes_way
+    would &= makes_way | (aside / 2 > _ASIDE_M + place)
     beside = relations.station(context)[:, reaches] == relations.BESIDE
     # A vehicle from behind has to see that ego comes
     comes_s = (changes - reaches) * context.recording.step_s
@@ -139,23 +143,58 @@ def _gives_way(
     too_near = faster**2 > 2 * context.thresholds.disturbing_mps2 * np.maximum(left, 0.0)
     too_near &= there & (faster > 0) & (high <= own.s_min[0, changes])
     cut_short = there & _comes_in_close(context, reaches, changes)
-    hard, may_be_hard = _brake(context, would | too_near | cut_short, reaches, changes)
+    whom = would | would_be_close | too_near | cut_short
+    hard, may_be_hard = _brake(context, whom, reaches, changes)
+    # Who brakes before ego's body comes over the mark may let it in
+    _, at_once = _brake(context, there & _comes_in_close(context, begins, changes), begins, changes)
     sure = (would & beside) | hard
     for way in sure.any(axis=0).nonzero()[0].tolist():
         sure[:, way] &= ~_held_up(context, int(begins[way]), int(lanes[way]))
-    return sure, would | may_be_hard
+    return sure, would | would_be_close | may_be_hard | at_once
 
 
-def _comes_in_close(context: DriveContext, reaches: NDArray[intp], changes: NDArray[intp]) -> Flags:
+def _would_have_no_room(
+    context: DriveContext, since: NDArray[intp], changes: NDArray[intp]
+) -> Flags:
+    """Mask of vehicles that would be as ``_close_behind``, or meet ego, had they not braked.
+
+    That is, had they gone on as in the states ``since``; by way.
+    """
+    along, own = context.extents.along[:, since], context.ego_extents.along[0, changes]
+    place, speed = context.tolerances.place_m, context.tolerances.speed_mps
+    gap, is_ahead = _gap_had_they_gone_on(context, since, changes)
+    close: Flags = gap + place < _NO_ROOM_S * (along - speed)
+    close &= ~is_ahead & (own - along < _DRAWS_AWAY_MPS + speed)
+    return close
+
+
+def _gap_had_they_gone_on(
+    context: DriveContext, since: NDArray[intp], changes: NDArray[intp]
+) -> tuple[Floats, Flags]:
+    """How far (m) others' fronts would be behind ego's rear, and whether all of them ahead of it.
+
+    Had they kept their speed of the states ``since``; by way.
+    """
+    others, own = context.extents, context.ego_extents
+    on = others.along[:, since] * ((changes - since) * context.recording.step_s)
+    gap: Floats = own.s_min[0, changes] - (others.s_max[:, since] + on)
+    is_ahead: Flags = others.s_min[:, since] + on >= own.s_max[0, changes]
+    return gap, is_ahead
+
+
+def _comes_in_close(context: DriveContext, since: NDArray[intp], changes: NDArray[intp]) -> Flags:
     """Mask of vehicles close behind ego in its new lane, by way, unless ego gets slower there.
 
-    If ego keeps its speed, they have no reason to brake that ego does not have, too.
+    As they are, or would be had they kept their speed of the states ``since``: braking opens the
+    gap. If ego keeps its speed, they have no reason to brake that ego does not have, too.
     """
-    own, behind = context.ego_extents.along[0], context.in_ego_lane[:, changes]
-    close = relations.gap(context)[:, changes] < _TOO_CLOSE_S * context.extents.along[:, changes]
-    behind &= relations.station(context)[:, changes] == relations.IN_FRONT_OF
-    keeps_on = own[_reacted(context, changes) - 1] > own[reaches] - _SLOWED_MPS
-    flags: Flags = close & behind & keeps_on
+    own, along, behind = context.ego_extents.along[0], context.extents.along, context.in_ego_lane
+    close = relations.gap(context)[:, changes] < _TOO_CLOSE_S * along[:, changes]
+    gap, is_ahead = _gap_had_they_gone_on(context, since, changes)
+    close |= (gap < _TOO_CLOSE_S * along[:, since]) & ~is_ahead
+    is_behind = relations.station(context)[:, changes] == relations.IN_FRONT_OF
+    keeps_on = own[_reacted(context, changes) - 1] > own[since] - _SLOWED_MPS
+    flags: Flags = close & is_behind & behind[:, changes] & keeps_on
     return flags
 
 
