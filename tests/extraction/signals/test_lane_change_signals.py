@@ -48,6 +48,25 @@ def test_who_begins_on_a_mark_may_come_from_either_lane(ys, changed, lane):
     assert (~ego_signals(context).unknown["lane"]).tolist() == lane
 
 
+@pytest.mark.parametrize(
+    ("x", "unknown"),
+    # Ego is 4 m long, and in the left lane, if it comes from the right one, from 10 m on
+    [(0.0, True), (-5.0, True), (-40.0, False), (40.0, False)],
+)
+@pytest.mark.parametrize("to_left", [True, False])
+def test_who_may_come_into_a_lane_may_be_in_the_way_there(x, unknown, to_left):
+    """A drive that begins on the mark; the other one, 5 m/s faster, is at ``x`` from ego then."""
+    ys = np.array([2.1, 2.2, 2.5, 4.0])
+    ys = ys if to_left else 4.0 - ys
+    ego = vehicle(7, {k: (5.0 * k, y) for k, y in enumerate(ys)})
+    other = steady(8, 10.0 + x - 15.0, 4.0 if to_left else 0.0, speed=15.0)
+    route = ("2",) if to_left else ("1",)
+    found = lane_change_signals(context_of(recording(lanes(2), [ego, other]), route))
+    assert not found.world["lane_change"].any()
+    assert found.unknown["lane_is_clear"].tolist() == [False, False, unknown, False]
+    assert found.world["lane_is_clear"][[0, 1, 3]].all()
+
+
 @pytest.mark.parametrize(("states", "known"), [(4, False), (6, True)])
 def test_who_is_back_within_half_a_second_has_changed_no_lanes(states, known):
     """Its middle is 1 m beyond the mark for 0.4 s or 0.6 s, as where headings jump."""

@@ -60,7 +60,7 @@ def _lane_change(context: DriveContext) -> SignalColumns:
     and where it leaves a ring over a lane on which another one goes on.
     """
     changes = _changes(context)
-    unknown = changes != context.spans.changes(context.steady_lane_from_beside)
+    unknown = changes != _changes_from_beside(context)
     if changes.any():
         swings = swings_round(context) | lies_askew_in_turn(context)
         stands = np.abs(_speed_ahead(context)) * KMH < context.thresholds.standing_kmh
@@ -148,12 +148,13 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
 
     Unknown where the only ones that have to are about to be past, with ego coming in behind them,
     or only reach into its lane from the one beyond. Also where one comes from behind on a lane that
-    forks, and it is unknown whether into ego's; and if ego stands, or may by its speed, or just
-    stood: its places drift across the mark, but nothing stands and changes lanes.
+    forks, and it is unknown whether into ego's; if ego stands, or may by its speed, or just stood:
+    its places drift across the mark, but nothing stands and changes lanes; and where ego comes into
+    the lane only if its drive began as it crossed the mark.
     """
     disturbed = np.zeros(context.relevant.shape, dtype=bool)
     moot, unsure = np.zeros((2, context.states), dtype=bool)
-    flagged, ways = _ways_into_lanes(context)
+    flagged, ways, is_perhaps = _ways_into_lanes(context)
     if ways:
         states = np.array([way.state for way in ways], dtype=intp)
         found, perhaps = _disturbed(context, states)
@@ -176,7 +177,9 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
         stands = slowest * KMH < context.thresholds.standing_kmh
         just_stood = round(_JUST_STOOD_S / context.recording.step_s)
         stands |= _changes(context) & context.spans.within_last(stands, just_stood)
-        unknown = np.where(clear, unsure, moot | stands)
+        only_perhaps = np.zeros_like(clear)
+        only_perhaps[flagged[is_perhaps]] = True
+        unknown = np.where(clear, unsure, moot | stands | only_perhaps)
     unknown |= clear & np.logical_or.reduce(crossed_on_ring(context))
     return SignalColumns(
         {"lane_is_clear": clear},
@@ -185,18 +188,16 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
     )
 
 
-def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[WayIn]]:
+def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[WayIn], Flags]:
     """The states in which ego comes into another lane, or onto the road, and its ways there.
 
     It comes onto the road over its near edge, and is there ``changed_m`` farther on; or over its
-    far edge, back from the other half.
+    far edge, back from the other half. The mask has those on which it only perhaps comes into the
+    lane, from its drive's beginning on the mark.
     """
     lane, inside = context.steady_lane, -beyond_near_edge(context)
     changes = _changes(context).nonzero()[0].tolist()
-    ways = [
-        WayIn(at, int(max(lane[at - 1], lane[at])), to_left=bool(lane[at] > lane[at - 1]))
-        for at in changes
-    ]
+    ways = [_way_between(lane, at) for at in changes]
     there, end = inside >= context.thresholds.changed_m, context.spans.end
     settled = context.spans.next_state(there)
     enters = context.spans.enters(inside >= 0).nonzero()[0]
@@ -211,12 +212,28 @@ def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[WayIn]]
     first, last = lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)
     far = last if to_left else first
     ways += [WayIn(at, int(far[at]), to_left=not to_left) for at in back]
-    return np.array(changes + flagged + back, dtype=intp), ways
+    surely = changes + flagged + back
+    perhaps = _changes_from_beside(context).nonzero()[0].tolist()
+    perhaps = [at for at in perhaps if at not in surely]
+    ways += [_way_between(context.steady_lane_from_beside, at) for at in perhaps]
+    is_perhaps = np.repeat([False, True], [len(surely), len(perhaps)])
+    return np.array(surely + perhaps, dtype=intp), ways, is_perhaps
+
+
+def _way_between(lanes: NDArray[intp], at: int) -> WayIn:
+    """Ego's way into the lane of a state from that of the state before."""
+    before, after = int(lanes[at - 1]), int(lanes[at])
+    return WayIn(at, max(before, after), to_left=after > before)
 
 
 def _changes(context: DriveContext) -> Flags:
     """Mask of states in which ego has changed lanes since the state before."""
     return context.spans.changes(context.steady_lane)
+
+
+def _changes_from_beside(context: DriveContext) -> Flags:
+    """``_changes``, assuming that a drive which begins near a mark had just crossed it."""
+    return context.spans.changes(context.steady_lane_from_beside)
 
 
 def _within_tolerance(context: DriveContext, changes: Flags) -> Flags:
