@@ -146,7 +146,9 @@ def _gives_way(
     whom = would | would_be_close | too_near | cut_short
     hard, may_be_hard = _brake(context, whom, reaches, changes)
     # Who brakes before ego's body comes over the mark may let it in
-    _, at_once = _brake(context, there & _comes_in_close(context, begins, changes), begins, changes)
+    whom = there & _comes_in_close(context, begins, changes)
+    at_once, may_be_at_once = _brake(context, whom, begins, changes)
+    at_once |= may_be_at_once & makes_way
     sure = (would & beside) | hard
     for way in sure.any(axis=0).nonzero()[0].tolist():
         sure[:, way] &= ~_held_up(context, int(begins[way]), int(lanes[way]))
