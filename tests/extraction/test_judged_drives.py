@@ -11,6 +11,7 @@ from rulec.api.rulebook_compilation import machines
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.violation_evidence import evidence_of
+from rulec.recordings.recording import Weather
 from rulec.report.verdict_findings.findings_of_drives import DriveFindings
 from rulec.report.verdicts import recording_json, verdict_report
 from support.builders.drive_verdicts import violated
@@ -145,6 +146,24 @@ def test_what_is_assumed_is_judged():
     assert violated(found, GERMAN) == {"7": {}}
     assert violated(found, GERMAN, assumed={"built_up": True}) == {"7": {"speed_limit": 0.0}}
     assert violated(found, GERMAN, assumed={"limit": 50.0}) == {"7": {"speed_limit": 0.0}}
+
+
+LAMPS = frozenset({"dipped_beam", "main_beam", "front_fog_lamp"})
+
+
+@pytest.mark.parametrize(
+    ("recorded", "assumed", "is_dark"),
+    [(None, True, True), (None, None, False), (True, None, True), (True, False, False)],
+)
+def test_in_an_assumed_night_lamps_that_are_off_are_known(recorded, assumed, is_dark):
+    """By day there may be weaker lamps than those recorded."""
+    car = going(7, 0, 0.0, 15.0)
+    car = replace(car, shows=LAMPS, lamps=dict.fromkeys(car.states, frozenset()))
+    found = recording([straight(1, 0, 1000)], [car])
+    found = replace(found, weather=Weather(night=recorded))
+    values = {} if assumed is None else {"night": assumed}
+    rules = violated(found, GERMAN, assumed=values)["7"]
+    assert ("lights_at_night" in rules) == is_dark
 
 
 def test_from_python():

@@ -106,6 +106,14 @@ def test_who_keeps_right_behind_another_one_is_not_towed():
     assert "following_distance" in {one.rule for one in found.violations}
 
 
+def test_candidates_are_driven_in_the_night_that_is_assumed():
+    """There, lamps that are off are known to be."""
+    world = street([])
+    ahead = [driven(world.past[-1], [(0.0, 0.0)] * 8)]
+    night = replace(world, wanted=RequestedDrives(assumed={"night": True}))
+    assert [one.recording_of(ahead[0]).weather.night for one in (world, night)] == [None, True]
+
+
 def test_what_a_candidate_jerks_blurs_nothing_that_was_recorded():
     step_s, steps = 0.1, np.arange(20)
     lane = build_lanelet("road", [(-50, 0), (300, 0)], types=["urban"])

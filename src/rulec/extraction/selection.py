@@ -126,7 +126,7 @@ def selected_drives(
     """
     side, mirrored = chosen_side(recording, request, traffic)
     writer = TraceWriter(vocabulary, names, request.assumed, request.defaults)
-    recording = mended(recording, request.thresholds.away_s)
+    recording = mended(with_night_assumed(recording, request.assumed), request.thresholds.away_s)
     known = egos_of(recording)
     if not known and not request.egos:
         raise NOT_IN_RECORDING.error(
@@ -147,6 +147,14 @@ def selected_drives(
     if mirrored:
         recording = mirrored_recording(recording)
     return SelectedDrives(recording, mirrored, egos, parts, drives_of)
+
+
+def with_night_assumed(recording: Recording, assumed: Mapping[str, Value]) -> Recording:
+    """The recording in the assumed ``night`` or day, on which it depends what its lamps tell."""
+    night = assumed.get("night")
+    if not isinstance(night, bool) or night == recording.weather.night:
+        return recording
+    return replace(recording, weather=replace(recording.weather, night=night))
 
 
 def _who_is_there(recording: Recording) -> str:

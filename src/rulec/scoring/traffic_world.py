@@ -14,7 +14,7 @@ from rulec.diagnostics import SourceLocation, did_you_mean
 from rulec.diagnostics.argument_kinds import expected, finite
 from rulec.extraction.candidate_drives import CandidateDrives
 from rulec.extraction.recording_parts import egos_of, span_of, whole_recording
-from rulec.extraction.selection import RequestedDrives, chosen_side
+from rulec.extraction.selection import RequestedDrives, chosen_side, with_night_assumed
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.encodings.speed_units import KMH
 from rulec.recordings.encodings.xml_element import LARGEST
@@ -223,7 +223,8 @@ class TrafficWorld:
 
     @cached_property
     def _known(self) -> Recording:
-        found = mended(self.recording, self.wanted.thresholds.away_s)
+        recording = with_night_assumed(self.recording, self.wanted.assumed)
+        found = mended(recording, self.wanted.thresholds.away_s)
         # A planned future always has ego's headings
         return replace(found, complete=found.complete | {HEADINGS})
 
