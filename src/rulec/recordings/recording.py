@@ -236,7 +236,8 @@ class Participant:
     ``standing``: it is present all the time, in its only state. ``lamps``: the lit ones by time
     step; steps without information are missing. ``shows`` are the lamps for which the file has
     information. ``stated_error`` is the error of states that the file itself states, or that of an
-    assumed size.
+    assumed size. ``resumes``: the last time step of the track that this one goes on with, after a
+    cut; None if it begins by itself.
     """
 
     __repr__ = short_repr
@@ -249,6 +250,7 @@ class Participant:
     lamps: Mapping[int, frozenset[Lamp]] = field(default_factory=dict)
     shows: frozenset[Lamp] = frozenset({"left_indicator", "right_indicator", "brake_light"})
     stated_error: StatedError | None = None
+    resumes: int | None = None
 
     @property
     def object_types(self) -> tuple[str, ...]:

@@ -117,6 +117,7 @@ def tracked(
     lamps: Mapping[int, frozenset[Lamp]] | None = None,
     shows: frozenset[Lamp] = frozenset(),
     stated_error: StatedError | None = None,
+    resumes: int | None = None,
 ) -> Participant:
     """A participant that follows a track."""
     return Participant(
@@ -128,4 +129,5 @@ def tracked(
         lamps=lamps or {},
         shows=shows,
         stated_error=stated_error,
+        resumes=resumes,
     )

@@ -207,11 +207,25 @@ def test_times_since_1970_count_from_the_first(tmp_path):
     assert "times count from the first one, 1700000000 s" in recording.remarks
 
 
-def test_who_comes_back_is_another_one(tmp_path):
-    rows = [f"7,{t},{20 + 10 * t},0" for t in (0, 0.1, 0.2, 0.6, 0.7, 0.8)]
-    first, second = read(tmp_path, HEAD, *rows).participants
-    assert (first.id, list(first.states)) == ("7", [0, 1, 2])
-    assert (second.id, list(second.states)) == ("7_2", [6, 7, 8])
+def test_who_comes_back_after_a_second_is_another_one(tmp_path):
+    rows = [f"7,{t / 10},{20 + t},0" for t in (0, 1, 2, 13, 14, 15)]
+    recording = read(tmp_path, HEAD, *rows)
+    first, second = recording.participants
+    assert (first.id, list(first.states), first.resumes) == ("7", [0, 1, 2], None)
+    assert (second.id, list(second.states), second.resumes) == ("7_2", [13, 14, 15], 2)
+    (remark,) = (remark for remark in recording.remarks if "cut" in remark)
+    assert remark == (
+        "1 track is cut at holes of more than 1 s, and what follows is another road user: `7`"
+    )
+
+
+def test_who_comes_back_soon_is_the_same(tmp_path):
+    rows = [f"7,{t / 10},{20 + t},0" for t in (0, 1, 2, 12, 13)]
+    recording = read(tmp_path, HEAD, *rows)
+    body = only(recording)
+    assert list(body.states) == [0, 1, 2, 12, 13]
+    assert [body.states[step].speed for step in body.states] == pytest.approx([10] * 5)
+    assert not any("cut" in remark for remark in recording.remarks)
 
 
 def test_rows_in_any_order(tmp_path):

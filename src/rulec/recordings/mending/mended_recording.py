@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from rulec.recordings.mending.short_holes import LONGEST_HOLE_S as LONGEST_HOLE_S
 from rulec.recordings.mending.short_holes import without_short_holes
 from rulec.recordings.mending.steady_headings import with_steady_headings
 from rulec.recordings.recording import MENDED, Recording
-
-LONGEST_HOLE_S = 1.0
 
 
 def mended(recording: Recording, longest_hole_s: float = LONGEST_HOLE_S) -> Recording:

@@ -13,6 +13,9 @@ from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Lamp, Participant, Recording, TrackState
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
 
+LONGEST_HOLE_S = 1.0
+"""Who is missing for longer is another participant when it returns, unless told otherwise."""
+
 _FASTER, _FASTER_MPS = 1.3, 3.0
 """The factor and difference by which a jump in a hole exceeds the speeds on both sides."""
 
@@ -26,8 +29,13 @@ def without_short_holes(recording: Recording, longest_s: float) -> Recording:
     The added states are on the cubic through the two states before and the two after. None are
     added if the participant jumped; lamps are lit in them only if they are lit on both sides.
     """
-    most = int(longest_s / recording.step_s + 1e-9)
+    most = most_steps(longest_s, recording.step_s)
     return with_mended(recording, lambda body: _filled(body, most, recording.step_s))
+
+
+def most_steps(longest_s: float, step_s: float) -> int:
+    """The most steps between two states at most ``longest_s`` (s) apart."""
+    return int(longest_s / step_s + 1e-9)
 
 
 def _filled(body: Participant, most: int, step_s: float) -> Participant:

@@ -40,11 +40,14 @@ def _anchors(places: Points) -> NDArray[np.intp]:
     return np.array(kept)
 
 
-def velocities_of(places: Points, step_s: float) -> Points:
-    """Velocities (m/s) at places one step apart, from those before and after; 0 for one alone."""
+def velocities_of(places: Points, times: Floats | float) -> Points:
+    """Velocities (m/s) at places, from those before and after; 0 for one alone.
+
+    ``times`` (s) are those of the places, or the step from each to the next.
+    """
     if len(places) < 2:
         return np.zeros_like(places)
-    velocities: Points = np.gradient(places, step_s, axis=0)
+    velocities: Points = np.gradient(places, times, axis=0)
     return velocities
 
 
@@ -54,9 +57,12 @@ def along(velocities: Points, headings: Floats) -> Floats:
     return part
 
 
-def accelerations_of(speeds: Floats, step_s: float) -> Floats:
-    """Accelerations (m/s²) of speeds (m/s) one step apart, the last axis; 0 for one alone."""
+def accelerations_of(speeds: Floats, times: Floats | float) -> Floats:
+    """Accelerations (m/s²) of speeds (m/s) along the last axis; 0 for one alone.
+
+    ``times`` (s) are those of the speeds, or the step from each to the next.
+    """
     if speeds.shape[-1] < 2:
         return np.zeros_like(speeds)
-    result: Floats = np.gradient(speeds, step_s, axis=-1)
+    result: Floats = np.gradient(speeds, times, axis=-1)
     return result

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from rulec.diagnostics import RulecError, did_you_mean
 from rulec.recordings.encodings.table_columns import Columns, Texts
 from rulec.recordings.encodings.xml_element import LARGEST, short
+from rulec.recordings.mending.cut_tracks import cut_remark
+from rulec.recordings.mending.short_holes import LONGEST_HOLE_S, most_steps
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Lamp, Participant, id_order
 from rulec.recordings.track import Track, tracked
@@ -71,7 +73,7 @@ class ReadTracks:
 
 
 def read_tracks(rows: TrackRows, heading_at: HeadingAt) -> ReadTracks:
-    """The participants of rows; one that vanishes and returns becomes another participant.
+    """The participants of rows; one that vanishes for long and returns becomes another one.
 
     ``heading_at`` gives the heading of participants that do not move. Raises RulecError for an
     invalid row.
@@ -89,6 +91,7 @@ class _Reading:
         self.taken: Counter[str] = Counter()
         self.types = _types(rows)
         self.of_several_types: list[str] = []
+        self.cut: list[str] = []
         self.ego = ""
 
     def result(self) -> ReadTracks:
@@ -134,7 +137,7 @@ class _Reading:
         return rows.columns.wrong(second, why, help_text=way_out)
 
     def _participants(self, name: str, own: NDArray[np.intp]) -> Iterator[Participant]:
-        """The participants of a track: one for each part without gaps."""
+        """The participants of a track: one for each part without long gaps."""
         rows = self.rows
         kind = self._type(name, own)
         length, width = self._size(kind, own)
@@ -156,7 +159,10 @@ class _Reading:
             raise rows.columns.wrong(int(own[1]), why, help_text=way_out)
         if standing:
             own, gaps = own[:1], gaps[:0]
-        ends = [0, *(np.flatnonzero(gaps > 1) + 1).tolist(), len(own)]
+        longest = max(most_steps(LONGEST_HOLE_S, rows.times.step_s), 1)
+        ends = [0, *(np.flatnonzero(gaps > longest) + 1).tolist(), len(own)]
+        if len(ends) > 2:
+            self.cut.append(name)
         for number, (start, end) in enumerate(pairwise(ends), 1):
             part = own[start:end]
             track = self._track(kind, part, length, width)
@@ -168,6 +174,7 @@ class _Reading:
                 standing=standing,
                 lamps=self._lit(part, lamps),
                 shows=frozenset(lamps),
+                resumes=None if number == 1 else int(steps[start - 1]),
             )
 
     def _size(self, kind: str, own: NDArray[np.intp]) -> tuple[float, float]:
@@ -184,18 +191,23 @@ class _Reading:
         return size[0], size[1]
 
     def _track(self, kind: str, own: NDArray[np.intp], length: float, width: float) -> Track:
-        rows, step_s = self.rows, self.rows.times.step_s
+        rows, times = self.rows, self._times(own)
         places = np.column_stack((rows.x[own], rows.y[own]))
         heading = self._heading(kind, own, places)
         if rows.front:
             ahead = np.column_stack((np.cos(heading), np.sin(heading)))
             places = places - length / 2 * ahead
-        moved = motion.along(motion.velocities_of(places, step_s), heading)
+        moved = motion.along(motion.velocities_of(places, times), heading)
         speed = _filled(self._speed(own, heading, moved), moved)
-        gained = motion.accelerations_of(speed, step_s)
+        gained = motion.accelerations_of(speed, times)
         acceleration = gained if rows.acceleration is None else rows.acceleration[own]
         states = np.column_stack((places, heading, speed, _filled(acceleration, gained)))
         return Track(rows.times.steps[own], states, length, width)
+
+    def _times(self, own: NDArray[np.intp]) -> Floats | float:
+        """The times (s) of rows of a track; the step if it has no holes, which is exact."""
+        steps, step_s = self.rows.times.steps[own], self.rows.times.step_s
+        return steps * step_s if int(steps[-1] - steps[0]) >= len(steps) else step_s
 
     def _heading(self, kind: str, own: NDArray[np.intp], places: NDArray[float64]) -> Floats:
         stated = None if self.rows.heading is None else self.rows.heading[own]
@@ -259,6 +271,8 @@ class _Reading:
             more = f", and {len(several) - _NAMED} more" if len(several) > _NAMED else ""
             some = ", ".join(several[:_NAMED])
             yield f"tracks of several types are taken to be of the most frequent one: {some}{more}"
+        if self.cut:
+            yield cut_remark(self.cut, f"holes of more than {LONGEST_HOLE_S:g} s")
         usual = [unstated for unstated, _ in self.taken.most_common()]
         if usual:
             more = f", and {len(usual) - _NAMED} more" if len(usual) > _NAMED else ""
