@@ -49,6 +49,12 @@ def test_they_are_those_of_the_map():
     assert not free["enters_level_crossing"].any()
 
 
+@pytest.mark.parametrize(("x", "unknown"), [(998.5, True), (1001.5, False)])
+def test_where_a_drive_begins_ego_may_just_have_driven_onto_it(x, unknown):
+    found = told(road(), *(x + k for k in range(4))).unknown["enters_level_crossing"]
+    assert found.tolist() == [unknown, False, False, False]
+
+
 def warned(lanes, *xs, **more):
     found = told(lanes, *xs, **more)
     assert not found.world["past_level_crossing_sign"].any()

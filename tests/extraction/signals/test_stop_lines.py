@@ -331,3 +331,45 @@ def test_who_stops_in_a_junction_may_have_crossed_a_line_that_is_not_drawn(place
     crosses, unknown = (x["crosses_light_line"] for x in (found.world, found.unknown))
     told = zip(crosses.tolist(), unknown.tolist(), strict=True)
     assert "".join("?" if dark else "FT"[crossed] for crossed, dark in told) == known
+
+
+def first_known(signals, ego, name):
+    """Whether a word of an ego is known in its first state, and nowhere unknown after it."""
+    found = signals(ego)
+    unknown = found.unknown[name].tolist()
+    assert not any(unknown[1:])
+    return not unknown[0]
+
+
+@pytest.mark.parametrize(
+    ("front", "moves", "known"),
+    # It drives 1 m in a step of 0.5 s, and may have braked
+    [(100.4, 1.0, False), (101.4, 1.0, False), (103.0, 1.0, True), (101.4, 0.0, True)],
+    ids=["just beyond it", "a step beyond it", "farther", "standing there"],
+)
+def test_where_a_drive_begins_ego_may_just_have_crossed_a_line(front, moves, known):
+    xs = [front - 2 + moves * k for k in range(8)]
+    lit = [replace(one, lights=(RED,) if one.id == "1" else ()) for one in road(100.0)]
+    crossed = first_known(line_signals, context(lit, *xs), "crosses_light_line")
+    signed = context(road(99.9, ["STOP"]), *xs)
+    assert crossed == first_known(junction_signals, signed, "crosses_stop_line") == known
+    assert first_known(junction_signals, signed, "enters_junction") == known
+
+
+@pytest.mark.parametrize(("resumes", "known"), [(None, True), (8, False)])
+def test_after_a_hole_ego_may_have_crossed_a_line_in_it(resumes, known):
+    body = replace(vehicle(7, {k: (88.0 + k, 0.0) for k in range(13, 18)}), resumes=resumes)
+    ego = context_of(recording(road(99.9, ["STOP"]), [body]), ("1", "2", "3"))
+    assert first_known(junction_signals, ego, "crosses_stop_line") == known
+
+
+def test_the_light_of_a_line_is_what_it_showed_while_ego_was_not_seen():
+    turned = Light(0, (("red", 12), ("green", 99)))
+    lit = [replace(one, lights=(turned,) if one.id == "1" else ()) for one in road(100.0)]
+    places = {k: (86.0 + k, 0.0) for k in range(13, 18)}
+    other = vehicle(8, dict.fromkeys(range(18), (10.0, 0.0)))
+    for resumes, light in ((12, "green_light"), (9, "")):
+        body = replace(vehicle(7, places), resumes=resumes)
+        found = line_signals(context_of(recording(lit, [body, other]), ("1", "2", "3")))
+        assert found.unknown["crosses_light_line"].tolist() == [True] + [False] * 4
+        assert found.world["light"][0] == light

@@ -15,6 +15,7 @@ from rulec.extraction.signals.map.priority_signals import (
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.map.stop_lines import (
     ends_at_line,
+    may_have_passed,
     may_pass,
     passes,
     stop_line,
@@ -52,10 +53,11 @@ def _at_junction(context: DriveContext, start: float, end: float) -> Flags:
 
 
 def _enters_junction(context: DriveContext) -> SignalColumns:
-    enters = np.zeros(context.states, dtype=bool)
+    enters, may_enter = np.zeros((2, context.states), dtype=bool)
     for start, _ in context.road.junctions:
         enters |= passes(context, start)
-    return SignalColumns({"enters_junction": enters})
+        may_enter |= may_have_passed(context, start)
+    return SignalColumns({"enters_junction": enters}, unknown={"enters_junction": may_enter})
 
 
 def _turns(context: DriveContext) -> SignalColumns:
@@ -215,8 +217,8 @@ def _time_driven(context: DriveContext, pace_kmh: float) -> Floats:
 def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
     """Masks of ego crossing the line of a lanelet with a stop sign, and perhaps crossing it.
 
-    Perhaps if its drive ends while it moves between the places where the line may be, or where
-    errors of places decide, as when it stands at the line.
+    Perhaps if its drive ends while it moves between the places where the line may be, or begins
+    just beyond the line, or where errors of places decide, as when it stands at the line.
     """
     crosses, may_cross = np.zeros((2, context.states), dtype=bool)
     front, moves = own_front(context), context.ego.speed[0] * KMH
@@ -227,7 +229,8 @@ def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
                 stops = bool(STOP_SIGNS & context.road.lanelet(piece, lane).signs)
                 if stops and ends_at_line(context, piece, lane):
                     first, last = stop_line(context, piece, lane)
-                    unsure = may_pass(context, last) & (context.ego_lane == lane)
+                    unsure = may_pass(context, last) | may_have_passed(context, last)
+                    unsure &= context.ego_lane == lane
                     crosses |= passes(context, last) & (context.ego_lane == lane) & ~unsure
                     may_cross |= unsure
                     on_it = (first < front) & (front <= last) & (context.ego_lane == lane)

@@ -8,6 +8,7 @@ from heapq import heappop, heappush
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.map.stop_lines import may_have_passed
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses, once_a_map, once_a_road
 from rulec.extraction.tracks.driven_road import runs_along
@@ -24,13 +25,15 @@ def _zones(context: DriveContext) -> SignalColumns:
     if not _tells_rails(context):
         return SignalColumns()
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
-    zone, enters = np.zeros((2, context.states), dtype=bool)
+    zone, enters, may_enter = np.zeros((3, context.states), dtype=bool)
     for start, end in level_crossings(context):
         zone |= (front >= start - context.thresholds.zone_m) & (rear < end)
         enters |= context.spans.enters(front > start)
+        may_enter |= may_have_passed(context, start, front)
     # Those of a net have gates that close while a train comes
     return SignalColumns(
-        {"level_crossing_zone": zone, "enters_level_crossing": enters, "guarded": zone}
+        {"level_crossing_zone": zone, "enters_level_crossing": enters, "guarded": zone},
+        unknown={"enters_level_crossing": may_enter},
     )
 
 

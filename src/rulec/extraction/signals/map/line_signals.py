@@ -11,10 +11,12 @@ from rulec.extraction.signals.map.stop_lines import (
     around_crossing,
     ends_at_line,
     has_line,
+    may_have_passed,
     may_pass,
     may_stop_beyond,
     passes,
     stop_line,
+    unseen_steps,
 )
 from rulec.extraction.signals.measured_numbers import LONGEST_S, moves, own_front, own_speed
 from rulec.extraction.signals.signal_columns import (
@@ -136,8 +138,9 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
     """The light for ego (empty if unknown), and masks of crossing its line: surely and perhaps.
 
     In the state in which ego crosses the line, the light is still the one that it crosses. Perhaps:
-    where ego may have crossed it (``may_pass``, ``may_stop_beyond``), and for amber lights crossed
-    at a place where it is unknown whether ego approached slowly enough to stop at once.
+    where ego may have crossed it (``may_pass``, ``may_stop_beyond``, ``may_have_passed``), and for
+    amber lights crossed at a place where it is unknown whether ego approached slowly enough to stop
+    at once.
     """
     front = own_front(context)
     colours = np.full(context.states, "no_light", dtype="<U11")
@@ -152,7 +155,8 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
             if not lights or not ends_at_line(context, piece, lane):
                 continue
             first, last = stop_line(context, piece, lane)
-            unsure = may_pass(context, last) & (context.ego_lane == lane)
+            unseen = may_have_passed(context, last) & (context.ego_lane == lane)
+            unsure = unseen | (may_pass(context, last) & (context.ego_lane == lane))
             crossed = passes(context, last) & ~unsure
             may_cross |= unsure | (
                 may_stop_beyond(context, (first, last)) & (context.ego_lane == lane)
@@ -165,6 +169,8 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
                 own = every if several[state] else lights
                 moments = while_crossing(state) if crossed[state] else (state,)
                 shown = {_colour(context, own, moment) for moment in moments}
+                if unseen[state]:
+                    shown |= _colours_unseen(context, own, state)
                 crosses[state] |= crossed[state]
                 colours[state] = shown.pop() if len(shown) == 1 else ""
                 at_place = slow[[*moments]]
@@ -175,6 +181,16 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
     for state in _between_lights(context, colours, crosses):
         crosses[state], colours[state] = True, ""
     return colours, crosses, may_cross
+
+
+def _colours_unseen(
+    context: DriveContext, lights: tuple[Light | ObservedLight, ...], state: int
+) -> set[str]:
+    """What lights showed in the time of the recording since ego was last seen before a state."""
+    steps = int(unseen_steps(context)[context.spans.number[state]])
+    until = int(context.steps[state])
+    since = max(until - steps, context.surroundings.tracks.first)
+    return {colour_at(lights, step) for step in range(since, until)}
 
 
 def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags) -> list[int]:

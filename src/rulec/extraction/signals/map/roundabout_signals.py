@@ -9,6 +9,7 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
+from rulec.extraction.signals.map.stop_lines import may_have_passed
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses, once_a_road
 from rulec.extraction.tracks.driven_road import runs_along
@@ -25,13 +26,14 @@ _SIGNS: Mapping[str, frozenset[str]] = {
 def _rings(context: DriveContext) -> SignalColumns:
     road = context.road
     front, middle = context.ego_extents.s_max[0], context.ego_extents.s[0]
-    inside, enters = np.zeros((2, context.states), dtype=bool)
+    inside, enters, may_enter = np.zeros((3, context.states), dtype=bool)
     words = {name: np.zeros(context.states, dtype=bool) for name in _SIGNS}
     unknown = {name: np.zeros(context.states, dtype=bool) for name in _SIGNS}
     known = context.recording.complete | map_contents(context).signs
     for begins, end, _ in roundabouts(context):
         inside |= (middle > begins) & (middle < end)
         enters |= context.spans.enters(front > begins)
+        may_enter |= may_have_passed(context, begins, front)
         nears = (front > begins - context.thresholds.approach_m) & (middle < end)
         before = [
             row
@@ -45,6 +47,7 @@ def _rings(context: DriveContext) -> SignalColumns:
             unknown[name] |= nears & may
     world: dict[str, SignalColumn] = {"roundabout": inside, "enters_roundabout": enters, **words}
     not_told = {name: unknown[name] & ~words[name] for name in _SIGNS}
+    not_told["enters_roundabout"] = may_enter
     return SignalColumns(world, unknown=not_told)
 
 

@@ -6,9 +6,11 @@ from collections.abc import Callable
 from math import ceil, floor
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import KMH, DriveContext
-from rulec.extraction.signals.measured_numbers import own_front
+from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.signals.measured_numbers import moves, own_front, own_speed
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import STOP_SIGNS, Lanelet
@@ -47,6 +49,49 @@ def may_pass(context: DriveContext, line: float) -> Flags:
     goes &= beyond.take(until, mode="clip")
     brief = until - since - 1 <= context.thresholds.passed_s / context.recording.step_s + _HAIR
     return at_line & ~(comes & goes & brief)
+
+
+def may_have_passed(context: DriveContext, line: float, front: Floats | None = None) -> Flags:
+    """Mask of the first states of drives in which ego may just have crossed a line.
+
+    No state shows where it was before: it is beyond the line by no more than it may have driven
+    since it was last seen, or within a step. ``front``: the places along the road of what crosses.
+    """
+    found, begins = np.zeros(context.states, dtype=bool), context.spans.begins
+    beyond = (own_front(context) if front is None else front)[begins] - line
+    found[begins] = (beyond > 0) & (beyond <= _driven_unseen(context))
+    return found
+
+
+@once
+def unseen_steps(context: DriveContext) -> NDArray[intp]:
+    """By drive, the steps from the last earlier state of ego, or of the track it goes on with.
+
+    One where there is none, as at the beginning of a recording.
+    """
+    tracks = context.own.tracks
+    first = context.steps[context.spans.begins]
+    found = np.ones(len(first), dtype=intp)
+    for number, (row, step) in enumerate(zip(context.ego.rows.tolist(), first, strict=True)):
+        seen = tracks.present[row, : step - tracks.first].nonzero()[0]
+        resumes = tracks.participants[row].resumes
+        if len(seen):
+            found[number] = step - tracks.first - seen[-1]
+        elif resumes is not None:
+            found[number] = step - resumes
+    return found
+
+
+@once
+def _driven_unseen(context: DriveContext) -> Floats:
+    """By drive, how far (m) ego may have driven since it was last seen, with errors of places."""
+    begins, steps = context.spans.begins, unseen_steps(context)
+    seconds = steps * context.recording.step_s
+    # It may have braked meanwhile, to its speed now
+    braked = np.where(moves(context)[begins] | (steps > 1), context.thresholds.braking_mps2, 0.0)
+    speed, error = own_speed(context)
+    driven: Floats = (speed + error)[begins] * seconds + braked / 2 * seconds**2
+    return driven + context.tolerances.place_m
 
 
 def may_stop_beyond(context: DriveContext, line: tuple[float, float]) -> Flags:
