@@ -11,7 +11,7 @@ from numpy import float64, int64
 from numpy.typing import NDArray
 
 from rulec.recordings.recording import Participant, Points, Recording, TrackState
-from rulec.recordings.track import TrackStates
+from rulec.recordings.track import TrackOutlines, TrackStates, outlines_on_track
 
 
 def steps_of(body: Participant) -> NDArray[int64]:
@@ -35,6 +35,20 @@ def with_mended(recording: Recording, mend: Callable[[Participant], Participant]
     if all(map(is_, bodies, recording.participants)):
         return recording
     return replace(recording, participants=bodies)
+
+
+def with_states_at(body: Participant, steps: NDArray[int64]) -> Participant:
+    """A participant with only those of its states that are at some steps, ascending."""
+    if (outlines := outlines_on_track(body)) is not None:
+        track = outlines.track
+        own = replace(track, steps=steps, rows=track.rows[track.steps.searchsorted(steps)])
+        return replace(body, states=TrackStates(own), outlines=TrackOutlines(own))
+    kept = steps.tolist()
+    return replace(
+        body,
+        states={step: body.states[step] for step in kept},
+        outlines={step: body.outlines[step] for step in kept},
+    )
 
 
 def moved_outline(outline: Points, before: TrackState, now: TrackState) -> Points:

@@ -16,6 +16,7 @@ from rulec.recordings.encodings.table_columns import Columns, Texts
 from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.recordings.mending.cut_tracks import cut_remark
 from rulec.recordings.mending.short_holes import LONGEST_HOLE_S, most_steps
+from rulec.recordings.mending.wrong_places import Path, wrong_places, wrong_places_remark
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Lamp, Participant, id_order
 from rulec.recordings.track import Track, tracked
@@ -92,6 +93,7 @@ class _Reading:
         self.types = _types(rows)
         self.of_several_types: list[str] = []
         self.cut: list[str] = []
+        self.wrong: dict[str, int] = {}
         self.ego = ""
 
     def result(self) -> ReadTracks:
@@ -157,8 +159,9 @@ class _Reading:
             )
             way_out = "give every track a row at each time step, or take out the times between"
             raise rows.columns.wrong(int(own[1]), why, help_text=way_out)
-        if standing:
-            own, gaps = own[:1], gaps[:0]
+        own = own[:1] if standing else self._without_wrong_places(name, own)
+        steps = rows.times.steps[own]
+        gaps = np.diff(steps)
         longest = max(most_steps(LONGEST_HOLE_S, rows.times.step_s), 1)
         ends = [0, *(np.flatnonzero(gaps > longest) + 1).tolist(), len(own)]
         if len(ends) > 2:
@@ -176,6 +179,16 @@ class _Reading:
                 shows=frozenset(lamps),
                 resumes=None if number == 1 else int(steps[start - 1]),
             )
+
+    def _without_wrong_places(self, name: str, own: NDArray[np.intp]) -> NDArray[np.intp]:
+        """The rows of a track whose places it can have reached: headings follow from them."""
+        rows = self.rows
+        places = np.column_stack((rows.x[own], rows.y[own]))
+        wrong = wrong_places(Path(rows.times.steps[own], places), rows.times.step_s)
+        if not wrong.any():
+            return own
+        self.wrong[name] = int(wrong.sum())
+        return own[~wrong]
 
     def _size(self, kind: str, own: NDArray[np.intp]) -> tuple[float, float]:
         """Length and width: the medians of the stated ones, else the usual ones."""
@@ -207,7 +220,8 @@ class _Reading:
     def _times(self, own: NDArray[np.intp]) -> Floats | float:
         """The times (s) of rows of a track; the step if it has no holes, which is exact."""
         steps, step_s = self.rows.times.steps[own], self.rows.times.step_s
-        return steps * step_s if int(steps[-1] - steps[0]) >= len(steps) else step_s
+        times: Floats = (steps * step_s).astype(float64)
+        return times if int(steps[-1] - steps[0]) >= len(steps) else step_s
 
     def _heading(self, kind: str, own: NDArray[np.intp], places: NDArray[float64]) -> Floats:
         stated = None if self.rows.heading is None else self.rows.heading[own]
@@ -271,6 +285,8 @@ class _Reading:
             more = f", and {len(several) - _NAMED} more" if len(several) > _NAMED else ""
             some = ", ".join(several[:_NAMED])
             yield f"tracks of several types are taken to be of the most frequent one: {some}{more}"
+        if self.wrong:
+            yield wrong_places_remark([*self.wrong], sum(self.wrong.values()))
         if self.cut:
             yield cut_remark(self.cut, f"holes of more than {LONGEST_HOLE_S:g} s")
         usual = [unstated for unstated, _ in self.taken.most_common()]
