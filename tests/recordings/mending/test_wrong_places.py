@@ -101,9 +101,7 @@ def test_they_are_left_out_and_filled_in(form):
     bare = without_wrong_places(found)
     assert [*bare.participants[0].states] == [*range(7), *range(9, 40)]
     assert bare.participants[1] is found.participants[1]
-    assert bare.remarks == (
-        "2 positions are left out, as no vehicle gets there and back so fast: `7`",
-    )
+    assert bare.remarks == ("2 positions are left out, as no vehicle gets there so fast: `7`",)
     (filled, _), remarks = mended(found).participants, mended(found).remarks
     assert [filled.states[step].x for step in range(40)] == pytest.approx(right[:, 0], abs=0.01)
     assert [*filled.outlines] == [*range(40)]
@@ -121,4 +119,4 @@ def test_headings_of_a_table_do_not_follow_them():
     assert 20 not in car.states
     assert all(abs(car.states[step].heading) < 1e-9 for step in car.states)
     assert all(car.states[step].speed == pytest.approx(10) for step in car.states)
-    assert "1 position is left out, as no vehicle gets there and back so fast: `7`" in found.remarks
+    assert "1 position is left out, as no vehicle gets there so fast: `7`" in found.remarks

@@ -73,7 +73,7 @@ def wrong_places_remark(names: Sequence[str], count: int) -> str:
     some = ", ".join(f"`{short(name)}`" for name in names[:_NAMED])
     more = f", and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
     what = "1 position is" if count == 1 else f"{count:,} positions are"
-    return f"{what} left out, as no vehicle gets there and back so fast: {some}{more}"
+    return f"{what} left out, as no vehicle gets there so fast: {some}{more}"
 
 
 def wrong_places(path: Path, step_s: float) -> NDArray[bool_]:
@@ -87,8 +87,7 @@ def wrong_places(path: Path, step_s: float) -> NDArray[bool_]:
         return found
     times: Floats = (steps * step_s).astype(float64)
     least = farthest_by_noise(_off_chord(times, places, 1)[0])
-    longest = max(1, min(_MOST_WRONG, int(_WRONG_S / step_s + _HAIR)))
-    for count in range(1, longest + 1):
+    for count in range(1, most_in_a_row(step_s) + 1):
         off = _off_chord(times, places, count).min(axis=0)
         leaves = times[1 : len(off) + 1] - times[: len(off)]
         returns = times[count + 1 :] - times[count:-1]
@@ -98,6 +97,11 @@ def wrong_places(path: Path, step_s: float) -> NDArray[bool_]:
             if _goes_on(times, places, first, first + count + 1) <= _SMOOTH * off[first]:
                 found[first + 1 : first + count + 1] = True
     return found
+
+
+def most_in_a_row(step_s: float) -> int:
+    """How many places in a row may be wrong."""
+    return max(1, min(_MOST_WRONG, int(_WRONG_S / step_s + _HAIR)))
 
 
 def bends_of(path: Path) -> Floats:

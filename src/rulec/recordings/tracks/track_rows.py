@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy import float64
@@ -16,9 +16,10 @@ from rulec.recordings.encodings.table_columns import Columns, Texts
 from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.recordings.mending.cut_tracks import cut_remark
 from rulec.recordings.mending.short_holes import LONGEST_HOLE_S, most_steps
+from rulec.recordings.mending.track_jumps import CUT_WHY, DRIVERS, jumps, parts_between
 from rulec.recordings.mending.wrong_places import Path, wrong_places, wrong_places_remark
 from rulec.recordings.polylines import wrapped
-from rulec.recordings.recording import Lamp, Participant, id_order
+from rulec.recordings.recording import OBSTACLE_TYPES, Lamp, Participant, id_order
 from rulec.recordings.track import Track, tracked
 from rulec.recordings.tracks import derived_motion as motion
 from rulec.recordings.tracks.even_times import EvenTimes
@@ -83,6 +84,14 @@ def read_tracks(rows: TrackRows, heading_at: HeadingAt) -> ReadTracks:
     return _Reading(rows, heading_at).result()
 
 
+class _RowsOfTrack(NamedTuple):
+    """A track's id, its type, and the numbers of its rows by ascending time."""
+
+    name: str
+    kind: str
+    rows: NDArray[np.intp]
+
+
 class _Reading:
     """Reads one table, counting what it leaves open."""
 
@@ -93,18 +102,24 @@ class _Reading:
         self.types = _types(rows)
         self.of_several_types: list[str] = []
         self.cut: list[str] = []
+        self.jumped: list[str] = []
         self.wrong: dict[str, int] = {}
         self.ego = ""
 
     def result(self) -> ReadTracks:
         rows = self.rows
         steps = rows.times.steps
-        participants: list[Participant] = []
+        tracks: list[_RowsOfTrack] = []
         for name, own in rows.track.groups(steps):
             twice = np.diff(steps[own]) == 0
             if twice.any():
                 raise self._repeated_row(name, own, int(np.argmax(twice)))
-            participants += self._participants(name, own)
+            tracks.append(_RowsOfTrack(name, self._type(name, own), own))
+        tracks = [self._without_wrong_places(track) for track in tracks]
+        cuts = jumps([self._path(track) for track in tracks], rows.times.step_s)
+        participants: list[Participant] = []
+        for track, cut in zip(tracks, cuts, strict=True):
+            participants += self._participants(track, cut)
         participants.sort(key=lambda participant: id_order(participant.id))
         return ReadTracks(tuple(participants), self.ego, tuple(self._remarks()))
 
@@ -138,19 +153,18 @@ class _Reading:
         )
         return rows.columns.wrong(second, why, help_text=way_out)
 
-    def _participants(self, name: str, own: NDArray[np.intp]) -> Iterator[Participant]:
-        """The participants of a track: one for each part without long gaps."""
+    def _participants(self, track: _RowsOfTrack, cuts: Sequence[int]) -> Iterator[Participant]:
+        """The participants of a track: one for each part without jumps and long gaps."""
         rows = self.rows
-        kind = self._type(name, own)
+        name, kind, own = track
         length, width = self._size(kind, own)
         if rows.ego is not None and (rows.ego[own] == 1).any():
             if self.ego:
                 why = f"`{short(self.ego)}` and `{short(name)}` are both ego"
                 raise rows.columns.wrong(int(own[0]), why, "expected one track with 1 in `ego`")
             self.ego = name
-        standing = rows.standing is not None and bool((rows.standing[own] == 1).any())
-        steps = rows.times.steps[own]
-        gaps = np.diff(steps)
+        standing = self._stands(own)
+        gaps = np.diff(rows.times.steps[own])
         if len(gaps) > 1 and np.median(gaps) > 1:
             step_s = rows.times.step_s
             why = (
@@ -159,36 +173,64 @@ class _Reading:
             )
             way_out = "give every track a row at each time step, or take out the times between"
             raise rows.columns.wrong(int(own[1]), why, help_text=way_out)
-        own = own[:1] if standing else self._without_wrong_places(name, own)
-        steps = rows.times.steps[own]
-        gaps = np.diff(steps)
-        longest = max(most_steps(LONGEST_HOLE_S, rows.times.step_s), 1)
-        ends = [0, *(np.flatnonzero(gaps > longest) + 1).tolist(), len(own)]
-        if len(ends) > 2:
-            self.cut.append(name)
-        for number, (start, end) in enumerate(pairwise(ends), 1):
-            part = own[start:end]
-            track = self._track(kind, part, length, width)
+        parts = [own[:1]] if standing else [*self._parts(name, own, cuts)]
+        for number, part in enumerate(parts, 1):
+            states = self._track(kind, part, length, width)
             lamps = self._stated_lamps(part)
             yield tracked(
                 name if number == 1 else f"{name}_{number}",
                 kind,
-                track,
+                states,
                 standing=standing,
                 lamps=self._lit(part, lamps),
                 shows=frozenset(lamps),
-                resumes=None if number == 1 else int(steps[start - 1]),
+                resumes=None if number == 1 else int(rows.times.steps[parts[number - 2][-1]]),
             )
 
-    def _without_wrong_places(self, name: str, own: NDArray[np.intp]) -> NDArray[np.intp]:
-        """The rows of a track whose places it can have reached: headings follow from them."""
-        rows = self.rows
+    def _stands(self, own: NDArray[np.intp]) -> bool:
+        standing = self.rows.standing
+        return standing is not None and bool((standing[own] == 1).any())
+
+    def _parts(
+        self, name: str, own: NDArray[np.intp], cuts: Sequence[int]
+    ) -> Iterator[NDArray[np.intp]]:
+        """The rows of each part of a track, in order."""
+        times = self.rows.times
+        between = parts_between(cuts, len(own), times.step_s)
+        if left_out := len(own) - sum(end - start for start, end in between):
+            self.wrong[name] = self.wrong.get(name, 0) + left_out
+        if len(between) > 1:
+            self.jumped.append(name)
+        longest = max(most_steps(LONGEST_HOLE_S, times.step_s), 1)
+        for start, end in between:
+            part = own[start:end]
+            holes = np.flatnonzero(np.diff(times.steps[part]) > longest) + 1
+            if len(holes) and name not in self.cut:
+                self.cut.append(name)
+            yield from np.split(part, holes)
+
+    def _path(self, track: _RowsOfTrack) -> Path:
+        """The places of a track; none for who does not drive, and thus may jump."""
+        rows, own = self.rows, track.rows
+        if self._stands(own) or DRIVERS.isdisjoint(OBSTACLE_TYPES[track.kind]):
+            own = own[:0]
+        heading = None if rows.heading is None else rows.heading[own]
+        if heading is not None and np.isnan(heading).any():
+            heading = None
+        places = np.column_stack((rows.x[own], rows.y[own]))
+        return Path(rows.times.steps[own], places, heading)
+
+    def _without_wrong_places(self, track: _RowsOfTrack) -> _RowsOfTrack:
+        """A track without the places that it cannot have reached: headings follow from them."""
+        rows, own = self.rows, track.rows
+        if self._stands(own):
+            return track
         places = np.column_stack((rows.x[own], rows.y[own]))
         wrong = wrong_places(Path(rows.times.steps[own], places), rows.times.step_s)
         if not wrong.any():
-            return own
-        self.wrong[name] = int(wrong.sum())
-        return own[~wrong]
+            return track
+        self.wrong[track.name] = int(wrong.sum())
+        return track._replace(rows=own[~wrong])
 
     def _size(self, kind: str, own: NDArray[np.intp]) -> tuple[float, float]:
         """Length and width: the medians of the stated ones, else the usual ones."""
@@ -289,6 +331,8 @@ class _Reading:
             yield wrong_places_remark([*self.wrong], sum(self.wrong.values()))
         if self.cut:
             yield cut_remark(self.cut, f"holes of more than {LONGEST_HOLE_S:g} s")
+        if self.jumped:
+            yield cut_remark(self.jumped, CUT_WHY)
         usual = [unstated for unstated, _ in self.taken.most_common()]
         if usual:
             more = f", and {len(usual) - _NAMED} more" if len(usual) > _NAMED else ""
