@@ -141,3 +141,27 @@ def test_what_is_measured_lies_within_its_bounds(mps, x, y, source):
         measured = (found.world | found.about)[name]
         assert (low - 0.006 <= measured).all(), name
         assert (measured <= high + 0.006).all(), name
+
+
+def places_by_speed(mps_at, step_s, until_s=8.0):
+    """Places along x at each step, by speeds (m/s) at times (s)."""
+    t = np.arange(0.0, until_s, 0.01)
+    mps = np.interp(t, *zip(*mps_at, strict=True))
+    x = np.concatenate(([0.0], ((mps[1:] + mps[:-1]) / 2 * 0.01).cumsum()))
+    return {k: (float(x[round(k * step_s / 0.01)]), 0.0) for k in range(int(until_s / step_s))}
+
+
+@pytest.mark.parametrize(
+    ("mps_at", "may_stand"),
+    [
+        ([(0, 6), (2.6, 1.3), (3.3, 0), (4.0, 1.1), (6, 6)], True),
+        ([(0, 6), (3.0, 1.2), (5.0, 1.2), (7, 6)], False),
+        ([(0, 6), (3.0, 2.4), (5.0, 2.4), (7, 6)], False),
+    ],
+    ids=["stops", "creeps on", "drives on"],
+)
+def test_one_may_stand_between_two_slow_samples(mps_at, may_stand):
+    step_s = 0.5
+    body = vehicle(7, places_by_speed(mps_at, step_s), speed=6.0)
+    low, _ = ego_signals(context_of(recording(lanes(2), [body], step_s=step_s))).bounds["speed"]
+    assert (low == 0).any() == may_stand

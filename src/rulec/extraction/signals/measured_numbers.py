@@ -85,11 +85,10 @@ def speed_bounds(context: DriveContext) -> Bounds:
     """The bounds of ego's speed (km/h); from 0 if ego may be slow enough to stand."""
     speed, error = own_speed(context)
     differs = _differs_from_mean(context)
-    low = (speed - np.maximum(error, -differs)) * KMH
-    may_stand = (low < context.thresholds.standing_kmh) & (error > 0)
-    return rounded_outward(
-        np.where(may_stand, 0.0, low), (speed + np.maximum(error, differs)) * KMH
-    )
+    low, high = speed - np.maximum(error, -differs), speed + np.maximum(error, differs)
+    may_stand = (low * KMH < context.thresholds.standing_kmh) & (error > 0)
+    may_stand |= _may_have_stood_beside(context, low, high)
+    return rounded_outward(np.where(may_stand, 0.0, low * KMH), high * KMH)
 
 
 def _differs_from_mean(context: DriveContext) -> Floats:
@@ -109,6 +108,26 @@ def _differs_from_mean(context: DriveContext) -> Floats:
     inside &= moves(context)
     before, after = (np.roll(speed, way) for way in (steps, -steps))
     return np.where(inside, speed - (before + after) / 2, zero)
+
+
+def _may_have_stood_beside(context: DriveContext, low: Floats, high: Floats) -> Flags:
+    """Mask of states between which and the next, or the last, ego may have stood for a moment.
+
+    With its bounds of speed (m/s) it can brake to a stand and set off again in that step, short of
+    braking hard. It then moves by no more than half of what it would at the higher speed.
+    """
+    spans, step_s = context.spans, context.recording.step_s
+    most_mps2 = context.thresholds.braking_hard_mps2
+    least = np.maximum(low, 0.0)
+    may_stand: Flags = least + spans.before(least) <= most_mps2 * step_s
+    if not may_stand.any():
+        return may_stand
+    x, y = context.ego.x[0], context.ego.y[0]
+    moved = np.hypot(x - spans.before(x), y - spans.before(y))
+    may_stand &= moved <= np.maximum(high, spans.before(high)) * step_s / 2
+    may_stand[spans.begins] = False
+    either: Flags = may_stand | spans.after(may_stand)
+    return either
 
 
 def gap_bounds(context: DriveContext) -> Bounds:
