@@ -356,6 +356,13 @@ def test_where_a_drive_begins_ego_may_just_have_crossed_a_line(front, moves, kno
     assert first_known(junction_signals, signed, "enters_junction") == known
 
 
+@pytest.mark.parametrize(("front", "known"), [(100.4, False), (103.0, True)])
+def test_a_sign_whose_line_ego_may_just_have_crossed_may_hold(front, known):
+    ego = context(road(99.9, ["STOP"]), *[front - 2 + k for k in range(8)])
+    assert first_known(map_signals, ego, "stop_sign") == known
+    assert not map_signals(ego).world["stop_sign"].any()
+
+
 @pytest.mark.parametrize(("resumes", "known"), [(None, True), (8, False)])
 def test_after_a_hole_ego_may_have_crossed_a_line_in_it(resumes, known):
     body = replace(vehicle(7, {k: (88.0 + k, 0.0) for k in range(13, 18)}), resumes=resumes)

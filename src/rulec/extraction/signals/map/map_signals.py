@@ -18,7 +18,7 @@ from rulec.extraction.signals.ego_lanelets import (
     own_lanelets,
 )
 from rulec.extraction.signals.map.line_signals import own_light
-from rulec.extraction.signals.map.stop_lines import stop_line
+from rulec.extraction.signals.map.stop_lines import may_have_passed, stop_line
 from rulec.extraction.signals.measured_numbers import corner_ahead, own_front, own_widths
 from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (
@@ -121,14 +121,18 @@ def _minimum_limit(context: DriveContext) -> SignalColumns:
 
 def _signs(context: DriveContext) -> SignalColumns:
     known = map_contents(context).signs | context.recording.complete
-    values = {
-        name: _holds_to_line(context, signs, of_junction=name in _OVERRULED)
-        if at_line
-        else own_lanelets(context).flags(_has_sign(signs))
-        for name, (signs, at_line) in _SIGNS.items()
-        if signs & known
-    }
-    unknown = {name: _may_hold(context, _SIGNS[name][0]) & ~values[name] for name in values}
+    values, unknown = dict[str, Flags](), dict[str, Flags]()
+    for name, (signs, at_line) in _SIGNS.items():
+        if signs & known:
+            may = _may_hold(context, signs)
+            if at_line:
+                values[name], unseen = _holds_to_line(
+                    context, signs, of_junction=name in _OVERRULED
+                )
+                may = may | unseen
+            else:
+                values[name] = own_lanelets(context).flags(_has_sign(signs))
+            unknown[name] = may & ~values[name]
     if map_contents(context).lights:
         light, _, _ = own_light(context)
         at_work = np.isin(light, _AT_WORK)
@@ -155,14 +159,17 @@ def _is_of(kind: str) -> Callable[[Lanelet], bool]:
     return lambda lanelet: kind in lanelet.types
 
 
-def _holds_to_line(context: DriveContext, signs: Set[str], *, of_junction: bool) -> Flags:
-    """Mask of states in which one of these signs holds, up to its line.
+def _holds_to_line(
+    context: DriveContext, signs: Set[str], *, of_junction: bool
+) -> tuple[Flags, Flags]:
+    """Masks of states in which one of these signs holds, up to its line, and perhaps holds.
 
     Decided by the place of ego's front one state before, so that the sign still holds when ego
-    crosses the line. A sign ``of_junction`` determines priority there: it holds until ego drives
-    in, as some lines are a few metres before that.
+    crosses the line; perhaps where ego may just have crossed it. A sign ``of_junction`` determines
+    priority there: it holds until ego drives in, as some lines are a few metres before that.
     """
-    before, holds = context.spans.before(own_front(context)), np.zeros(context.states, dtype=bool)
+    before = context.spans.before(own_front(context))
+    holds, may_hold = np.zeros((2, context.states), dtype=bool)
     for piece, row in enumerate(context.road.rows):
         if any(lanelet is not None and signs & lanelet.signs for lanelet in row):
             begins = float(context.road.borders[piece])
@@ -173,7 +180,8 @@ def _holds_to_line(context: DriveContext, signs: Set[str], *, of_junction: bool)
                         line = max(line, _next_junction(context, first))
                     there = (before >= begins) & (before <= line)
                     holds |= there & (context.ego_lane == lane)
-    return holds
+                    may_hold |= may_have_passed(context, line) & (context.ego_lane == lane)
+    return holds, may_hold
 
 
 def _next_junction(context: DriveContext, line: float) -> float:
