@@ -13,15 +13,15 @@ from itertools import count, pairwise
 import numpy as np
 
 from rulec.recordings.mending.cut_tracks import cut_remark
-from rulec.recordings.mending.rows_of_states import rows_of, steps_of, with_states_at
+from rulec.recordings.mending.rows_of_states import with_states_at
 from rulec.recordings.mending.wrong_places import (
-    FARTHER_M,
     LEAST_MPS2,
     Floats,
     Path,
-    bends_of,
     farthest_by_noise,
+    is_smooth,
     most_in_a_row,
+    path_of,
     wrong_places_remark,
 )
 from rulec.recordings.recording import Participant, Recording
@@ -47,8 +47,8 @@ _HAIR = 1e-9
 
 def without_jumps(recording: Recording) -> Recording:
     """A recording whose tracks are cut at jumps, with remarks; what follows is somebody else."""
-    bodies = [body for body in recording.participants if _may_jump(body)]
-    paths = [Path(steps_of(body), (rows := rows_of(body))[:, :2], rows[:, 2]) for body in bodies]
+    bodies = [body for body in recording.participants if DRIVERS.intersection(body.object_types)]
+    paths = [path_of(body) for body in bodies]
     cuts = {
         body.id: (path, own)
         for body, path, own in zip(bodies, paths, jumps(paths, recording.step_s), strict=True)
@@ -82,13 +82,6 @@ def without_jumps(recording: Recording) -> Recording:
     if cut:
         remarks.append(cut_remark(cut, CUT_WHY))
     return replace(recording, participants=tuple(participants), remarks=tuple(remarks))
-
-
-def _may_jump(body: Participant) -> bool:
-    may: bool = not body.standing and len(body.states) > 2
-    return (
-        may and bool(DRIVERS & {*body.object_types}) and body.states.keys() == body.outlines.keys()
-    )
 
 
 def parts_between(cuts: Sequence[int], states: int, step_s: float) -> list[tuple[int, int]]:
@@ -132,7 +125,7 @@ def jumps(paths: Sequence[Path], step_s: float) -> list[list[int]]:
 
 def _jumps_of(track: int, path: Path, step_s: float) -> list[_Jump]:
     """The jumps from one step to the next: ways unlike that before and that after."""
-    if len(path.steps) < 3 or bends_of(path).max() <= FARTHER_M:
+    if is_smooth(path):
         return []
     steps = np.diff(path.steps)
     ways = np.diff(path.places, axis=0) / steps[:, None]

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.mending.rows_of_states import rows_of, steps_of, with_mended, with_states_at
 from rulec.recordings.recording import Participant, Recording
+from rulec.recordings.track import outlines_on_track
 
 FARTHER_M = 1.0
 """A place is wrong by at least so much."""
@@ -52,9 +53,7 @@ def without_wrong_places(recording: Recording) -> Recording:
     wrong: dict[str, int] = {}
 
     def right(body: Participant) -> Participant:
-        if body.standing or len(body.states) < 4 or body.states.keys() != body.outlines.keys():
-            return body
-        path = Path(steps_of(body), rows_of(body)[:, :2])
+        path = path_of(body)
         found = wrong_places(path, recording.step_s)
         if not found.any():
             return body
@@ -66,6 +65,15 @@ def without_wrong_places(recording: Recording) -> Recording:
         return recording
     remark = wrong_places_remark([*wrong], sum(wrong.values()))
     return replace(mended, remarks=(*recording.remarks, remark))
+
+
+def path_of(body: Participant) -> Path:
+    """The path of a participant; empty if it stands, or has places that are no track."""
+    on_track = outlines_on_track(body) is not None
+    if body.standing or not (on_track or body.states.keys() == body.outlines.keys()):
+        return Path(np.zeros(0, dtype=int64), np.zeros((0, 2)), np.zeros(0))
+    rows = rows_of(body)
+    return Path(steps_of(body), rows[:, :2], rows[:, 2])
 
 
 def wrong_places_remark(names: Sequence[str], count: int) -> str:
@@ -83,7 +91,7 @@ def wrong_places(path: Path, step_s: float) -> NDArray[bool_]:
     """
     steps, places = path.steps, path.places
     found = np.zeros(len(steps), dtype=bool)
-    if len(steps) < 4 or bends_of(path).max() <= FARTHER_M:
+    if len(steps) < 4 or is_smooth(path):
         return found
     times: Floats = (steps * step_s).astype(float64)
     least = farthest_by_noise(_off_chord(times, places, 1)[0])
@@ -104,12 +112,29 @@ def most_in_a_row(step_s: float) -> int:
     return max(1, min(_MOST_WRONG, int(_WRONG_S / step_s + _HAIR)))
 
 
-def bends_of(path: Path) -> Floats:
-    """How far (m) each place is from where its body would be had it not changed its velocity."""
-    between = np.diff(path.steps)
-    ways = np.diff(path.places, axis=0) / between[:, None]
-    bends: Floats = np.hypot(*np.diff(ways, axis=0).T) * np.minimum(between[1:], between[:-1])
-    return bends
+def is_smooth(path: Path) -> bool:
+    """Whether each place of a path is nearly where the two before it lead to; most paths are."""
+    if len(path.steps) < 3:
+        return True
+    return bool(bends_of(path.steps, *path.places.T).max() <= FARTHER_M**2)
+
+
+def bends_of(steps: NDArray[int64], x: Floats, y: Floats) -> Floats:
+    """How far each place but two is from where those before it lead to, squared (m²)."""
+    between = steps[1:] - steps[:-1]
+    # Rows of several tracks may follow each other
+    even = bool((between == 1).all())
+    between = np.maximum(between, 1)
+    squares: Floats = np.zeros(max(len(steps) - 2, 0))
+    for place in (x, y):
+        ways = place[1:] - place[:-1]
+        if even:
+            bends = ways[1:] - ways[:-1]
+        else:
+            ways /= between
+            bends = (ways[1:] - ways[:-1]) * np.minimum(between[1:], between[:-1])
+        squares += bends * bends
+    return squares
 
 
 def _off_chord(times: Floats, places: Floats, count: int) -> Floats:

@@ -17,13 +17,20 @@ from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.recordings.mending.cut_tracks import cut_remark
 from rulec.recordings.mending.short_holes import LONGEST_HOLE_S, most_steps
 from rulec.recordings.mending.track_jumps import CUT_WHY, DRIVERS, jumps, parts_between
-from rulec.recordings.mending.wrong_places import Path, wrong_places, wrong_places_remark
+from rulec.recordings.mending.wrong_places import (
+    FARTHER_M,
+    Path,
+    bends_of,
+    wrong_places,
+    wrong_places_remark,
+)
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import OBSTACLE_TYPES, Lamp, Participant, id_order
 from rulec.recordings.track import Track, tracked
 from rulec.recordings.tracks import derived_motion as motion
 from rulec.recordings.tracks.even_times import EvenTimes
 from rulec.recordings.tracks.road_user_types import TYPES, USUAL_TYPE, type_of, usual_size
+from rulec.trace.plain_arrays import distinct
 
 Floats = NDArray[float64]
 HeadingAt = Callable[[float, float], float]
@@ -115,11 +122,14 @@ class _Reading:
             if twice.any():
                 raise self._repeated_row(name, own, int(np.argmax(twice)))
             tracks.append(_RowsOfTrack(name, self._type(name, own), own))
-        tracks = [self._without_wrong_places(track) for track in tracks]
-        cuts = jumps([self._path(track) for track in tracks], rows.times.step_s)
+        rough = _rough_tracks(rows, [track.rows for track in tracks])
+        for number in rough:
+            tracks[number] = self._without_wrong_places(tracks[number])
+        cuts = jumps([self._path(tracks[number]) for number in rough], rows.times.step_s)
+        cut_at = dict(zip(rough, cuts, strict=True))
         participants: list[Participant] = []
-        for track, cut in zip(tracks, cuts, strict=True):
-            participants += self._participants(track, cut)
+        for number, track in enumerate(tracks):
+            participants += self._participants(track, cut_at.get(number, ()))
         participants.sort(key=lambda participant: id_order(participant.id))
         return ReadTracks(tuple(participants), self.ego, tuple(self._remarks()))
 
@@ -262,8 +272,10 @@ class _Reading:
     def _times(self, own: NDArray[np.intp]) -> Floats | float:
         """The times (s) of rows of a track; the step if it has no holes, which is exact."""
         steps, step_s = self.rows.times.steps[own], self.rows.times.step_s
+        if int(steps[-1] - steps[0]) < len(steps):
+            return step_s
         times: Floats = (steps * step_s).astype(float64)
-        return times if int(steps[-1] - steps[0]) >= len(steps) else step_s
+        return times
 
     def _heading(self, kind: str, own: NDArray[np.intp], places: NDArray[float64]) -> Floats:
         stated = None if self.rows.heading is None else self.rows.heading[own]
@@ -372,6 +384,16 @@ def _motions(rows: TrackRows) -> tuple[NDArray[np.intp], NDArray[np.bool_], tupl
     follow = (np.diff(rows.track.codes[order]) == 0) & (np.diff(rows.times.steps[order]) == 1)
     dx, dy = (np.diff(place[order]) / rows.times.step_s for place in (rows.x, rows.y))
     return order, follow, (dx, dy)
+
+
+def _rough_tracks(rows: TrackRows, tracks: Sequence[NDArray[np.intp]]) -> list[int]:
+    """The numbers of tracks that are not smooth; their rows are ascending by time."""
+    order = np.concatenate(tracks)
+    number = np.arange(len(tracks)).repeat([len(own) for own in tracks])
+    bends = bends_of(rows.times.steps[order], rows.x[order], rows.y[order])
+    rough = (bends > FARTHER_M**2) & (number[2:] == number[:-2])
+    numbers: list[int] = distinct(number[:-2][rough]).tolist()
+    return numbers
 
 
 def _filled(values: Floats, others: Floats) -> Floats:
