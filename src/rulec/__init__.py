@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from rulec.diagnostics import Diagnostic as Diagnostic
     from rulec.diagnostics import Fix as Fix
     from rulec.diagnostics import Label as Label
+    from rulec.diagnostics import Offer as Offer
     from rulec.diagnostics import RulecError as RulecError
     from rulec.diagnostics import SourceLocation as SourceLocation
     from rulec.diagnostics.code import Code as Code
@@ -151,7 +152,7 @@ _HOME = {
     "rulec.book_tests.example_coverage": "RuleCoverage",
     "rulec.book_tests.example_runs": "ExampleOutcome ExampleRun",
     "rulec.book_tests.proposed_examples": "UncoveredEdge UntouchedLimit",
-    "rulec.diagnostics": "Diagnostic Fix Label RulecError SourceLocation",
+    "rulec.diagnostics": "Diagnostic Fix Label Offer RulecError SourceLocation",
     "rulec.diagnostics.code": "Code",
     "rulec.extraction.drives": "NoDrive",
     "rulec.extraction.moment_search": "DriveMoments",

@@ -84,6 +84,7 @@ def values():
     known = [
         *(rulec.Session(), mistake, mistake.place, error, rulec.explain("R0104")),
         *(rulec.Label(mistake.place, "here"), rulec.Fix(mistake.place, "p"), book.vocabulary),
+        rulec.Offer("Write `p`", (rulec.Fix(mistake.place, "p"),)),
         *(example, book.rules[0], book),
         *(book.rules[0].variables[0], rulec.check("esterle2019"), rules.rules[0], rules),
         *(rules.rules[0].machine, trace, maneuvers.paths, cells, columns, verdict),

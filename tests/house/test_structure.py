@@ -5,7 +5,7 @@ import pytest
 from support.leftovers import POSITIONAL_CALLS, UNEXPLAINED_IMPORTS, WIDE_FOLDERS
 from support.source_modules import PACKAGE, rooms, source_modules
 
-MOST_LINES = 131_700
+MOST_LINES = 131_950
 """What stood before values could be unknown took 41,000; evidence has 13,000, formats and
 fleets 24,000, ready traces read as columns 700, bounds and proofs 6,000, the words and tools of
 more law 6,500; monitors in C, the compiler without Spot and what can be driven have the rest."""

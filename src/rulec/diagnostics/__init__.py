@@ -3,7 +3,7 @@
 Nothing here prints; ``rulec.report`` turns diagnostics into text.
 """
 
-from rulec.diagnostics.diagnostic import Diagnostic, Fix, Label, RulecError, placed_at
+from rulec.diagnostics.diagnostic import Diagnostic, Fix, Label, Offer, RulecError, placed_at
 from rulec.diagnostics.phrases import any_of, did_you_mean, named, nearest_name
 from rulec.diagnostics.source_text import Source, SourceLocation, Span
 
@@ -11,6 +11,7 @@ __all__ = [
     "Diagnostic",
     "Fix",
     "Label",
+    "Offer",
     "RulecError",
     "Source",
     "SourceLocation",

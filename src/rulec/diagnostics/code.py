@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, TypedDict
 
 from rulec.diagnostics.diagnostic import Diagnostic, Fix, Label, RulecError, Severity
 from rulec.diagnostics.source_text import SourceLocation, Span
+from rulec.diagnostics.ways_out import Help, offers_of
 from rulec.value_display import short_repr
 
 if TYPE_CHECKING:
@@ -35,10 +36,9 @@ which the maneuvers of scenario s1 are judged. ``trace``: a line to judge by ``e
 
 
 class Details(TypedDict, total=False):
-    """What a diagnostic may contain besides its message and place."""
+    """What a diagnostic may contain besides its message, place and help."""
 
     expected: str
-    help: str
     labels: tuple[Label, ...]
     notes: tuple[str, ...]
     severity: Severity
@@ -65,14 +65,25 @@ class Code:
     kind: ExampleKind = "rules"
 
     def at(
-        self, place: SourceLocation | Span | None, message: str, **details: Unpack[Details]
+        self,
+        place: SourceLocation | Span | None,
+        message: str,
+        *,
+        help: Help = "",
+        **details: Unpack[Details],
     ) -> Diagnostic:
         """Make a diagnostic of this code, with a place if known."""
         where = place.place if isinstance(place, Span) else place
-        return Diagnostic(self.code, message, where, **details)
+        offers = offers_of(help, where)
+        return Diagnostic(self.code, message, where, help=str(help), offers=offers, **details)
 
     def error(
-        self, place: SourceLocation | Span | None, message: str, **details: Unpack[Details]
+        self,
+        place: SourceLocation | Span | None,
+        message: str,
+        *,
+        help: Help = "",
+        **details: Unpack[Details],
     ) -> RulecError:
         """Make an exception with one diagnostic of this code."""
-        return RulecError(self.at(place, message, **details))
+        return RulecError(self.at(place, message, help=help, **details))

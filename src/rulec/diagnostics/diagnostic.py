@@ -31,11 +31,25 @@ class Fix:
 
 
 @dataclass(frozen=True, slots=True)
+class Offer:
+    """An edit that may be meant, with a title; it is tried and chosen, never made by itself.
+
+    A place without a column stands for a new line above the item there, one without a line for a
+    new line in the file's header. Without a title, the text is a name of which a variant is meant
+    that is not in the file.
+    """
+
+    title: str
+    fixes: tuple[Fix, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Diagnostic:
     """One mistake (or remark).
 
     ``message`` says what is wrong in one clause; ``expected`` is shown beside the underlined place
-    (``expected a name``); ``help`` is the way out, ``fix`` the same as an edit, if there is one.
+    (``expected a name``); ``help`` is the way out, ``fix`` the same as an edit, if one is certain,
+    and ``offers`` the edits that may be meant by it, the most likely first.
     Diagnostics are made by the ``Code`` with the text ``code``.
     """
 
@@ -50,6 +64,7 @@ class Diagnostic:
     notes: tuple[str, ...] = ()
     severity: Severity = "error"
     fix: Fix | None = None
+    offers: tuple[Offer, ...] = ()
 
 
 def at(span: Span | None) -> SourceLocation | None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
-from rulec.diagnostics import Diagnostic, Fix, Source, Span
+from rulec.diagnostics import Diagnostic, Fix, Offer, Source, Span
+from rulec.diagnostics.ways_out import offering
 from rulec.rulebook.allowance_messages import UNFIT_ALLOWANCE
 
 _ALLOWANCE = re.compile(
@@ -48,15 +49,22 @@ def _unfit(findings: Sequence[Diagnostic], source: Source) -> Iterator[Diagnosti
                 help="write `because` and the reason after it",
             )
         codes = re.findall(r"R\d{4}", match["codes"])
-        for code in codes:
-            if (line, code) not in places and not code.startswith(_OF_OTHERS):
-                yield UNFIT_ALLOWANCE.at(
-                    span,
-                    f"there is no warning {code} on this line",
-                    severity="warning",
-                    help="leave the comment out, or move it to the line that the warning is about",
-                    fix=_without(source, match) if len(codes) == 1 else None,
-                )
+        idle = [
+            code for code in codes if (line, code) not in places and not code.startswith(_OF_OTHERS)
+        ]
+        without = _without(source, match)
+        offers = (Offer("Leave out the comment", (without,)),) if idle == codes else ()
+        for code in idle:
+            yield UNFIT_ALLOWANCE.at(
+                span,
+                f"there is no warning {code} on this line",
+                severity="warning",
+                help=offering(
+                    "leave the comment out, or move it to the line that the warning is about",
+                    *offers,
+                ),
+                fix=without if len(codes) == 1 else None,
+            )
 
 
 def _without(source: Source, comment: re.Match[str]) -> Fix:

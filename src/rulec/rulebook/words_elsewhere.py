@@ -13,6 +13,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError
+from rulec.diagnostics.ways_out import in_header
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.words_in_files import words_of_vocabularies
 from rulec.rulebook.names.atom_messages import UNKNOWN_NAME
@@ -37,17 +38,21 @@ def with_words_elsewhere(
     # Each file is read once, however many names are unknown.
     words, definitions = words_of_vocabularies(search_path), _definitions(search_path)
 
-    def way_out(name: str) -> str:
+    def with_way_out(finding: Diagnostic, name: str) -> Diagnostic:
         for vocabulary, own in words.items():
             if vocabulary not in read and name in own:
-                return f"it is a word of the vocabulary `{vocabulary}`: `use {vocabulary}`"
+                use = f"use {vocabulary}"
+                way_out = f"it is a word of the vocabulary `{vocabulary}`: `{use}`"
+                file = finding.place.file if finding.place else ""
+                return replace(finding, help=way_out, offers=(in_header(use, file),))
         for book, own in definitions.items():
             if book not in read and name in own:
-                return f"it is defined in the rulebook `{book}`: `extends {book}`, or copy it"
-        return ""
+                way_out = f"it is defined in the rulebook `{book}`: `extends {book}`, or copy it"
+                return replace(finding, help=way_out, offers=())
+        return finding
 
     return tuple(
-        replace(finding, help=way_out(name) or finding.help) if name else finding
+        with_way_out(finding, name) if name else finding
         for finding, name in zip(known, names, strict=True)
     )
 
@@ -58,7 +63,8 @@ def _unknown_name(finding: Diagnostic) -> str:
     if finding.code != UNKNOWN_NAME.code or place is None or place.column is None:
         return ""
     name = place.excerpt[place.column - 1 : (place.end_column or place.column) - 1].split("(")[0]
-    is_spelt_otherwise = f"did you mean `{name.casefold()}`" in finding.help.casefold()
+    offered = {fix.text.casefold() for offer in finding.offers for fix in offer.fixes}
+    is_spelt_otherwise = name.casefold() in offered
     if not name.isidentifier() or len(name) < _SHORTEST or is_spelt_otherwise:
         return ""
     return name

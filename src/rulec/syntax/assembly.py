@@ -194,7 +194,7 @@ def _no_file_line(first: Part) -> Diagnostic:
         _start(first.span),
         "the file does not say what it is",
         expected=structure.EXPECTED_BEGINNING,
-        help=structure.HOW_TO_BEGIN,
+        help=structure.how_to_begin(first.span),
     )
 
 

@@ -68,10 +68,11 @@ _IN_OTHER_LANGUAGES = {
 _UNIT_MEANT = {word: unit for unit, words in _IN_OTHER_LANGUAGES.items() for word in words.split()}
 
 
-def unit_in_another_language(text: str) -> str:
-    """Help for a unit that is written out, in any language: `sekunder`, `km/t`; else empty."""
-    unit = _UNIT_MEANT.get(text.casefold())
-    return f"did you mean `{unit}`?" if unit else hour_in_another_language(text)
+def unit_in_another_language(text: str) -> tuple[str, str]:
+    """The unit that is written out, in any language: `sekunder`, `km/t`; and help, else empty."""
+    unit = _UNIT_MEANT.get(text.casefold(), "")
+    hour = hour_in_another_language(text)
+    return (unit, f"did you mean `{unit}`?") if unit else ("km/h" if hour else "", hour)
 
 
 def _read(text: str) -> Unit | Refusal | None:

@@ -17,7 +17,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule,
 from rulec.automata.bundle.mapped_tables import MappedTables, TableWriter
 from rulec.automata.bundle.stored_prefixes import CutTables, StoredPrefixes
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read, Threshold
-from rulec.diagnostics import Diagnostic, Fix, Label, SourceLocation
+from rulec.diagnostics import Diagnostic, Fix, Label, Offer, SourceLocation
 from rulec.logic import formula as ltl
 from rulec.rulebook import rulebook_model as model
 from rulec.rulebook.files.search_path import Dependency
@@ -84,7 +84,7 @@ _KINDS: dict[type, _Kind] = {
             *(CompiledRule, CompiledAxiom, CutTables, StoredPrefixes, Compilation, Dependency),
             *(model.Variable, model.Exemption, model.RuleParts, model.SourceFile),
             *(ObjectType, Enumeration, Signal, Quantity, Vocabulary),
-            *(SourceLocation, Label, Fix, Diagnostic),
+            *(SourceLocation, Label, Fix, Offer, Diagnostic),
         )
     },
 }

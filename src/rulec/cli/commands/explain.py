@@ -136,6 +136,6 @@ def _way_out(name: str) -> str:
     as_long = sorted(one for one in defined if abs(len(one) - len(name)) <= _SLIP)
     if near := nearest_name(name, as_long, _ALIKE):
         return f"did you mean `{near}`, which a rulebook defines?"
-    return offer(name, described(known, words)) or (
+    return str(offer(name, described(known, words))) or (
         "`rulec list codes` shows all codes, and `rulec list vocabularies` the files with words"
     )

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from lsprotocol import types as lsp
 
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics import Diagnostic, Fix, RulecError, SourceLocation
+from rulec.diagnostics.ways_out import leaving_out, short
 from rulec.language_server.names.renaming import TextChange, changed_text
 from rulec.language_server.workspace.editor_workspace import (
     CheckedDocument,
@@ -17,26 +17,18 @@ from rulec.language_server.workspace.editor_workspace import (
 )
 from rulec.language_server.workspace.published_diagnostics import diagnostics_of
 from rulec.language_server.workspace.text_positions import TextPositions
-from rulec.language_server.writing.described_edits import (
-    Edit,
-    another_name,
-    declares_in_formula,
-    described_edits,
-)
-from rulec.language_server.writing.stated_edits import keeps_the_rest, short, stated_edits
+from rulec.language_server.writing.other_names import Edit, everywhere, with_free_name
 from rulec.rulebook.files.reference_messages import (
     EXTENDS_CIRCLE,
     NAME_NOT_FOUND,
     WRONG_KIND_OF_FILE,
 )
+from rulec.syntax.messages.lookalikes import CONFUSABLE_NAME
 from rulec.syntax.messages.mismatch import UNEXPECTED_WORD, UNTERMINATED_TEXT
 from rulec.syntax.messages.structure import NOT_A_RULEBOOK, OUTSIDE_BRACES, UNBALANCED_BRACE
 
 _MOST_TRIED = 12
 """The greatest number of edits tried for one message: each is checked as if it had been typed."""
-
-_SAYS_NUMBERS_ANEW = re.compile(r"^a time of day is a number|^a date is written|^write the number")
-"""Help that says how a number, which is there in another form, is written."""
 
 _HIDING = frozenset(
     code.code for code in (NOT_A_RULEBOOK, WRONG_KIND_OF_FILE, EXTENDS_CIRCLE, NAME_NOT_FOUND)
@@ -88,11 +80,11 @@ def _for(
     if finding.fix is not None and finding.fix.place.file == place.file:
         change = TextChange(*_bounds(finding.fix.place, positions), finding.fix.text)
         was = positions.text[change.start : change.end]
-        title = f"Write `{short(change.text)}`" if change.text else f"Leave out {_named(was)}"
+        title = f"Write `{short(change.text)}`" if change.text else leaving_out(was)
         yield QuickFix(title, finding, (change,))
         return
     offered = set[str]()
-    for title, changes in list(_candidates(finding, place, positions, trial))[:_MOST_TRIED]:
+    for title, changes in _edits(finding, positions)[:_MOST_TRIED]:
         after = changed_text(positions.text, changes)
         if after not in offered and trial.mends(after, finding):
             yield QuickFix(title, finding, changes)
@@ -105,28 +97,40 @@ def _bounds(place: SourceLocation, positions: TextPositions) -> tuple[int, int]:
     return start, max(start, end)
 
 
-def _named(text: str) -> str:
-    if text.isprintable():
-        return "the comment" if text.lstrip().startswith("#") else f"`{short(text)}`"
-    return ", ".join(f"U+{ord(sign):04X}" for sign in text)
+def _edits(finding: Diagnostic, positions: TextPositions) -> list[Edit]:
+    """The edits that a message offers, the most likely first."""
+    edits = [(one.title, _changes(one.fixes, positions)) for one in finding.offers]
+    if finding.code == CONFUSABLE_NAME.code:
+        return [*everywhere(edits, positions.text)]
+    return [with_free_name(edit, positions.text) for edit in edits]
 
 
-def _candidates(
-    finding: Diagnostic, place: SourceLocation, positions: TextPositions, trial: _Trial
-) -> Iterator[Edit]:
-    """Edits that the help may mean, the most likely first."""
-    text, (start, end) = positions.text, _bounds(place, positions)
-    path = trial.document.path
-    stem = "" if path is None else path.stem
-    if declares_in_formula(text, start):
-        return
-    yield from described_edits(finding, text, start, end, stem)
-    for title, change in stated_edits(finding, text, start, end):
-        whole = changed_text(text, (change,))
-        anew = _SAYS_NUMBERS_ANEW.search(finding.help) or " for `" in f" {finding.help}"
-        if title.startswith("Leave out") or anew or keeps_the_rest(text, whole):
-            yield title, (change,)
-    yield from another_name(finding, text, start, end)
+def _changes(fixes: Sequence[Fix], positions: TextPositions) -> tuple[TextChange, ...]:
+    return tuple(TextChange(*_replaced(fix.place, positions), fix.text) for fix in fixes)
+
+
+def _replaced(place: SourceLocation, positions: TextPositions) -> tuple[int, int]:
+    """What an offered edit replaces: nothing, if it is a new line."""
+    if place.column is not None:
+        return _bounds(place, positions)
+    text = positions.text
+    above = text.find("\n") + 1 or len(text)
+    if place.line is not None:
+        above = _line_of_item(text, positions.offset_of(place.line, 1))
+    return above, above
+
+
+def _line_of_item(text: str, offset: int) -> int:
+    """The beginning of the item at a character, including the comments above it."""
+    start = text.rfind("\n", 0, offset) + 1
+    while start > 0 and (text[start] in " \t}" or text[start] == "\n"):
+        start = text.rfind("\n", 0, start - 1) + 1
+    while start > 0:
+        above = text.rfind("\n", 0, start - 1) + 1
+        if not text.startswith("#", above):
+            break
+        start = above
+    return start
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from typing import Any
 
 from rulec.cache.cache_folder import program_digest, usable_folder
 from rulec.cache.kept_json import keep_json, recall_json
-from rulec.diagnostics import Diagnostic, Fix, Label, RulecError, SourceLocation
+from rulec.diagnostics import Diagnostic, Fix, Label, Offer, RulecError, SourceLocation
 from rulec.rulebook.files.search_path import Dependency, locate_base, locate_vocabulary, read_bytes
 from rulec.version import __version__
 
@@ -89,6 +89,8 @@ def remember(
 def _size(findings: Sequence[Diagnostic]) -> int:
     places = [finding.place for finding in findings if finding.place is not None]
     places += [label.place for finding in findings for label in finding.labels]
+    offers = [offer for finding in findings for offer in finding.offers]
+    places += [fix.place for offer in offers for fix in offer.fixes]
     return sum(_WORDS + len(place.excerpt) for place in places)
 
 
@@ -109,7 +111,12 @@ def diagnostic_of(data: dict[str, Any]) -> Diagnostic:
     """The diagnostic from which ``asdict`` made the data. Raises TypeError or LookupError."""
     place = None if data["place"] is None else SourceLocation(**data["place"])
     labels = [Label(SourceLocation(**label["place"]), label["message"]) for label in data["labels"]]
-    mend = data["fix"]
-    fix = None if mend is None else Fix(SourceLocation(**mend["place"]), mend["text"])
+    fix = None if data["fix"] is None else _fix_of(data["fix"])
+    offers = [Offer(one["title"], tuple(map(_fix_of, one["fixes"]))) for one in data["offers"]]
     parts = {"place": place, "labels": tuple(labels), "notes": tuple(data["notes"]), "fix": fix}
+    parts["offers"] = tuple(offers)
     return Diagnostic(**{**data, **parts})
+
+
+def _fix_of(data: dict[str, Any]) -> Fix:
+    return Fix(SourceLocation(**data["place"]), data["text"])

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.ways_out import Help, offering
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.elaborate.elaboration_messages import kind_of, short
 from rulec.syntax import tree
+from rulec.syntax.messages.larger_edits import exchanged
 from rulec.syntax.tree_printer import print_formula
 from rulec.vocabulary.dimensions import LENGTH
 
@@ -35,23 +37,28 @@ def wrong_form(node: tree.Prefix | tree.Infix, bound: tree.BoundNode) -> Diagnos
     text = print_formula(amount) if amount else "2 s"
     if bound.exact:
         message = f"`{node.operator}` looks at a stretch of time, and this is an instant"
-        way_out = f"write `[<= {text}]`, `[>= {text}]` or `[{text} .. {text}]`"
+        way_out: Help = offering(
+            f"write `[<= {text}]`, `[>= {text}]` or `[{text} .. {text}]`",
+            *(f"[<= {text}]", f"[>= {text}]"),
+        )
     else:
         message = f"`{node.operator}` looks at one instant, and this is a stretch of time"
-        way_out = f"write `{node.operator}[{text}]`"
+        instant = f"write `{node.operator}[{text}]`"
         if bound.high and not bound.low and node.operator in ("next", "previously"):
             within = "eventually" if node.operator == "next" else "once"
-            way_out += f" for that instant, `{within}[<= {text}]` for one on the way there"
+            instant += f" for that instant, `{within}[<= {text}]` for one on the way there"
+        way_out = instant
     return SENSELESS_BOUND.at(bound.span, message, expected="expected another bound", help=way_out)
 
 
 def empty_bound(bound: tree.BoundNode) -> Diagnostic:
     """``[4 s .. 1 s]``."""
+    ends = [end.span.text for end in (bound.low, bound.high) if end is not None]
     return SENSELESS_BOUND.at(
         bound.span,
         "the bound ends before it begins",
         expected="expected the smaller number first",
-        help="exchange the two",
+        help=offering("exchange the two", *(exchanged(bound.span, *ends) if len(ends) > 1 else ())),
     )
 
 

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.ways_out import Help, offering
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
-from rulec.rulebook.elaborate.elaboration_messages import kind_of, origins, short
+from rulec.rulebook.elaborate.elaboration_messages import hour_meant, kind_of, origins, short
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, WRONG_ARITY
 from rulec.rulebook.overlay.rulebook_overlay import Value
 from rulec.syntax import tree
@@ -22,7 +23,6 @@ from rulec.vocabulary.dimensions import (
     TIME,
     Dimension,
 )
-from rulec.vocabulary.units import hour_in_another_language
 
 if TYPE_CHECKING:
     from rulec.rulebook.elaborate.scope import Scope
@@ -57,7 +57,7 @@ def takes_no_object(use: tree.AtomUse, kind: str, scope: Scope) -> Diagnostic:
         use.span,
         f"`{use.name.text}` is {'an' if kind == 'option' else 'a'} {kind} and about no object",
         expected="expected no parentheses",
-        help=f"write `{use.name.text}`",
+        help=offering(f"write `{use.name.text}`", use.name.text),
         labels=origins(scope, use),
     )
 
@@ -132,13 +132,14 @@ def parameter_of_another_kind(
     assert not isinstance(item.value, bool), "only an option is on or off"
     usual = _usual_unit(wanted)
     if wanted == NUMBER:
-        way_out = "leave the unit out"
+        way_out: Help = "leave the unit out"
     elif number.dimension == NUMBER and usual:
-        way_out = f"write the unit, such as `{short(item.value)} {usual}`"
+        written = f"{short(item.value)} {usual}"
+        way_out = offering(f"write the unit, such as `{written}`", written)
     else:
         such = f": a {wanted.name} is in {usual}, say" if usual else ""
-        unit = item.value.unit if isinstance(item.value, tree.NumberLiteral) else ""
-        way_out = hour_in_another_language(unit) or f"check the unit{such}"
+        slip = hour_meant(item.value) if isinstance(item.value, tree.NumberLiteral) else ""
+        way_out = slip or f"check the unit{such}"
     return MIXED_DIMENSIONS.at(
         item.value.span,
         f"`{item.name.text}` is a {wanted.name}, and `{short(item.value)}` "

@@ -6,14 +6,14 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from rulec.diagnostics import Diagnostic, Label
+from rulec.diagnostics.ways_out import Help, offering, write
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
-from rulec.rulebook.elaborate.elaboration_messages import kind_of, origins, short
+from rulec.rulebook.elaborate.elaboration_messages import hour_meant, kind_of, origins, short
 from rulec.rulebook.elaborate.scope import Scope
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS
 from rulec.syntax import tree
 from rulec.vocabulary import Quantity
 from rulec.vocabulary.dimensions import DIMENSIONS
-from rulec.vocabulary.units import hour_in_another_language
 
 _Side: TypeAlias = tuple[tree.Formula, NumberByCases]
 
@@ -66,7 +66,7 @@ def _sides(
     return node.left, node.right, {"+": "added", "-": "subtracted"}.get(sign, "compared")
 
 
-def _help(node: tree.Formula, left: _Side, right: _Side, scope: Scope) -> str:
+def _help(node: tree.Formula, left: _Side, right: _Side, scope: Scope) -> Help:
     """The suggested correction of ``node``, which has these two sides."""
     (first, one), (second, other) = left, right
     return (
@@ -86,13 +86,14 @@ _KILOGRAMS = 100
 """From this number on, a mass without a unit is rather one in kilograms than in tonnes."""
 
 
-def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
+def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> Help:
     unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
     number = node.operand if isinstance(node, tree.Minus) else node
     if not (isinstance(number, tree.NumberLiteral) and not number.unit and unit):
         return ""
     is_heavy = unit == "t" and float(number.text) >= _KILOGRAMS
-    return f"write the unit, such as `{short(node)} {'kg' if is_heavy else unit}`"
+    written = f"{short(node)} {'kg' if is_heavy else unit}"
+    return offering(f"write the unit, such as `{written}`", write(written, node.span))
 
 
 def _parameter_help(node: tree.Formula, kind: str, beside: tree.Formula, scope: Scope) -> str:
@@ -106,7 +107,9 @@ def _parameter_help(node: tree.Formula, kind: str, beside: tree.Formula, scope: 
     return f"`{short(beside)}` is in {unit}: check the unit of `{short(node)}` where it is declared"
 
 
-def _other_unit(node: tree.Formula, beside: tree.Formula, whole: tree.Formula, scope: Scope) -> str:
+def _other_unit(
+    node: tree.Formula, beside: tree.Formula, whole: tree.Formula, scope: Scope
+) -> Help:
     """Help for a number of another dimension than what it stands beside in ``whole``."""
     unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
     if not (isinstance(node, tree.NumberLiteral) and unit):
@@ -116,18 +119,20 @@ def _other_unit(node: tree.Formula, beside: tree.Formula, whole: tree.Formula, s
             return f"a share is a factor: for 10 % more write `1.1 * {short(beside)}`"
         # Of what it is beside, it would be a comparison of something with itself.
         return f"say what it is a share of, such as `{short(node)} * x` for a quantity `x`"
-    slip = hour_in_another_language(node.unit) or _in_other_letters(node, beside, scope)
+    slip = hour_meant(node) or _in_other_letters(node, beside, scope)
     return slip or f"`{short(beside)}` is in {unit}: check the unit of `{short(node)}`"
 
 
-def _in_other_letters(node: tree.NumberLiteral, beside: tree.Formula, scope: Scope) -> str:
+def _in_other_letters(node: tree.NumberLiteral, beside: tree.Formula, scope: Scope) -> Help:
     """Help for a unit in the wrong case, such as `T` for tonnes."""
     unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
     wanted = scope.symbols.unit(unit)
     for written in (node.unit.lower(), node.unit.upper()):
         meant = scope.symbols.unit(written)
         if wanted is not None and meant is not None and meant.dimension == wanted.dimension:
-            return f"write `{node.text} {written}`: units are told apart by their case"
+            amount = f"{node.text} {written}"
+            text = f"write `{amount}`: units are told apart by their case"
+            return offering(text, write(amount, node.span))
     return ""
 
 
@@ -180,7 +185,7 @@ def _speed_help(
     left: _Side,
     right: _Side,
     scope: Scope,
-) -> str:
+) -> Help:
     """Help for a length beside a time, if the vocabulary has ego's speed."""
     symbols = scope.symbols
     speeds = [
@@ -193,8 +198,12 @@ def _speed_help(
     ]
     for (_, cases), (node, other) in ((left, right), (right, left)):
         if speeds and (cases.dimension, other.dimension) == _LENGTH_AND_TIME:
-            way_out = f"a speed makes a length of a time: `{short(node)} * {speeds[0]}`"
+            way, length = f"{short(node)} * {speeds[0]}", ""
+            way_out = f"a speed makes a length of a time: `{way}`"
             if isinstance(node, tree.NumberLiteral) and node.unit:
-                way_out = f"write `{node.text} m`, or, as {way_out}"
-            return way_out
+                length = f"{node.text} m"
+                way_out = f"write `{length}`, or, as {way_out}"
+            # Which of the two is meant, only the author knows.
+            both = (length, way) if length else ()
+            return offering(way_out, *(write(one, node.span) for one in both))
     return ""

@@ -277,7 +277,9 @@ def _aggregate(node: tree.Aggregate, scope: Scope) -> ltl.Formula | NumberByCase
     assert kind is not None, "the grammar asks for a type"
     known_type = scope.symbols.known_type(kind, scope.report)
     if name.text in scope.variables:
-        scope.report(twice("variable", name, scope.variables[name.text].span))
+        again = twice("variable", name, scope.variables[name.text].span)
+        # Whoever changes its name has to change all its uses.
+        scope.report(replace(again, offers=()))
         return None
     actual, number = name.text, 2
     while actual in scope.taken:

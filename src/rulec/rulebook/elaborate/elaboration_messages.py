@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rulec.diagnostics import Diagnostic, Fix, Label, Span, any_of, did_you_mean
+from rulec.diagnostics import Diagnostic, Fix, Label, Span, any_of, nearest_name
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.ways_out import Help, offering, write
 from rulec.logic.formula import Formula
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.elaborate.scope import SIDES, Scope
 from rulec.rulebook.names.atom_messages import NOT_BOOLEAN, NUMBER_OR_FORMULA
 from rulec.syntax import tree
+from rulec.syntax.messages.larger_edits import operator_outside
 from rulec.syntax.messages.literal_values import NUMBER_TOO_LARGE
 from rulec.syntax.tree_printer import print_formula
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.dimensions import TIME, Dimension
+from rulec.vocabulary.units import hour_in_another_language
 
 POINT_OF_THOUSANDS = Code(
     "R0365",
@@ -70,6 +73,14 @@ def kind_of(dimension: Dimension | None) -> str:
 def short(node: tree.Formula) -> str:
     text = print_formula(node, "written")
     return text if len(text) <= 40 else f"{text[:39]}…"
+
+
+def hour_meant(number: tree.NumberLiteral) -> Help:
+    """Help for a number in km/h with another language's hour, such as `km/t`; else empty."""
+    end = number.span.end
+    unit = Span(number.span.source, end - len(number.unit), end)
+    way_out = hour_in_another_language(number.unit)
+    return offering(way_out, write("km/h", unit)) if way_out else ""
 
 
 def what_of(operand: object) -> str:
@@ -155,11 +166,17 @@ def values_compared(
     relative = value in SIDES and set(SIDES[value].values()) <= set(item.values)
     objects = ", ".join(argument.text for argument in side.arguments)
     arguments = f"({objects})" if objects else ""
+    no = "not " if node.relation == "!=" else ""
     if value in item.values or relative:
-        way_out = f"write `{'not ' if node.relation == '!=' else ''}{value}{arguments}`"
+        alone = f"{no}{value}{arguments}"
+        way_out = offering(f"write `{alone}`", alone)
+    elif near := nearest_name(value, item.values):
+        way_out = offering(f"did you mean `{near}`?", f"{no}{near}{arguments}")
     else:
         ways = any_of([f"`{known}{arguments}`" for known in item.values])
-        way_out = did_you_mean(value, item.values) or f"write {ways}"
+        is_number = isinstance(compared, tree.NumberLiteral)
+        values = () if is_number else (f"{no}{known}{arguments}" for known in item.values)
+        way_out = offering(f"write {ways}", *values)
     return NOT_BOOLEAN.at(
         node.span,
         f"`{name}` is not compared: each of its values is true or false by itself",
@@ -172,7 +189,8 @@ def values_compared(
 def truths_compared(node: tree.Compare, scope: Scope) -> Diagnostic:
     if isinstance(node.right, tree.TruthLiteral) and isinstance(node.left, tree.AtomUse):
         holds = node.right.value == (node.relation == "=")
-        way_out = f"write `{'' if holds else 'not '}{short(node.left)}`"
+        alone = f"{'' if holds else 'not '}{short(node.left)}"
+        way_out: Help = offering(f"write `{alone}`", *(() if "…" in alone else (alone,)))
     elif node.relation in ("=", "!="):
         way_out = f"formulas are compared by `{'iff' if node.relation == '=' else 'xor'}`"
     else:
@@ -274,7 +292,10 @@ def temporal_in_count(node: tree.Prefix | tree.Infix) -> Diagnostic:
         node.span,
         f"`{node.operator}` cannot be used here: counts, parameters and facts speak of one state",
         expected="expected a formula about one state",
-        help="put the operator around it, or give the rule a variable",
+        help=offering(
+            "put the operator around it, or give the rule a variable",
+            *operator_outside(node.span),
+        ),
     )
 
 

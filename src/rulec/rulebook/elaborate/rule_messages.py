@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from itertools import pairwise
 from math import perm
 
-from rulec.diagnostics import Diagnostic, Label, did_you_mean, named
+from rulec.diagnostics import Diagnostic, Label, Offer, Span, named
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.ways_out import Help, meant, offering, write
 from rulec.logic.bounds import NotAMultipleError, longest_divisor
 from rulec.logic.printing import time_in_words
 from rulec.resource_limits import CHOICES
@@ -16,6 +18,7 @@ from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS, Limit
 from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
 from rulec.rulebook.rulebook_model import Rule
 from rulec.syntax import tree
+from rulec.syntax.messages.larger_edits import declaration_left_out, member_left_out, with_scope
 from rulec.syntax.messages.mismatch import FORMULA_TOO_DEEP
 
 CROWD = 30
@@ -139,7 +142,7 @@ def over_limit(limit: Limit, part: str, name: tree.Name) -> Diagnostic:
 def no_level(level: tree.Name, known: Sequence[str]) -> Diagnostic:
     """A rule at a level that no ``priority`` line names."""
     if known:
-        way_out = did_you_mean(level.text, known) or f"known are {named(known)}"
+        way_out = meant(level.text, known) or f"known are {named(known)}"
     else:
         lower = level.text if level.text != "safety" else "courtesy"
         way_out = f"name it in the header, such as `priority safety > {lower}`"
@@ -168,7 +171,7 @@ def weightless(weight: tree.NumberLiteral) -> Diagnostic:
         weight.span,
         f"a weight of {weight.text} says that the rule does not count",
         expected="expected a number above 0",
-        help="leave the rule out, or give it a weight",
+        help=offering("leave the rule out, or give it a weight", "1"),
     )
 
 
@@ -184,13 +187,14 @@ def no_step(line: tree.StepLine) -> Diagnostic:
 def unused_variable(
     variable: tree.Parameter, owner: tree.RuleItem | tree.DefineItem | tree.Aggregate
 ) -> Diagnostic:
+    alone = member_left_out(variable.span)
     match owner:
         case tree.RuleItem(name=name):
             part, where = f"formula of `{name.text}`", "in `require`"
-            way_out = "leave the variable out, or speak of it"
+            way_out: Help = offering("leave the variable out, or speak of it", *alone)
         case tree.DefineItem(name=name):
             part, where = f"definition of `{name.text}`", "after `=`"
-            way_out = "leave it out, or speak of it"
+            way_out = offering("leave it out, or speak of it", *alone)
         case _:
             part, where = "formula", "after it"
             way_out = "speak of it, or leave the variable out"
@@ -223,7 +227,7 @@ def unused_provision(kind: str, name: tree.Name) -> Diagnostic:
         name.span,
         f"no rule uses the {kind} `{name.text}`",
         expected="not used",
-        help="leave it out, or speak of it in a rule",
+        help=offering("leave it out, or speak of it in a rule", *declaration_left_out(name.span)),
         severity="warning",
     )
 
@@ -243,13 +247,14 @@ def unfitting_exception(problem: str, item: tree.RuleItem, *, first_state_only: 
             if first_state_only
             else "expected `initially` after it",
             help=around
-            or (
+            or offering(
                 "write `require always (…)`, since this asks for something in the first state "
                 "only; or `initially` at the end of the exception, if that is meant"
                 if first_state_only
                 else "write `initially` at its end, if the first state decides; or begin the rule "
                 "with `never` or `always`; or write two rules, one for when the exception holds "
-                "and one for when it does not"
+                "and one for when it does not",
+                *with_scope(unless.span, "initially"),
             ),
             labels=labels,
         )
@@ -259,9 +264,12 @@ def unfitting_exception(problem: str, item: tree.RuleItem, *, first_state_only: 
             unless.span,
             "an exception cannot hold `throughout` where `then` has a bound, such as `[<= 2 s]`",
             expected="expected `at start`, `at end` or `at some point` after it",
-            help="write `at start`, `at end` or `at some point` behind it, whichever is meant; or "
-            "leave the bounds of `then` out; or write two rules, one with the exception and one "
-            "with the bounds",
+            help=offering(
+                "write `at start`, `at end` or `at some point` behind it, whichever is meant; or "
+                "leave the bounds of `then` out; or write two rules, one with the exception and "
+                "one with the bounds",
+                *with_scope(unless.span, "at start", "at end", "at some point"),
+            ),
             labels=labels,
         )
     return FORMULA_TOO_LARGE.at(
@@ -292,16 +300,34 @@ def no_multiple(rule: Rule, error: NotAMultipleError) -> Diagnostic:
     """R0407: a bound of the rule falls between two states."""
     below = error.offending // error.step_s * error.step_s
     nearest = [time_in_words(time, "s") for time in (below, below + error.step_s) if time]
+    bound, was = error.span or rule.span, time_in_words(error.offending, "s")
+    # With another number it is another law, except for one that is about the same.
+    close = [time for time in (below, below + error.step_s) if _is_close(time, error.offending)]
     fitting = time_in_words(longest_divisor((error.offending, error.step_s)), "s")
     are = "multiples are" if len(nearest) > 1 else "multiple is"
     return NOT_A_MULTIPLE.at(
-        error.span or rule.span,
-        f"`{time_in_words(error.offending, 's')}` is not a multiple of the step, "
-        f"{time_in_words(error.step_s, 's')}",
-        help=f"the nearest {are} {' and '.join(nearest)}"
-        + (f"; or write `step {fitting}` in the header" if error.step_s == rule.step_s else ""),
+        bound,
+        f"`{was}` is not a multiple of the step, {time_in_words(error.step_s, 's')}",
+        help=offering(
+            f"the nearest {are} {' and '.join(nearest)}"
+            + (f"; or write `step {fitting}` in the header" if error.step_s == rule.step_s else ""),
+            *_other_times(bound, was, [time_in_words(time, "s") for time in close]),
+        ),
         notes=(f"rule `{rule.name}` would have to know what happens between two states",),
     )
+
+
+def _is_close(time: Fraction, wanted: Fraction) -> bool:
+    return abs(time - wanted) * 20 <= wanted
+
+
+def _other_times(bound: Span | None, was: str, times: Iterable[str]) -> Iterator[Offer]:
+    """Other times in a bound, in which one is written as given."""
+    head, found, _ = bound.text.partition(was) if bound else ("", "", "")
+    if bound and found:
+        start = bound.start + len(head)
+        place = Span(bound.source, start, start + len(was))
+        yield from (write(time, place) for time in times)
 
 
 def only_fitting_traces(rule: Rule, error: NotAMultipleError) -> Diagnostic:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rulec.diagnostics import Diagnostic, Fix, Span
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.ways_out import offering
 from rulec.rulebook.elaborate.elaboration_messages import parentheses_behind, short
 from rulec.syntax import tree
 
@@ -146,12 +147,14 @@ def two_readings(
     if behind is not None:
         end, rest = behind.span.end, f"{_sign(behind)} {_operand_text(behind.right)}"
         now, other_end = f"{now} {rest}", f"({right} {rest})"
+    later = f"{other} {operator} {other_end}"
+    readings = () if "…" in now + later else (now, later)
     (join, *_) = [infix.operator for infix in (behind, before) if infix is not None]
     return TWO_READINGS.at(
         Span(node.span.source, start, end),
         f"`{join}` beside `{node.operator}` can be read in two ways",
         expected=f"this means `{now}`",
-        help=f"write the one you mean: `{now}`, or `{other} {operator} {other_end}`",
+        help=offering(f"write the one you mean: `{now}`, or `{later}`", *readings),
         severity="warning",
     )
 

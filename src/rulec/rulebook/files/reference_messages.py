@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.ways_out import line_left_out, line_of, offering, write
 
 if TYPE_CHECKING:  # a check that is recalled does not load the parser
     from rulec.syntax import tree
@@ -57,7 +58,10 @@ def extends_circle(line: tree.ExtendsLine, way: Sequence[tree.File]) -> Diagnost
         line.name.span,
         f"the rulebooks go round in a circle: {chain}",
         expected="this closes the circle",
-        help="the most general of them extends no other: leave its `extends` line out",
+        help=offering(
+            "the most general of them extends no other: leave its `extends` line out",
+            *line_left_out(line.name.span, "extends"),
+        ),
         labels=tuple(
             Label(extends.span.place, f"`{extends.name.text}` is extended here")
             for extends in before
@@ -80,9 +84,11 @@ def not_the_vocabulary(use: tree.UseLine, file: tree.File, path: Path) -> Diagno
 
 
 def vocabulary_for_rulebook(name: tree.Name, *, expected: str) -> Diagnostic:
+    use = f"use {name.text}"
+    used = (write(f"{use}\n", line) for line in line_of(name.span, "extends"))
     return WRONG_KIND_OF_FILE.at(
         name.span,
         f"`{name.text}` is a vocabulary, not a rulebook",
         expected=expected,
-        help=f"a rulebook takes its words from it by `use {name.text}`",
+        help=offering(f"a rulebook takes its words from it by `{use}`", *used),
     )

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from rulec.diagnostics import Label, RulecError, Span, did_you_mean, named
+from rulec.diagnostics import Label, RulecError, Span, did_you_mean, named, nearest_name
+from rulec.diagnostics.ways_out import offering
 from rulec.files.read_files import MAX_SOURCE_BYTES, opened
 from rulec.files.source_detection import LEAD_BYTES, beginning_of, first_word_at
 from rulec.files.work_trees import refuse_no_source
@@ -207,7 +208,7 @@ def _not_found(
         place,
         f"there is no {kind} `{name}`",
         expected=f"expected the name of a {kind}",
-        help=by or _suggest(name, known),
+        help=by or offering(_suggest(name, known), *filter(None, (nearest_name(name, known),))),
         notes=notes,
     )
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections import deque
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from rulec.diagnostics import Diagnostic, Label, Span, any_of, did_you_mean, named, nearest_name
+from rulec.diagnostics import Diagnostic, Label, Offer, Span, any_of, named, nearest_name
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.ways_out import Help, declared, in_header, meant, offering, write
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.names.word_meanings import described, offer
 from rulec.syntax import tree
@@ -136,10 +138,10 @@ def explain(
     if isinstance(item, Enumeration):
         call = f"({', '.join('…' for _ in item.parameters)})" if item.parameters else ""
         values = any_of([f"`{value}{call}`" for value in item.values])
-        message, declared = "has several values and cannot", symbols.spans[name]
-        way_out = f"write {values}"
+        message, span = "has several values and cannot", symbols.spans[name]
+        way_out: Help = offering(f"write {values}", *(() if call else item.values))
     elif name in symbols.types:
-        message, declared = "is a type of objects and cannot", symbols.type_spans[name]
+        message, span = "is a type of objects and cannot", symbols.type_spans[name]
         way_out = f"speak of an object: give the rule a variable, such as `(x: {name})`"
     else:
         return _unknown(use, symbols, variables, others)
@@ -148,7 +150,7 @@ def explain(
         f"`{name}` {message} be true or false",
         expected=_ATOM,
         help=way_out,
-        labels=(Label(declared.place, f"`{name}` is declared here"),),
+        labels=(Label(span.place, f"`{name}` is declared here"),),
     )
 
 
@@ -170,29 +172,41 @@ def _unknown(
     glued = _glued(name, set(atoms))
     parted = _PARTED_UNIT.search(use.span.source.text, 0, use.name.span.start)
     if parted and parse_unit(f"{parted[1]}/{name}"):
-        way_out = f"a unit is one word: write `{parted[1]}/{name}`"
+        whole = Span(use.span.source, parted.start(1), use.name.span.end)
+        unit = f"{parted[1]}/{name}"
+        way_out: Help = offering(f"a unit is one word: write `{unit}`", write(unit, whole))
     elif name == "if":
         way_out = "write `p implies q` for `if p then q`"
     elif use.arguments and name.casefold() in ABSOLUTE:
         way_out = NO_ABSOLUTE_VALUE
     elif glued:
-        way_out = f"write `{glued}`"
+        way_out = offering(f"write `{glued}`", glued)
     else:
         way_out = (
             ("" if use.arguments else _short_form(name, symbols, list(variables)))
-            or did_you_mean(name, spelt, _ALIKE, longer=False)
+            or meant(name, spelt, _ALIKE, longer=False)
             or _by_meaning(name, [*atoms, *quantities], symbols)
-            or did_you_mean(name, spelt, _ALIKE)
+            or meant(name, spelt, _ALIKE)
             or _of_no_object(use, quantities)
-            or f"declare it, such as `{_declaration(use, variables)}`, "
-            "or `use` a vocabulary that has it"
+            or _to_be_declared(use, variables)
         )
     return UNKNOWN_NAME.at(
         use.name.span, f"nothing is called `{name}`", expected=_ATOM, help=way_out
     )
 
 
-def _by_meaning(name: str, known: Sequence[str], symbols: SymbolTable) -> str:
+def _to_be_declared(use: tree.AtomUse, variables: Mapping[str, str | None]) -> Help:
+    """Help that declares the name: as a quantity if it is compared with a number."""
+    words, unit = f"signal {_as_used(use, variables)}", ""
+    if compared := _COMPARED.match(use.span.source.text, use.span.end):
+        unit = compared[1] if compared[1] and parse_unit(compared[1]) else "UNIT"
+        words = f"quantity {_as_used(use, variables)} in {unit}"
+    # Which unit is meant, only the author knows.
+    offers = () if unit == "UNIT" else (declared(words, use.span),)
+    return offering(f"declare it, such as `{words}`, or `use` a vocabulary that has it", *offers)
+
+
+def _by_meaning(name: str, known: Sequence[str], symbols: SymbolTable) -> Help:
     """Words of the shipped vocabularies that mean what a name seems to mean."""
     vocabularies = {Path(file.name).stem for file in symbols.of_vocabularies}
     return offer(name, tuple(word for word in described(known, vocabularies) if word.phrase))
@@ -202,15 +216,6 @@ def _of_no_object(use: tree.AtomUse, quantities: Collection[str]) -> str:
     """Help for what looks like a function of numbers, which no declaration can be."""
     number = next((one.text for one in use.arguments if one.text in quantities), "")
     return f"only objects go in parentheses, and `{number}` is a number" if number else ""
-
-
-def _declaration(use: tree.AtomUse, variables: Mapping[str, str | None]) -> str:
-    """A declaration of the name: as a quantity if it is compared with a number."""
-    compared = _COMPARED.match(use.span.source.text, use.span.end)
-    if compared is None:
-        return f"signal {_as_used(use, variables)}"
-    unit = compared[1] if compared[1] and parse_unit(compared[1]) else "UNIT"
-    return f"quantity {_as_used(use, variables)} in {unit}"
 
 
 def _as_used(use: tree.AtomUse, variables: Mapping[str, str | None]) -> str:
@@ -228,7 +233,10 @@ def no_traffic(use: tree.AtomUse, name: str) -> Diagnostic:
         use.name.span,
         f"`{name}` depends on the side on which traffic drives, and the rulebook does not say it",
         expected="left or right?",
-        help="write `traffic right` or `traffic left` in the rulebook's header",
+        help=offering(
+            "write `traffic right` or `traffic left` in the rulebook's header",
+            *(in_header(f"traffic {side}", use.span.source.name) for side in ("right", "left")),
+        ),
     )
 
 
@@ -242,7 +250,7 @@ def no_sides(use: tree.AtomUse, name: str, side: str) -> Diagnostic:
     )
 
 
-def _short_form(name: str, symbols: SymbolTable, variables: Sequence[str]) -> str:
+def _short_form(name: str, symbols: SymbolTable, variables: Sequence[str]) -> Help:
     head, _, tail = name.rpartition("_")
     item = symbols.behind_atom(head)
     if item is not None and len(item.parameters) == 1:
@@ -252,7 +260,7 @@ def _short_form(name: str, symbols: SymbolTable, variables: Sequence[str]) -> st
         number = len(item.parameters) or "no"
         return f"`{head}` is about {number} objects, so `_{tail}` cannot follow it"
     near = nearest_name(head, symbols.about_one()) if tail in variables else None
-    return f"did you mean `{near}_{tail}`?" if near else ""
+    return offering(f"did you mean `{near}_{tail}`?", f"{near}_{tail}") if near else ""
 
 
 def _glued(name: str, atoms: set[str]) -> str:
@@ -280,13 +288,18 @@ def wrong_number(
     has = {0: "none is", 1: "one is"}.get(given, f"{given} are")
     arguments = [*variables, *["…"] * needed][:needed]
     written = f"{name}({', '.join(arguments)})" if needed else name
+    # Of several variables, which are meant only the author knows.
+    named_here = {argument.text for argument in use.arguments}
+    is_certain = len(variables) == needed or named_here.issuperset(arguments)
     is_value = isinstance(item, Enumeration) and item.name != name
     subject = f"`{name}` is a value of `{item.name}`, which" if is_value else f"`{name}`"
     return WRONG_ARITY.at(
         use.span,
         f"{subject} is about {objects}, and {has} given",
         expected=f"expected {objects}",
-        help=f"write `{written}`" if variables or not needed else _declared(name, item),
+        help=offering(f"write `{written}`", *((written,) if is_certain else ()))
+        if variables or not needed
+        else _declared(name, item),
         labels=(Label(symbols.spans[name].place, f"`{name}` is declared here"),),
     )
 
@@ -309,7 +322,10 @@ def two_readings(use: tree.AtomUse, readings: Sequence[tuple[str, str]]) -> Diag
         use.span,
         f"`{use.name.text}` can mean {ways}",
         expected="expected a name with one meaning",
-        help="write the one you mean with parentheses",
+        help=offering(
+            "write the one you mean with parentheses",
+            *(f"{head}({variable})" for head, variable in readings),
+        ),
     )
 
 
@@ -329,19 +345,21 @@ def unknown_variable(
     """
     kind = wanted or next(iter(symbols.types), "vehicle")
     if owner == "example":
-        declared = f"({name.text}: {kind})"
-        way_out = f"declare it after the rule's name, or after this example's label: `{declared}`"
+        typed = f"({name.text}: {kind})"
+        way_out: Help = (
+            f"declare it after the rule's name, or after this example's label: `{typed}`"
+        )
     elif variables:
         way_out = f"the {owner}'s variables are {named(variables)}"
         if len(variables) == 1:
-            way_out = f"the {owner}'s only variable is {named(variables)}"
+            way_out = offering(f"the {owner}'s only variable is {named(variables)}", *variables)
     else:
         way_out = f"declare it after the {owner}'s name, such as `({name.text}: {kind})`"
     return UNKNOWN_VARIABLE.at(
         name.span,
         f"the {owner} has no variable `{name.text}`",
         expected=f"expected a variable of the {owner}",
-        help=did_you_mean(name.text, [*variables, *relations]) or way_out,
+        help=meant(name.text, [*variables, *relations]) or way_out,
     )
 
 
@@ -350,9 +368,20 @@ def wrong_type(argument: tree.Name, kind: str, wanted: str, labels: Sequence[Lab
         argument.span,
         f"`{argument.text}` is of type `{kind}`, which is no `{wanted}`",
         expected=f"expected a variable of type `{wanted}`",
-        help=f"declare it as `{argument.text}: {wanted}`, or use another variable",
+        help=offering(
+            f"declare it as `{argument.text}: {wanted}`, or use another variable",
+            *_as_declared(argument, wanted),
+        ),
         labels=tuple(labels),
     )
+
+
+def _as_declared(argument: tree.Name, wanted: str) -> Iterator[Offer]:
+    """Another type for a variable where it is declared, in the head of its rule."""
+    source, start = argument.span.source, argument.span.start
+    declarations = re.finditer(rf"\b{re.escape(argument.text)}\s*:\s*\w+", source.text[:start])
+    for last in deque(declarations, maxlen=1):
+        yield write(f"{argument.text}: {wanted}", Span(source, *last.span()))
 
 
 def two_types(name: tree.Name, wanted: str, known_type: str | None, known: Span) -> Diagnostic:

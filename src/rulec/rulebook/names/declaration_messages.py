@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import Final
 
-from rulec.diagnostics import Diagnostic, Label, Span, any_of, did_you_mean, named
+from rulec.diagnostics import Diagnostic, Label, Span, any_of, named, nearest_name
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.ways_out import Help, another_name, declared, meant, offering, write
 from rulec.rulebook.names.word_meanings import DescribedWord, offer
 from rulec.syntax import tree
-from rulec.syntax.messages.literals import how_hours_are_written
+from rulec.syntax.messages.larger_edits import name_left_out
+from rulec.syntax.messages.literals import hours_meant, how_hours_are_written
 from rulec.vocabulary.units import known_unit_names, unit_in_another_language, unit_refusal
 
 UNKNOWN_TYPE = Code(
@@ -128,6 +130,7 @@ _OTHER_DIMENSIONS: Final = {
 
 
 def unknown_type(name: tree.Name, known: Sequence[str]) -> Diagnostic:
+    declares = declared(f"type {name.text}", name.span)
     if known:
         way_out = f"known are {named(known)}; declare another by `type {name.text}`"
     else:
@@ -136,9 +139,9 @@ def unknown_type(name: tree.Name, known: Sequence[str]) -> Diagnostic:
         name.span,
         f"there is no type `{name.text}`",
         expected="expected a type",
-        help=did_you_mean(name.text, known)
+        help=meant(name.text, known)
         or offer(name.text, tuple(map(DescribedWord, known)))
-        or way_out,
+        or offering(way_out, declares),
     )
 
 
@@ -149,7 +152,9 @@ def which_type(parameter: tree.Parameter, roots: Sequence[str]) -> Diagnostic:
         parameter.span,
         f"it is not clear which objects `{parameter.name.text}` stands for: {why}",
         expected="expected a type after the name",
-        help=f"write `{parameter.name.text}: {example}`",
+        help=offering(
+            f"write `{parameter.name.text}: {example}`", f"{parameter.name.text}: {example}"
+        ),
     )
 
 
@@ -158,7 +163,7 @@ def no_such_value(name: tree.Name, chosen: tree.Name, values: tuple[str, ...]) -
         chosen.span,
         f"`{chosen.text}` is not a value of `{name.text}`",
         expected="expected one of its values",
-        help=did_you_mean(chosen.text, values) or f"its values are {named(values)}",
+        help=meant(chosen.text, values) or f"its values are {named(values)}",
     )
 
 
@@ -167,7 +172,11 @@ def twice(kind: str, again: tree.Name, first: Span) -> Diagnostic:
         again.span,
         f"the {kind} `{again.text}` is declared twice",
         expected="declared again here",
-        help="give it another name, or leave it out",
+        help=offering(
+            "give it another name, or leave it out",
+            *name_left_out(again.span),
+            another_name(again.span),
+        ),
         labels=(Label(first.place, "first declared here"),),
     )
 
@@ -179,7 +188,7 @@ def marked_twice(
         again.span,
         f"`{again.text}` is called {_mark(item)} twice",
         expected="said again here",
-        help="leave it out",
+        help=offering("leave it out", *name_left_out(again.span)),
         labels=(Label(first.place, "first said here"),),
     )
 
@@ -187,31 +196,35 @@ def marked_twice(
 def nothing_to_mark(
     item: tree.ConstantItem | tree.PresumedItem,
     name: tree.Name,
-    declared: Collection[str],
+    known: Collection[str],
     enumeration: str = "",
 ) -> Diagnostic:
     """Mistake: a name is not declared; it may be a value of an enumeration."""
+    signal = f"signal {name.text} default false"
     if enumeration:
         message = f"`{name.text}` is a value, and only what has values can be {_mark(item)}"
-        way_out = f"write `{enumeration}`, whose value it is"
+        way_out: Help = offering(f"write `{enumeration}`, whose value it is", enumeration)
     else:
         message = f"nothing is called `{name.text}` that could be {_mark(item)}"
-        way_out = did_you_mean(name.text, list(declared))
+        way_out = meant(name.text, list(known))
     return NOTHING_TO_MARK.at(
         name.span,
         message,
         expected="expected a signal, a quantity or an enumeration",
-        help=way_out or f"declare it, such as `signal {name.text} default false`",
+        help=way_out or offering(f"declare it, such as `{signal}`", declared(signal, name.span)),
     )
 
 
-def no_default(name: tree.Name, declared: Span) -> Diagnostic:
+def no_default(name: tree.Name, known: Span) -> Diagnostic:
     return NOT_TO_BE_PRESUMED.at(
         name.span,
         f"`{name.text}` has no default that could be presumed",
         expected="expected a name that has a default",
-        help="give it a default where it is declared, or leave it out here",
-        labels=(Label(declared.place, "declared here"),),
+        help=offering(
+            "give it a default where it is declared, or leave it out here",
+            *name_left_out(name.span),
+        ),
+        labels=(Label(known.place, "declared here"),),
     )
 
 
@@ -246,11 +259,13 @@ def unknown_unit(unit: str, span: Span, quantity: str = "") -> Diagnostic:
         message = f"the unit `{unit}`{of_quantity} cannot be used: {refusal.why}"
         return UNKNOWN_UNIT.at(span, message, help=refusal.instead)
     if unit in ("step", "steps"):
-        way_out = "steps count in the bounds of temporal operators only, such as `next[2 steps]`"
+        way_out: Help = (
+            "steps count in the bounds of temporal operators only, such as `next[2 steps]`"
+        )
     else:
         by_the_clock = how_hours_are_written(span.text)
-        slip = by_the_clock or unit_in_another_language(unit)
-        way_out = slip or did_you_mean(unit, known_unit_names())
+        of_day = offering(by_the_clock, *hours_meant(span.text)) if by_the_clock else ""
+        way_out = of_day or _unit_meant(unit, span)
         number = span.text.removesuffix(unit).strip()
         if not way_out and number and unit.isidentifier():
             way_out = f"for a product write `{number} * {unit}`; units are such as `m`, `km/h`, `s`"
@@ -267,9 +282,19 @@ def unknown_unit(unit: str, span: Span, quantity: str = "") -> Diagnostic:
     )
 
 
+def _unit_meant(unit: str, span: Span) -> Help:
+    """Help with a unit at the end of a span, if it is one in another language, or misspelt."""
+    known, text = unit_in_another_language(unit)
+    if not known:
+        known = nearest_name(unit, known_unit_names()) or ""
+        text = f"did you mean `{known}`?"
+    place = Span(span.source, span.end - len(unit), span.end)
+    return offering(text, write(known, place)) if known and place.text == unit else ""
+
+
 def unknown_dimension(name: tree.Name, known: Sequence[str]) -> Diagnostic:
     synonym = _OTHER_DIMENSIONS.get(name.text.casefold())
-    way_out = f"write `{synonym}`" if synonym else did_you_mean(name.text, known)
+    way_out = offering(f"write `{synonym}`", synonym) if synonym else meant(name.text, known)
     return UNKNOWN_DIMENSION.at(
         name.span,
         f"there is no kind of number `{name.text}`",

@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-from rulec.diagnostics import Diagnostic, Label, Source, Span
+from rulec.diagnostics import Diagnostic, Label, Offer, Source, Span
+from rulec.diagnostics.ways_out import left_out, offering
 from rulec.resource_limits import TYPE_DEPTH
 from rulec.rulebook.names import declaration_messages as say
 from rulec.rulebook.names.declaration_messages import TYPE_CIRCLE
@@ -224,7 +225,7 @@ def _break_circle(symbols: SymbolTable, item: tree.TypeItem) -> None:
             expected="this closes the circle"
             if len(above) > 1
             else "a type cannot be above itself",
-            help="leave out `is …` at the most general of them",
+            help=offering("leave out `is …` at the most general of them", _without_parent(item)),
             labels=tuple(
                 Label(symbols.type_spans[name].place, f"`{name}` is declared here")
                 for name in above[1:]
@@ -234,6 +235,12 @@ def _break_circle(symbols: SymbolTable, item: tree.TypeItem) -> None:
     for name in above:
         symbols.types[name] = ObjectType(name)
         symbols.uncertain.add(name)
+
+
+def _without_parent(item: tree.TypeItem) -> Offer:
+    assert item.parent is not None, "it is in a circle"
+    parent, own = item.parent.span, item.name.span
+    return left_out(Span(own.source, own.end, parent.end), f"Leave out `is {item.parent.text}`")
 
 
 def _roots(symbols: SymbolTable, file: tree.File) -> list[str]:

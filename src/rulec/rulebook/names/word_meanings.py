@@ -18,6 +18,7 @@ from typing import Final
 from unicodedata import combining, normalize
 
 from rulec.diagnostics import did_you_mean
+from rulec.diagnostics.ways_out import Help, offering
 from rulec.rulebook.vocabulary_phrases import (
     phrases_in,
     synonyms_of_the_field,
@@ -77,7 +78,7 @@ def described(names: Iterable[str], vocabularies: Iterable[str]) -> tuple[Descri
     )
 
 
-def offer(name: str, words: tuple[DescribedWord, ...]) -> str:
+def offer(name: str, words: tuple[DescribedWord, ...]) -> Help:
     """Help that names the words which mean what ``name`` says; empty if none certainly does."""
     stems = set(_stems(name))
     about = {word.name: _about(word) for word in words}
@@ -93,21 +94,21 @@ def offer(name: str, words: tuple[DescribedWord, ...]) -> str:
     best, second = (*(covered[word] for word in ranked[:2]), 0.0)[:2]
     shown = {word.name: _shown(word) for word in words}
     if best >= _MEANT and best - second >= _LEAD:
-        return f"did you mean {shown[ranked[0]]}?"
+        return offering(f"did you mean {shown[ranked[0]]}?", ranked[0])
     # What a short name says is what it is about; longer ones are about something else, too.
     plainest = sorted(ranked, key=lambda word: word.count("_"))
-    near = [shown[word] for word in plainest if covered[word] >= _CANDIDATE]
+    near = [word for word in plainest if covered[word] >= _CANDIDATE]
     if not near or (len(near) > _MOST_CANDIDATES and best < _MEANT):
         return ""
-    return f"words that may mean it: {', '.join(near[:_MOST_CANDIDATES])}"
+    near = near[:_MOST_CANDIDATES]
+    return offering(f"words that may mean it: {', '.join(map(shown.__getitem__, near))}", *near)
 
 
 def suggestion(name: str, known: Sequence[str], alike: float = 0.6) -> str:
     """Help with the known word that is spelt like a name, or else with those that may mean it."""
     with_phrases = described(known, vocabularies_with_phrases())
-    return did_you_mean(name, known, alike) or offer(
-        name, tuple(word for word in with_phrases if word.phrase)
-    )
+    phrased = tuple(word for word in with_phrases if word.phrase)
+    return did_you_mean(name, known, alike) or str(offer(name, phrased))
 
 
 def _shown(word: DescribedWord) -> str:

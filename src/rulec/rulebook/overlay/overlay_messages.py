@@ -2,14 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
 from typing import Final
 
-from rulec.diagnostics import Diagnostic, Fix, Label, Span, did_you_mean, named
+from rulec.diagnostics import Diagnostic, Fix, Label, Offer, Span, named
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.ways_out import (
+    Help,
+    another_name,
+    left_out,
+    line_left_out,
+    meant,
+    offering,
+    write,
+)
 from rulec.rulebook.names.atom_messages import NUMBER_OR_FORMULA, UNKNOWN_VARIABLE, WRONG_ARITY
 from rulec.rulebook.names.declaration_messages import DECLARED_TWICE
 from rulec.syntax import tree
+from rulec.syntax.messages.larger_edits import (
+    clause_left_out,
+    declaration_left_out,
+    exchanged,
+    member_left_out,
+)
 from rulec.syntax.tree_printer import print_parameter, print_parameters
 
 RULE_TWICE = Code(
@@ -119,21 +135,41 @@ _CHANGES = {"option": "set", "parameter": "set", "definition": "redefine"}
 
 
 def inherited_name(name: tree.Name, kind: str, known: tree.Name) -> Diagnostic:
+    changes = f"{_CHANGES[kind]} {name.text}"
     return INHERITED_ALREADY.at(
         name.span,
         f"`{name.text}` is inherited already",
         expected="declared again here",
-        help=f"change an inherited {kind} by `{_CHANGES[kind]} {name.text} = …`",
+        help=offering(
+            f"change an inherited {kind} by `{changes} = …`", *_changing(name.span, changes)
+        ),
         labels=(Label(known.span.place, "inherited from here"),),
     )
 
 
+def _changing(name: Span, head: str) -> Iterator[Offer]:
+    """A change of an inherited symbol in place of its declaration, up to the `=` of that line."""
+    text = name.source.text
+    line, _, _ = text[name.start :].partition("\n")
+    before, equals, _ = line.partition("=")
+    if equals:
+        first = text.rfind("\n", 0, name.start) + 1
+        whole = Span(name.source, first, name.start + len(before))
+        yield Offer(f"Write `{head} = …`", (Fix(whole.place, f"{head} "),))
+
+
 def inherited_rule(item: tree.RuleItem, known: tree.RuleItem) -> Diagnostic:
+    name, change = item.name.span, f"override rule {item.name.text}"
+    head = Span(name.source, item.span.start, name.end)
     return INHERITED_ALREADY.at(
         item.name.span,
         f"a rule `{item.name.text}` is inherited already",
         expected="named again here",
-        help=f"write `override rule {item.name.text}` to change it, or choose another name",
+        help=offering(
+            f"write `{change}` to change it, or choose another name",
+            write(change, head),
+            another_name(name),
+        ),
         labels=(Label(known.name.span.place, "inherited from here"),),
     )
 
@@ -144,7 +180,7 @@ def no_topic(name: tree.Name, known: Sequence[str]) -> Diagnostic:
         name.span,
         f"there is no topic `{name.text}`",
         expected="expected a topic",
-        help=did_you_mean(name.text, known) or has,
+        help=meant(name.text, known) or has,
     )
 
 
@@ -153,7 +189,7 @@ def article_twice(again: tree.Text, first: tree.Text) -> Diagnostic:
         again.span,
         f"article `{again.value}` is listed twice in this rulebook",
         expected="listed again here",
-        help="keep one of them",
+        help=offering("keep one of them", clause_left_out(again.span)),
         labels=(Label(first.span.place, "first listed here"),),
     )
 
@@ -163,7 +199,7 @@ def rule_twice(again: tree.RuleItem, first: tree.RuleItem) -> Diagnostic:
         again.name.span,
         f"there are two rules `{again.name.text}`",
         expected="named again here",
-        help="give each rule a name of its own",
+        help=offering("give each rule a name of its own", another_name(again.name.span)),
         labels=(Label(first.name.span.place, "first named here"),),
     )
 
@@ -180,10 +216,10 @@ def nothing_to(
 ) -> Diagnostic:
     """``override``, ``drop``, … of what is not inherited."""
     if extends is None:
-        way_out = "the rulebook extends no other; name one in its header by `extends NAME`"
+        way_out: Help = "the rulebook extends no other; name one in its header by `extends NAME`"
     else:
         has = f"`{extends}` has {named(known) or 'none'}"
-        way_out = did_you_mean(name.text, known, _ALIKE) or has
+        way_out = meant(name.text, known, _ALIKE) or has
     return NOT_INHERITED.at(
         name.span,
         f"there is no {kind} `{name.text}` to {verb}",
@@ -223,7 +259,10 @@ def other_parameters(item: tree.DefineItem, before: tree.DefineItem) -> Diagnost
         f"`{name}` takes {things.get(needed, f'{needed} things')} where it comes from, "
         f"and {things.get(given, f'{given} things')} here",
         expected=f"expected `{name}{print_parameters(before.parameters)}`",
-        help="redefine it with the same parameters, or define something new by another name",
+        help=offering(
+            "redefine it with the same parameters, or define something new by another name",
+            another_name(item.name.span),
+        ),
         labels=(Label(before.name.span.place, f"`{name}` is defined here"),),
     )
 
@@ -249,7 +288,10 @@ def never_in_force(dates: tree.InForce) -> Diagnostic:
         dates.span,
         f"this is never in force: {dates.until} comes before {dates.since}",
         expected="expected the earlier day first",
-        help="exchange the days, or correct one of them",
+        help=offering(
+            "exchange the days, or correct one of them",
+            *exchanged(dates.span, str(dates.since), str(dates.until)),
+        ),
     )
 
 
@@ -272,7 +314,7 @@ def soft_already(item: tree.SoftenItem, known: tree.RuleItem) -> Diagnostic:
         item.name.span,
         f"rule `{item.name.text}` is soft already",
         expected="nothing changes",
-        help="leave the line out",
+        help=offering("leave the line out", *declaration_left_out(item.name.span)),
         labels=(Label(known.name.span.place, "inherited from here"),),
     )
 
@@ -287,7 +329,10 @@ def priority_circle(
         lower.span,
         f"`{higher.text} {sign} {lower.text}` contradicts {against}",
         expected="a level compared with itself" if same else "this closes a circle",
-        help="leave one of the lines out; levels of one rank are written `a = b`",
+        help=offering(
+            "leave one of the lines out; levels of one rank are written `a = b`",
+            *line_left_out(lower.span, "priority"),
+        ),
         labels=tuple(
             Label(levels[name].span.place, f"`{name}` was placed here") for name in placed
         ),
@@ -297,12 +342,16 @@ def priority_circle(
 def idle_override(item: tree.RuleItem) -> Diagnostic:
     """An override that changes nothing."""
     name = item.name.text
+    is_one_line = re.fullmatch(r"[^\n{]*\{\s*\}", item.span.text) is not None
     return IDLE_OVERRIDE.at(
         item.name.span,
         f"this override of `{name}` changes nothing",
         expected="all of it is as it is inherited",
-        help="say what is different; where it is law as it is, write "
-        f'`confirm rule {name} {{ cite "…" }}`; or leave it out',
+        help=offering(
+            "say what is different; where it is law as it is, write "
+            f'`confirm rule {name} {{ cite "…" }}`; or leave it out',
+            *(line_left_out(item.name.span, "override") if is_one_line else ()),
+        ),
         severity="warning",
     )
 
@@ -317,7 +366,10 @@ def other_types(
         changed[0][1].span,
         f"`{item.name.text}` is about {named(now)} here, and was about {named(before)}",
         expected="another type",
-        help=f"leave the variables out to keep {named(before)}; or say what the rule is now",
+        help=offering(
+            f"leave the variables out to keep {named(before)}; or say what the rule is now",
+            *member_left_out(changed[0][1].span),
+        ),
         labels=tuple(Label(known.span.place, "inherited from here") for known, _ in changed),
         severity="warning",
     )
@@ -350,9 +402,17 @@ def _added(plain: Sequence[tree.Unless]) -> Fix | None:
 
 def nothing_to_add_to(exception: tree.Unless) -> Diagnostic:
     """``also unless`` in a rule that overrides nothing."""
+    start = exception.span.start
+    also = Span(exception.span.source, start, start + len("also"))
+    behind = exception.span.text.removeprefix("also")
+    space = len(behind) - len(behind.lstrip())
+    also_and_space = Span(also.source, start, also.end + space)
     return NOT_INHERITED.at(
-        Span(exception.span.source, exception.span.start, exception.span.start + len("also")),
+        also,
         "`also unless` adds to inherited exceptions, and this rule inherits none",
         expected="expected `unless`",
-        help="write `unless`, or `override rule` before the name of an inherited rule",
+        help=offering(
+            "write `unless`, or `override rule` before the name of an inherited rule",
+            left_out(also_and_space, "Leave out `also`"),
+        ),
     )

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
 from dataclasses import replace
 
-from rulec.diagnostics import Diagnostic, Label, Span, any_of
+from rulec.diagnostics import Diagnostic, Fix, Label, Offer, Span, any_of
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.ways_out import left_out, offering, put
 from rulec.logic.formula import Atom, QuantityTerm
 from rulec.logic.printing import term_text
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
+from rulec.rulebook.elaborate.elaboration_messages import hour_meant
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, NUMBER_OR_FORMULA
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.syntax import tree
@@ -16,7 +20,6 @@ from rulec.syntax.messages.literal_values import NUMBER_TOO_LARGE
 from rulec.syntax.tree_printer import print_formula
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.dimensions import Unit
-from rulec.vocabulary.units import hour_in_another_language
 
 CONTRADICTORY_STATE = Code(
     "R0306",
@@ -59,12 +62,15 @@ def denied(fact: tree.StateLiteral, atom: Atom, symbols: SymbolTable) -> Diagnos
     item = symbols.items[atom.name]
     assert isinstance(item, Enumeration), "only enumerations have values"
     atoms = (replace(atom, value=value) for value in item.values if value != atom.value)
-    others = [f"`{other}`" for other in atoms]
+    others = [str(other) for other in atoms]
+    shown = [f"`{other}`" for other in others]
     return DENIED_VALUE.at(
         fact.span,
         f"a state says which value `{_subject(atom)}` has, not which it lacks",
         expected="expected a value",
-        help=f"write {any_of(others)}" if others else f"`{atom}` always holds",
+        help=offering(f"write {any_of(shown)}", *(others if len(others) == 1 else ()))
+        if others
+        else f"`{atom}` always holds",
         labels=(Label(symbols.spans[atom.name].place, f"`{atom.name}` is declared here"),),
     )
 
@@ -78,26 +84,44 @@ def contradiction(fact: tree.StateLiteral, term: Atom | QuantityTerm, first: Spa
         fact.span,
         message,
         expected="this contradicts what was said before",
-        help="keep one of them, or put a `;` between two states",
+        help=offering("keep one of them, or put a `;` between two states", *_kept_apart(fact.span)),
         labels=(Label(first.place, "said before"),),
     )
+
+
+def _kept_apart(fact: Span) -> Iterator[Offer]:
+    """A fact left out of its state, or begun a new state with."""
+    joint = re.search(r"\s*\band\s+\Z", fact.source.text[: fact.start])
+    if joint is not None:
+        begin = joint.start()
+        yield left_out(Span(fact.source, begin, fact.end), f"Leave out `and {fact.text}`")
+        apart = Span(fact.source, begin, fact.start)
+        yield Offer(f"Put `;` before `{fact.text}`", (Fix(apart.place, "; "),))
 
 
 def left_open(
     state: tree.ExampleState, term: Atom | QuantityTerm, symbols: SymbolTable
 ) -> Diagnostic:
     item = symbols.items[term.name]
+    said: list[str] = []
     if isinstance(term, QuantityTerm):
-        ways = [f"`{term_text(term)} = … {symbols.unit_text(term.name)}`"]
+        ways = [f"{term_text(term)} = … {symbols.unit_text(term.name)}"]
     elif isinstance(item, Enumeration):
-        ways = [f"`{Atom(term.name, term.arguments, value)}`" for value in item.values]
+        ways = said = [str(Atom(term.name, term.arguments, value)) for value in item.values]
     else:
-        ways = [f"`{term}`", f"`not {term}`"]
+        ways = [f"{term}", f"not {term}"]
+        said = ways[::-1]
     return INCOMPLETE_STATE.at(
         state.span,
         f"this state leaves open `{_subject(term)}`, which the formula needs",
-        expected=f"expected {any_of(ways)}",
-        help="say it in this state, or give its declaration a default",
+        expected=f"expected {any_of([f'`{way}`' for way in ways])}",
+        help=offering(
+            "say it in this state, or give its declaration a default",
+            *(
+                put(f"Say `{fact}` in this state", f" and {fact}", state.span, state.span.end)
+                for fact in said
+            ),
+        ),
         labels=(Label(symbols.spans[term.name].place, f"`{term.name}` has no default"),),
     )
 
@@ -139,24 +163,25 @@ def other_dimension(
 ) -> Diagnostic:
     assert fact.value is not None, "only a value has a unit"
     given_kind = given.dimension.name if given.dimension else "number"
-    given_unit = fact.value.span.text.rpartition(" ")[2]
+    slip = hour_meant(fact.value) if isinstance(fact.value, tree.NumberLiteral) else ""
     return MIXED_DIMENSIONS.at(
         fact.value.span,
         f"`{term_text(term)}` is a {unit.dimension.name} and `{print_formula(fact.value)}` "
         f"a {given_kind}",
         expected=f"expected a {unit.dimension.name}",
-        help=hour_in_another_language(given_unit) or f"write it in {unit.text}",
+        help=slip or f"write it in {unit.text}",
     )
 
 
 def without_unit(fact: tree.StateLiteral, term: QuantityTerm, unit: Unit) -> Diagnostic:
     """The error for a number without a unit, for a quantity in a unit such as `%`."""
     assert fact.value is not None, "only a value may lack its unit"
+    written = f"{print_formula(fact.value)} {unit.text}"
     return MIXED_DIMENSIONS.at(
         fact.value.span,
         f"`{term_text(term)}` is in {unit.text} and `{print_formula(fact.value)}` has no unit",
         expected=f"expected a number in {unit.text}",
-        help=f"write the unit, such as `{print_formula(fact.value)} {unit.text}`",
+        help=offering(f"write the unit, such as `{written}`", written),
     )
 
 

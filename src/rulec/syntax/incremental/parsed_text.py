@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate
 
-from rulec.diagnostics import Diagnostic, Label, RulecError, Source, SourceLocation
+from rulec.diagnostics import Diagnostic, Fix, Label, RulecError, Source, SourceLocation
 from rulec.files.source_detection import is_foreign
 from rulec.syntax import tree
 from rulec.syntax.assembly import assemble_file
@@ -88,12 +88,17 @@ class ParsedText:
                 return place
             return shifted(place, 1 + self.lines[of] - self.segments[of].line)
 
+        def fixed(fix: Fix) -> Fix:
+            return replace(fix, place=moved(fix.place))
+
         fix = mistake.fix
+        offers = tuple(replace(o, fixes=tuple(map(fixed, o.fixes))) for o in mistake.offers)
         return replace(
             mistake,
             place=None if mistake.place is None else moved(mistake.place),
             labels=tuple(Label(moved(label.place), label.message) for label in mistake.labels),
-            fix=None if fix is None else replace(fix, place=moved(fix.place)),
+            fix=None if fix is None else fixed(fix),
+            offers=offers,
         )
 
 

@@ -59,6 +59,7 @@ def places_of(mistake: Diagnostic) -> Iterator[SourceLocation]:
     yield from (label.place for label in mistake.labels)
     if mistake.fix is not None:
         yield mistake.fix.place
+    yield from (fix.place for offer in mistake.offers for fix in offer.fixes)
 
 
 def shifted(place: SourceLocation, lines: int) -> SourceLocation:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Final
 
-from rulec.diagnostics import did_you_mean
+from rulec.diagnostics import nearest_name
+from rulec.diagnostics.ways_out import Help, meant, offering
 from rulec.syntax.keywords import (
     CLAUSE_WORDS,
     CONTEXTUAL,
@@ -58,7 +59,7 @@ _RANGE: Final = re.compile(r"(\d+)[-–](\d+)")
 _WITHIN: Final = ("within", "for", "during", "after")
 
 
-def advise_on_bound(ctx: ParseContext) -> str:
+def advise_on_bound(ctx: ParseContext) -> Help:
     """Help inside brackets, and where a bound was probably meant."""
     if ctx.opened("[", "]") is not None and not ctx.operand:
         return _inside(ctx)
@@ -67,7 +68,7 @@ def advise_on_bound(ctx: ParseContext) -> str:
         return _FORMULA_IN_BRACKETS
     if text == "[" and ctx.operand and before in _BOOLEAN:
         return "only operators over time take a bound, such as `always[<= 3 s]`"
-    if text == "[" and ctx.operator and (near := did_you_mean(before, UNARY_OPERATORS)):
+    if text == "[" and ctx.operator and (near := _word_before(ctx, UNARY_OPERATORS)):
         return near
     if text == "[" and (ctx.operand or ctx.operator):
         return "a bound follows its operator, such as `always[<= 3 s] p`"
@@ -83,7 +84,7 @@ def advise_on_bound(ctx: ParseContext) -> str:
     return ""
 
 
-def _of_time(ctx: ParseContext, word: str, at: int) -> str:
+def _of_time(ctx: ParseContext, word: str, at: int) -> Help:
     """Help at ``within 3 s`` and ``within the last 3 s``; empty without a number."""
     at += ctx.text_at(at) == "the"
     past = ctx.text_at(at) in PAST
@@ -106,7 +107,7 @@ def _holds_a_formula(ctx: ParseContext) -> bool:
     return behind is not None and (behind.kind == "word" or behind.text in ("!", "("))
 
 
-def _inside(ctx: ParseContext) -> str:
+def _inside(ctx: ParseContext) -> Help:
     text, before = ctx.text, ctx.text_before
     opened = ctx.opened("[", "]")
     only_word = opened == ctx.at - 2 and before.isidentifier()
@@ -141,9 +142,9 @@ def _inside(ctx: ParseContext) -> str:
     if text == "-" and "NUMBER" in ctx.accepted:
         return "a bound counts forward, or back for `once` and its family: it has no sign"
     if "TO" in ctx.accepted and text in _BETWEEN:
-        return "write `..` between the two ends, such as `[3 s .. 4 s]`"
+        return offering("write `..` between the two ends, such as `[3 s .. 4 s]`", "..")
     if ctx.accepted <= {"RSQB", "TO", "LPAR"} and text not in (*RELATIONS, *"+*/-", ".."):
-        return "close the bound with `]`"
+        return offering("close the bound with `]`", ctx.put_before("]"))
     return _FORMS
 
 
@@ -162,12 +163,15 @@ def _end_of_amount(ctx: ParseContext, at: int) -> int:
 _SINGLE: Final = ("'", "“", "”", "„", "‘", "’", "«", "»")
 
 
-def advise(ctx: ParseContext) -> str:
+def advise(ctx: ParseContext) -> Help:
     """The suggested correction; empty if there is none."""
-    return next(filter(None, (advice(ctx) for advice in _IN_ORDER)), "")
+    for advice in _IN_ORDER:
+        if way_out := advice(ctx):
+            return way_out
+    return ""
 
 
-def _quotes(ctx: ParseContext) -> str:
+def _quotes(ctx: ParseContext) -> Help:
     token, before = ctx.unexpected, ctx.before
     if token is None:
         return ""
@@ -183,16 +187,19 @@ def _quotes(ctx: ParseContext) -> str:
     if token.kind == "quoted" or (token.text in _SINGLE and not grouped):
         name = token.text.strip("'") if token.kind == "quoted" else ctx.text_behind
         if ctx.operand and name.isidentifier():
-            return f"write `{name}` without quotes"
+            last = ctx.at if token.kind == "quoted" else ctx.at + 2
+            closed = last == ctx.at or ctx.text_at(last) in _SINGLE
+            plain = (ctx.write(name, ctx.at, last),) if closed else ()
+            return offering(f"write `{name}` without quotes", *plain)
         return 'texts go in straight double quotes: "…"'
     if ctx.accepted == {"STRING"} and (token.kind != "symbol" or token.text == "§"):
         return 'put the text in double quotes: "…"'
     if token.kind == "string" and "STRING" not in ctx.accepted:
         inside = token.text[1:-1]
         if ctx.quantity and _QUANTITY.fullmatch(inside):
-            return f"write `{inside}` without quotes"
+            return offering(f"write `{inside}` without quotes", inside)
         if inside in map(spelling, ctx.accepted) or ("NAME" in ctx.accepted and _names(inside)):
-            return f"write `{inside}` without quotes"
+            return offering(f"write `{inside}` without quotes", inside)
     if before is not None and before.kind == "string" and ctx.is_word() and ctx.touches():
         return 'a quote inside a text is written \\"'
     return ""
@@ -205,7 +212,7 @@ def _names(text: str) -> bool:
     return text.isidentifier() and text not in RESERVED
 
 
-def _comment(ctx: ParseContext) -> str:
+def _comment(ctx: ParseContext) -> Help:
     minus = ctx.operator and ctx.text == "–"
     if "$END" in ctx.accepted and is_comment(ctx.tokens, ctx.at) and not minus:
         return COMMENT
@@ -214,7 +221,7 @@ def _comment(ctx: ParseContext) -> str:
     return COMMENT if ctx.text in ("//", "/*") else ""
 
 
-def _name_of_two_words(ctx: ParseContext) -> str:
+def _name_of_two_words(ctx: ParseContext) -> Help:
     is_name = ctx.kind == "rule_head" and ctx.text_at(ctx.at - 2) == "rule"
     if is_name and ctx.is_word() and ctx.text not in ITEM_WORDS | CLAUSE_WORDS:
         words = [ctx.text_before]
@@ -229,13 +236,13 @@ def _name_of_two_words(ctx: ParseContext) -> str:
     return ""
 
 
-def _misspelt_prefix(ctx: ParseContext) -> str:
+def _misspelt_prefix(ctx: ParseContext) -> Help:
     """Help at an operand after a name that resembles a prefix: `alway not p`, `evry x: vehicle`."""
     token, before = ctx.unexpected, ctx.before
     if token is None or not ctx.operator:
         return ""
     if ctx.text_behind in _AFTER_STRENGTH and token.text not in RESERVED:
-        return did_you_mean(token.text, ("weak", "strong"), _MUCH_ALIKE)
+        return meant(token.text, ("weak", "strong"), _MUCH_ALIKE)
     if before is None or before.kind != "word" or before.text in RESERVED:
         return ""
     words: tuple[str, ...] = ()
@@ -243,7 +250,14 @@ def _misspelt_prefix(ctx: ParseContext) -> str:
         words = AGGREGATES
     elif token.kind == "number" or token.text in _OPERAND_WORDS:
         words = (*UNARY_OPERATORS, *(("weak",) if token.text in _AFTER_STRENGTH else ()))
-    return did_you_mean(before.text, words, _MUCH_ALIKE)
+    return _word_before(ctx, words, _MUCH_ALIKE)
+
+
+def _word_before(ctx: ParseContext, known: Iterable[str], alike: float = 0.6) -> Help:
+    """Help with the word before the unexpected token, if it resembles a known one."""
+    near = nearest_name(ctx.text_before, known, alike)
+    at = ctx.at - 1
+    return "" if near is None else offering(f"did you mean `{near}`?", ctx.write(near, at))
 
 
 _MUCH_ALIKE: Final = 0.75
@@ -254,7 +268,7 @@ _OPERAND_WORDS: Final = frozenset(
 )
 
 
-def _misspelt(ctx: ParseContext) -> str:
+def _misspelt(ctx: ParseContext) -> Help:
     token, before = ctx.unexpected, ctx.before
     if token is None or token.kind != "word" or token.text.casefold() in RESERVED:
         return ""
@@ -266,20 +280,20 @@ def _misspelt(ctx: ParseContext) -> str:
         return f"for `{before.text} {token.text}` write `{sign}`" if is_twice else ""
     words = {word for word in map(spelling, ctx.accepted) if word in RESERVED | CONTEXTUAL}
     # One letter is a name, such as `f` behind `eventualy`, and no word misspelt.
-    near = did_you_mean(token.text, words) if len(token.text) > 1 else ""
+    near = meant(token.text, words) if len(token.text) > 1 else ""
     if near or before is None or before.text in RESERVED or not ctx.operator:
         return near
     if before.text in _EARLIER:
         return "numbers of earlier states cannot be read; formulas can: `previously (speed > 0)`"
     if number := IN_DIGITS.get(before.text.casefold()):
         return f"write the number in digits: `{number}` for `{before.text}`"
-    return did_you_mean(before.text, UNARY_OPERATORS)
+    return _word_before(ctx, UNARY_OPERATORS)
 
 
 _EARLIER: Final = ("previous", "last", "prior", "earlier", "old")
 
 
-def _least(ctx: ParseContext) -> str:
+def _least(ctx: ParseContext) -> Help:
     opened = ctx.opened("(", ")")
     function = "" if opened is None else ctx.text_at(opened - 1)
     if function not in ("min", "max") or ctx.operand:
@@ -288,7 +302,7 @@ def _least(ctx: ParseContext) -> str:
     return f"there is no `{function}`: compare one after the other, `x <= a {word} x <= b`"
 
 
-def _name(ctx: ParseContext) -> str:
+def _name(ctx: ParseContext) -> Help:
     token, before = ctx.unexpected, ctx.before
     if token is None or before is None:
         return ""
@@ -310,21 +324,22 @@ def _name(ctx: ParseContext) -> str:
     return ""
 
 
-def _punctuation(ctx: ParseContext) -> str:
+def _punctuation(ctx: ParseContext) -> Help:
     text = ctx.text
     begins = ctx.at == 1 and ctx.kind in ("clause", "item") and text in (":", "=", "-")
     ends = "$END" in ctx.accepted or ctx.accepted == {"STRING"}
     if begins or (text in (";", ".", ",", ":", "=") and ends):
-        return f"delete the `{text}`"
+        return offering(f"delete the `{text}`", ctx.leave_out(ctx.at))
     return ""
 
 
-def _ending(ctx: ParseContext) -> str:
+def _ending(ctx: ParseContext) -> Help:
     last = ctx.at == len(ctx.tokens) - 1 and ctx.text in (";", ".", ",")
-    return f"delete the `{ctx.text}`" if last and "$END" in ctx.accepted else ""
+    is_end = last and "$END" in ctx.accepted
+    return offering(f"delete the `{ctx.text}`", ctx.leave_out(ctx.at)) if is_end else ""
 
 
-def _parentheses(ctx: ParseContext) -> str:
+def _parentheses(ctx: ParseContext) -> Help:
     if ctx.unexpected is None and ctx.operator and ctx.opened("(", ")") is not None:
         return _closed_before_a_clause(ctx)
     if ctx.text != ")" or ctx.operand or ctx.quantity or ctx.accepted == {"NAME"}:
@@ -333,7 +348,7 @@ def _parentheses(ctx: ParseContext) -> str:
         return ""
     if ctx.first in ("unless", "when") and _left_open(ctx.source.text[: ctx.tokens[0].start]):
         return f"it closes what is open before `{ctx.first}`: see there"
-    return "delete the `)`, or open it before"
+    return offering("delete the `)`, or open it before", ctx.leave_out(ctx.at))
 
 
 def _left_open(before: str) -> bool:
@@ -342,7 +357,7 @@ def _left_open(before: str) -> bool:
     return clause.count("(") > clause.count(")")
 
 
-def _closed_before_a_clause(ctx: ParseContext) -> str:
+def _closed_before_a_clause(ctx: ParseContext) -> Help:
     """Help where a clause begins inside an open formula: its keyword may be part of the formula."""
     behind = ctx.source.text[ctx.tokens[-1].end :]
     word, *_ = (*behind.split(maxsplit=1), "")
@@ -352,21 +367,21 @@ def _closed_before_a_clause(ctx: ParseContext) -> str:
     if word in ("unless", "when") and not is_clause:
         instead = "p or q` for `p unless q" if word == "unless" else "q implies p` for `p when q"
         return f"`{word}` is a clause after the whole formula; inside one write `{instead}`"
-    return "close it with `)`"
+    return offering("close it with `)`", ctx.put_before(")"))
 
 
-def _form(ctx: ParseContext) -> str:
+def _form(ctx: ParseContext) -> Help:
     """The form of the whole line, if there is no better advice."""
     unfinished = ctx.unexpected is None and ctx.text_before == "="
     formula = not unfinished and (ctx.operand or ctx.operator or ctx.quantity)
     return "" if formula or ctx.kind != "item" else FORMS.get(ctx.first, "")
 
 
-def _invisible(ctx: ParseContext) -> str:
-    return DELETE_IT if is_invisible(ctx.text) else ""
+def _invisible(ctx: ParseContext) -> Help:
+    return offering(DELETE_IT, ctx.leave_out(ctx.at)) if is_invisible(ctx.text) else ""
 
 
-_IN_ORDER: tuple[Callable[[ParseContext], str], ...] = (
+_IN_ORDER: tuple[Callable[[ParseContext], Help], ...] = (
     _invisible,
     advise_on_point,
     _quotes,

@@ -6,8 +6,9 @@ import re
 import unicodedata
 from typing import Final
 
+from rulec.diagnostics.ways_out import Help, offering
 from rulec.syntax import keywords
-from rulec.syntax.messages.literals import how_hours_are_written
+from rulec.syntax.messages.literals import hours_meant, how_hours_are_written
 from rulec.syntax.messages.parse_context import COMPARISONS, ParseContext
 
 _SIGNS: Final = {
@@ -42,19 +43,26 @@ NO_ABSOLUTE_VALUE: Final = (
 )
 
 
-def advise_on_number(ctx: ParseContext) -> str:
+def advise_on_number(ctx: ParseContext) -> Help:
     """Advice on numbers, their digits and units; empty if there is none."""
     token, text = ctx.unexpected, ctx.text
     if token is None or not (ctx.operator or ctx.quantity):
         return ""
     if text == ":" and ctx.is_number(ctx.at - 1) and ctx.is_number(ctx.at + 1):
-        return how_hours_are_written(f"{ctx.text_before}:{ctx.text_behind}")
+        hours = f"{ctx.text_before}:{ctx.text_behind}"
+        last = ctx.at + 1 + (ctx.text_at(ctx.at + 2) == "h")
+        written = (ctx.write(one, ctx.at - 1, last) for one in hours_meant(hours))
+        way_out = how_hours_are_written(hours)
+        return offering(way_out, *written) if way_out else ""
     if len(ctx.text_before) == 1 and unicodedata.numeric(ctx.text_before, 0) % 1:
-        return f"write `{unicodedata.numeric(ctx.text_before):g}` for `{ctx.text_before}`"
+        number = f"{unicodedata.numeric(ctx.text_before):g}"
+        return offering(f"write `{number}` for `{ctx.text_before}`", ctx.write(number, ctx.at - 1))
     around = ctx.is_number(ctx.at - 1) and ctx.is_number(ctx.at + 1)
     if text == "of" and ctx.text_before == "%" and ctx.is_number(ctx.at - 2):
         share = f"{ctx.text_at(ctx.at - 2)} %"
-        return f"for `{share} of` write `{share} *`"
+        return offering(
+            f"for `{share} of` write `{share} *`", ctx.write(f"{share} *", ctx.at - 2, ctx.at)
+        )
     if text == "." and ctx.quantity and ctx.is_number(ctx.at + 1):
         return f"write `0.{ctx.text_behind}`"
     grouped = "_" in ctx.text_before or ctx.is_number(ctx.at)
@@ -74,17 +82,20 @@ def advise_on_number(ctx: ParseContext) -> str:
     return ""
 
 
-def advise_on_comparison(ctx: ParseContext) -> str:
+def advise_on_comparison(ctx: ParseContext) -> Help:
     """Advice on comparisons and their signs; empty if there is none."""
     text, before = ctx.text, ctx.text_before
     numbers = ctx.is_number(ctx.at + 1) or ctx.is_number(ctx.at - 1)
     if ctx.operator and text == "=>" and numbers:
-        return "write `>=` for at least; `=>` would be `implies`"
+        return offering("write `>=` for at least; `=>` would be `implies`", ">=")
     if ctx.operator and text == "is":
         words = (ctx.text_behind, ctx.text_at(ctx.at + 2))
         key = words[:1] if words[:1] in _IN_WORDS else words
         if sign := _IN_WORDS.get(key):
-            return f"for `is {' '.join(key)}` write `{sign}`"
+            return offering(
+                f"for `is {' '.join(key)}` write `{sign}`",
+                ctx.write(sign, ctx.at, ctx.at + len(key)),
+            )
         no, value = ("not ", words[1]) if words[0] == "not" else ("", words[0])
         if before == ")" and value.isidentifier() and value not in keywords.RESERVED:
             instead = f"{no}{value}{_called(ctx)}"
@@ -101,25 +112,33 @@ def advise_on_comparison(ctx: ParseContext) -> str:
     at_sign = sign_in_words(text, ctx.text_behind) if ctx.operator and text == "at" else ""
     if at_sign and ctx.is_number(ctx.at + 2):
         lasting = f"how long something lasts is a bound, such as `historically[{at_sign} 3 s] p`"
-        return f"for `at {ctx.text_behind}` write `{at_sign}`; {lasting}"
+        return offering(
+            f"for `at {ctx.text_behind}` write `{at_sign}`; {lasting}",
+            ctx.write(at_sign, ctx.at, ctx.at + 1),
+        )
     if ctx.operator and text == "==":
         value = ctx.text_behind if ctx.text_behind.isidentifier() else ""
         alone = f"; one of several values is written alone: `{value}`" if value else ""
-        return f"quantities are compared by `=`, formulas by `iff`{alone}"
+        return offering(
+            f"quantities are compared by `=`, formulas by `iff`{alone}",
+            *map(ctx.write_sign, ("=", "iff")),
+        )
     if ctx.operator and text == ":=":
-        return "write `=` for `:=`"
+        return offering("write `=` for `:=`", "=")
     if text == "·" and before.isalpha() and ctx.text_at(ctx.at + 2) == "⁻":
         power = unicodedata.normalize("NFKC", ctx.text_at(ctx.at + 3))
         unit = f"{before}/{ctx.text_behind}{f'^{power}' if power != '1' else ''}"
         return f"write the unit as `{unit}`"
     if (ctx.operator or ctx.quantity) and text in _SIGNS:
-        return f"write `{_SIGNS[text]}`"
+        return offering(f"write `{_SIGNS[text]}`", _SIGNS[text])
     if before == "-" and text == ">":
-        return "write `->` without a space"
+        return offering("write `->` without a space", ctx.write("->", ctx.at - 1, ctx.at))
     if before in ("<", ">") and text == "=":
-        return f"write `{before}=` without a space"
+        return offering(
+            f"write `{before}=` without a space", ctx.write(f"{before}=", ctx.at - 1, ctx.at)
+        )
     if before == "=" and text == "!":
-        return "write `!=`"
+        return offering("write `!=`", ctx.write("!=", ctx.at - 1, ctx.at))
     if text == "**" or (before == "^" and ctx.is_number(ctx.at)):
         return "powers cannot be written; arithmetic is linear"
     if ctx.operator and text in RELATIONS and not ctx.accepted & COMPARISONS:
@@ -135,7 +154,7 @@ def advise_on_comparison(ctx: ParseContext) -> str:
             return f"for `… in {case}` write `… and {case}`"
         return f"for `… in {case}` write `{case} implies …`, or after `never` `{case} and …`"
     if text == "+" and ctx.quantity:
-        return "delete the `+`"
+        return offering("delete the `+`", ctx.leave_out(ctx.at))
     if text in ("|", "||") and ctx.quantity:
         closing = (token for token in ctx.tokens[ctx.at + 1 :] if token.text in ("|", "||"))
         return NO_ABSOLUTE_VALUE if any(closing) else ""

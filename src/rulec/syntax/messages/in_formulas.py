@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from rulec.diagnostics import did_you_mean
+from rulec.diagnostics.ways_out import Help, meant, offering
 from rulec.syntax import keywords
 from rulec.syntax.messages.in_comparisons import (
     ABSOLUTE,
@@ -48,7 +48,7 @@ AGGREGATES: Final = ("some", "every", "count")
 _ARGUMENT: Final = "an argument is a name; it has no arguments of its own"
 
 
-def advise_on_formula(ctx: ParseContext) -> str:
+def advise_on_formula(ctx: ParseContext) -> Help:
     """Advice on a mistake in a formula; empty if there is none."""
     if not (ctx.operand or ctx.operator or ctx.quantity or "AND" in ctx.accepted):
         return _arguments(ctx)
@@ -60,11 +60,14 @@ def advise_on_formula(ctx: ParseContext) -> str:
     return ""
 
 
-def advise_on_aggregate(ctx: ParseContext) -> str:
+def advise_on_aggregate(ctx: ParseContext) -> Help:
     """Help at ``some``, ``every``, ``count``, and their equivalents in other languages."""
     text, before = ctx.text, ctx.text_before
     if ctx.operator and before == "at" and ctx.text_behind in ("time", "times"):
-        return f"for `at {text} {ctx.text_behind}` write `always`"
+        return offering(
+            f"for `at {text} {ctx.text_behind}` write `always`",
+            ctx.write("always", ctx.at - 1, ctx.at + 1),
+        )
     if ctx.operator and before == "no" and ctx.is_word():
         named = ctx.text_behind if ctx.text_behind.isidentifier() else ""
         plain = "" if named else f"`not {text}`, of objects "
@@ -72,7 +75,8 @@ def advise_on_aggregate(ctx: ParseContext) -> str:
         head = f"{named}: {text} (…)"
         if len(named) != 1:
             head = f"x: {text} ({f'{named}(x)' if named else '…'})"
-        return f"for `no {text}` write {plain}`not some {head}`"
+        denied = () if named else (ctx.write(f"not {text}", ctx.at - 1, ctx.at),)
+        return offering(f"for `no {text}` write {plain}`not some {head}`", *denied)
     if text == "every" and ctx.operator and ctx.is_number(ctx.at + 1):
         return "for `p every 4 h` write `always eventually[<= 4 h] p`"
     word = _QUANTIFIERS.get(text) or (_QUANTIFIERS.get(before) if ctx.operator else None)
@@ -114,7 +118,7 @@ def advise_on_aggregate(ctx: ParseContext) -> str:
     return ""
 
 
-def no_operator(ctx: ParseContext) -> tuple[int, str] | None:
+def no_operator(ctx: ParseContext) -> tuple[int, Help] | None:
     """The index of a word that is meant for an operator and is none, and what may help.
 
     ``nevr (p and q)`` and ``nie (p(x) …)`` read as a name with arguments up to a word behind.
@@ -123,7 +127,7 @@ def no_operator(ctx: ParseContext) -> tuple[int, str] | None:
     in_formula = ctx.kind in ("clause", "formula", "item")
     if not opened or not in_formula or ctx.accepted != {"COMMA", "RPAR"} or ctx.text in (")", ":"):
         return None
-    if near := did_you_mean(ctx.text_at(opened - 1), keywords.UNARY_OPERATORS):
+    if near := meant(ctx.text_at(opened - 1), keywords.UNARY_OPERATORS):
         return opened - 1, near
     is_spaced = ctx.tokens[opened - 1].end < ctx.tokens[opened].start
     if ctx.text != "(" or not is_spaced or ctx.text_at(opened - 1).casefold() in ABSOLUTE:
@@ -131,18 +135,20 @@ def no_operator(ctx: ParseContext) -> tuple[int, str] | None:
     return opened - 1, f"if it is meant for a name, {_ARGUMENT}"
 
 
-def _arguments(ctx: ParseContext) -> str:
+def _arguments(ctx: ParseContext) -> Help:
     opened = ctx.opened("(", ")")
     if opened is None or ctx.kind not in ("clause", "formula", "item"):
         return ""
     if ctx.accepted == {"NAME"} and ctx.text_before == "(" and ctx.text == ")":
         return "without arguments there are no parentheses"
     if ctx.accepted == {"NAME"} and ctx.text_before == "," and ctx.text == ")":
-        return "delete the `,`"
+        return offering("delete the `,`", ctx.leave_out(ctx.at - 1))
     if ctx.accepted == {"COMMA", "RPAR"} and ctx.text == ":":
-        return (
+        typed = (ctx.leave_out(ctx.at, ctx.at + 1),) if ctx.text_behind.isidentifier() else ()
+        return offering(
             "types are given where variables are declared, as in the rule's head: leave out "
-            f"`: {ctx.text_behind}`"
+            f"`: {ctx.text_behind}`",
+            *typed,
         )
     if ctx.accepted == {"COMMA", "RPAR"} and ctx.text == "(":
         if opened and ctx.text_at(opened - 1).casefold() in ABSOLUTE:
@@ -162,11 +168,11 @@ def _arguments(ctx: ParseContext) -> str:
     if opened and ctx.accepted == {"COMMA", "RPAR"} and ctx.is_word() and quantifier:
         return f"write `{quantifier} x: {ctx.text} ({ctx.text_at(opened - 1)}(x))`"
     if ctx.accepted == {"COMMA", "RPAR"} and ctx.is_word():
-        return "separate the names by `,`"
+        return offering("separate the names by `,`", ctx.separate(","))
     return ""
 
 
-def _conditionals(ctx: ParseContext) -> str:
+def _conditionals(ctx: ParseContext) -> Help:
     text, before = ctx.text, ctx.text_before
     behind = [token.text for token in ctx.tokens[ctx.at :]]
     otherwise = "else" in behind
@@ -175,7 +181,7 @@ def _conditionals(ctx: ParseContext) -> str:
     if (ctx.operator and text == "else") or (text == "if" and ctx.operand and otherwise and truths):
         return "write `(p implies q) and (not p implies r)` for `if p then q else r`"
     if text == "if" and before in ("unless", "when") and not truths:
-        return "delete the `if`"
+        return offering("delete the `if`", ctx.leave_out(ctx.at))
     if text == "?" or (otherwise and text == "if"):
         if ctx.operator and text == "if":
             return "a conditional goes in parentheses: `(1.5 m if built_up else 2 m)`"
@@ -192,25 +198,29 @@ def _conditionals(ctx: ParseContext) -> str:
     return ""
 
 
-def _operators(ctx: ParseContext) -> str:
+def _operators(ctx: ParseContext) -> Help:
     if ctx.unexpected is None:
         return ""
     text, before = ctx.text, ctx.text_before
     if ctx.operator and len(before) > 1 and set(before) <= set(keywords.PREFIX_LETTERS):
-        return f"`{before}` is read as one name; write `{' '.join(before)}`"
+        apart = " ".join(before)
+        return offering(
+            f"`{before}` is read as one name; write `{apart}`", ctx.write(apart, ctx.at - 1)
+        )
     if text == "then" and before == "and":
         return "`then` alone separates two phases: write `p then q`"
     if text == "as" and ctx.text_behind == "soon":
         return "for `as soon as p, q` write `always (p implies q)`, or `eventually[<= 2 s] q` in it"
     if ctx.operator and _MEANT.get(before) == "not":
-        return f"write `not` or `!` for `{before}`"
+        return offering(f"write `not` or `!` for `{before}`", ctx.write("not", ctx.at - 1))
     word = _MEANT.get(text) or (
         text.casefold() if text.casefold() in keywords.OPERATOR_WORDS else None
     )
     fits = ctx.operand if word in keywords.UNARY_OPERATORS else "AND" in ctx.accepted
     if word is not None and text != word and fits:
         symbol = keywords.SYMBOLS.get(word, word)
-        return f"write `{word}` or `{symbol}`" if symbol != word else f"write `{word}`"
+        or_symbol = f" or `{symbol}`" if symbol != word else ""
+        return offering(f"write `{word}`{or_symbol}", ctx.write_sign(word))
     if "weak" in (before, text):
         return "`weak` comes before `until`, `next` or `previously`"
     if "strong" in (before, text):
@@ -222,7 +232,7 @@ def _operators(ctx: ParseContext) -> str:
     return ""
 
 
-def _joined(ctx: ParseContext) -> str:
+def _joined(ctx: ParseContext) -> Help:
     behind = ctx.token(ctx.at + 1)
     member = behind is not None and behind.kind == "word" and behind.text not in keywords.RESERVED
     if ctx.operator and ctx.text == "." and member and ctx.before and ctx.touches():

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Container
 from typing import Final
 
+from rulec.diagnostics import Span
+from rulec.diagnostics.ways_out import Help, offering, write
 from rulec.syntax.keywords import OPERATOR_LETTERS, OPERATOR_WORDS, RESERVED, UNARY_OPERATORS
 from rulec.syntax.messages.in_comparisons import sign_in_words
-from rulec.syntax.messages.literals import how_a_date_is_written
+from rulec.syntax.messages.literals import how_a_date_is_written, meant_date
 from rulec.syntax.messages.parse_context import SCOPES, ParseContext
 
 FORMS: Final = {
@@ -58,7 +60,7 @@ def other_word(word: str) -> str:
     return f"write `{form}`" if form else ""
 
 
-def advise_on_item(ctx: ParseContext) -> str:
+def advise_on_item(ctx: ParseContext) -> Help:
     if ctx.kind != "item":
         return ""
     first, text = ctx.first, ctx.text
@@ -70,7 +72,7 @@ def advise_on_item(ctx: ParseContext) -> str:
         return "what must hold is written in a rule: `hard rule NAME { require … }`"
     is_text = ctx.unexpected is not None and ctx.unexpected.kind == "string"
     if first == "provisions" and "SEMICOLON" in ctx.accepted and is_text:
-        return "put a `;` between two articles"
+        return offering("put a `;` between two articles", ctx.separate(";"))
     if first == "use" and text == ",":
         return "write a `use` line for each vocabulary"
     if first == "fact" and text == ":" and ctx.text_at(1) == "(":
@@ -79,30 +81,41 @@ def advise_on_item(ctx: ParseContext) -> str:
         return "the values follow `is one of`, such as `is one of a, b`"
     listed = text in (";", "|", "or", "and") or ctx.is_word()
     if "COMMA" in ctx.accepted and listed:
-        return "separate the names by `,`"
+        return offering("separate the names by `,`", ctx.separate(","))
     if ctx.accepted == {"TRUE", "FALSE"}:
         return "a signal is true or false: write `default true` or `default false`"
     if ctx.accepted == {"ON", "OFF"} and text in ("true", "false", "yes", "no"):
-        return f"write `{'on' if text in ('true', 'yes') else 'off'}`"
+        state = "on" if text in ("true", "yes") else "off"
+        return offering(f"write `{state}`", state)
     if first in ("option", "set") and text == "in" and ctx.text_before in ("on", "off"):
         return "an option has no dates; a parameter and a rule may have them"
     if first == "priority" and text == "<" and ctx.text_behind:
-        return f"the more important one comes first: write `{ctx.text_behind} > {ctx.text_before}`"
+        order = f"{ctx.text_behind} > {ctx.text_before}"
+        return offering(
+            f"the more important one comes first: write `{order}`",
+            ctx.write(order, ctx.at - 1, ctx.at + 1),
+        )
     if ctx.text_at(ctx.at - 2) == "default" and ctx.is_number(ctx.at - 1):
         return f"the number is in the quantity's own unit: `default {ctx.text_before}`"
     if "EQUALS" in ctx.accepted and not ctx.operator and text in _EQUALS:
-        return f"write `=` for `{text}`"
+        return offering(f"write `=` for `{text}`", ctx.write_sign("="))
     if "EQUALS" in ctx.accepted and not ctx.operator and text == "{":
         return f"write `=` before the formula, and no braces: `{first} NAME = formula`"
+    if first == "traffic" and ctx.is_word():
+        return offering(FORMS[first], "right", "left")
     if "HARD" in ctx.accepted or ctx.operand or ctx.operator or ctx.quantity:
         return ""
     return FORMS.get(first, "")
 
 
-def advise_on_dates(ctx: ParseContext) -> str:
+def advise_on_dates(ctx: ParseContext) -> Help:
     """Help at ``in force from DATE until DATE``."""
     if ctx.accepted == {"DATE"} and ctx.unexpected is not None:
-        return how_a_date_is_written(ctx.source.text[ctx.unexpected.start :][:16])
+        start = ctx.unexpected.start
+        text = ctx.source.text[start:][:16]
+        was, written = meant_date(text)
+        day = write(written, Span(ctx.source, start, start + len(was)))
+        return offering(how_a_date_is_written(text), *((day,) if written else ()))
     if ctx.first not in _DATED and ctx.kind != "clause":
         return ""
     if ctx.text in ("from", "force") and "IN" in ctx.accepted:
@@ -172,7 +185,7 @@ def other_clause(word: str, others: Container[str] = ()) -> str:
     return _OTHER_CLAUSES.get(word, "")
 
 
-def advise_on_rule_head(ctx: ParseContext) -> str:
+def advise_on_rule_head(ctx: ParseContext) -> Help:
     if ctx.kind != "rule_head":
         return ""
     text = ctx.text
@@ -180,7 +193,12 @@ def advise_on_rule_head(ctx: ParseContext) -> str:
     if ctx.at == 0 and text in _REMOVING:
         return f'write `drop rule {ctx.text_at(2) or "NAME"} because "…"`'
     if ctx.at == 0 and ctx.text_at(1).isidentifier() and text == "rule":
-        return f"write `hard rule {ctx.text_at(1)}`, or `soft rule` for one that may yield"
+        head, soft = f"hard rule {ctx.text_at(1)}", "soft rule"
+        return offering(
+            f"write `{head}`, or `{soft}` for one that may yield",
+            ctx.write(head, 0, 1),
+            ctx.write(soft, 0),
+        )
     if ctx.at == 0:
         return "a rule begins with `hard rule` or `soft rule`"
     if ctx.text_before == "rule" and ctx.accepted == {"NAME"}:
@@ -197,13 +215,13 @@ def advise_on_rule_head(ctx: ParseContext) -> str:
         return "a variable is written with its type, such as `v: vehicle`"
     another = ctx.is_word() and (ctx.text == "and" or ctx.text_behind == ":")
     if ctx.accepted >= {"COMMA", "RPAR"} and (another or text == ";"):
-        return "separate the variables by `,`"
+        return offering("separate the variables by `,`", ctx.separate(","))
     if ctx.text_before == "weight" and text in ("-", "–", "−"):
         return "a weight is a number above 0"
     if ctx.unexpected is None and ctx.text_before == "(":
         return "a rule's variables go in parentheses; what it says goes between `{` and `}`"
     if ctx.unexpected is None and "RPAR" in ctx.accepted:
-        return "close the list of variables with `)`"
+        return offering("close the list of variables with `)`", ctx.put_before(")"))
     if text == "," and ctx.text_before != ")" and "RPAR" not in ctx.accepted:
         return "a rule has one name: write a rule for each"
     if text == ":" and "RPAR" not in ctx.accepted:
@@ -219,7 +237,7 @@ def _begins_scope(ctx: ParseContext) -> bool:
 _BEHIND_AT: Final = ("start", "end", "some", "least", "most")
 
 
-def advise_on_clause(ctx: ParseContext) -> str:
+def advise_on_clause(ctx: ParseContext) -> Help:
     if ctx.kind == "example_head":
         return _example_head(ctx)
     if ctx.kind != "clause":
@@ -254,7 +272,7 @@ def advise_on_clause(ctx: ParseContext) -> str:
     return advise_on_dates(ctx) if ctx.first == "in" else ""
 
 
-def _example_head(ctx: ParseContext) -> str:
+def _example_head(ctx: ParseContext) -> Help:
     if ctx.accepted == {"COLON"}:
         return "an object is written with its type, such as `v: vehicle`"
     if ctx.unexpected is not None and ctx.unexpected.kind == "string" and ctx.text_before == ")":
@@ -264,14 +282,17 @@ def _example_head(ctx: ParseContext) -> str:
     return ""
 
 
-def advise_on_state(ctx: ParseContext) -> str:
+def advise_on_state(ctx: ParseContext) -> Help:
     if ctx.kind != "state":
         return ""
     text = ctx.text
     if ctx.unexpected is None and "NAME" in ctx.accepted:
         return "say what holds in this state; a `;` only separates two states"
     if text == ",":
-        return "states are separated by `;`, the facts of one state by `and`"
+        return offering(
+            "states are separated by `;`, the facts of one state by `and`",
+            *map(ctx.write_sign, (";", "and")),
+        )
     if text in ("or", "|", "||"):
         return "a state says what holds; for another possibility write another example"
     if text in ("for", "during", "within", "x", "times") or ctx.text_at(ctx.at + 1) == "x":
@@ -286,7 +307,7 @@ def advise_on_state(ctx: ParseContext) -> str:
     if ctx.text_before == "=" and text in ("true", "false"):
         return "what is true is said without `=`, such as `p(v)`, what is not as `not p(v)`"
     if text in ("–", "−", "‑") and ctx.is_number(ctx.at + 1):
-        return "write `-`"
+        return offering("write `-`", "-")
     number = "NUMBER" in ctx.accepted and "NAME" not in ctx.accepted
     sums = text in ("+", "-", "*", "/")
     if ctx.text_before == "=" and ctx.is_word():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from rulec.diagnostics.ways_out import Help, offering
 from rulec.syntax import keywords
 from rulec.syntax.messages.parse_context import ParseContext
 
@@ -37,23 +38,28 @@ _IN_PAIRS: Final = {
 _SMALL_WORDS: Final = ("is", "at", "in", "on", "the", "a", "an", "not")
 
 
-def advise_on_sentence(ctx: ParseContext) -> str:
+def advise_on_sentence(ctx: ParseContext) -> Help:
     """Advice on words that a formula writes otherwise or lacks; empty if there is none."""
     if not ctx.operator or ctx.unexpected is None:
         return ""
     text, before, behind = ctx.text, ctx.text_before, ctx.text_behind
     if before in _OBLIGATIONS:
-        return f"leave out `{before}`; what a formula says must hold"
+        return offering(
+            f"leave out `{before}`; what a formula says must hold", ctx.leave_out(ctx.at - 1)
+        )
     if text in _OBLIGATIONS and behind == "not":
         return f"for `{text} not p` write `never p`, such as `never (speed > 50 km/h)`"
     if text in _OBLIGATIONS:
-        return f"leave out `{text}`: what a formula says must hold, such as `speed <= 50 km/h`"
+        return offering(
+            f"leave out `{text}`: what a formula says must hold, such as `speed <= 50 km/h`",
+            ctx.leave_out(ctx.at),
+        )
     if before in EGO and ctx.is_word() and (subject := _predicate(ctx)):
         return f"what is about ego is written alone: `{subject}`"
     if text in _CONJUNCTIONS:
         return _CONJUNCTIONS[text].format(_IN_ORDER_OF_TIME[_in_every_state(ctx)])
     if text in _COMPARING and behind:
-        return f"for `{text}` write `{_COMPARING[text]}`"
+        return offering(f"for `{text}` write `{_COMPARING[text]}`", _COMPARING[text])
     plural = len(before) > 2 and before.endswith("s") and before not in keywords.RESERVED
     if ctx.is_number(ctx.at - 2) and plural and text.isidentifier():
         number, singular = ctx.text_at(ctx.at - 2), before[:-1]
@@ -66,11 +72,14 @@ def _in_every_state(ctx: ParseContext) -> bool:
     return any(token.text in ("always", "never", "G") for token in ctx.tokens[: ctx.at])
 
 
-def advise_on_pair(ctx: ParseContext) -> str:
+def advise_on_pair(ctx: ParseContext) -> Help:
     """Help at what follows `neither`, `either` or `both`, which read as names."""
     second, way_out = _IN_PAIRS.get(ctx.text_before, ("", ""))
     behind = (token.text for token in ctx.tokens[ctx.at :])
-    return way_out if ctx.operator and second in behind else ""
+    if not (ctx.operator and second in behind):
+        return ""
+    is_idle = ctx.text_before != "neither"
+    return offering(way_out, *((ctx.leave_out(ctx.at - 1),) if is_idle else ()))
 
 
 def of_owner(owner: str, what: str) -> str:

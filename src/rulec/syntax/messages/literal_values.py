@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from rulec.diagnostics import Diagnostic, Fix, Span
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.ways_out import left_out, offering
+from rulec.syntax.messages.literals import last_day_of
 
 UNKNOWN_ESCAPE = Code(
     "R0106",
@@ -59,12 +61,14 @@ def unknown_escape(place: Span, escaped: str) -> Diagnostic:
 
 def control_character(place: Span) -> Diagnostic:
     return CONTROL_CHARACTER.at(
-        place, "a text may not hold this invisible character", help="delete it, or type it as words"
+        place,
+        "a text may not hold this invisible character",
+        help=offering("delete it, or type it as words", left_out(place)),
     )
 
 
 def no_such_date(place: Span, date: str, reason: str) -> Diagnostic:
-    return NO_SUCH_DATE.at(place, f"`{date}` is no date", help=reason)
+    return NO_SUCH_DATE.at(place, f"`{date}` is no date", help=offering(reason, *last_day_of(date)))
 
 
 def number_too_large(place: Span) -> Diagnostic:

@@ -16,6 +16,7 @@ from unicodedata import normalize
 
 from rulec.diagnostics import Diagnostic, Fix, Label, Source, Span
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.ways_out import offering
 from rulec.resources import grammar_file
 from rulec.syntax.keywords import RESERVED
 from rulec.syntax.messages.literals import misleads
@@ -60,7 +61,7 @@ def looks_like(place: Span, other: str, first: Span | None) -> Diagnostic:
     return CONFUSABLE_NAME.at(
         place,
         f"`{place.text}` ({codes}) looks like `{other}`, and is another name",
-        help="write it in the letters of the other names, or call it otherwise",
+        help=offering("write it in the letters of the other names, or call it otherwise", other),
         labels=() if first is None else (Label(first.place, "the other name is here"),),
         severity="warning",
     )

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from bisect import bisect_left
 
-from rulec.diagnostics import Diagnostic, Label, Source, Span, did_you_mean
+from rulec.diagnostics import Diagnostic, Label, Source, Span
 from rulec.diagnostics.code import Code
+from rulec.diagnostics.ways_out import Help, another_name, left_out, meant, offering, put
 from rulec.syntax import keywords
 from rulec.syntax.file_pieces import Piece, span_of
 from rulec.syntax.messages.advice import advise
@@ -129,17 +130,23 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
         span,
         message,
         expected=in_words(accepted),
-        help=advise(ctx),
+        help=_certain_of_nothing(ctx) if "UNVERIFIED" in accepted else advise(ctx),
         labels=_open_parenthesis(source, ctx),
         fix=point_fix(ctx),
     )
+
+
+def _certain_of_nothing(ctx: ParseContext) -> Help:
+    """Help at a certainty: more than `unverified` is to be found out, and not written."""
+    offers = () if ctx.unexpected is None else ("unverified",)
+    return offering(str(advise(ctx)), *offers)
 
 
 def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnostic:
     token = tokens[piece.first]
     others = tokens[piece.first + 1 : piece.last]
     symbols = any(token.kind == "symbol" for token in (token, *others))
-    formula = "a formula follows `require`" if symbols else ""
+    formula: Help = "a formula follows `require`" if symbols else ""
     words = frozenset(token.text for token in others)
     if token.text == "{":
         formula = "the states of an example go between one `{` and `}`, with `;` between them"
@@ -147,20 +154,24 @@ def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnos
         formula = COMMENT
     if others and is_invisible(others[0].text) and others[0].start == token.end:
         # Where word processors may break a line: the word goes on behind it.
-        formula = f"after `{_short(token.text)}`, {DELETE_IT}"
+        hidden = _span(source, others[0])
+        formula = offering(f"after `{_short(token.text)}`, {DELETE_IT}", left_out(hidden))
+    other: Help = other_clause(token.text, words)
+    if token.text == ";":
+        other = offering(str(other), left_out(_span(source, token)))
     return UNEXPECTED_WORD.at(
         _span(source, token),
         f"no clause begins with `{_short(token.text)}`",
         expected="expected a clause such as `require` or `accept`",
-        help=other_clause(token.text, words) or did_you_mean(token.text, _CLAUSE_BEGINS) or formula,
+        help=other or meant(token.text, _CLAUSE_BEGINS) or formula,
     )
 
 
 def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
     token, *others = inside
-    way_out = ""
+    way_out: Help = ""
     if token.kind == "word":
-        way_out = other_word(token.text) or did_you_mean(
+        way_out = other_word(token.text) or meant(
             token.text, keywords.ITEM_WORDS | keywords.CLAUSE_WORDS
         )
         named = any(
@@ -173,7 +184,7 @@ def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
     if is_comment(inside, 0):
         way_out = COMMENT
     if is_invisible(token.text):
-        way_out = DELETE_IT
+        way_out = offering(DELETE_IT, left_out(_span(source, token)))
     return UNEXPECTED_WORD.at(
         _span(source, token),
         f"nothing in the language begins with `{_short(token.text)}`",
@@ -232,9 +243,11 @@ def _is_word_for_name(ctx: ParseContext) -> bool:
 
 def _reserved(span: Span, word: str, ctx: ParseContext) -> Diagnostic:
     kind = "an operator" if word in keywords.OPERATOR_LETTERS else "a word of the language"
-    another = f"choose another name, such as `{word.lower()}_1`"
+    another: Help = offering(f"choose another name, such as `{word.lower()}_1`", another_name(span))
     if ctx.kind == "rule_head" and word == "every" and ctx.text_before in ("(", ","):
-        another = "leave `every` out: a rule holds for every one, as in `(v: vehicle)`"
+        another = offering(
+            "leave `every` out: a rule holds for every one, as in `(v: vehicle)`", left_out(span)
+        )
     if ctx.kind == "rule_head" and word == "some" and ctx.text_before in ("(", ","):
         another = "a rule holds for every one; of some speaks its formula: `some v: vehicle (…)`"
     if ctx.operand and word in ("when", "unless"):
@@ -251,13 +264,18 @@ def _reserved(span: Span, word: str, ctx: ParseContext) -> Diagnostic:
 def _unterminated(span: Span) -> Diagnostic:
     text = span.source.text[span.start : span.end]
     first, *more = text.splitlines()
+    end = span.start + len(first)
+    closed = put('Put `"` behind it', '"', span, end)
     return UNTERMINATED_TEXT.at(
-        Span(span.source, span.start, span.start + len(first)),
+        Span(span.source, span.start, end),
         "this text does not end on its line" if more else "this text has no closing quote",
         expected='expected `"` before the end of the line',
-        help="write all of it on one line, however long"
-        if more
-        else "close it on the same line; texts do not run over a line's end",
+        help=offering(
+            "write all of it on one line, however long"
+            if more
+            else "close it on the same line; texts do not run over a line's end",
+            closed,
+        ),
     )
 
 

@@ -7,7 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from rulec.diagnostics import Source, any_of
+from rulec.diagnostics import Fix, Offer, Source, Span, any_of
+from rulec.diagnostics.ways_out import left_out, put_before, write
 from rulec.syntax.keywords import PRECEDENCE, UNARY_OPERATORS, token_kind
 from rulec.syntax.scanner import Token
 
@@ -163,6 +164,39 @@ class ParseContext:
     def operator(self) -> bool:
         """Whether a binary operator could come here."""
         return self.accepted >= _OPERATORS
+
+    def span(self, first: int, last: int | None = None) -> Span:
+        """The characters of a token, or from one to another."""
+        end = self.tokens[first if last is None else last].end
+        return Span(self.source, self.tokens[first].start, end)
+
+    def write(self, words: str, first: int, last: int | None = None) -> Offer:
+        """Words in place of a token, or of those from one to another."""
+        return write(words, self.span(first, last))
+
+    def write_sign(self, word: str) -> Offer:
+        """A sign or a word in place of the unexpected token, apart from the words beside it."""
+        marked = self.span(self.at)
+        beside = (
+            self.source.text[marked.start - 1 : marked.start],
+            self.source.text[marked.end :][:1],
+        )
+        before, behind = (" " if word.isalpha() and one.isalnum() else "" for one in beside)
+        return Offer(f"Write `{word}`", (Fix(marked.place, f"{before}{word}{behind}"),))
+
+    def leave_out(self, first: int, last: int | None = None) -> Offer:
+        """Nothing in place of a token, or of those from one to another."""
+        return left_out(self.span(first, last))
+
+    def separate(self, sign: str) -> Offer:
+        """A separator in place of another one, or before the unexpected token."""
+        is_other = self.text in (",", ";", "and", "or", "|")
+        return self.write(sign, self.at) if is_other else self.put_before(sign)
+
+    def put_before(self, sign: str) -> Offer:
+        """A sign that is missing before the unexpected token, or at the end."""
+        end = self.tokens[self.at - 1].end
+        return put_before(sign, Span(self.source, end, end))
 
     def opened(self, opening: str, closing: str) -> int | None:
         """The index of the last unclosed ``opening`` before ``at``."""

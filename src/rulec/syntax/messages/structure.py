@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import PurePath
 
-from rulec.diagnostics import Diagnostic, Label, Source, Span
+from rulec.diagnostics import Diagnostic, Fix, Label, Offer, Source, Span
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.source_text import SourceLocation
+from rulec.diagnostics.ways_out import Help, WayOut, left_out, line_above, offering, put_before
 from rulec.files.source_detection import first_word_at
 from rulec.syntax.keywords import ITEM_WORDS
+from rulec.syntax.messages.larger_edits import (
+    brace_closed,
+    clause_left_out,
+    end_of_clause,
+    requirements_joined,
+)
 from rulec.syntax.scanner import Token
 
 EXPECTED_BEGINNING = "expected `rulebook NAME`"
@@ -77,11 +86,17 @@ CONFIRMED_AND_CHANGED = Code(
 
 
 def changed_by_confirming(rule: str, word: str, place: Span) -> Diagnostic:
+    head = place.source.text.rfind("confirm rule", 0, place.start)
+    confirmed = Span(place.source, head, head + len("confirm rule"))
     return CONFIRMED_AND_CHANGED.at(
         place,
         f"`{'in force' if word == 'in' else word}` changes rule `{rule}`, which is confirmed here",
         expected="expected `cite`, `source`, `certainty`, `says`, `topic` or an example",
-        help=f"write `override rule {rule}` to change it, or leave this out",
+        help=offering(
+            f"write `override rule {rule}` to change it, or leave this out",
+            Offer("Override the rule", (Fix(confirmed.place, "override rule"),)),
+            clause_left_out(place),
+        ),
     )
 
 
@@ -96,14 +111,19 @@ def no_cite(rule: str, head: Span) -> Diagnostic:
 
 
 def given_twice(clause: str, again: Span, first: Span) -> Diagnostic:
+    if clause == "`require`":
+        way_out: Help = offering(
+            "join them by `and`, or write a rule for each", *requirements_joined(again)
+        )
+    else:
+        # What of it is law, only the author knows.
+        is_law = again.text in ("when", "unless")
+        way_out = offering("keep one of them", *(() if is_law else (clause_left_out(again),)))
     return GIVEN_TWICE.at(
         again,
         f"{clause} is given twice",
         expected="given again here",
-        # To leave out what is required would make another law of it.
-        help="join them by `and`, or write a rule for each"
-        if clause == "`require`"
-        else "keep one of them",
+        help=way_out,
         labels=(Label(first.place, "first given here"),),
     )
 
@@ -123,7 +143,18 @@ def no_beginning(source: Source) -> Diagnostic:
         if source.name.endswith(".json"):
             way_out = "give the source that it was compiled from"
         return code.at(place, "the file is a compiled rulebook, and no source", help=way_out)
-    return code.at(place, message, help=HOW_TO_BEGIN)
+    return code.at(
+        place,
+        message,
+        help=how_to_begin(Span(source, start, end)) if code is MISSING_PART else HOW_TO_BEGIN,
+    )
+
+
+def how_to_begin(first: Span) -> WayOut:
+    """Help for a file that does not say what it is: a rulebook of the file's name, perhaps."""
+    stem = PurePath(first.source.name).stem
+    begins = line_above(f"Begin with `rulebook {stem}`", f"rulebook {stem}", first)
+    return offering(HOW_TO_BEGIN, *((begins,) if stem.isidentifier() else ()))
 
 
 _COMPILED, _HEAD = '"rulec compiled rulebook"', 1000
@@ -160,29 +191,44 @@ class StructureMessages:
 
     def place(self, index: int) -> SourceLocation:
         """The token's place, or the empty place after the last token."""
+        return Span(self.source, *self._bounds(index)).place
+
+    def _bounds(self, index: int) -> tuple[int, int]:
         if index < len(self.tokens):
-            token = self.tokens[index]
-            return Span(self.source, token.start, token.end).place
-        return self._behind(len(self.tokens) - 1)
+            return self.tokens[index].start, self.tokens[index].end
+        return self.tokens[-1].end, self.tokens[-1].end
 
     def _behind(self, index: int) -> SourceLocation:
         end = self.tokens[index].end
         return Span(self.source, end, end).place
 
+    def _into_the_braces(self, closed: int | None, end: int) -> Iterator[Offer]:
+        """What follows a closing brace, up to a character, moved into it."""
+        if closed is None or self.tokens[closed].text != "}":
+            return
+        start, behind = self._bounds(closed)
+        brace, both = Span(self.source, start, behind), Span(self.source, start, end)
+        inside = f"{self.source.text[behind:end].rstrip()}\n}}"
+        yield Offer("Put it inside the braces", (Fix(both.place, inside),))
+        yield left_out(brace, "Leave out the `}` before it")
+
     def no_close(self, block: str, opened: int, index: int) -> Diagnostic:
         """The brace of a ``block``, at ``opened``, should have been closed before ``index``."""
         at_end = index >= len(self.tokens)
+        sign = Span(self.source, *self._bounds(index))
         return UNBALANCED_BRACE.at(
             self.place(index),
             f"the file ends before {block} does" if at_end else f"{block} does not end before this",
             expected="expected `}`" if at_end else "expected `}` before this",
-            help=f"end {block} with `}}`",
+            help=offering(f"end {block} with `}}`", brace_closed(sign)),
             labels=(Label(self.place(opened), f"{block} begins here"),),
         )
 
     def no_open(self, before: int, content: str, *, confirms: bool = False) -> Diagnostic:
         """A ``{`` is missing after token ``before``, perhaps in a confirmation."""
-        way_out = "write `{` before them"
+        end = self.tokens[before].end
+        opened = put_before(" {", Span(self.source, end, end))
+        way_out: Help = offering("write `{` before them", opened)
         if confirms:
             way_out = 'write which provision confirms it, such as `{ cite "s. 12" }`'
         return UNBALANCED_BRACE.at(
@@ -211,16 +257,22 @@ class StructureMessages:
             return UNBALANCED_BRACE.at(
                 self.place(index),
                 "this `}` closes nothing",
-                help="delete it, or look for a `{` that is missing before it",
+                help=offering(
+                    "delete it, or look for a `{` that is missing before it",
+                    left_out(Span(self.source, *self._bounds(index))),
+                ),
                 labels=labels,
             )
-        word = self.tokens[index].text
+        word, start = self.tokens[index].text, self.tokens[index].start
         return OUTSIDE_BRACES.at(
             self.place(index),
             f"`{'in force' if word == 'in' else word}` is outside any rule",
             expected="expected a declaration or a rule",
-            help="clauses go between the `{` and the `}` of their rule, as in "
-            "`hard rule NAME { require … }`",
+            help=offering(
+                "clauses go between the `{` and the `}` of their rule, as in "
+                "`hard rule NAME { require … }`",
+                *self._into_the_braces(closed, end_of_clause(self.source.text, start)),
+            ),
             labels=labels,
         )
 
@@ -229,6 +281,9 @@ class StructureMessages:
             self.place(index),
             "nothing can follow a vocabulary's `}`",
             expected="expected the end of the file",
-            help="move it before the `}`, or into a file of its own",
+            help=offering(
+                "move it before the `}`, or into a file of its own",
+                *self._into_the_braces(closed, len(self.source.text.rstrip())),
+            ),
             labels=(Label(self.place(closed), "the vocabulary ended here"),),
         )
