@@ -1,14 +1,18 @@
 """Each code has a quick fix, or there is a reason why no edit can be made of its help."""
 
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 from lsprotocol import types as lsp
 
+from rulec.diagnostics import Source
 from rulec.language_server.names.renaming import changed_text
 from rulec.language_server.workspace.editor_workspace import EditorWorkspace
 from rulec.language_server.writing.quick_fixes import quick_fixes
 from rulec.report.findings.code_registry import all_codes
+from rulec.syntax import parse
+from rulec.syntax.incremental.parsed_text import parsed_text
 
 HEAD = "rulebook sample\nsignal p, q\n"
 RULE = "hard rule r { require always p }\n"
@@ -106,6 +110,41 @@ def test_its_fix_mends_it(code, folder):
     for fix in own:
         after, _ = found(changed_text(text, fix.changes), folder)
         assert after[code] < codes[code], fix.title
+
+
+@pytest.mark.parametrize("code", FIXED)
+def test_its_fix_is_in_no_wording(code, folder):
+    """What is offered is data of the message, and not read from its texts."""
+    text = TEXTS.get(code) or all_codes()[code].bad
+    editor, path = folder
+    path.write_text(text)
+    document = editor.open(path.as_uri(), text)
+    checked = editor.check(document)
+    reworded = replace(
+        checked, findings=tuple(replace(one, help="", message="") for one in checked.findings)
+    )
+    whole = lsp.Range(lsp.Position(0, 0), lsp.Position(text.count("\n") + 1, 0))
+    said, unsaid = (quick_fixes(one, document, whole, editor) for one in (checked, reworded))
+    assert [(one.title, one.changes) for one in said] == [
+        (one.title, one.changes) for one in unsaid
+    ]
+
+
+def test_offers_move_with_the_text_above_them():
+    wrong = HEAD + RULE + "hard rule x { require always (p }\n}\nhard rule y { require evr p }\n"
+    before = parsed_text(Source("sample", wrong))
+    after = wrong.replace(RULE, "# A remark.\n\n" + RULE)
+    moved, alone = parsed_text(Source("sample", after), before), parse(Source("sample", after))[1]
+    assert moved.mistakes == tuple(alone)
+    assert all(one.offers for one in alone)
+
+
+def test_many_mistakes_offer_little():
+    """None repeats all of a text that is long."""
+    text = HEAD + RULE + "accept { p }\n" * 2000
+    mistakes = parse(Source("sample", text))[1]
+    offered = (fix.text for one in mistakes for offer in one.offers for fix in offer.fixes)
+    assert sum(map(len, offered)) < 10 * len(text)
 
 
 @pytest.mark.parametrize("code", FOR_AUTHORS)

@@ -66,10 +66,24 @@ def put(title: str, text: str, span: Span, at: int) -> Offer:
     return Offer(title, (Fix(Span(span.source, at, at).place, text),))
 
 
+_MOST_BEFORE = 2000
+"""How many characters before a place are looked through, however long the text is."""
+
+
+def text_before(span: Span) -> str:
+    """The characters before a place, as far as an edit there may be about them."""
+    return span.source.text[max(0, span.start - _MOST_BEFORE) : span.start]
+
+
+def end_before(span: Span) -> int:
+    """The end of what comes before a place, without the space between."""
+    before = text_before(span)
+    return span.start - len(before) + len(before.rstrip())
+
+
 def put_before(sign: str, span: Span) -> Offer:
     """A sign that is missing right behind what comes before a place."""
-    at = len(span.source.text[: span.start].rstrip())
-    return put(f"Put `{sign.strip()}` before it", sign, span, at)
+    return put(f"Put `{sign.strip()}` before it", sign, span, end_before(span))
 
 
 def another_name(span: Span) -> Offer:

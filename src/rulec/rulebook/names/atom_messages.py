@@ -9,7 +9,15 @@ from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, Label, Offer, Span, any_of, named, nearest_name
 from rulec.diagnostics.code import Code
-from rulec.diagnostics.ways_out import Help, declared, in_header, meant, offering, write
+from rulec.diagnostics.ways_out import (
+    Help,
+    declared,
+    in_header,
+    meant,
+    offering,
+    text_before,
+    write,
+)
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.names.word_meanings import described, offer
 from rulec.syntax import tree
@@ -378,10 +386,12 @@ def wrong_type(argument: tree.Name, kind: str, wanted: str, labels: Sequence[Lab
 
 def _as_declared(argument: tree.Name, wanted: str) -> Iterator[Offer]:
     """Another type for a variable where it is declared, in the head of its rule."""
-    source, start = argument.span.source, argument.span.start
-    declarations = re.finditer(rf"\b{re.escape(argument.text)}\s*:\s*\w+", source.text[:start])
+    before = text_before(argument.span)
+    start = argument.span.start - len(before)
+    declarations = re.finditer(rf"\b{re.escape(argument.text)}\s*:\s*\w+", before)
     for last in deque(declarations, maxlen=1):
-        yield write(f"{argument.text}: {wanted}", Span(source, *last.span()))
+        place = Span(argument.span.source, start + last.start(), start + last.end())
+        yield write(f"{argument.text}: {wanted}", place)
 
 
 def two_types(name: tree.Name, wanted: str, known_type: str | None, known: Span) -> Diagnostic:

@@ -149,12 +149,11 @@ def inherited_name(name: tree.Name, kind: str, known: tree.Name) -> Diagnostic:
 
 def _changing(name: Span, head: str) -> Iterator[Offer]:
     """A change of an inherited symbol in place of its declaration, up to the `=` of that line."""
-    text = name.source.text
-    line, _, _ = text[name.start :].partition("\n")
-    before, equals, _ = line.partition("=")
-    if equals:
-        first = text.rfind("\n", 0, name.start) + 1
-        whole = Span(name.source, first, name.start + len(before))
+    text, start = name.source.text, name.start
+    line = text.find("\n", start)
+    equals = text.find("=", start, len(text) if line < 0 else line)
+    if equals >= 0:
+        whole = Span(name.source, text.rfind("\n", 0, start) + 1, equals)
         yield Offer(f"Write `{head} = …`", (Fix(whole.place, f"{head} "),))
 
 

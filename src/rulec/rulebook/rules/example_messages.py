@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from rulec.diagnostics import Diagnostic, Fix, Label, Offer, Span, any_of
 from rulec.diagnostics.code import Code
-from rulec.diagnostics.ways_out import left_out, offering, put
+from rulec.diagnostics.ways_out import left_out, offering, put, text_before
 from rulec.logic.formula import Atom, QuantityTerm
 from rulec.logic.printing import term_text
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
@@ -91,9 +91,9 @@ def contradiction(fact: tree.StateLiteral, term: Atom | QuantityTerm, first: Spa
 
 def _kept_apart(fact: Span) -> Iterator[Offer]:
     """A fact left out of its state, or begun a new state with."""
-    joint = re.search(r"\s*\band\s+\Z", fact.source.text[: fact.start])
+    joint = re.search(r"\s*\band\s+\Z", text_before(fact))
     if joint is not None:
-        begin = joint.start()
+        begin = fact.start - len(joint[0])
         yield left_out(Span(fact.source, begin, fact.end), f"Leave out `and {fact.text}`")
         apart = Span(fact.source, begin, fact.start)
         yield Offer(f"Put `;` before `{fact.text}`", (Fix(apart.place, "; "),))

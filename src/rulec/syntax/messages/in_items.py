@@ -112,7 +112,7 @@ def advise_on_dates(ctx: ParseContext) -> Help:
     """Help at ``in force from DATE until DATE``."""
     if ctx.accepted == {"DATE"} and ctx.unexpected is not None:
         start = ctx.unexpected.start
-        text = ctx.source.text[start:][:16]
+        text = ctx.source.text[start : start + 16]
         was, written = meant_date(text)
         day = write(written, Span(ctx.source, start, start + len(was)))
         return offering(how_a_date_is_written(text), *((day,) if written else ()))

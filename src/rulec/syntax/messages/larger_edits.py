@@ -7,7 +7,15 @@ from collections.abc import Iterator
 from typing import Final
 
 from rulec.diagnostics import Fix, Offer, Span
-from rulec.diagnostics.ways_out import left_out, line_left_out, put, short, write
+from rulec.diagnostics.ways_out import (
+    end_before,
+    left_out,
+    line_left_out,
+    put,
+    short,
+    text_before,
+    write,
+)
 from rulec.syntax.keywords import DECLARATION_WORDS, PROVISION_WORDS
 
 _CLAUSES: Final = (
@@ -19,19 +27,12 @@ _BINDS_LOOSELY: Final = re.compile(
 )
 """Signs that `and` would part otherwise than a new clause does, and clauses in between."""
 
-_MOST_BEFORE: Final = 200
-"""How many characters before a place are looked through."""
-
-
-def _before(span: Span) -> str:
-    return span.source.text[max(0, span.start - _MOST_BEFORE) : span.start]
-
 
 def member_left_out(span: Span) -> Iterator[Offer]:
     """One of a list left out with its comma or its parentheses; none if it is no whole member."""
     text = span.source.text
     title = f"Leave out `{short(span.text)}`"
-    before = re.search(r"([,(]?)\s*\Z", _before(span))
+    before = re.search(r"([,(]?)\s*\Z", text_before(span))
     behind = re.compile(r"\s*([,)]?)\s*").match(text, span.end)
     assert before is not None, "it may be empty"
     assert behind is not None, "it may be empty"
@@ -41,7 +42,7 @@ def member_left_out(span: Span) -> Iterator[Offer]:
     elif behind[1] == ",":
         yield left_out(Span(span.source, span.start, end), title)
     elif (before[1], behind[1]) == ("(", ")"):
-        opened = len(text[:start].rstrip())
+        opened = end_before(Span(span.source, start, start))
         end = text.index(")", span.end) + 1
         yield left_out(Span(span.source, opened, end), f"Leave out `({short(span.text)})`")
 
@@ -62,7 +63,7 @@ def clause_left_out(span: Span) -> Offer:
     text = span.source.text
     behind = _NEXT_CLAUSE.search(text, span.end)
     last = behind.start() if behind else len(text)
-    whole = Span(span.source, len(text[: span.start].rstrip()), last)
+    whole = Span(span.source, end_before(span), last)
     return left_out(whole, f"Leave out this `{span.text}`")
 
 
@@ -84,6 +85,10 @@ def brace_closed(missing: Span) -> Offer:
     return put("Put `}` here", "\n}\n", missing, missing.start)
 
 
+MOST_MOVED: Final = 2000
+"""How many characters are moved at most: each of many mistakes offers them anew."""
+
+
 def end_of_clause(text: str, start: int) -> int:
     """The end of a clause's braces, or of its line."""
     end = text.find("\n", start)
@@ -91,7 +96,7 @@ def end_of_clause(text: str, start: int) -> int:
     if "{" not in text[start:line]:
         return line
     depth = 0
-    for offset in range(text.index("{", start), len(text)):
+    for offset in range(text.index("{", start), min(len(text), start + MOST_MOVED)):
         depth += {"{": 1, "}": -1}.get(text[offset], 0)
         if depth == 0:
             return offset + 1
@@ -112,7 +117,7 @@ _OPERATOR: Final = re.compile(r"\w+(?:\s*\[[^]]*\])?\s+")
 
 def operator_outside(span: Span) -> Iterator[Offer]:
     """An operator over time put before the quantifier that it is in."""
-    quantified = _QUANTIFIED.search(_before(span))
+    quantified = _QUANTIFIED.search(text_before(span))
     operator = _OPERATOR.match(span.text)
     if quantified and operator:
         word = operator[0].strip()

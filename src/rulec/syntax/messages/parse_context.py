@@ -179,7 +179,7 @@ class ParseContext:
         marked = self.span(self.at)
         beside = (
             self.source.text[marked.start - 1 : marked.start],
-            self.source.text[marked.end :][:1],
+            self.source.text[marked.end : marked.end + 1],
         )
         before, behind = (" " if word.isalpha() and one.isalnum() else "" for one in beside)
         return Offer(f"Write `{word}`", (Fix(marked.place, f"{before}{word}{behind}"),))

@@ -13,6 +13,7 @@ from rulec.diagnostics.ways_out import Help, WayOut, left_out, line_above, offer
 from rulec.files.source_detection import first_word_at
 from rulec.syntax.keywords import ITEM_WORDS
 from rulec.syntax.messages.larger_edits import (
+    MOST_MOVED,
     brace_closed,
     clause_left_out,
     end_of_clause,
@@ -87,14 +88,15 @@ CONFIRMED_AND_CHANGED = Code(
 
 def changed_by_confirming(rule: str, word: str, place: Span) -> Diagnostic:
     head = place.source.text.rfind("confirm rule", 0, place.start)
-    confirmed = Span(place.source, head, head + len("confirm rule"))
+    confirmed = Span(place.source, max(0, head), head + len("confirm rule"))
+    override = Offer("Override the rule", (Fix(confirmed.place, "override rule"),))
     return CONFIRMED_AND_CHANGED.at(
         place,
         f"`{'in force' if word == 'in' else word}` changes rule `{rule}`, which is confirmed here",
         expected="expected `cite`, `source`, `certainty`, `says`, `topic` or an example",
         help=offering(
             f"write `override rule {rule}` to change it, or leave this out",
-            Offer("Override the rule", (Fix(confirmed.place, "override rule"),)),
+            *((override,) if head >= 0 else ()),
             clause_left_out(place),
         ),
     )
@@ -207,6 +209,8 @@ class StructureMessages:
         if closed is None or self.tokens[closed].text != "}":
             return
         start, behind = self._bounds(closed)
+        if end - behind > MOST_MOVED:
+            return
         brace, both = Span(self.source, start, behind), Span(self.source, start, end)
         inside = f"{self.source.text[behind:end].rstrip()}\n}}"
         yield Offer("Put it inside the braces", (Fix(both.place, inside),))
