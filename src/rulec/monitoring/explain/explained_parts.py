@@ -161,7 +161,7 @@ def parts_of(
         case _:
             operands = []
     for both in operands:
-        yield from parts_of(both, truths, deciding, observed, numbers, depth + 1)
+        yield from parts_of(both, truths, deciding, observed, numbers, depth=depth + 1)
 
 
 def with_margins(
