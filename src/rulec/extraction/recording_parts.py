@@ -17,6 +17,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.traffic_thresholds import Thresholds
+from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Participant, Recording, StatedError, WholeRecording
 from rulec.recordings.track import TrackOutlines, TrackStates
 from rulec.trace.plain_arrays import median
@@ -35,13 +36,13 @@ _ORDERS = ((0.2, 3), (0.5, 5))
 Within 0.2 s vehicles do not change their acceleration; over half a second they change it smoothly.
 """
 
-_TRACKS, _STATES, _ENOUGH = 32, 128, 20
+_TRACKS, _STATES, ENOUGH_DIFFERENCES = 32, 128, 20
 """To estimate noise: most tracks, most states of each, and fewest differences."""
 
-_MOVES_M = 0.3
+MOVES_M = 0.3
 """A participant that moved farther (m) over the differences' steps is not held in place."""
 
-_OF_MEDIAN = 1.4826
+OF_MEDIAN = 1.4826
 """The standard deviation of normal errors, divided by the median of their absolute values."""
 
 _DRIVERS = frozenset({"vehicle", "light_rider"})
@@ -144,11 +145,13 @@ def whole_recording(recording: Recording) -> WholeRecording:
     spans = [span_of(body) for body in _moving(recording)]
     first = min((begins for begins, _ in spans), default=0)
     stated = [body.stated_error for body in recording.participants if body.stated_error]
+    noise_m, noise_rad = _noise(recording)
     return WholeRecording(
         first=first,
         last=max((ends for _, ends in spans), default=0),
         stated_error=_in_the_middle(stated) if stated else None,
-        noise_m=_noise_m(recording),
+        noise_m=noise_m,
+        noise_rad=noise_rad,
         arrivals=any(
             begins > first
             for body, (begins, _) in zip(_moving(recording), spans, strict=True)
@@ -159,49 +162,59 @@ def whole_recording(recording: Recording) -> WholeRecording:
     )
 
 
-def _noise_m(recording: Recording) -> float:
-    """The standard deviation (m) of places along or across their ways, estimated from differences.
+def _noise(recording: Recording) -> tuple[float, float]:
+    """The standard deviations of places (m) along or across their ways, and of headings (rad).
 
-    Uses differences of an order at which motion hardly shows. For normal errors their standard
-    deviation is that of the errors times the root of the sum of squared binomials, which is itself
-    a binomial. Takes the median over some vehicles while they move, so that a few abrupt motions do
-    not count. 0 where states are so far apart that all differences show motion, or differences are
-    too few. Independent of the axes of the file.
+    Estimated from differences of an order at which motion hardly shows. For normal errors their
+    standard deviation is that of the errors times the root of the sum of squared binomials, which
+    is itself a binomial. Takes the median over some vehicles while they move, so that a few abrupt
+    motions do not count. 0 where states are so far apart that all differences show motion, or
+    differences are too few. Independent of the axes of the file.
     """
-    orders = [order for step_s, order in _ORDERS if recording.step_s <= step_s + 1e-9]
-    if not orders:
-        return 0.0
-    order = orders[0]
+    order = order_of_differences(recording.step_s)
+    if order is None:
+        return 0.0, 0.0
     bodies = [body for body in _moving(recording) if "vehicle" in body.object_types]
     sizes = [_differences(body, order) for body in bodies[:: len(bodies) // _TRACKS + 1]]
-    every = np.concatenate([np.empty((0, 2)), *sizes])
-    if len(every) < _ENOUGH:
-        return 0.0
-    return max(median(own) for own in every.T) * _OF_MEDIAN / sqrt(comb(2 * order, order))
+    every = np.concatenate([np.empty((0, 3)), *sizes])
+    if len(every) < ENOUGH_DIFFERENCES:
+        return 0.0, 0.0
+    along, across, turned = (
+        median(own) * OF_MEDIAN / sqrt(comb(2 * order, order)) for own in every.T
+    )
+    return max(along, across), turned
+
+
+def order_of_differences(step_s: float) -> int | None:
+    """The order of differences that hardly show motion; None where states are too far apart."""
+    return next((order for longest_s, order in _ORDERS if step_s <= longest_s + 1e-9), None)
 
 
 def _differences(body: Participant, order: int) -> NDArray[np.float64]:
-    """The absolute differences of a participant's first places, along and across its way."""
-    steps, places = _first_places(body)
-    way = places[order:] - places[:-order]
+    """The absolute differences of a participant's first places along and across, and headings."""
+    steps, poses = _first_poses(body)
+    way = (poses[order:] - poses[:-order])[:, :2]
     length = np.hypot(*way.T)
-    counts = (steps[order:] - steps[:-order] == order) & (length > _MOVES_M)
-    for _ in range(order):
-        places = places[1:] - places[:-1]
-    (x, y), (dx, dy) = places[counts].T, way[counts].T / length[counts]
-    sizes: NDArray[np.float64] = np.abs(np.array((x * dx + y * dy, y * dx - x * dy)).T)
+    counts = (steps[order:] - steps[:-order] == order) & (length > MOVES_M)
+    poses = poses[1:] - poses[:-1]
+    poses[:, 2] = wrapped(poses[:, 2])
+    for _ in range(order - 1):
+        poses = poses[1:] - poses[:-1]
+    (x, y, turned), (dx, dy) = poses[counts].T, way[counts].T / length[counts]
+    found = np.array((x * dx + y * dy, y * dx - x * dy, turned))
+    sizes: NDArray[np.float64] = np.abs(found.T)
     return sizes
 
 
-def _first_places(body: Participant) -> tuple[NDArray[intp], NDArray[np.float64]]:
-    """A participant's first steps, and its place (m) in each, one row per step."""
+def _first_poses(body: Participant) -> tuple[NDArray[intp], NDArray[np.float64]]:
+    """A participant's first steps, and its place (m) and heading (rad) in each, a row per step."""
     if isinstance(body.states, TrackStates):
         track = body.states.track
-        return track.steps[:_STATES], track.rows[:_STATES, :2]
+        return track.steps[:_STATES], track.rows[:_STATES, :3]
     steps = [*islice(body.states, _STATES)]
     states = (body.states[step] for step in steps)
-    places = np.array([(state.x, state.y) for state in states]).reshape(-1, 2)
-    return np.array(steps, dtype=intp), places
+    poses = np.array([(state.x, state.y, state.heading) for state in states]).reshape(-1, 3)
+    return np.array(steps, dtype=intp), poses
 
 
 def _in_the_middle(stated: Iterable[StatedError]) -> StatedError:

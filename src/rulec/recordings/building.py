@@ -201,7 +201,8 @@ def build_participant(
     steps = _steps(checks, times, step_s)
     lit = _lit(checks, lamps or {}, steps)
     checks.raise_problems()
-    if "heading" not in stated:
+    derives = "heading" not in stated
+    if derives:
         derived = motion.headings_of(places)
         stated["heading"] = np.zeros(count) if derived is None else derived
     turned = wrapped(stated["heading"])
@@ -209,7 +210,15 @@ def build_participant(
     speeds = stated.get("speed", moved)
     gained = stated.get("acceleration", motion.accelerations_of(speeds, step_s))
     track = Track(steps, np.column_stack((places, turned, speeds, gained)), size[0], size[1])
-    return tracked(name, kind, track, standing=standing, lamps=lit, shows=frozenset(lamps or ()))
+    return tracked(
+        name,
+        kind,
+        track,
+        standing=standing,
+        lamps=lit,
+        shows=frozenset(lamps or ()),
+        heads_as_it_moves=derives,
+    )
 
 
 def _steps(checks: BuildingChecks, times: NDArray[float64], step_s: float) -> NDArray[np.int64]:

@@ -237,7 +237,8 @@ class Participant:
     step; steps without information are missing. ``shows`` are the lamps for which the file has
     information. ``stated_error`` is the error of states that the file itself states, or that of an
     assumed size. ``resumes``: the last time step of the track that this one goes on with, after a
-    cut; None if it begins by itself.
+    cut; None if it begins by itself. ``heads_as_it_moves``: the file has no heading, only the
+    directions of motion.
     """
 
     __repr__ = short_repr
@@ -251,6 +252,7 @@ class Participant:
     shows: frozenset[Lamp] = frozenset({"left_indicator", "right_indicator", "brake_light"})
     stated_error: StatedError | None = None
     resumes: int | None = None
+    heads_as_it_moves: bool = False
 
     @property
     def object_types(self) -> tuple[str, ...]:
@@ -308,15 +310,16 @@ class WholeRecording:
     """Facts about a whole recording that are needed when a part of it is evaluated.
 
     ``first`` and ``last`` are its time steps, ``stated_error`` the median of the errors that it
-    states, ``noise_m`` the standard deviation of its positions from smooth motion. ``arrivals``:
-    some vehicle appears after the first step. ``shows`` are the lamps for which it has information
-    about any participant. ``ids`` are those of all participants.
+    states, ``noise_m`` and ``noise_rad`` the standard deviations of its positions and headings from
+    smooth motion. ``arrivals``: some vehicle appears after the first step. ``shows`` are the lamps
+    for which it has information about any participant. ``ids`` are those of all participants.
     """
 
     first: int
     last: int
     stated_error: StatedError | None
     noise_m: float
+    noise_rad: float
     arrivals: bool
     shows: frozenset[Lamp]
     ids: frozenset[str]

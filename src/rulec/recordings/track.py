@@ -118,6 +118,7 @@ def tracked(
     shows: frozenset[Lamp] = frozenset(),
     stated_error: StatedError | None = None,
     resumes: int | None = None,
+    heads_as_it_moves: bool = False,
 ) -> Participant:
     """A participant that follows a track."""
     return Participant(
@@ -130,4 +131,5 @@ def tracked(
         shows=shows,
         stated_error=stated_error,
         resumes=resumes,
+        heads_as_it_moves=heads_as_it_moves,
     )

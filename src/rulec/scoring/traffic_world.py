@@ -210,8 +210,9 @@ class TrafficWorld:
     def _with_ego(self, body: Participant) -> Recording:
         found = replace(self._known, participants=(*self._others, body), ego=self.ego)
         # A jerky candidate must not raise the noise estimated from the recording
-        noise_m = whole_recording(self._known).noise_m
-        return replace(found, whole=replace(whole_recording(found), noise_m=noise_m))
+        known = whole_recording(self._known)
+        whole = replace(whole_recording(found), noise_m=known.noise_m, noise_rad=known.noise_rad)
+        return replace(found, whole=whole)
 
     @cached_property
     def _lanes(self) -> shapely.STRtree:

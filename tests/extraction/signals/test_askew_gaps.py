@@ -7,7 +7,7 @@ import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from rulec.extraction.signals.measured_numbers import _beside_askew
+from rulec.extraction.signals.lateral_gaps import _beside_askew, _by_turning
 from rulec.trace.cells import Cells
 
 ONE = Cells.at(np.array([[True]]))
@@ -59,3 +59,37 @@ def test_a_gap_is_never_too_large_and_right_if_one_is_askew(turned, other_turned
     assert box - 1e-9 <= found <= true + 0.02
     if other_turned in (0.0, np.pi):
         assert abs(found - true) < 0.05
+
+
+@given(
+    st.floats(-0.3, 0.3),
+    st.floats(0.0, 0.25),
+    st.floats(-1, 1),
+    st.tuples(st.floats(3, 12), st.floats(1.5, 2.6)),
+    st.tuples(st.floats(-5, 5), st.floats(-5, 5)),
+)
+def test_bounds_cover_the_gap_at_every_heading_within_its_error(turned, error, part, size, at):
+    measured, second = corners(0, 0, turned, *size), corners(*at, 0.0, 2.0, 0.6)
+    own, their, left = extents(measured, turned), extents(second, 0.0), np.array([at[1] > 0])
+    first = corners(0, 0, turned + part * error, *size)
+    (low, high), (least, most) = (
+        (max(body[:, 0].min(), second[:, 0].min()), min(body[:, 0].max(), second[:, 0].max()))
+        for body in (measured, first)
+    )
+    box, true_box = (
+        max((their.d_min - body[:, 1].max()).item(), (body[:, 1].min() - their.d_max).item())
+        for body in (measured, first)
+    )
+    assume(high - low > 0.05 and most - least > 0.05 and box >= 0 and true_box >= 0)
+    gap = box + _beside_askew(ONE, own, their, left).item()
+    wrong, yes = np.array([error]), np.array([True])
+    nearer, farther = _by_turning(ONE, own, their, left, wrong, yes)
+    assert box - nearer.item() <= true_box + 1e-9
+    assert gap_between(first, second, least, most) <= gap + farther.item() + 0.02
+
+
+def test_a_heading_known_exactly_changes_no_gap():
+    body, second = corners(0, 0, 0.1, 12.0, 2.5), corners(1.0, 3.0, 0.0, 2.0, 0.6)
+    own, their, left = extents(body, 0.1), extents(second, 0.0), np.array([True])
+    found = _by_turning(ONE, own, their, left, np.zeros(1), np.array([True]))
+    np.testing.assert_allclose(found, 0.0, atol=1e-12)

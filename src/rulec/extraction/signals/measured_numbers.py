@@ -13,7 +13,6 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import Bounds, rounded_outward
-from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.cells import Cells
@@ -32,12 +31,6 @@ _CORNER_M = 0.2
 
 _STRAIGHT_RAD = 0.1
 """Largest angle to the road behind ego's rear at which ego has not begun to turn."""
-
-_NEXT_TO_M = 5.0
-"""So near (m) across the road bodies are measured by more than rectangles along it."""
-
-_MOST_ASKEW_RAD = 0.6
-"""Up to this angle a body's width is computed from its rectangle along the road."""
 
 _HAIR = 1e-6
 
@@ -158,59 +151,6 @@ def gaps(context: DriveContext) -> tuple[Floats, Floats, Floats]:
     along = presence_cells(context).of(relations.way_along(context))
     place = context.tolerances.place_m
     return np.maximum(along, 0.0), np.maximum(along - place, 0.0), np.maximum(along + place, 0.0)
-
-
-def lateral_gaps(context: DriveContext) -> tuple[Floats, Bounds]:
-    """The gaps (m) across the road between bodies, 0 where they overlap, and their bounds.
-
-    A body that is askew begins farther off beside another one than the rectangle along the road
-    that contains it. How far is as well known as its heading, so the lower bound is to the
-    rectangle. Of two that are askew the gap is too small, never too large.
-    """
-    cells, place = presence_cells(context), context.tolerances.place_m
-    across = cells.of(relations.way_across(context))
-    own, others = context.ego_extents, context.extents
-    gap = across.copy()
-    beside = (np.abs(across) < _NEXT_TO_M) & (cells.of(relations.way_along(context)) < 0)
-    if beside.any():
-        chosen = beside.nonzero()[0]
-        few = cells.part(chosen)
-        left = (few.of(others.d_min) + few.of(others.d_max)) > (
-            few.of(own.d_min) + few.of(own.d_max)
-        )
-        gap[chosen] += _beside_askew(few, own, others, left) + _beside_askew(
-            few, others, own, ~left
-        )
-    low, high = np.maximum(across - place, 0.0), np.maximum(gap + place, 0.0)
-    return np.maximum(gap, 0.0), rounded_outward(low, high)
-
-
-def _beside_askew(cells: Cells, askew: RoadExtents, other: RoadExtents, is_left: Flags) -> Floats:
-    """How much farther (m) a body's side is from another body than its rectangle along the road.
-
-    By cell; ``is_left``: the other one is at its left. The corner that reaches farthest there is
-    one in front if it is turned to that side, else one of the rear. From there its side leads away
-    from the other one, and so does its front or rear.
-    """
-    turned = cells.of(askew.turned)
-    angle = np.abs((turned + np.pi / 2) % np.pi - np.pi / 2)
-    front = (np.sin(2 * turned) > 0) == is_left
-    low, high = cells.of(askew.s_min), cells.of(askew.s_max)
-    wide, sin = cells.of(askew.d_max) - cells.of(askew.d_min), np.sin(angle)
-    # The width of a body with these sides along and across the road; of others, 0 is too little
-    width = (wide * np.cos(angle) - (high - low) * sin) / np.cos(2 * angle)
-    corner = np.where(angle < _MOST_ASKEW_RAD, np.clip(width, 0.0, wide), 0.0) * sin
-    behind = np.where(
-        front, high - corner - cells.of(other.s_max), cells.of(other.s_min) - low - corner
-    )
-    before = np.where(
-        front, cells.of(other.s_min) - high + corner, low + corner - cells.of(other.s_max)
-    )
-    steep = np.tan(angle)
-    by_side = np.maximum(behind, 0.0) * steep
-    by_end = np.maximum(before, 0.0) / np.maximum(steep, _HAIR)
-    farther: Floats = np.minimum(np.maximum(by_side, by_end), wide)
-    return farther
 
 
 def difference_bounds(context: DriveContext) -> Bounds:

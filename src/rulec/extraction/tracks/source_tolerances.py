@@ -114,7 +114,7 @@ BY_FORM: Mapping[str, Tolerances] = MappingProxyType(
     }
 )
 _DIAGONAL = 2**0.5
-_MOST_SIGMAS = 4.0
+MOST_SIGMAS = 4.0
 """One-sided, three in 100,000 errors exceed this many standard deviations.
 
 A drive has hundreds of states with independent errors, and one of them is enough for a violation:
@@ -137,7 +137,7 @@ def tolerances_of(
     else:
         known = NGSIM if _NGSIM.match(recording.name) else BY_FORM.get(recording.form, OTHERS)
     # A distance involves two places, and a mean over a second both its ends
-    noise = _MOST_SIGMAS * _DIAGONAL * whole.noise_m
+    noise = MOST_SIGMAS * _DIAGONAL * whole.noise_m
     stated = whole.stated_error or StatedError(0.0, 0.0)
     own = known.stated_mps
     # Both of two places may be anywhere in their areas, and outlines cover these

@@ -10,10 +10,11 @@ import numpy as np
 import shapely
 
 from rulec.extraction.recording_parts import whole_recording
+from rulec.extraction.tracks.heading_errors import heading_errors
 from rulec.extraction.tracks.junction_passages import JunctionPassages, junction_passages
 from rulec.extraction.tracks.rings import ring_lanelets
 from rulec.extraction.tracks.source_tolerances import Tolerances, tolerances_of
-from rulec.extraction.tracks.tracks import Flags, ObjectTypes, Tracks
+from rulec.extraction.tracks.tracks import Flags, Floats, ObjectTypes, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Lanelet, Recording, Side, WholeRecording, is_lane
 from rulec.scenario.recorded.reference_line import turn
@@ -75,6 +76,9 @@ class Surroundings:
         joined.__dict__["passages"] = self.passages.and_one(other.passages, row, tracks)
         for name in ("tolerances", "_lanes", "_both_ways"):
             joined.__dict__[name] = getattr(self, name)
+        joined.__dict__["heading_errors"] = np.concatenate(
+            (self.heading_errors, other.heading_errors[row : row + 1])
+        )
         joined.__dict__["waits"] = np.append(self.waits, other.waits[row])
         return joined
 
@@ -87,6 +91,11 @@ class Surroundings:
     def tolerances(self) -> Tolerances:
         """The errors of places and speeds."""
         return tolerances_of(self.recording, self.thresholds, self.whole)
+
+    @cached_property
+    def heading_errors(self) -> Floats:
+        """The possible errors (rad) of headings, by row and column."""
+        return heading_errors(self.tracks, self.whole, self.recording.step_s)
 
     @cached_property
     def passages(self) -> JunctionPassages:

@@ -195,6 +195,7 @@ class _Reading:
                 lamps=self._lit(part, lamps),
                 shows=frozenset(lamps),
                 resumes=None if number == 1 else int(rows.times.steps[parts[number - 2][-1]]),
+                heads_as_it_moves=self._states_no_heading(part),
             )
 
     def _stands(self, own: NDArray[np.intp]) -> bool:
@@ -289,6 +290,9 @@ class _Reading:
                 self.taken[f"heading of a {kind} that does not move that of the lane"] += 1
             derived = np.full(len(own), self.heading_at(*places[0].tolist()))
         return wrapped(derived if stated is None else _filled(stated, derived))
+
+    def _states_no_heading(self, own: NDArray[np.intp]) -> bool:
+        return self.rows.heading is None or bool(np.isnan(self.rows.heading[own]).any())
 
     def _by_velocity(self, own: NDArray[np.intp]) -> Floats | None:
         """The direction of velocities, kept while slow; None if the track is never fast enough."""

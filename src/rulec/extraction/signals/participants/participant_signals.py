@@ -7,6 +7,7 @@ import numpy as np
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.presences import in_presences, presence_cells, presence_runs
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.lateral_gaps import lateral_gaps
 from rulec.extraction.signals.map.lanes_ahead import leads_elsewhere
 from rulec.extraction.signals.measured_numbers import (
     LONGEST_S,
@@ -14,7 +15,6 @@ from rulec.extraction.signals.measured_numbers import (
     gap_bounds,
     gaps,
     headway_bounds,
-    lateral_gaps,
     moves,
     own_speed,
     speed_differences,

@@ -1,0 +1,108 @@
+"""How far headings may be wrong, as the tracks themselves show.
+
+A body turns smoothly while it moves, so high differences of its headings show their noise. Where a
+heading is only the direction of a way between places, the noise of these shows in it, the more the
+shorter the way.
+"""
+
+from __future__ import annotations
+
+from math import comb, sqrt
+
+import numpy as np
+
+from rulec.extraction.recording_parts import (
+    ENOUGH_DIFFERENCES,
+    MOVES_M,
+    OF_MEDIAN,
+    order_of_differences,
+)
+from rulec.extraction.tracks.source_tolerances import MOST_SIGMAS
+from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
+from rulec.recordings.recording import WholeRecording
+from rulec.scenario.recorded.reference_line import turn
+from rulec.trace.plain_arrays import median
+
+_DERIVED_RAD, _ROUNDED_M = 1e-3, 2e-3
+"""A heading derived from a way differs from it by rounding: its own, and that of places."""
+
+_STEP_M = 0.05
+"""A way shorter than this has hardly a direction."""
+
+_MOST, _FEWEST = 0.8, 5
+"""Headings are directions of ways if this part of them are, of at least so many."""
+
+_OVER_M = 1.0
+"""A direction that a reader derived is that of a metre or more."""
+
+
+def heading_errors(tracks: Tracks, whole: WholeRecording, step_s: float) -> Floats:
+    """The possible errors (rad) of headings by participant and step, a right angle at most."""
+    by_noise = MOST_SIGMAS * _noise_of_headings(tracks, whole, step_s)
+    noise_m = MOST_SIGMAS * sqrt(2.0) * whole.noise_m
+    errors = by_noise[:, None].repeat(tracks.present.shape[1], axis=1)
+    if noise_m > 0:
+        np.maximum(errors, noise_m / _ways_of_headings(tracks), out=errors)
+    return np.minimum(errors, np.pi / 2)
+
+
+def _noise_of_headings(tracks: Tracks, whole: WholeRecording, step_s: float) -> Floats:
+    """The standard deviation (rad) of each participant's headings from a smooth turn.
+
+    That of the whole recording for one that moves too shortly.
+    """
+    noise = np.full(len(tracks.participants), whole.noise_rad)
+    order = order_of_differences(step_s)
+    if order is None or tracks.present.shape[1] <= order:
+        return noise
+    x, y = tracks.x, tracks.y
+    differences = turn(tracks.heading[:, :-1], tracks.heading[:, 1:])
+    for _ in range(order - 1):
+        differences = differences[:, 1:] - differences[:, :-1]
+    moved = np.hypot(x[:, order:] - x[:, :-order], y[:, order:] - y[:, :-order])
+    counts = (moved > MOVES_M) & ~np.isnan(differences)
+    for row in (counts.sum(axis=1) >= ENOUGH_DIFFERENCES).nonzero()[0].tolist():
+        of_median = median(np.abs(differences[row, counts[row]]))
+        noise[row] = of_median * OF_MEDIAN / sqrt(comb(2 * order, order))
+    return noise
+
+
+def _ways_of_headings(tracks: Tracks) -> Floats:
+    """The length (m) of the way of which each heading is the direction; infinity where of none."""
+    lengths = np.full(tracks.present.shape, np.inf)
+    headings, states = tracks.heading, tracks.present.shape[1]
+    # Each heading may be the direction of the way onward, of the way there, or of both together
+    for before, after in ((0, 1), (1, 0), (1, 1)):
+        if states <= before + after:
+            continue
+        x, y = (at[:, before + after :] - at[:, : states - before - after] for at in _at(tracks))
+        way, inner = np.hypot(x, y), slice(before, states - after)
+        moves = way > _STEP_M
+        apart = np.abs(turn(headings[:, inner], np.arctan2(y, x)))
+        fits = moves & (apart <= _DERIVED_RAD + _ROUNDED_M / np.where(moves, way, 1.0))
+        count = moves.sum(axis=1)
+        derived = (fits.sum(axis=1) >= _MOST * count) & (count >= _FEWEST)
+        if derived.any():
+            of_way = np.full(lengths.shape, _STEP_M)
+            of_way[:, inner] = np.where(np.isnan(way), _STEP_M, np.maximum(way, _STEP_M))
+            # A track's last heading is mostly repeated
+            ends = slice(None, before), slice(states - after, None)
+            of_way[:, ends[0]] = of_way[:, before : before + 1]
+            of_way[:, ends[1]] = of_way[:, states - after - 1 : states - after]
+            np.minimum(lengths, of_way, out=lengths, where=derived[:, None])
+    by_reader = _derived_by_reader(tracks)
+    if by_reader.any():
+        steps = np.full(lengths.shape, _OVER_M)
+        x, y = (at[:, 1:] - at[:, :-1] for at in _at(tracks))
+        steps[:, 1:] = np.fmax(np.hypot(x, y), _OVER_M)
+        np.minimum(lengths, steps, out=lengths, where=by_reader[:, None])
+    return lengths
+
+
+def _at(tracks: Tracks) -> tuple[Floats, Floats]:
+    return tracks.x, tracks.y
+
+
+def _derived_by_reader(tracks: Tracks) -> Flags:
+    """Mask of participants whose file states no headings."""
+    return np.array([body.heads_as_it_moves for body in tracks.participants], dtype=bool)
