@@ -4,12 +4,15 @@ import numpy as np
 import pytest
 
 import rulec
+from rulec.extraction.drives import Drives
 from rulec.extraction.recording_parts import whole_recording
 from rulec.extraction.tracks.heading_errors import heading_errors
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
+from rulec.vocabulary.partial_values import UNKNOWN
 
 STEP_S = 0.1
+WORDS = ("driving_side", "reversing")
 KINDS = {"limit_mps": 13.89, "types": ("urban",), "left_mark": "broken", "right_mark": "solid"}
 LANES = [
     rulec.build_lanelet("on", [(-10, 0), (300, 0)], **KINDS),
@@ -91,3 +94,37 @@ def test_a_turning_vehicle_shows_no_noise():
     bodies = [rulec.build_participant(name, "car", t, x, y, **more) for name in ("a", "b")]
     recording = rulec.build_recording(LANES, bodies, step_s=STEP_S, side="right")
     assert errors_deg(recording).max() < 0.5
+
+
+def backing(headings, mps=-2.4):
+    """A car that stands in its lane, backs in it, stands and drives on."""
+    t = np.arange(0, 16.05, STEP_S)
+    speed = np.interp(t, [0, 3, 4, 8, 9, 12, 15], [0, 0, mps, mps, 0, 0, 6])
+    x = 150 + np.append(0, np.cumsum((speed[1:] + speed[:-1]) / 2 * STEP_S))
+    ways = np.where(speed < 0, np.pi, 0.0)
+    given = {"stated": np.zeros(len(t)), "of motion": ways, "none": None}[headings]
+    body = rulec.build_participant("a", "car", t, x, np.zeros(len(t)), step_s=STEP_S, heading=given)
+    return rulec.build_recording(LANES, [body], step_s=STEP_S, side="right")
+
+
+def sides_and_backing(recording):
+    """The values that these words have while ego moves back."""
+    return {
+        tuple(None if state[word] is UNKNOWN else state[word] for word in WORDS)
+        for drive in Drives(recording, "right").of("a")
+        for at, state in enumerate(drive.trace.states)
+        if 4.5 <= drive.start_s + at * STEP_S <= 7.5
+    }
+
+
+@pytest.mark.parametrize(
+    ("headings", "found"),
+    [("stated", ("own_side", True)), ("of motion", (None, None)), ("none", (None, None))],
+)
+def test_directions_of_motion_do_not_tell_who_backs_from_who_drives_against(headings, found):
+    assert sides_and_backing(backing(headings)) == {found}
+
+
+@pytest.mark.parametrize("headings", ["of motion", "none"])
+def test_nobody_backs_fast(headings):
+    assert sides_and_backing(backing(headings, mps=-9.0)) == {("oncoming_side", False)}

@@ -28,7 +28,7 @@ from rulec.extraction.tracks.road_extents import (
     road_extents,
 )
 from rulec.extraction.tracks.road_places import RoadPlaces, are_on_road, near_road, rows_in_reach
-from rulec.extraction.tracks.surroundings import Surroundings
+from rulec.extraction.tracks.surroundings import BACKS_MPS, Surroundings
 from rulec.extraction.tracks.towed import towed_by
 from rulec.extraction.tracks.tracks import Flags, Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
@@ -174,8 +174,11 @@ class Drives:
         def is_one_way(lanelet: Lanelet) -> bool:
             return self._surroundings.is_surely_one_way(lanelet, self._side)
 
+        may_back = self._surroundings.head_as_they_move[:, None] & ~(
+            self._tracks.speed >= BACKS_MPS
+        )
         return wrong_way_stretches(
-            self.recording, self._tracks, self._matching.lanelets, is_one_way
+            self.recording, self._tracks, self._matching.lanelets, is_one_way, may_back
         )
 
     def along(self, row: int, stretches: Sequence[RouteStretch]) -> Iterator[Drive | NoDrive]:

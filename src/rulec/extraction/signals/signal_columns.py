@@ -102,6 +102,22 @@ def known_only(signals: SignalColumns, names: frozenset[str]) -> SignalColumns:
     return signals._replace(unknown=unknown, bounds=bounds)
 
 
+def unknown_in(
+    signals: SignalColumns, states: Flags, by_cell: Flags, names: frozenset[str]
+) -> SignalColumns:
+    """The signals, unknown in some states but for some names; ``by_cell``: in presence cells."""
+
+    def masked(name: str, column: SignalColumn) -> Flags:
+        flags = states if name in signals.world or column.ndim > 1 else by_cell
+        known = signals.unknown.get(name)
+        found: Flags = np.broadcast_to(flags, column.shape)
+        return found if known is None else known | found
+
+    columns = {**signals.world, **signals.about}
+    unknown = {name: masked(name, own) for name, own in columns.items() if name not in names}
+    return signals._replace(unknown={**signals.unknown, **unknown})
+
+
 def ids_by_state(flags: Flags, ids: Sequence[str]) -> SignalColumn:
     """The ids of the rows that are flagged, a tuple per state."""
     found = nobody(flags.shape[-1])

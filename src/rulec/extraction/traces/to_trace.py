@@ -15,7 +15,7 @@ from rulec.extraction.signals.clearance_signals import clearance_signals
 from rulec.extraction.signals.conduct.called_signals import called_signals
 from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
 from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
-from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
+from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals, may_back
 from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
 from rulec.extraction.signals.conduct.oncoming_conflicts import oncoming_conflicts
 from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
@@ -42,6 +42,7 @@ from rulec.extraction.signals.settling import agreeing, settled
 from rulec.extraction.signals.signal_columns import (
     SignalNames,
     known_only,
+    unknown_in,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tellable_types import told_types
@@ -151,6 +152,9 @@ def to_traces(
     signals = agreeing(every)
     if context.wrong_way:
         signals = known_only(signals, _WITHOUT_DIRECTION)
+    elif (backs := may_back(context)).any():
+        by_cell = presence_cells(context).of(backs)
+        signals = unknown_in(signals, backs, by_cell, _WITHOUT_DIRECTION)
     types = [body.object_types for body in context.tracks.participants]
     chosen = written(signals, types, writer.vocabulary, writer.names, spans)
     chosen = with_assumed(chosen, writer.assumed, context.states)

@@ -32,6 +32,9 @@ _STEP_M = 0.05
 _MOST, _FEWEST = 0.8, 5
 """Headings are directions of ways if this part of them are, of at least so many."""
 
+_WAYS = ((0, 1), (1, 0), (1, 1))
+"""A heading may be the direction of the way onward, of the way there, or of both together."""
+
 _OVER_M = 1.0
 """A direction that a reader derived is that of a metre or more."""
 
@@ -70,19 +73,11 @@ def _noise_of_headings(tracks: Tracks, whole: WholeRecording, step_s: float) -> 
 def _ways_of_headings(tracks: Tracks) -> Floats:
     """The length (m) of the way of which each heading is the direction; infinity where of none."""
     lengths = np.full(tracks.present.shape, np.inf)
-    headings, states = tracks.heading, tracks.present.shape[1]
-    # Each heading may be the direction of the way onward, of the way there, or of both together
-    for before, after in ((0, 1), (1, 0), (1, 1)):
-        if states <= before + after:
-            continue
-        x, y = (at[:, before + after :] - at[:, : states - before - after] for at in _at(tracks))
-        way, inner = np.hypot(x, y), slice(before, states - after)
-        moves = way > _STEP_M
-        apart = np.abs(turn(headings[:, inner], np.arctan2(y, x)))
-        fits = moves & (apart <= _DERIVED_RAD + _ROUNDED_M / np.where(moves, way, 1.0))
-        count = moves.sum(axis=1)
-        derived = (fits.sum(axis=1) >= _MOST * count) & (count >= _FEWEST)
+    states = tracks.present.shape[1]
+    for before, after in _WAYS:
+        way, derived = _as_derived(tracks, before, after)
         if derived.any():
+            inner = slice(before, states - after)
             of_way = np.full(lengths.shape, _STEP_M)
             of_way[:, inner] = np.where(np.isnan(way), _STEP_M, np.maximum(way, _STEP_M))
             # A track's last heading is mostly repeated
@@ -90,7 +85,7 @@ def _ways_of_headings(tracks: Tracks) -> Floats:
             of_way[:, ends[0]] = of_way[:, before : before + 1]
             of_way[:, ends[1]] = of_way[:, states - after - 1 : states - after]
             np.minimum(lengths, of_way, out=lengths, where=derived[:, None])
-    by_reader = _derived_by_reader(tracks)
+    by_reader = _without_headings(tracks)
     if by_reader.any():
         steps = np.full(lengths.shape, _OVER_M)
         x, y = (at[:, 1:] - at[:, :-1] for at in _at(tracks))
@@ -99,10 +94,33 @@ def _ways_of_headings(tracks: Tracks) -> Floats:
     return lengths
 
 
+def head_as_they_move(tracks: Tracks) -> Flags:
+    """Mask of participants whose headings are no more than the directions of their motion."""
+    found = _without_headings(tracks)
+    for before, after in _WAYS:
+        found |= _as_derived(tracks, before, after)[1]
+    return found
+
+
+def _as_derived(tracks: Tracks, before: int, after: int) -> tuple[Floats, Flags]:
+    """The ways (m) around states, and the mask of participants whose headings are their directions.
+
+    From so many steps before the states to so many after them.
+    """
+    states = max(tracks.present.shape[1] - before - after, 0)
+    x, y = (at[:, before + after :] - at[:, :states] for at in _at(tracks))
+    way = np.hypot(x, y)
+    moves = way > _STEP_M
+    apart = np.abs(turn(tracks.heading[:, before : before + states], np.arctan2(y, x)))
+    fits = moves & (apart <= _DERIVED_RAD + _ROUNDED_M / np.where(moves, way, 1.0))
+    count = moves.sum(axis=1)
+    return way, (fits.sum(axis=1) >= _MOST * count) & (count >= _FEWEST)
+
+
 def _at(tracks: Tracks) -> tuple[Floats, Floats]:
     return tracks.x, tracks.y
 
 
-def _derived_by_reader(tracks: Tracks) -> Flags:
+def _without_headings(tracks: Tracks) -> Flags:
     """Mask of participants whose file states no headings."""
     return np.array([body.heads_as_it_moves for body in tracks.participants], dtype=bool)

@@ -10,13 +10,13 @@ import numpy as np
 import shapely
 
 from rulec.extraction.recording_parts import whole_recording
-from rulec.extraction.tracks.heading_errors import heading_errors
+from rulec.extraction.tracks.heading_errors import head_as_they_move, heading_errors
 from rulec.extraction.tracks.junction_passages import JunctionPassages, junction_passages
 from rulec.extraction.tracks.rings import ring_lanelets
 from rulec.extraction.tracks.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.tracks import Flags, Floats, ObjectTypes, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
-from rulec.recordings.recording import Lanelet, Recording, Side, WholeRecording, is_lane
+from rulec.recordings.recording import HEADINGS, Lanelet, Recording, Side, WholeRecording, is_lane
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_beside, lanelet_area, lanes_beside
 
@@ -42,6 +42,9 @@ _ALONG_LANE = np.radians(30.0)
 
 _HAIR = 1e-9
 """Upper bound on rounding errors of a cosine."""
+
+BACKS_MPS = 4.5
+"""Hardly anybody backs along a lane faster (16 km/h), steered by the rear and looking back."""
 
 Directions = tuple["bool | None", "bool | None"]
 
@@ -79,6 +82,9 @@ class Surroundings:
         joined.__dict__["heading_errors"] = np.concatenate(
             (self.heading_errors, other.heading_errors[row : row + 1])
         )
+        joined.__dict__["head_as_they_move"] = np.append(
+            self.head_as_they_move, other.head_as_they_move[row]
+        )
         joined.__dict__["waits"] = np.append(self.waits, other.waits[row])
         return joined
 
@@ -96,6 +102,16 @@ class Surroundings:
     def heading_errors(self) -> Floats:
         """The possible errors (rad) of headings, by row and column."""
         return heading_errors(self.tracks, self.whole, self.recording.step_s)
+
+    @cached_property
+    def head_as_they_move(self) -> Flags:
+        """Mask of participants, by row, whose headings do not show whether they back.
+
+        These are the directions in which they move. Some sources state the headings of all.
+        """
+        if not self.recording.complete.isdisjoint({"arrivals", HEADINGS}):
+            return np.zeros(len(self.tracks.participants), dtype=bool)
+        return head_as_they_move(self.tracks)
 
     @cached_property
     def passages(self) -> JunctionPassages:

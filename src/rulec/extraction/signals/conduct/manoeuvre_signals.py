@@ -12,6 +12,7 @@ from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.road_extents import RoadExtents
+from rulec.extraction.tracks.surroundings import BACKS_MPS
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import HEADINGS
 from rulec.scenario.recorded.reference_line import turn
@@ -56,8 +57,10 @@ def _reversing(context: DriveContext) -> SignalColumns:
     unknown |= jumps
     if not _are_told(context):
         against = context.ego_extents.along[0] < -least
-        for _, columns in spans.those(spans.any(against) & ~jumps & ~spans.any(backs)):
-            unknown[columns] |= against[columns] & (not _tells_headings(context, columns))
+        asked = spans.any(against) & ~jumps & ~spans.any(backs)
+        for number, columns in spans.those(asked):
+            unknown[columns] |= against[columns] & (not _tells_headings(context, number, columns))
+        unknown |= may_back(context) & ~backs
     return SignalColumns({"reversing": backs}, unknown={"reversing": unknown})
 
 
@@ -119,9 +122,11 @@ def _are_told(context: DriveContext) -> bool:
     return not context.recording.complete.isdisjoint({"arrivals", HEADINGS})
 
 
-def _tells_headings(context: DriveContext, columns: slice) -> bool:
+def _tells_headings(context: DriveContext, number: int, columns: slice) -> bool:
     """Whether ego's headings in a drive are more than the directions in which it moved."""
     own = context.ego
+    if context.own.head_as_they_move[own.rows[number]]:
+        return False
     x, y, heading = own.x[0, columns], own.y[0, columns], own.heading[0, columns]
     steps = np.hypot(np.diff(x), np.diff(y))
     moved = steps > context.tolerances.place_m
@@ -132,11 +137,38 @@ def _tells_headings(context: DriveContext, columns: slice) -> bool:
     return bool((np.minimum(*apart) > _DERIVED_RAD).any())
 
 
+@once
+def may_back(context: DriveContext) -> Flags:
+    """Mask of states in which ego may back in a lane of its own instead of driving on the other's.
+
+    Headings that are the directions of motion cannot tell these apart, unless ego comes from its
+    own side without a stop, gets there, or is too fast.
+    """
+    found, spans = np.zeros(context.states, dtype=bool), context.spans
+    if context.wrong_way or _are_told(context):
+        return found
+    there, perhaps = oncoming_side(context)
+    if not there.any():
+        return found
+    speed = context.ego.speed[0]
+    moves = speed * KMH >= context.thresholds.standing_kmh
+    own_side = _along_road(context) & _on_map(context) & ~at_junctions(context) & ~there & ~perhaps
+    firsts = (moves & (spans.begins_here | ~spans.before(moves))).nonzero()[0]
+    ends = np.minimum(spans.next_state(~moves), spans.end)[firsts]
+    for first, end in zip(firsts.tolist(), ends.tolist(), strict=True):
+        part, number = slice(first, end), int(spans.number[first])
+        slow = there[part].any() and speed[part].max() < BACKS_MPS and not own_side[part].any()
+        found[part] = slow and not _tells_headings(context, number, spans.slices[number])
+    # A vehicle that moves no other way in a drive may also stand the other way round
+    return found | spans.all(found | ~moves) & spans.any(found)
+
+
 def _driving_side(context: DriveContext) -> SignalColumns:
     there, perhaps = oncoming_side(context)
     sides = there.astype(int)
     if perhaps.any():
         perhaps = perhaps & ~_goes_over(context, there, perhaps)
+    perhaps = perhaps | may_back(context)
     if context.wrong_way:
         sides, perhaps = np.full_like(sides, _SIDES.index("wrong_way")), perhaps & False
     return SignalColumns(

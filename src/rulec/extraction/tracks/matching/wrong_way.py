@@ -49,18 +49,22 @@ def wrong_way_stretches(
     tracks: Tracks,
     matched: NDArray[intp],
     is_one_way: Callable[[Lanelet], bool],
+    may_back: Flags,
 ) -> dict[int, list[RouteStretch]]:
     """The stretches on which participants drove against all lanes, by row.
 
     ``matched`` are the numbers of the lanelets that lead a participant's way, by participant and
-    column, -1 for none; ``is_one_way`` tests whether a lanelet's carriageway is surely one-way. The
-    pieces of a stretch are in the order of its lanelets, which its states pass in reverse.
+    column, -1 for none; ``is_one_way`` tests whether a lanelet's carriageway is surely one-way.
+    ``may_back``: where a participant may as well have backed, if it did so all the time. The pieces
+    of a stretch are in the order of its lanelets, which its states pass in reverse.
     """
     found = _states_against(recording, tracks, matched, is_one_way)
     stretches: dict[int, list[RouteStretch]] = {}
     for row, columns, lanelets in _runs(recording, found):
         x, y = tracks.x[row, columns], tracks.y[row, columns]
         long = (len(columns) - 1) * recording.step_s >= LEAST_S - recording.step_s / 2
+        if may_back[row, columns].all():
+            continue
         if long and np.hypot(x[-1] - x[0], y[-1] - y[0]) >= LEAST_M:
             stretches.setdefault(row, []).append(_stretch(columns, lanelets))
     return stretches
