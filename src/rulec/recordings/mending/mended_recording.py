@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from rulec.recordings.mending.fast_unknowns import with_fast_unknowns
 from rulec.recordings.mending.short_holes import LONGEST_HOLE_S as LONGEST_HOLE_S
 from rulec.recordings.mending.short_holes import without_short_holes
 from rulec.recordings.mending.steady_headings import with_steady_headings
@@ -15,10 +16,12 @@ from rulec.recordings.recording import MENDED, Recording
 def mended(recording: Recording, longest_hole_s: float = LONGEST_HOLE_S) -> Recording:
     """A recording without wrong places and jumps, and without holes up to this length.
 
-    Headings are steady. It is marked as ``MENDED``, and is not repaired again.
+    Headings are steady. Participants of unknown type are vehicles if they drive as only vehicles
+    can. It is marked as ``MENDED``, and is not repaired again.
     """
     if MENDED in recording.complete:
         return recording
-    steady = with_steady_headings(without_jumps(without_wrong_places(recording)))
+    placed = without_jumps(without_wrong_places(recording))
+    steady = with_steady_headings(with_fast_unknowns(placed))
     repaired = without_short_holes(steady, longest_hole_s)
     return replace(repaired, complete=repaired.complete | {MENDED})
