@@ -100,3 +100,22 @@ def test_who_spins_all_the_time_is_left_alone(kind):
     """97° a step is no box turned round, and nothing before or after says how it stands."""
     told = [(97 * step) % 360 for step in range(30)]
     assert headings(body(STANDS, told, kind)) == told
+
+
+def test_who_stands_is_turned_as_where_it_really_moves():
+    """Headings are directions of motion between places with noise of 0.1 m.
+
+    A car brakes, stands and turns off to the left; where it creeps they are noise, too.
+    """
+    t = np.arange(0, 16.05, STEP_S)
+    speed = np.interp(t, [0, 3, 6, 10, 14], [6, 6, 0, 0, 6])
+    way = np.append(0, np.cumsum((speed[1:] + speed[:-1]) / 2 * STEP_S))
+    true = np.maximum(way - way[80], 0) / 10.0
+    steps = np.diff(way, prepend=0)[:, None] * np.column_stack((np.cos(true), np.sin(true)))
+    for seed in range(20):
+        places = steps.cumsum(axis=0) + np.random.default_rng(seed).normal(scale=0.1, size=(161, 2))
+        dx, dy = np.diff(places, axis=0, append=places[-1:]).T
+        one = body(places[:, 0], np.degrees(np.arctan2(dy, dx)))
+        one.states.track.rows[:, 1] = places[:, 1]
+        found = np.array(headings(one))[(t > 6.5) & (t < 9.5)]
+        assert np.abs((found + 180) % 360 - 180).max() < 40

@@ -84,5 +84,5 @@ def _along_lanes(three: Floats, lines: list[shapely.LineString]) -> NDArray[bool
         apart: Floats = 2 * (np.arctan2(dy, dx) - way[at])
         off = np.abs(wrapped(apart)) / 2
         on_lanes[at[off < _ALONG], place] = True
-    found: NDArray[bool_] = on_lanes.all(axis=1)
+    found: NDArray[bool_] = np.logical_and.reduce(on_lanes, axis=1)
     return found

@@ -32,6 +32,9 @@ _BRIEF_S = 1.0
 _STANDS_M = 0.25
 """A vehicle that moves less within ``_SOON_S`` stands or creeps."""
 
+_SLOW_M = 1.5
+"""One that moves less within ``_SOON_S`` is so slow that noise of places turns its heading."""
+
 _HAIR = 1e-6
 
 _DRIVERS = frozenset({"vehicle", "light_rider"})
@@ -129,13 +132,18 @@ def _forwards(places: Floats, heading: Floats, part: tuple[int, int]) -> float:
 def _of_before_and_after(
     times: Floats, places: Floats, heading: Floats, spins: NDArray[bool_]
 ) -> Floats:
-    """The headings, with spinning ones of a standing vehicle replaced by those before and after."""
-    stands = _stand(times, places)
-    edges = np.diff(stands.astype(int64), prepend=0, append=0)
+    """The headings, with spinning ones of a standing vehicle replaced by those before and after.
+
+    Before and after are where it has moved so far that its heading does not spin any more. It turns
+    only while it moves.
+    """
+    stands = _moves_less(times, places, _STANDS_M)
+    spinning = np.append(spins, False) | np.append(False, spins)
+    slow = stands | (spinning & _moves_less(times, places, _SLOW_M))
     steadied: Floats = heading.copy()
-    for begin, end in zip((edges > 0).nonzero()[0], (edges < 0).nonzero()[0], strict=True):
+    for begin, end in _runs(_without_gaps(times, slow)):
         # One that turns once, and stays so, may have been put right there
-        if spins[begin : end - 1].sum() < 2:
+        if not any(spins[first : last - 1].sum() > 1 for first, last in _runs(stands, begin, end)):
             continue
         before = _mean(heading, times, slice(0, begin), float(times[begin]))
         after = _mean(heading, times, slice(end, None), float(times[end - 1]))
@@ -143,13 +151,33 @@ def _of_before_and_after(
         last = before if after is None else after
         if first is None or last is None:
             continue
+        moves = ~stands[begin:end]
         share = np.linspace(0.0, 1.0, end - begin)
+        if moves.any():
+            share = moves.cumsum() / moves.sum()
         steadied[begin:end] = wrapped(first + share * wrapped(np.array([last - first])))
     return steadied
 
 
-def _stand(times: Floats, places: Floats) -> NDArray[bool_]:
-    """Mask of states before or after which a vehicle hardly moves within half a second."""
+def _runs(flags: NDArray[bool_], begin: int = 0, end: int | None = None) -> list[tuple[int, int]]:
+    """The first state of each run of flags in a part of the states, and the one after its last."""
+    edges = np.diff(flags[begin:end].astype(int64), prepend=0, append=0)
+    firsts, lasts = ((way * edges > 0).nonzero()[0] + begin for way in (1, -1))
+    return list(zip(firsts.tolist(), lasts.tolist(), strict=True))
+
+
+def _without_gaps(times: Floats, flags: NDArray[bool_]) -> NDArray[bool_]:
+    """The flags, also set between those at most ``_SOON_S`` apart."""
+    whole: NDArray[bool_] = flags.copy()
+    places = flags.nonzero()[0]
+    for before, after in pairwise(places.tolist()):
+        if after > before + 1 and times[after] - times[before] <= _SOON_S + _HAIR:
+            whole[before:after] = True
+    return whole
+
+
+def _moves_less(times: Floats, places: Floats, most_m: float) -> NDArray[bool_]:
+    """Mask of states before or after which a vehicle moves no farther within half a second."""
     first, last = (times.searchsorted(times + way) for way in (-_SOON_S - _HAIR, _SOON_S - _HAIR))
     stands = np.zeros(len(times), dtype=bool)
     for other, known in (
@@ -157,7 +185,7 @@ def _stand(times: Floats, places: Floats) -> NDArray[bool_]:
         (np.minimum(last, len(times) - 1), times[-1] - times),
     ):
         away = np.hypot(*(places[other] - places).T)
-        stands |= (away <= _STANDS_M) & (known >= _SOON_S - _HAIR)
+        stands |= (away <= most_m) & (known >= _SOON_S - _HAIR)
     return stands
 
 
