@@ -118,6 +118,21 @@ def unknown_in(
     return signals._replace(unknown={**signals.unknown, **unknown})
 
 
+def unknown_where_unlike(signals: SignalColumns, others: SignalColumns) -> SignalColumns:
+    """The signals, unknown where others have another value or none."""
+    columns, theirs = {**signals.world, **signals.about}, {**others.world, **others.about}
+    unknown = dict(signals.unknown)
+    for name, column in columns.items():
+        if name not in theirs or theirs[name].shape != column.shape:
+            continue
+        unlike = column != theirs[name]
+        if name in others.unknown:
+            unlike = unlike | others.unknown[name]
+        if unlike.any():
+            unknown[name] = unlike | unknown[name] if name in unknown else unlike
+    return signals._replace(unknown=unknown)
+
+
 def ids_by_state(flags: Flags, ids: Sequence[str]) -> SignalColumn:
     """The ids of the rows that are flagged, a tuple per state."""
     found = nobody(flags.shape[-1])

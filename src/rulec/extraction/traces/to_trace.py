@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 
@@ -40,9 +40,11 @@ from rulec.extraction.signals.participants.intention_signals import intention_si
 from rulec.extraction.signals.participants.participant_signals import participant_signals
 from rulec.extraction.signals.settling import agreeing, settled
 from rulec.extraction.signals.signal_columns import (
+    SignalColumns,
     SignalNames,
     known_only,
     unknown_in,
+    unknown_where_unlike,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tellable_types import told_types
@@ -148,8 +150,14 @@ def to_traces(
     """
     read, spans = _names_written(writer), context.spans
     known = ~np.isnan(context.extents.s_min)
-    every = settled(_SIGNALS(context, read), LEAST_S, context.recording.step_s, spans, known)
-    signals = agreeing(every)
+
+    def found(one: DriveContext) -> SignalColumns:
+        every = settled(_SIGNALS(one, read), LEAST_S, context.recording.step_s, spans, known)
+        return agreeing(every)
+
+    signals = found(context)
+    if _some_may_be_vehicles(context):
+        signals = unknown_where_unlike(signals, found(_with_unknown_as_vehicles(context)))
     if context.wrong_way:
         signals = known_only(signals, _WITHOUT_DIRECTION)
     elif (backs := may_back(context)).any():
@@ -197,6 +205,22 @@ def to_traces(
             egos, starts, arrays, decided_by, spans.slices, strict=True
         )
     ]
+
+
+def _some_may_be_vehicles(context: DriveContext) -> bool:
+    """Whether participants of unknown type move on or beside ego's road: they may be vehicles."""
+    unknown = context.tracks.types.of_unknown()[context.tracks.rows] & ~context.stays
+    return bool(context.relevant[unknown].any())
+
+
+def _with_unknown_as_vehicles(context: DriveContext) -> DriveContext:
+    tracks = context.tracks
+    types = tracks.types.unknown_as_vehicles()
+    return replace(
+        context,
+        tracks=tracks.seen_as(tracks.participants, types, tracks.rows),
+        computed={},
+    )
 
 
 def _objects(

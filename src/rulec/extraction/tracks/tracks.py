@@ -21,7 +21,14 @@ from rulec.extraction.tracks.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.track_motion import Poses, motion_of
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.polylines import places_in
-from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
+from rulec.recordings.recording import (
+    OBSTACLE_TYPES,
+    Lanelet,
+    Participant,
+    Points,
+    Recording,
+    is_lane,
+)
 from rulec.recordings.track import TrackOutlines, outlines_on_track
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.route import lanelet_area
@@ -44,6 +51,19 @@ class ObjectTypes:
         if name not in self._flags:
             self._flags[name] = np.array([name in types for types in self._types], dtype=bool)
         return self._flags[name]
+
+    def of_unknown(self) -> Flags:
+        """Mask of the participants of which only a road user is known."""
+        unknown = OBSTACLE_TYPES["unknown"]
+        return np.array([types == unknown for types in self._types], dtype=bool)
+
+    def unknown_as_vehicles(self) -> ObjectTypes:
+        """The types if all participants of unknown type were vehicles."""
+        other, unknown = copy(self), OBSTACLE_TYPES["unknown"]
+        vehicle = OBSTACLE_TYPES["vehicle"]
+        other._types = [vehicle if types == unknown else types for types in self._types]
+        other._flags = {}
+        return other
 
 
 @dataclass(frozen=True, eq=False, slots=True)
