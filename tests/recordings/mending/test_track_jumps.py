@@ -23,7 +23,7 @@ def exchanged(one, other, at=20):
 
 
 def found(*tracks, step_s=0.1):
-    return jumps([Path(STEPS, places, 0.0 * STEPS) for places in tracks], step_s)
+    return jumps([Path(STEPS, places) for places in tracks], step_s)
 
 
 @pytest.mark.parametrize("ahead", [0.0, 1.0, 3.0, 30.0])
@@ -40,6 +40,16 @@ def test_a_simulator_changes_lanes_in_one_step():
     changes = driving(50, 0)
     changes[20:, 1] += 3.2
     assert found(changes, driving(60, 3.2)) == [[], []]
+
+
+@pytest.mark.parametrize("held", [2, 5])
+def test_a_track_that_is_held_catches_up(held):
+    """As one that was measured less often than it is written; or once, for a second."""
+    places = driving(50, 0)
+    assert found(places[STEPS // held * held]) == [[]]
+    frozen = places.copy()
+    frozen[20:30] = places[20]
+    assert found(frozen) == [[]]
 
 
 @pytest.mark.parametrize("step_s", [0.04, 0.1, 0.5, 1.0])

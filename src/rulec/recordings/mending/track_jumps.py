@@ -26,8 +26,8 @@ from rulec.recordings.mending.wrong_places import (
 )
 from rulec.recordings.recording import Participant, Recording
 
-_SLOW_MPS = 0.5
-"""The way of a slower body says nothing about where it is heading."""
+_HELD_MPS = 0.5
+"""A track that moves less before or after a jump may have been held, and catches up by it."""
 
 _ACROSS = 0.7
 """A jump that is along the way by less than this part of what it is across is a simulator's change
@@ -137,13 +137,11 @@ def _jumps_of(track: int, path: Path, step_s: float) -> list[_Jump]:
     found = []
     for at in ((steps == 1) & (size > least)).nonzero()[0].tolist():
         usual = beside[int(sizes[:, at].argmin())][at]
-        way, own = usual, ways[at] - usual
-        if np.hypot(*way) < _SLOW_MPS * step_s:
-            heading = None if path.headings is None else path.headings[at]
-            way = np.zeros(2) if heading is None else np.array((np.cos(heading), np.sin(heading)))
-        along = abs(float(own @ way)) / max(float(np.hypot(*way)), _HAIR)
+        own, length = ways[at] - usual, float(np.hypot(*usual))
+        along = abs(float(own @ usual)) / max(length, _HAIR)
         across = float(np.sqrt(max(float(own @ own) - along**2, 0.0)))
-        surely = along > max(least, _ACROSS * across)
+        held = min(float(np.hypot(*way[at])) for way in beside) < _HELD_MPS * step_s
+        surely = not held and along > max(least, _ACROSS * across)
         expected = path.places[at] + usual
         found.append(_Jump(track, at + 1, expected, path.places[at + 1], surely))
     return found

@@ -41,11 +41,10 @@ Floats = NDArray[float64]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Path:
-    """The places (m) of a body by ascending time step, and its headings (rad) if known."""
+    """The places (m) of a body by ascending time step."""
 
     steps: NDArray[int64]
     places: Floats
-    headings: Floats | None = None
 
 
 def without_wrong_places(recording: Recording) -> Recording:
@@ -71,9 +70,8 @@ def path_of(body: Participant) -> Path:
     """The path of a participant; empty if it stands, or has places that are no track."""
     on_track = outlines_on_track(body) is not None
     if body.standing or not (on_track or body.states.keys() == body.outlines.keys()):
-        return Path(np.zeros(0, dtype=int64), np.zeros((0, 2)), np.zeros(0))
-    rows = rows_of(body)
-    return Path(steps_of(body), rows[:, :2], rows[:, 2])
+        return Path(np.zeros(0, dtype=int64), np.zeros((0, 2)))
+    return Path(steps_of(body), rows_of(body)[:, :2])
 
 
 def wrong_places_remark(names: Sequence[str], count: int) -> str:

@@ -225,11 +225,8 @@ class _Reading:
         rows, own = self.rows, track.rows
         if self._stands(own) or DRIVERS.isdisjoint(OBSTACLE_TYPES[track.kind]):
             own = own[:0]
-        heading = None if rows.heading is None else rows.heading[own]
-        if heading is not None and np.isnan(heading).any():
-            heading = None
         places = np.column_stack((rows.x[own], rows.y[own]))
-        return Path(rows.times.steps[own], places, heading)
+        return Path(rows.times.steps[own], places)
 
     def _without_wrong_places(self, track: _RowsOfTrack) -> _RowsOfTrack:
         """A track without the places that it cannot have reached: headings follow from them."""
