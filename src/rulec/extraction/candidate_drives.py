@@ -15,8 +15,8 @@ from rulec.extraction.context_arrays import EgosOnRoad, drives_context
 from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.traces.recorded_drive import Drive
 from rulec.extraction.traces.to_trace import TraceWriter, to_traces
+from rulec.extraction.tracks.at_junctions.junction_passages import junction_passages
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.junction_passages import junction_passages
 from rulec.extraction.tracks.laid_out_map import LaidOutMap
 from rulec.extraction.tracks.matching.driven_route import RouteStretch
 from rulec.extraction.tracks.matching.map_matching import MapMatching, MatchedStretch

@@ -7,7 +7,7 @@ import pytest
 
 import rulec
 from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
-from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
+from rulec.extraction.signals.conduct.lane_changes.lane_change_signals import lane_change_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
 from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts

@@ -8,7 +8,7 @@ import pytest
 from rulec.extraction.signals.clearance_signals import clearance_signals
 from rulec.extraction.signals.conduct.called_signals import called_signals
 from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
-from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
+from rulec.extraction.signals.conduct.lane_changes.lane_change_signals import lane_change_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
 from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
 from rulec.extraction.signals.conduct.oncoming_conflicts import oncoming_conflicts

@@ -12,7 +12,7 @@ import pytest
 
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import goes_first
-from rulec.extraction.tracks.junctions import junctions_of
+from rulec.extraction.tracks.at_junctions.junctions import junctions_of
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import Light, Recording
 from rulec.recordings.sumo.lanelets import net_lanelets

@@ -8,7 +8,7 @@ import pytest
 
 from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
-from rulec.extraction.tracks.junctions import approaches, junctions_of
+from rulec.extraction.tracks.at_junctions.junctions import approaches, junctions_of
 from rulec.recordings.recording import Recording, TrackState
 from rulec.recordings.sumo.lanelets import net_lanelets
 from rulec.recordings.sumo.net import read_net

@@ -15,8 +15,8 @@ from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
 from rulec.extraction.signals.participants.participant_signals import participant_signals
+from rulec.extraction.tracks.at_junctions.rings import ring_lanelets
 from rulec.extraction.tracks.mirror import mirrored_recording
-from rulec.extraction.tracks.rings import ring_lanelets
 from support.builders.drive_contexts import along, context_of, steady, told_on_both_sides
 from support.builders.recordings import lanelet, recording, straight, vehicle
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
+from rulec.extraction.signals.conduct.lane_changes.lane_change_signals import lane_change_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
 from support.builders.drive_contexts import told_on_both_sides
 from support.builders.recordings import lanelet, recording, straight, vehicle

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.tracks.junction_passages import junction_passages
+from rulec.extraction.tracks.at_junctions.junction_passages import junction_passages
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.drive_contexts import along

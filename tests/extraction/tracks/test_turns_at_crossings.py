@@ -12,7 +12,7 @@ import pytest
 
 from rulec.extraction.signals.map.junction_signals import junction_signals, turn_at
 from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
-from rulec.extraction.tracks.junctions import junctions_of
+from rulec.extraction.tracks.at_junctions.junctions import junctions_of
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 

@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from rulec.extraction.tracks.junctions import junctions_of
+from rulec.extraction.tracks.at_junctions.junctions import junctions_of
 from rulec.recordings.map_files import read_map
 from rulec.recordings.opendrive.content.file_reader import read_file
 from rulec.recordings.recording import Recording

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.tracks.junctions import junctions_of
+from rulec.extraction.tracks.at_junctions.junctions import junctions_of
 from rulec.scenario.recorded.junction_lanelets import junction_lanelets
 from support.builders.recordings import lanelet, recording, straight
 

@@ -48,7 +48,7 @@ def lateral_gaps(context: DriveContext) -> tuple[Floats, Bounds]:
         ):
             by_askew = _beside_askew(few, askew, other, is_left)
             gap[close] += np.where(beside, by_askew, 0.0)
-            less, more = _by_turning(few, askew, other, is_left, error, beside)
+            less, more = _by_turning(few, askew, other, is_left, error, beside=beside)
             nearer[close] = joint(nearer[close], less)
             farther[close] = joint(farther[close], more)
     low, high = np.maximum(across - nearer, 0.0), np.maximum(gap + farther, 0.0)
@@ -70,7 +70,7 @@ def _beside_askew(cells: Cells, askew: RoadExtents, other: RoadExtents, is_left:
     width = (wide * np.cos(angle) - (high - low) * sin) / np.cos(2 * angle)
     corner = np.where(angle < _MOST_ASKEW_RAD, np.clip(width, 0.0, wide), 0.0) * sin
     others = cells.of(other.s_min), cells.of(other.s_max)
-    return _side_of_askew(turned, (low, high), corner, wide, others, is_left)
+    return _side_of_askew(turned, (low, high), corner, wide, others, is_left=is_left)
 
 
 def _side_of_askew(
@@ -136,9 +136,9 @@ def _by_turning(
         np.clip((size * cos - wide * sin) / twice, 0.0, size),
         np.clip((wide * cos - size * sin) / twice, 0.0, wide),
         (low + high) / 2,
-        (cells.of(other.s_min), cells.of(other.s_max)),
-        is_left,
-        beside,
+        others=(cells.of(other.s_min), cells.of(other.s_max)),
+        is_left=is_left,
+        beside=beside,
     )
     # The body is widest with its diagonal across
     diagonal = np.arctan2(box.length, box.width)
@@ -196,6 +196,6 @@ class _Box:
             self.width * sin,
             2 * self.half_across(turned),
             self.others,
-            self.is_left,
+            is_left=self.is_left,
         )
         return np.where(self.beside, askew, 0.0)

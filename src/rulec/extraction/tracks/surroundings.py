@@ -10,9 +10,12 @@ import numpy as np
 import shapely
 
 from rulec.extraction.recording_parts import whole_recording
+from rulec.extraction.tracks.at_junctions.junction_passages import (
+    JunctionPassages,
+    junction_passages,
+)
+from rulec.extraction.tracks.at_junctions.rings import ring_lanelets
 from rulec.extraction.tracks.heading_errors import head_as_they_move, heading_errors
-from rulec.extraction.tracks.junction_passages import JunctionPassages, junction_passages
-from rulec.extraction.tracks.rings import ring_lanelets
 from rulec.extraction.tracks.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.tracks import Flags, Floats, ObjectTypes, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds

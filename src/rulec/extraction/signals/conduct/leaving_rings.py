@@ -14,7 +14,7 @@ from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_passages
 from rulec.extraction.signals.map.right_of_way.conflicts import in_conflict
 from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.tracks.junction_passages import Passage
+from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.extraction.tracks.tracks import Flags
 
 _CROSSED = "crossed"

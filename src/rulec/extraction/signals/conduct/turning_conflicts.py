@@ -15,7 +15,7 @@ from rulec.extraction.signals.conduct.leaving_rings import crossed_on_ring
 from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_passages
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.junction_passages import Passage
+from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.extraction.tracks.tracks import Flags, Floats
 
 _BEHIND_M, _ASIDE_M = 30.0, 8.0

@@ -23,7 +23,7 @@ from rulec.extraction.signals.map.stop_lines import (
 from rulec.extraction.signals.measured_numbers import own_front
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.junctions import all_have_to_stop
+from rulec.extraction.tracks.at_junctions.junctions import all_have_to_stop
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import STOP_SIGNS, STRAIGHT_ON
 from rulec.trace.plain_arrays import distinct

@@ -48,8 +48,8 @@ from rulec.extraction.signals.signal_columns import (
     nobody,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.junction_passages import Passage
-from rulec.extraction.tracks.junctions import Junction, approaches, before_joining
+from rulec.extraction.tracks.at_junctions.junction_passages import Passage
+from rulec.extraction.tracks.at_junctions.junctions import Junction, approaches, before_joining
 from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.recorded.reference_line import turn
 

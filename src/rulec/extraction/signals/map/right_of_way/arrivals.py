@@ -11,8 +11,8 @@ from rulec.extraction.signals.map.right_of_way.conflicts import FROM_SIDES, Enco
 from rulec.extraction.signals.map.right_of_way.held_up import DRIVES_MPS
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS
 from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.tracks.junction_passages import Passage
-from rulec.extraction.tracks.junctions import all_have_to_stop
+from rulec.extraction.tracks.at_junctions.junction_passages import Passage
+from rulec.extraction.tracks.at_junctions.junctions import all_have_to_stop
 from rulec.extraction.tracks.tracks import Flags
 
 ARRIVALS = ("arrived_together", "other_arrived_first", "other_in_junction")

@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.tracks.junction_passages import Passage
+from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.extraction.tracks.tracks import Floats
 
 _FINE_S = 0.05

@@ -28,7 +28,7 @@ from rulec.extraction.signals.map.right_of_way.held_up import (
     slows_down,
 )
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS
-from rulec.extraction.tracks.junction_passages import Passage
+from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 
 FROM_SIDES = ("conflict_from_left", "conflict_from_right")
 ONCOMING = "in_way_of_oncoming"

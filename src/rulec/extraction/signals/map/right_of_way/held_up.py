@@ -10,7 +10,7 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.right_of_way.bodies import gap_s
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS
 from rulec.extraction.signals.map.right_of_way.own_reasons import slows_for_itself
-from rulec.extraction.tracks.junction_passages import Passage
+from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.trace.plain_arrays import zero_if_nan
 
 DRIVES_MPS = 3.0

@@ -7,8 +7,8 @@ from math import cos, radians, sin
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.tracks.junction_passages import Passage
-from rulec.extraction.tracks.junctions import (
+from rulec.extraction.tracks.at_junctions.junction_passages import Passage
+from rulec.extraction.tracks.at_junctions.junctions import (
     JunctionWay,
     all_have_to_stop,
     approaches,

@@ -17,8 +17,13 @@ import shapely
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS, turns_far
-from rulec.extraction.tracks.junction_passages import Passage
-from rulec.extraction.tracks.junctions import Junction, JunctionWay, approaches, entry_lights
+from rulec.extraction.tracks.at_junctions.junction_passages import Passage
+from rulec.extraction.tracks.at_junctions.junctions import (
+    Junction,
+    JunctionWay,
+    approaches,
+    entry_lights,
+)
 from rulec.extraction.tracks.tracks import Floats
 from rulec.recordings.recording import GIVE_WAY_SIGNS, LIMIT_SIGN, STOP_SIGNS
 from rulec.scenario.recorded.reference_line import turn

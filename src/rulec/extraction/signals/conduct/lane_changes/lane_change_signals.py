@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
-from rulec.extraction.signals.conduct.lanes_from_behind import come_into_lane
+from rulec.extraction.signals.conduct.lane_changes.lanes_from_behind import come_into_lane
+from rulec.extraction.signals.conduct.lane_changes.squeezing_in import WayIn, squeezed
+from rulec.extraction.signals.conduct.lane_changes.turning_round import has_to_brake_for_turn
 from rulec.extraction.signals.conduct.leaving_rings import crossed_on_ring
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
     beyond_near_edge,
@@ -20,8 +22,6 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
     swings_round,
     u_turns,
 )
-from rulec.extraction.signals.conduct.squeezing_in import WayIn, squeezed
-from rulec.extraction.signals.conduct.turning_round import has_to_brake_for_turn
 from rulec.extraction.signals.map.junction_signals import lies_askew_in_turn
 from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses

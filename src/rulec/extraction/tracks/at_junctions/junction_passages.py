@@ -18,7 +18,7 @@ import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.junctions import (
+from rulec.extraction.tracks.at_junctions.junctions import (
     Interval,
     Junction,
     JunctionWay,

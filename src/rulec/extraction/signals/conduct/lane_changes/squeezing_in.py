@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.conduct.lanes_from_behind import comes_from_before
+from rulec.extraction.signals.conduct.lane_changes.lanes_from_behind import comes_from_before
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.extraction.tracks.tracks import Flags, Floats

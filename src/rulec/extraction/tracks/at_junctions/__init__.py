@@ -1,0 +1,1 @@
+"""Junctions of a recording: their ways, who took which of them when, and roundabouts."""
