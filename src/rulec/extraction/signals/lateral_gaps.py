@@ -20,6 +20,12 @@ _NEXT_TO_M = 5.0
 _MOST_ASKEW_RAD = 0.6
 """Up to this angle a body's width is computed from its rectangle along the road."""
 
+_SOON_BESIDE_M = 2.0
+"""What wrong headings change is only roughly bounded for bodies farther apart (m) along the road."""
+
+_KNOWN_RAD = 1e-4
+"""Headings that are less wrong change no gap by a millimetre."""
+
 _HAIR = 1e-6
 
 
@@ -36,23 +42,43 @@ def lateral_gaps(context: DriveContext) -> tuple[Floats, Bounds]:
     own, others = context.ego_extents, context.extents
     gap, nearer, farther = across.copy(), *np.full((2, len(across)), place)
     close = (np.abs(across) < _NEXT_TO_M).nonzero()[0]
-    if len(close):
-        few, joint = cells.part(close), context.tolerances.joint
-        beside = few.of(relations.way_along(context)) < 0
+    if not len(close):
+        return np.maximum(gap, 0.0), _rounded(across, gap, (nearer, farther))
+    few, joint = cells.part(close), context.tolerances.joint
+    errors = few.of(own_heading_errors(context)), _heading_errors_of_others(context, few)
+    are_known = all(error.max() < _KNOWN_RAD for error in errors)
+    if not are_known:
+        for turns, error in zip((own, others), errors, strict=True):
+            rough = joint(nearer[close], _at_most_by_turning(few, turns, error))
+            nearer[close] = farther[close] = rough
+    along = few.of(relations.way_along(context))
+    # With known headings, bodies that are not beside each other need no better bounds
+    soon = (along < (0.0 if are_known else _SOON_BESIDE_M)).nonzero()[0]
+    if len(soon):
+        chosen, few, beside = close[soon], few.part(soon), along[soon] < 0
         left = (few.of(others.d_min) + few.of(others.d_max)) > (
             few.of(own.d_min) + few.of(own.d_max)
         )
+        if not are_known:
+            nearer[chosen] = farther[chosen] = place
         for askew, other, is_left, error in (
-            (own, others, left, few.of(own_heading_errors(context))),
-            (others, own, ~left, _heading_errors_of_others(context, few)),
+            (own, others, left, errors[0][soon]),
+            (others, own, ~left, errors[1][soon]),
         ):
             by_askew = _beside_askew(few, askew, other, is_left)
-            gap[close] += np.where(beside, by_askew, 0.0)
-            less, more = _by_turning(few, askew, other, is_left, error, beside=beside)
-            nearer[close] = joint(nearer[close], less)
-            farther[close] = joint(farther[close], more)
+            gap[chosen] += np.where(beside, by_askew, 0.0)
+            if not are_known:
+                less, more = _by_turning(few, askew, other, is_left, error, beside=beside)
+                nearer[chosen] = joint(nearer[chosen], less)
+                farther[chosen] = joint(farther[chosen], more)
+    return np.maximum(gap, 0.0), _rounded(across, gap, (nearer, farther))
+
+
+def _rounded(across: Floats, gap: Floats, errors: tuple[Floats, Floats]) -> Bounds:
+    """The bounds of gaps: ``errors`` nearer than rectangles are, and farther than bodies."""
+    nearer, farther = errors
     low, high = np.maximum(across - nearer, 0.0), np.maximum(gap + farther, 0.0)
-    return np.maximum(gap, 0.0), rounded_outward(low, high)
+    return rounded_outward(low, high)
 
 
 def _beside_askew(cells: Cells, askew: RoadExtents, other: RoadExtents, is_left: Flags) -> Floats:
@@ -112,6 +138,16 @@ def _heading_errors_of_others(context: DriveContext, cells: Cells) -> Floats:
     return errors
 
 
+def _at_most_by_turning(cells: Cells, turns: RoadExtents, error: Floats) -> Floats:
+    """The most (m) that a body's side moves across the road if it turns by its heading's error."""
+    size, wide = (
+        cells.of(end) - cells.of(begin)
+        for begin, end in ((turns.s_min, turns.s_max), (turns.d_min, turns.d_max))
+    )
+    most: Floats = error * np.hypot(size, wide)
+    return most
+
+
 def _by_turning(
     cells: Cells,
     turns: RoadExtents,
@@ -151,7 +187,7 @@ def _by_turning(
         tried = box.farther(turned + by) - box.half_across(turned + by)
         farther = np.maximum(farther, tried - askew)
     # Of a body across the road the rectangle does not show the sides
-    most = error * np.hypot(size, wide)
+    most = _at_most_by_turning(cells, turns, error)
     return np.where(known, nearer, most), np.where(known, farther, most)
 
 
