@@ -29,6 +29,9 @@ _DERIVED_RAD, _ROUNDED_M = 1e-3, 2e-3
 _STEP_M = 0.05
 """A way shorter than this has hardly a direction."""
 
+_MOVES_MPS = 1.0
+"""Noise of places does not make anybody so fast over a second."""
+
 _MOST, _FEWEST = 0.8, 5
 """Headings are directions of ways if this part of them are, of at least so many."""
 
@@ -110,8 +113,10 @@ def _as_derived(tracks: Tracks, before: int, after: int) -> tuple[Floats, Flags]
     states = max(tracks.present.shape[1] - before - after, 0)
     x, y = (at[:, before + after :] - at[:, :states] for at in _at(tracks))
     way = np.hypot(x, y)
-    moves = way > _STEP_M
-    apart = np.abs(turn(tracks.heading[:, before : before + states], np.arctan2(y, x)))
+    inner = slice(before, before + states)
+    # The headings of those who stand are mended
+    moves = (way > _STEP_M) & (np.hypot(tracks.vx[:, inner], tracks.vy[:, inner]) >= _MOVES_MPS)
+    apart = np.abs(turn(tracks.heading[:, inner], np.arctan2(y, x)))
     fits = moves & (apart <= _DERIVED_RAD + _ROUNDED_M / np.where(moves, way, 1.0))
     count = moves.sum(axis=1)
     return way, (fits.sum(axis=1) >= _MOST * count) & (count >= _FEWEST)
