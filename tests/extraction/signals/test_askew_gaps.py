@@ -83,7 +83,7 @@ def test_bounds_cover_the_gap_at_every_heading_within_its_error(turned, error, p
     assume(high - low > 0.05 and most - least > 0.05 and box >= 0 and true_box >= 0)
     gap = box + _beside_askew(ONE, own, their, left).item()
     wrong, yes = np.array([error]), np.array([True])
-    nearer, farther = _by_turning(ONE, own, their, left, wrong, yes)
+    nearer, farther = _by_turning(ONE, own, their, left, error=wrong, beside=yes)
     assert box - nearer.item() <= true_box + 1e-9
     assert gap_between(first, second, least, most) <= gap + farther.item() + 0.02
 
@@ -91,5 +91,5 @@ def test_bounds_cover_the_gap_at_every_heading_within_its_error(turned, error, p
 def test_a_heading_known_exactly_changes_no_gap():
     body, second = corners(0, 0, 0.1, 12.0, 2.5), corners(1.0, 3.0, 0.0, 2.0, 0.6)
     own, their, left = extents(body, 0.1), extents(second, 0.0), np.array([True])
-    found = _by_turning(ONE, own, their, left, np.zeros(1), np.array([True]))
+    found = _by_turning(ONE, own, their, left, error=np.zeros(1), beside=np.array([True]))
     np.testing.assert_allclose(found, 0.0, atol=1e-12)

@@ -21,10 +21,10 @@ _MOST_ASKEW_RAD = 0.6
 """Up to this angle a body's width is computed from its rectangle along the road."""
 
 _SOON_BESIDE_M = 2.0
-"""What wrong headings change is only roughly bounded for bodies farther apart (m) along the road."""
+"""What wrong headings change is bounded roughly for bodies farther apart (m) along the road."""
 
-_KNOWN_RAD = 1e-4
-"""Headings that are less wrong change no gap by a millimetre."""
+_KNOWN_RAD = 1e-3
+"""Headings that are less wrong move the corners of the longest bodies by less than a centimetre."""
 
 _HAIR = 1e-6
 
@@ -46,7 +46,7 @@ def lateral_gaps(context: DriveContext) -> tuple[Floats, Bounds]:
         return np.maximum(gap, 0.0), _rounded(across, gap, (nearer, farther))
     few, joint = cells.part(close), context.tolerances.joint
     errors = few.of(own_heading_errors(context)), _heading_errors_of_others(context, few)
-    are_known = all(error.max() < _KNOWN_RAD for error in errors)
+    are_known = all(error.max() <= _KNOWN_RAD for error in errors)
     if not are_known:
         for turns, error in zip((own, others), errors, strict=True):
             rough = joint(nearer[close], _at_most_by_turning(few, turns, error))

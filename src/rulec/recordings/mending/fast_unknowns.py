@@ -37,7 +37,7 @@ def with_fast_unknowns(recording: Recording) -> Recording:
     lines: list[shapely.LineString] = []
 
     def known(body: Participant) -> Participant:
-        if body.standing or body.object_types != OBSTACLE_TYPES["unknown"]:
+        if body.standing or not body.states or body.object_types != OBSTACLE_TYPES["unknown"]:
             return body
         middles = _fast(steps_of(body), rows_of(body)[:, :2], recording.step_s)
         if not len(middles):
