@@ -42,12 +42,17 @@ _OVER_M = 1.0
 """A direction that a reader derived is that of a metre or more."""
 
 
-def heading_errors(tracks: Tracks, whole: WholeRecording, step_s: float) -> Floats:
-    """The possible errors (rad) of headings by participant and step, a right angle at most."""
+def heading_errors(
+    tracks: Tracks, whole: WholeRecording, step_s: float, *, told: bool = False
+) -> Floats:
+    """The possible errors (rad) of headings by participant and step, a right angle at most.
+
+    ``told``: the source states all headings, so that none is a direction of motion.
+    """
     by_noise = MOST_SIGMAS * _noise_of_headings(tracks, whole, step_s)
     noise_m = MOST_SIGMAS * sqrt(2.0) * whole.noise_m
     errors = by_noise[:, None].repeat(tracks.present.shape[1], axis=1)
-    if noise_m > 0:
+    if noise_m > 0 and not told:
         np.maximum(errors, noise_m / _ways_of_headings(tracks), out=errors)
     return np.minimum(errors, np.pi / 2)
 

@@ -104,7 +104,8 @@ class Surroundings:
     @cached_property
     def heading_errors(self) -> Floats:
         """The possible errors (rad) of headings, by row and column."""
-        return heading_errors(self.tracks, self.whole, self.recording.step_s)
+        told = self._tells_headings
+        return heading_errors(self.tracks, self.whole, self.recording.step_s, told=told)
 
     @cached_property
     def head_as_they_move(self) -> Flags:
@@ -112,9 +113,13 @@ class Surroundings:
 
         These are the directions in which they move. Some sources state the headings of all.
         """
-        if not self.recording.complete.isdisjoint({"arrivals", HEADINGS}):
+        if self._tells_headings:
             return np.zeros(len(self.tracks.participants), dtype=bool)
         return head_as_they_move(self.tracks)
+
+    @property
+    def _tells_headings(self) -> bool:
+        return not self.recording.complete.isdisjoint({"arrivals", HEADINGS})
 
     @cached_property
     def passages(self) -> JunctionPassages:
