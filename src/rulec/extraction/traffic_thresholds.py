@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 
 from rulec.diagnostics import did_you_mean, named
-from rulec.recordings.mending.mended_recording import LONGEST_HOLE_S
+from rulec.recordings.mending.short_holes import LONGEST_HOLE_S
 from rulec.scenario.recorded.lane_coordinates import TOUCHING_M
 from rulec.value_display import brief, short_repr
 

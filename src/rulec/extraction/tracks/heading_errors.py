@@ -43,16 +43,16 @@ _OVER_M = 1.0
 
 
 def heading_errors(
-    tracks: Tracks, whole: WholeRecording, step_s: float, *, told: bool = False
+    tracks: Tracks, whole: WholeRecording, step_s: float, *, are_stated: bool = False
 ) -> Floats:
     """The possible errors (rad) of headings by participant and step, a right angle at most.
 
-    ``told``: the source states all headings, so that none is a direction of motion.
+    ``are_stated``: the source states all headings, so that none is a direction of motion.
     """
     by_noise = MOST_SIGMAS * _noise_of_headings(tracks, whole, step_s)
     noise_m = MOST_SIGMAS * sqrt(2.0) * whole.noise_m
     errors = by_noise[:, None].repeat(tracks.present.shape[1], axis=1)
-    if noise_m > 0 and not told:
+    if noise_m > 0 and not are_stated:
         np.maximum(errors, noise_m / _ways_of_headings(tracks), out=errors)
     return np.minimum(errors, np.pi / 2)
 
@@ -96,7 +96,7 @@ def _ways_of_headings(tracks: Tracks) -> Floats:
     by_reader = _without_headings(tracks)
     if by_reader.any():
         steps = np.full(lengths.shape, _OVER_M)
-        x, y = (at[:, 1:] - at[:, :-1] for at in _at(tracks))
+        x, y = (at[:, 1:] - at[:, :-1] for at in (tracks.x, tracks.y))
         steps[:, 1:] = np.fmax(np.hypot(x, y), _OVER_M)
         np.minimum(lengths, steps, out=lengths, where=by_reader[:, None])
     return lengths
@@ -116,7 +116,7 @@ def _as_derived(tracks: Tracks, before: int, after: int) -> tuple[Floats, Flags]
     From so many steps before the states to so many after them.
     """
     states = max(tracks.present.shape[1] - before - after, 0)
-    x, y = (at[:, before + after :] - at[:, :states] for at in _at(tracks))
+    x, y = (at[:, before + after :] - at[:, :states] for at in (tracks.x, tracks.y))
     way = np.hypot(x, y)
     inner = slice(before, before + states)
     # The headings of those who stand are mended
@@ -125,10 +125,6 @@ def _as_derived(tracks: Tracks, before: int, after: int) -> tuple[Floats, Flags]
     fits = moves & (apart <= _DERIVED_RAD + _ROUNDED_M / np.where(moves, way, 1.0))
     count = moves.sum(axis=1)
     return way, (fits.sum(axis=1) >= _MOST * count) & (count >= _FEWEST)
-
-
-def _at(tracks: Tracks) -> tuple[Floats, Floats]:
-    return tracks.x, tracks.y
 
 
 def _without_headings(tracks: Tracks) -> Flags:

@@ -104,8 +104,12 @@ class Surroundings:
     @cached_property
     def heading_errors(self) -> Floats:
         """The possible errors (rad) of headings, by row and column."""
-        told = self._tells_headings
-        return heading_errors(self.tracks, self.whole, self.recording.step_s, told=told)
+        return heading_errors(
+            self.tracks,
+            self.whole,
+            self.recording.step_s,
+            are_stated=self.states_all_headings,
+        )
 
     @cached_property
     def head_as_they_move(self) -> Flags:
@@ -113,12 +117,13 @@ class Surroundings:
 
         These are the directions in which they move. Some sources state the headings of all.
         """
-        if self._tells_headings:
+        if self.states_all_headings:
             return np.zeros(len(self.tracks.participants), dtype=bool)
         return head_as_they_move(self.tracks)
 
     @property
-    def _tells_headings(self) -> bool:
+    def states_all_headings(self) -> bool:
+        """Whether the source states everybody's headings: none is only a direction of motion."""
         return not self.recording.complete.isdisjoint({"arrivals", HEADINGS})
 
     @cached_property

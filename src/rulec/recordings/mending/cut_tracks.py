@@ -11,7 +11,11 @@ _NAMED = 3
 
 def cut_remark(names: Sequence[str], why: str) -> str:
     """A remark on the tracks that were cut, by their ids; ``why`` names the places."""
-    some = ", ".join(f"`{short(name)}`" for name in names[:_NAMED])
-    more = f", and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
     what = "1 track is cut" if len(names) == 1 else f"{len(names):,} tracks are cut"
-    return f"{what} at {why}, and what follows is another road user: {some}{more}"
+    return f"{what} at {why}, and what follows is another road user: {first_ids(names)}"
+
+
+def first_ids(names: Sequence[str]) -> str:
+    """The first of some tracks' ids, and how many more there are."""
+    some = ", ".join(f"`{short(name)}`" for name in names[:_NAMED])
+    return f"{some}, and {len(names) - _NAMED} more" if len(names) > _NAMED else some

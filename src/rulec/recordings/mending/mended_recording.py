@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rulec.recordings.mending.fast_unknowns import with_fast_unknowns
-from rulec.recordings.mending.short_holes import LONGEST_HOLE_S as LONGEST_HOLE_S
-from rulec.recordings.mending.short_holes import without_short_holes
+from rulec.recordings.mending.short_holes import LONGEST_HOLE_S, without_short_holes
 from rulec.recordings.mending.steady_headings import with_steady_headings
 from rulec.recordings.mending.track_jumps import without_jumps
 from rulec.recordings.mending.wrong_places import without_wrong_places

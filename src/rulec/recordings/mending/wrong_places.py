@@ -12,7 +12,7 @@ import numpy as np
 from numpy import bool_, float64, int64
 from numpy.typing import NDArray
 
-from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.mending.cut_tracks import first_ids
 from rulec.recordings.mending.rows_of_states import rows_of, steps_of, with_mended, with_states_at
 from rulec.recordings.recording import Participant, Recording
 from rulec.recordings.track import outlines_on_track
@@ -33,7 +33,6 @@ _SMOOTH = 0.5
 """The way past wrong places goes on as before and afterwards to within this part of their error:
 otherwise the track slipped, or jumped for good."""
 
-_NAMED = 3
 _HAIR = 1e-9
 
 Floats = NDArray[float64]
@@ -76,10 +75,8 @@ def path_of(body: Participant) -> Path:
 
 def wrong_places_remark(names: Sequence[str], count: int) -> str:
     """A remark on the number of wrong places, and the ids of the tracks that have some."""
-    some = ", ".join(f"`{short(name)}`" for name in names[:_NAMED])
-    more = f", and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
     what = "1 position is" if count == 1 else f"{count:,} positions are"
-    return f"{what} left out, as no vehicle gets there so fast: {some}{more}"
+    return f"{what} left out, as no vehicle gets there so fast: {first_ids(names)}"
 
 
 def wrong_places(path: Path, step_s: float) -> NDArray[bool_]:

@@ -14,7 +14,6 @@ from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.surroundings import BACKS_MPS
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
-from rulec.recordings.recording import HEADINGS
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.plain_arrays import zero_if_nan
 
@@ -55,7 +54,7 @@ def _reversing(context: DriveContext) -> SignalColumns:
     unknown |= backs & ~_for_long(context, backs)
     spans, jumps = context.spans, _jumps(context)
     unknown |= jumps
-    if not _are_told(context):
+    if not context.surroundings.states_all_headings:
         against = context.ego_extents.along[0] < -least
         asked = spans.any(against) & ~jumps & ~spans.any(backs)
         for number, columns in spans.those(asked):
@@ -117,11 +116,6 @@ def _jumps(context: DriveContext) -> Flags:
     return spans.any(jumps)
 
 
-def _are_told(context: DriveContext) -> bool:
-    """Whether the source states the heading of every participant."""
-    return not context.recording.complete.isdisjoint({"arrivals", HEADINGS})
-
-
 def _tells_headings(context: DriveContext, number: int, columns: slice) -> bool:
     """Whether ego's headings in a drive are more than the directions in which it moved."""
     own = context.ego
@@ -145,7 +139,7 @@ def may_back(context: DriveContext) -> Flags:
     own side without a stop, gets there, or is too fast.
     """
     found, spans = np.zeros(context.states, dtype=bool), context.spans
-    if context.wrong_way or _are_told(context):
+    if context.wrong_way or context.surroundings.states_all_headings:
         return found
     there, perhaps = oncoming_side(context)
     if not there.any():

@@ -272,14 +272,14 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
             and not _turned_in_later(context, own, other)
             and _is_seen(passages.tracks.present[other.row], first + shift, latest)
         )
-        for kinds, told in _kinds(context, own, other):
+        for kinds, is_sure in _kinds(context, own, other):
             together, comes_first = order_of_arrival(context, own, other)
             yield Encounter(
                 kinds=kinds,
                 first=first,
                 enters=max((enters or 0) - shift, 0),
                 last=min(last, context.states - 1, _next(context, own) - 1),
-                known=known and told,
+                known=known and is_sure,
                 other=other,
                 together=together,
                 comes_first=comes_first,
@@ -311,7 +311,7 @@ def _is_seen(present: Flags, first: int, last: int) -> bool:
 def _kinds(
     context: DriveContext, own: Passage, other: Passage
 ) -> Iterator[tuple[tuple[str, ...], bool]]:
-    """The kinds of conflict with another one whose way meets ego's, and whether each is told.
+    """The kinds of conflict with another one whose way meets ego's, and whether each is sure.
 
     Whether one on rails, for which laws have an order of its own, also has that of all other
     traffic laws differ; no train at a level crossing has.
