@@ -4,7 +4,7 @@ Nothing here prints; ``rulec.report`` turns diagnostics into text.
 """
 
 from rulec.diagnostics.diagnostic import Diagnostic, Fix, Label, Offer, RulecError, placed_at
-from rulec.diagnostics.phrases import any_of, did_you_mean, named, nearest_name
+from rulec.diagnostics.phrases import any_of, did_you_mean, first_of, named, nearest_name
 from rulec.diagnostics.source_text import Source, SourceLocation, Span
 
 __all__ = [
@@ -18,6 +18,7 @@ __all__ = [
     "Span",
     "any_of",
     "did_you_mean",
+    "first_of",
     "named",
     "nearest_name",
     "placed_at",

@@ -66,6 +66,17 @@ def named(names: Sequence[str]) -> str:
     return ", ".join([*shown, "…"] if len(names) > len(shown) else shown)
 
 
+def first_of(names: Sequence[str], most: int, rest: str = "and") -> str:
+    """``a, b, and 7 more``: the first ``most`` names, and how many more there are.
+
+    ``rest`` is what stands before the number of the others: ``and``, or ``or one of``.
+    """
+    shown, more = ", ".join(names[:most]), len(names) - most
+    if more <= 0:
+        return shown
+    return f"{shown}{' ' if most == 1 else ', '}{rest} {more:,} more"
+
+
 def any_of(phrases: Sequence[str]) -> str:
     """``a, b, or c``."""
     if len(phrases) < 3:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
 
-from rulec.diagnostics import SourceLocation, did_you_mean, named
+from rulec.diagnostics import SourceLocation, did_you_mean, first_of, named
 from rulec.diagnostics.argument_kinds import expected
 from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.recording_parts import RecordingPart, egos_of, recording_parts
@@ -168,8 +168,7 @@ def _who_is_there(recording: Recording) -> str:
 def _examples(known: tuple[str, ...]) -> str:
     if not known:
         return "nobody in this file does"
-    more = f", or one of {len(known) - _MOST_NAMED} more" if len(known) > _MOST_NAMED else ""
-    return f"choose {named(known[:_MOST_NAMED])}{more}"
+    return f"choose {first_of([f'`{name}`' for name in known], _MOST_NAMED, 'or one of')}"
 
 
 def assumption_options(texts: Iterable[str], vocabulary: Vocabulary) -> dict[str, Value]:

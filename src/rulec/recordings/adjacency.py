@@ -14,6 +14,7 @@ import shapely
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.diagnostics import first_of
 from rulec.recordings.recording import Lanelet, Points, Recording, Side, is_lane
 
 BORDER_M = 0.5
@@ -204,11 +205,9 @@ def with_neighbours(recording: Recording) -> Recording:
         joined.append(f"{right.id} and {left.id}")
     if not joined:
         return recording
-    more = f", and {len(joined) - _NAMED} more" if len(joined) > _NAMED else ""
     remark = (
         "lanelets side by side are taken to be neighbours, although the file does not say so: "
-        + ", ".join(joined[:_NAMED])
-        + more
+        + first_of(joined, _NAMED)
     )
     return replace(recording, lanelets=lanelets, remarks=(*recording.remarks, remark))
 

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, named
+from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, first_of, named
 from rulec.files.read_files import is_folder, opened
 from rulec.recordings.encodings.csv_head import PARQUET
 from rulec.recordings.encodings.safe_xml import is_xml
@@ -104,7 +104,7 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
     raise NOT_IN_RECORDING.error(
         SourceLocation(str(source.path)),
         f"there is no scenario `{source.scenario_id}` in the file",
-        help=did_you_mean(source.scenario_id, names) or f"choose {_list(names)}",
+        help=did_you_mean(source.scenario_id, names) or f"choose {_some(names)}",
     )
 
 
@@ -172,6 +172,5 @@ def check_readable(path: Path) -> None:
         parquet_names(path, lambda why, **more: RECORDING.refused(path, why, **more))
 
 
-def _list(names: list[str]) -> str:
-    more = len(names) - _MOST_NAMED
-    return named(names[:_MOST_NAMED]) + (f", or one of {more:,} more" if more > 0 else "")
+def _some(names: list[str]) -> str:
+    return first_of([f"`{name}`" for name in names], _MOST_NAMED, "or one of")

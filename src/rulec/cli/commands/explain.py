@@ -13,11 +13,10 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_codes
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import put_answer
-from rulec.diagnostics import nearest_name
+from rulec.diagnostics import first_of, nearest_name
 from rulec.diagnostics.code import Code
 from rulec.report.findings import code_registry
 from rulec.report.text.console import print_remark
-from rulec.report.text.terminal_text import first_of
 from rulec.settings import search_path
 
 if TYPE_CHECKING:

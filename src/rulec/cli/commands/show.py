@@ -18,9 +18,8 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rules
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, put_answer, rulebooks_named, width_of
-from rulec.diagnostics import named, nearest_name
+from rulec.diagnostics import first_of, named, nearest_name
 from rulec.report.text.console import print_remark
-from rulec.report.text.terminal_text import first_of
 from rulec.settings import search_path
 
 if TYPE_CHECKING:

@@ -12,6 +12,7 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, put_answer
 from rulec.cli.standard_input import read_as_file
+from rulec.diagnostics import first_of
 from rulec.report.text.console import print_remark
 
 if TYPE_CHECKING:
@@ -37,7 +38,6 @@ def command(files: tuple[str, ...], to: Output) -> int:
     # Late import, not for --help: compiled files and the checker (60 ms).
     from rulec.automata.bundle.bundle_proof import compiled_files, proofs_of_file
     from rulec.report.rulebooks.proof_report import render
-    from rulec.report.text.terminal_text import first_of
 
     proofs: list[tuple[str, list[RuleProof]]] = []
     found = compiled_files(files)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from rulec.diagnostics import first_of
 from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED
 from rulec.recordings.lanelet2.first_ways import first_ways
 from rulec.recordings.lanelet2.map_frame import places_of
@@ -95,19 +96,14 @@ def _single(lights: Mapping[str, list[ObservedLight]]) -> dict[str, ObservedLigh
 
 def _left_out(names: list[str]) -> Iterator[str]:
     if names:
-        some = _some([f"`{name}`" for name in names])
+        some = first_of([f"`{name}`" for name in names], _NAMED)
         yield f"lanelets without a left and a right bound are left out: {some}"
 
 
 def _loose_ends(pairs: list[tuple[str, str]]) -> Iterator[str]:
     if pairs:
-        some = _some([f"`{own}` and `{other}`" for own, other in pairs])
+        some = first_of([f"`{own}` and `{other}`" for own, other in pairs], _NAMED)
         yield (
             "lanelets end where others begin, but share no nodes with them, so that no way leads "
             f"from one to the other: {some}"
         )
-
-
-def _some(names: list[str]) -> str:
-    more = f", and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-    return ", ".join(names[:_NAMED]) + more

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
+from rulec.diagnostics import first_of
 from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.opendrive.content.elements import Lane, OpenDrive, record_at
@@ -319,8 +320,7 @@ def _remarks(content: OpenDrive, side: Side | None, slow_turns: int) -> Iterator
                 if lane.id != 0 and lane.type not in LANE_TYPES and lane.type not in NO_LANE:
                     strange[f"`{short(lane.type)}`"] = None
     if strange:
-        names, more = list(strange)[:_NAMED], len(strange) - _NAMED
-        some = ", ".join(names + ([f"{more} more"] if more > 0 else []))
+        some = first_of(list(strange), _NAMED)
         yield f"lanes of these types are treated as beside the carriageway: {some}"
     if len({road.left_hand for road in content.roads.values()}) > 1:
         yield "traffic keeps to the left on some roads of the map, and to the right on others"

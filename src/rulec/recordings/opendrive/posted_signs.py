@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
 from typing import NamedTuple
 
+from rulec.diagnostics import first_of
 from rulec.recordings.commonroad.traffic_signs import (
     LIMITS,
     MAX_SPEED,
@@ -212,8 +213,5 @@ def sign_remarks(content: OpenDrive, posted: Mapping[str, Iterable[Posted]]) -> 
             "the limit behind them is unknown"
         )
     if content.included:
-        names = ", ".join(f"`{short(name)}`" for name in content.included[:_NAMED])
-        more = len(content.included) - _NAMED
-        yield f"files that the map includes are not read: {names}" + (
-            f", and {more} more" if more > 0 else ""
-        )
+        names = first_of([f"`{short(name)}`" for name in content.included], _NAMED)
+        yield f"files that the map includes are not read: {names}"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from glob import escape
 from pathlib import Path
 
-from rulec.diagnostics import SourceLocation
+from rulec.diagnostics import SourceLocation, first_of
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.map_files import MAP_FORMATS, read_map
 from rulec.recordings.osi.environment import country_of, weather_of
@@ -130,36 +130,35 @@ def _remarks(content: TraceContent, grid: TimeGrid) -> Iterator[str]:
         yield f"{content.skipped:,} messages have the time of the one before and are left out"
     sizes = [key for key, body in content.objects.items() if body.size is None]
     if sizes:
-        yield f"missing sizes are assumed to be usual: of {_list(sizes)}"
+        yield f"missing sizes are assumed to be usual: of {_some(sizes)}"
     lost = [bulb.id for bulb in content.bulbs.values() if not bulb.lanes]
     if lost:
-        yield f"traffic lights are assigned to no lane, and left out: {_list(lost)}"
+        yield f"traffic lights are assigned to no lane, and left out: {_some(lost)}"
     if content.changing_signs:
-        yield f"what signs show that change is unknown: {_list(sorted(content.changing_signs))}"
+        yield f"what signs show that change is unknown: {_some(sorted(content.changing_signs))}"
 
 
 def _network_remarks(network: LaneNetwork) -> Iterator[str]:
     if network.assumed:
         yield (
             "lanes without boundaries are assumed to have the usual width: "
-            + _list(network.assumed)
+            + _some(network.assumed)
         )
     if network.undirected:
         yield (
             "traffic is assumed to follow the points of lanes without a direction: "
-            + _list(network.undirected)
+            + _some(network.undirected)
         )
     if network.across:
         yield (
             "ways across areas of intersections are assumed to be curves between lanes: "
-            + _list(network.across)
+            + _some(network.across)
         )
     if network.shapeless:
-        yield f"lanes with neither a middle nor boundaries are left out: {_list(network.shapeless)}"
+        yield f"lanes with neither a middle nor boundaries are left out: {_some(network.shapeless)}"
     if network.apart:
-        yield f"lanes that are declared connected but do not meet: {_list(network.apart)}"
+        yield f"lanes that are declared connected but do not meet: {_some(network.apart)}"
 
 
-def _list(names: list[str]) -> str:
-    more = len(names) - _NAMED
-    return ", ".join(names[:_NAMED]) + (f", and {more:,} more" if more > 0 else "")
+def _some(names: list[str]) -> str:
+    return first_of(names, _NAMED)

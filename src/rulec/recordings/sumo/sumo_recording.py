@@ -12,7 +12,7 @@ import numpy as np
 from numpy import float64, int64, intp
 from numpy.typing import NDArray
 
-from rulec.diagnostics import SourceLocation
+from rulec.diagnostics import SourceLocation, first_of
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import (
@@ -175,26 +175,21 @@ def _participants(
 def _remarks(unknown: Iterable[str], net: SumoNet) -> Iterator[str]:
     guessed = sorted(unknown)
     if guessed:
-        yield f"types that no file describes get default values: {_list(guessed)}"
+        yield f"types that no file describes get default values: {first_of(guessed, _NAMED)}"
     lights = [f"`{short(name)}`" for name in net.unknown_lights()]
     if lights:
-        yield f"the programmes of these traffic lights are unknown: {_list(lights)}"
+        yield f"the programmes of these traffic lights are unknown: {first_of(lights, _NAMED)}"
 
 
 def _left_out(data: FloatingCarData) -> Iterator[str]:
     if data.head.leaves_out:
-        options = _list([f"--{name}" for name in data.head.leaves_out])
+        options = first_of([f"--{name}" for name in data.head.leaves_out], _NAMED)
         yield f"only part of the traffic is recorded, because of {options}: the rest is unknown"
 
 
 def _start(start_s: float) -> Iterator[str]:
     if start_s:
         yield f"times count from {start_s:g} s, as SUMO's steps do not begin at a multiple of them"
-
-
-def _list(names: list[str]) -> str:
-    more = len(names) - _NAMED
-    return ", ".join(names[:_NAMED] + ([f"{more} more"] if more > 0 else []))
 
 
 def _check_places(path: Path, data: FloatingCarData, net_path: Path, net: SumoNet) -> None:

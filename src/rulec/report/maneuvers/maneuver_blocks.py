@@ -9,13 +9,14 @@ from itertools import groupby
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
+from rulec.diagnostics import first_of
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
 from rulec.partition import Cell, NavigationGraph, envelope
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.penalties import PenaltyRank
-from rulec.report.text.terminal_text import broken, first_of, shown_count, table_lines, visible
+from rulec.report.text.terminal_text import broken, shown_count, table_lines, visible
 from rulec.report.verdicts.verdict_report import open_in_words
 from rulec.rulebook.rulebook_model import cited_law
 

@@ -8,14 +8,14 @@ from fractions import Fraction
 from math import floor, prod
 from typing import TYPE_CHECKING, Any
 
-from rulec.diagnostics import named
+from rulec.diagnostics import first_of, named
 from rulec.monitoring.verdict import Verdict, Violation
 from rulec.partition import COMFORTABLE, NavigationGraph
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.report.maneuvers import maneuver_blocks
-from rulec.report.text.terminal_text import first_of, mirrored_line, shown_count, styled, visible
+from rulec.report.text.terminal_text import mirrored_line, shown_count, styled, visible
 from rulec.scenario import Account, Scenario
 
 if TYPE_CHECKING:

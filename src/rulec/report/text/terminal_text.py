@@ -175,9 +175,3 @@ def mirrored_line(side: str) -> str:
         f"mirrored    recorded where traffic keeps to the {before}, "
         f"judged as if it kept to the {side}"
     )
-
-
-def first_of(names: Sequence[str], most: int) -> str:
-    """The first ``most`` names, and how many more there are."""
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return f"{', '.join(names[:most])}{more}"

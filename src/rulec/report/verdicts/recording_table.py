@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from textwrap import shorten, wrap
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.diagnostics import first_of
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
-from rulec.report.text.terminal_text import counted, first_of, mirrored_line, table_lines, visible
+from rulec.report.text.terminal_text import counted, mirrored_line, table_lines, visible
 from rulec.report.verdicts import verdict_report
 
 MOST_DEFAULTS = 4

@@ -10,6 +10,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics import first_of
 from rulec.extraction.presences import participant_called
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.traces.recorded_drive import Drive
@@ -24,7 +25,6 @@ from rulec.report.pictures.drives.drive_scene import Body, DriveScene, SceneViol
 from rulec.report.pictures.drives.nearest_points import nearest_points
 from rulec.report.pictures.picture_captions import trace_title
 from rulec.report.pictures.trace_ribbon import in_words, ribbon
-from rulec.report.text.terminal_text import first_of
 from rulec.report.verdicts.verdict_report import in_a_line, open_in_words
 from rulec.vocabulary.partial_values import Interval
 
