@@ -82,8 +82,20 @@ def test_what_libraries_make_of_an_interrupt_is_one(error):
     assert ended(AN_ERROR_OF_ITS_OWN, error, *VERIFY) == (130, b"", b"rulec: interrupted")
 
 
-def test_where_nothing_can_be_raised():
-    assert ended(IN_A_FINALIZER) == (130, b"", b"")
+ON_A_BUSY_MACHINE = """
+import threading, time
+start = threading.Thread.start
+def slowly(thread):
+    start(thread)
+    if thread.interval < 0.1:
+        time.sleep(0.1)
+threading.Thread.start = slowly
+"""
+
+
+@pytest.mark.parametrize("before", ["", ON_A_BUSY_MACHINE])
+def test_where_nothing_can_be_raised(before):
+    assert ended(before + IN_A_FINALIZER) == (130, b"", b"")
 
 
 STARTED = """

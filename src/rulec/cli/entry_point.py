@@ -124,8 +124,13 @@ def _unraisable(problem: UnraisableHookArgs) -> None:
     # Late import, rarely needed (3 ms).
     from threading import Timer, get_ident
 
-    # Delayed, since nothing can be raised here either.
-    Timer(0.01, signal.pthread_kill, (get_ident(), signal.SIGINT)).start()
+    # Delayed, since nothing can be raised here either; on a busy machine not for long enough.
+    for delay_s in (0.01, 0.1, 1.0):
+        try:
+            Timer(delay_s, signal.pthread_kill, (get_ident(), signal.SIGINT)).start()
+        except KeyboardInterrupt:
+            continue
+        return
 
 
 def _printed_version() -> bool:
