@@ -28,6 +28,7 @@ from rulec.extraction.tracks.at_junctions.junctions import (
 )
 from rulec.extraction.tracks.matching.junction_stays import Stay, body_length, junction_stays
 from rulec.extraction.tracks.tracks import Floats, Tracks
+from rulec.recordings.polylines import line_length
 from rulec.recordings.recording import Recording
 from rulec.recordings.track import TrackOutlines, outlines_on_track
 from rulec.scenario.recorded.reference_line import turn
@@ -147,7 +148,7 @@ class JunctionPassages:
                 met = [x[0][0] for other in others if (x := junction.meeting(own, other))]
                 begins = 0.0
                 for lanelet in way.lanelets:
-                    length = float(np.hypot(*np.diff(lanelet.centre, axis=0).T).sum())
+                    length = line_length(lanelet.centre)
                     inside = [place - begins for place in met if place - begins < length]
                     if inside:
                         place = max(min(inside), 0.0)

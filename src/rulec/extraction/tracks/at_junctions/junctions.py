@@ -13,6 +13,7 @@ import shapely
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_road import TURN_REACH_M
+from rulec.recordings.polylines import arc_lengths, line_length
 from rulec.recordings.recording import (
     ALL_STOP,
     REGULATING,
@@ -249,7 +250,7 @@ def _road_headings(recording: Recording, way: JunctionWay) -> tuple[float, float
 
 def _heading_from(line: Points, away_m: float) -> float:
     """The direction (rad) of a line ``away_m`` from its beginning, or at its end if shorter."""
-    far = np.hypot(*np.diff(line, axis=0).T).cumsum()
+    far = arc_lengths(line)[1:]
     piece = min(int(far.searchsorted(away_m)), len(far) - 1)
     return _heading(line[piece : piece + 2])
 
@@ -313,7 +314,7 @@ def approaches(recording: Recording, way: JunctionWay) -> list[Lanelet]:
     """The lanelets before a way, and those before them where they are short."""
     known = recording.lanelets
     near = [known[x] for x in way.entries if x in known]
-    short = [x for x in near if np.hypot(*np.diff(x.centre, axis=0).T).sum() < _SHORT_M]
+    short = [x for x in near if line_length(x.centre) < _SHORT_M]
     return near + [known[x] for entry in short for x in entry.predecessors if x in known]
 
 

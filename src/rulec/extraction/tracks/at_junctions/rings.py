@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import shapely
 
+from rulec.recordings.polylines import line_length
 from rulec.recordings.recording import Lanelet, Recording, Side, is_lane
 from rulec.scenario.recorded.reference_line import turn
 
@@ -67,7 +68,7 @@ def _rings(
 ) -> Iterator[tuple[str, ...]]:
     """The chains of lanelets that lead from ``start`` back to itself in one full turn."""
     chains: tuple[str, ...] = (start,)
-    waiting = [(chains, turned[start] * towards, _length(lanes[start]))]
+    waiting = [(chains, turned[start] * towards, line_length(lanes[start].centre))]
     while waiting:
         chain, angle, length = waiting.pop()
         for number in lanes[chain[-1]].successors:
@@ -79,7 +80,7 @@ def _rings(
                     yield chain
             elif number not in chain and len(chain) < MOST_LANELETS:
                 further = angle + corner + turned[number] * towards
-                longer = length + _length(lanes[number])
+                longer = length + line_length(lanes[number].centre)
                 if angle - _UNEVEN <= further <= _FULL_TURN + _UNEVEN and longer <= LONGEST_M:
                     waiting.append(((*chain, number), further, longer))
 
@@ -87,10 +88,6 @@ def _rings(
 def _corner(before: Lanelet, after: Lanelet) -> float:
     first, second = before.centre[-1] - before.centre[-2], after.centre[1] - after.centre[0]
     return float(turn(np.arctan2(first[1], first[0]), np.arctan2(second[1], second[0])))
-
-
-def _length(lanelet: Lanelet) -> float:
-    return float(np.hypot(*np.diff(lanelet.centre, axis=0).T).sum())
 
 
 def _is_round(ring: tuple[str, ...], lanes: Mapping[str, Lanelet]) -> bool:
