@@ -1,8 +1,10 @@
 """Opportunities counted by hand, and on random rulebooks beside the verdict."""
 
+import re
 from dataclasses import replace
 from fractions import Fraction
 from io import BytesIO
+from itertools import groupby, product
 from random import Random
 
 import pytest
@@ -151,6 +153,59 @@ def test_what_is_unknown_beside_a_known_opportunity_may_be_violated_with_it():
     found = counted(IMPLICATION, "red go", "?red go", "red", "?red go")
     assert found == Exposure(1, 2, 1.0, 2.0, 1, 2)
     assert counted(IMPLICATION, "red", "?red go", "red") == Exposure(1, 2, 1.0, 1.5, 0, 1)
+
+
+def test_an_unknown_state_belongs_to_the_opportunity_at_which_it_is_worst():
+    """Red came on again in the third state, and not only in the last one."""
+    found = counted(IMPLICATION, "red go", "?red", "?red go", "red")
+    assert found == Exposure(1, 2, 1.0, 2.0, 1, 2)
+    # Of two such states, one each if another parts them
+    found = counted(IMPLICATION, "red", "?red go", "?red", "?red go", "red")
+    assert found == Exposure(1, 2, 1.0, 2.5, 0, 2)
+    found = counted(IMPLICATION, "red", "?red go", "?red go", "red")
+    assert found == Exposure(1, 2, 1.0, 2.0, 0, 1)
+
+
+@given(seeds)
+@settings(phases=[Phase.generate], max_examples=60)
+def test_at_most_as_many_are_violated_as_in_the_worst_case(chance):
+    """Of all ways to know what is unknown that have no more opportunities than are possible."""
+    words = ["", "red", "?red", "?red", "red go", "?red go", "?red ?go", "go"]
+    states = [chance.choice(words) for _ in range(chance.randint(1, 8))]
+    found = counted(IMPLICATION, *states)
+    groups = re.findall(r"[1?]+", "".join(map(_red, states)))
+    most = [max(len(re.findall("1+", group)), 1) for group in groups]
+    worst = sum(map(_worst, _parts_of(states), most))
+    assert (found.perhaps_opportunities, found.perhaps_violated) == (sum(most), worst)
+
+
+def _red(state):
+    return "?" if "?red" in state else "1" if "red" in state else "0"
+
+
+def _parts_of(states):
+    """The parts of a trace in which it may always have been red."""
+    for may_be, part in groupby(states, lambda state: _red(state) != "0"):
+        if may_be:
+            yield list(part)
+
+
+def _worst(part, most):
+    """The most violated opportunities of a part, with so many of them or fewer."""
+    unknown = [place for place, state in enumerate(part) if "?red" in state]
+    worst = 0
+    for reds in product([False, True], repeat=len(unknown)):
+        known = [True] * len(part)
+        for place, red in zip(unknown, reds, strict=True):
+            known[place] = red
+        breaches = [
+            any("go" in state for _, state in stretch)
+            for red, stretch in groupby(zip(known, part, strict=True), lambda pair: pair[0])
+            if red
+        ]
+        if len(breaches) <= most:
+            worst = max(worst, sum(breaches))
+    return worst
 
 
 def test_an_open_rule_may_have_been_violated_and_is_not_for_sure():

@@ -23,7 +23,11 @@ from rulec.logic.bounds import in_steps
 from rulec.logic.opportunities import breach_of
 from rulec.logic.semantics import steps_to_settle
 from rulec.monitoring.batch.trace_groups import Names
-from rulec.monitoring.moments.stretches import Stretches, opportunity_stretches
+from rulec.monitoring.moments.stretches import (
+    Stretches,
+    most_violated,
+    opportunity_stretches,
+)
 from rulec.monitoring.moments.trace_truth import (
     ChosenObjects,
     FormulaTruth,
@@ -141,7 +145,12 @@ def _tally(truth: TraceTruth, watched: _Watched, outcomes: Mapping[Chosen, Outco
                 taken = [stretches.of_rows(rows) for stretches in opportunities]
                 breached = np.zeros((2, len(rows)), dtype=np.intp)
                 for breach in truth.of(watched.breach, own):
-                    breached[:, breach.rows] += _breached(breach, taken)
+                    at = rows[breach.rows]
+                    surely = taken[0].of_rows(breach.rows)
+                    breached[:, breach.rows] += (
+                        surely.per_row(len(at), surely.with_some(breach.sure)),
+                        most_violated(part.sure[at], part.possible[at], breach.possible),
+                    )
                 is_open = np.array([outcome == "open" for outcome in decided])
                 tally.violated_in(own.trace, taken, breached, is_open)
     for (trace, _), outcome in left.items():
@@ -164,16 +173,6 @@ def _decided(choices: ChosenObjects, left: dict[Chosen, Outcome]) -> tuple[Count
             rows.append(row)
             decided.append(outcome)
     return np.array(rows, dtype=np.intp), decided
-
-
-def _breached(breach: FormulaTruth, opportunities: Sequence[Stretches]) -> Counts:
-    """For each row the opportunities in which a rule is breached, for certain and at most."""
-    flags = breach.sure, breach.possible
-    counts = []
-    for stretches, own in zip(opportunities, flags, strict=True):
-        there = stretches.of_rows(breach.rows)
-        counts.append(there.per_row(len(breach.rows), there.with_some(own)))
-    return np.stack(counts)
 
 
 class _Tally:
