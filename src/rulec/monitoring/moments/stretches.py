@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -96,50 +95,34 @@ def opportunity_stretches(sure: Flags, possible: Flags) -> tuple[Stretches, Stre
 def most_violated(sure: Flags, possible: Flags, breached: Flags) -> Places:
     """For each row the most opportunities with a breach in one of their states (rows x states).
 
-    An opportunity certainly holds where ``sure`` and perhaps where ``possible``; there are never
-    more than in ``opportunity_stretches``. What may hold between two certain ones belongs to the
+    An opportunity certainly holds where ``sure`` and perhaps where ``possible``; there are at most
+    as many as in ``opportunity_stretches``. What may hold between two certain ones belongs to the
     one, the other, both or neither, or joins them, whichever is worst.
     """
     _, at_most = opportunity_stretches(sure, possible)
-    counts = at_most.per_row(len(sure), at_most.with_some(breached))
     joined = stretches_of(possible)
-    for_sure = joined.with_some(sure)
-    within = np.zeros(sure.shape, dtype=bool)
-    for row, first, last in zip(
-        joined.rows[for_sure], joined.first[for_sure], joined.last[for_sure], strict=True
-    ):
-        certain = np.flatnonzero(sure[row, first : last + 1]) + first
-        within[row, certain[0] : certain[-1] + 1] = True
-    # Elsewhere each state belongs to one opportunity only.
-    parted = (within & ~sure & breached).any(axis=1)
-    for row in np.flatnonzero(parted):
-        own = stretches_of(possible[row : row + 1])
-        doubtful = ~own.with_some(sure[row : row + 1])
-        rest = possible[row].copy()
-        counts[row] = own.with_some(breached[row : row + 1])[doubtful].sum()
-        for first, last in zip(own.first[doubtful], own.last[doubtful], strict=True):
-            rest[first : last + 1] = False
-        counts[row] += _most_violated(sure[row].tolist(), rest.tolist(), breached[row].tolist())
+    begins = joined.rows * sure.shape[1] + joined.first
+    within = np.searchsorted(begins, at_most.rows * sure.shape[1] + at_most.first, side="right") - 1
+    n_most = np.bincount(within, minlength=len(joined))
+    # In others each state belongs to one opportunity only.
+    is_mixed = (n_most > 1) & joined.with_some(breached & ~sure)
+    counts = at_most.per_row(len(sure), at_most.with_some(breached) & ~is_mixed[within])
+    for one in np.flatnonzero(is_mixed):
+        row, states = joined.rows[one], slice(joined.first[one], joined.last[one] + 1)
+        counts[row] += _most_violated(sure[row, states], breached[row, states], int(n_most[one]))
     return counts
 
 
-def _most_violated(sure: list[bool], possible: list[bool], breached: list[bool]) -> int:
-    """The most in one row, in which no opportunity is without a certain state."""
-    # The most violated opportunities so far: outside of one, and in one that is violated or not,
-    # before and since a certain state of it. One that has begun does not end before such a state.
-    outside: float = 0
-    begun, certain = [-math.inf] * 2, [-math.inf] * 2
-    for is_sure, may_be, breach in zip(sure, possible, breached, strict=True):
-        ended = max(outside, certain[0], certain[1] + 1)
-        into = (-math.inf, max(begun)) if breach else tuple(begun)
-        on = (-math.inf, max(certain)) if breach else tuple(certain)
-        start = (-math.inf, outside) if breach else (outside, -math.inf)
-        entered = [max(pair) for pair in zip(start, into, strict=True)]
-        if is_sure:
-            certain = [max(pair) for pair in zip(entered, on, strict=True)]
-            outside, begun = -math.inf, [-math.inf] * 2
-        elif may_be:
-            outside, begun, certain = ended, entered, list(on)
-        else:
-            outside, begun, certain = ended, [-math.inf] * 2, [-math.inf] * 2
-    return int(max(outside, certain[0], certain[1] + 1))
+def _most_violated(sure: Flags, breached: Flags, most: int) -> int:
+    """The most violated of ``most`` opportunities or fewer, where one may hold in all states."""
+    # By the number of opportunities so far: the most violated ones if none holds now, or one that
+    # is not violated, or one that is.
+    none = np.full(most + 1, -np.inf)
+    outside, kept, violated = none.copy(), none, none
+    outside[0] = 0.0
+    for is_sure, breach in zip(sure.tolist(), breached.tolist(), strict=True):
+        ended = np.maximum(outside, np.maximum(kept, violated + 1))
+        begun = np.maximum(np.append(-np.inf, outside[:-1]), kept)
+        kept, violated = (none, np.maximum(begun, violated)) if breach else (begun, violated)
+        outside = none if is_sure else ended
+    return int(max(outside.max(), kept.max(), violated.max() + 1))
