@@ -318,6 +318,18 @@ def test_files_that_hold_no_drives_are_named_and_the_others_are_judged(folder_of
     assert f"  2: {why} (as in {tmp_path / 'a.csv'})\n" in as_text(done)
 
 
+def test_a_file_with_two_columns_of_one_name_is_named(folder_of, tmp_path):
+    twice = pyarrow.Table.from_arrays([[0.0], ["t"], [0], [1.0]], ["v", "trace", "step", "v"])
+    parquet.write_table(twice, tmp_path / "twice.parquet")
+    done = run([folder_of, tmp_path / "twice.parquet"], tmp_path / "out")
+    ((problem,),) = [one.diagnostics for one in done.problems]
+    assert problem.place.file == str(tmp_path / "twice.parquet")
+    assert problem.message == "the table has two columns `v`"
+    assert done.tally.judged == DRIVES
+    with pytest.raises(RulecError, match=r"two columns `v` \[R0710\]"):
+        FleetJudge(fleet_rules())(twice)
+
+
 def test_a_file_whose_drives_have_no_readable_names_is_named(folder_of, tmp_path):
     texts = pyarrow.array([b"t0", b"\xe3"], pyarrow.binary()).view(pyarrow.string())
     odd = pyarrow.table({"trace": texts, "step": [0, 0], "speed": [1.0, 2.0]})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rulec.diagnostics import RulecError, SourceLocation, named
+from rulec.diagnostics import RulecError, SourceLocation, first_of, named
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.missing_package import missing_package
 from rulec.recordings.recording_messages import NET_MISSING
@@ -30,6 +30,9 @@ NO_DRIVES_TABLE = Code(
 )
 
 
+_MOST_NAMED = 8
+
+
 def cut_drive(drive: str, why: str, keys: list[str]) -> RulecError:
     return CUT_DRIVE.error(
         None,
@@ -38,20 +41,27 @@ def cut_drive(drive: str, why: str, keys: list[str]) -> RulecError:
     )
 
 
-def no_drives(columns: list[str]) -> RulecError:
-    most = 8
-    more = f" and {len(columns) - most:,} more" if len(columns) > most else ""
+def no_drives(columns: list[str], path: str = "") -> RulecError:
+    some = first_of([f"`{name}`" for name in columns], _MOST_NAMED)
     return NO_DRIVES_TABLE.error(
-        None,
-        f"the table has neither tracks nor traces; its columns are {named(columns[:most])}{more}",
+        _place(path),
+        f"the table has neither tracks nor traces; its columns are {some}",
         expected="expected `track`, `t`, `x`, `y` or `trace`, `step`",
         help="rename its columns as docs/fleet.md says",
     )
 
 
-def almost_named(column: str, known: str) -> RulecError:
+def twice_named(column: str, path: str = "") -> RulecError:
     return NO_DRIVES_TABLE.error(
-        None,
+        _place(path),
+        f"the table has two columns `{column:.40}`",
+        help="rename one of them, or leave it out",
+    )
+
+
+def almost_named(column: str, known: str, path: str = "") -> RulecError:
+    return NO_DRIVES_TABLE.error(
+        _place(path),
         f"the table's column `{column:.40}` is almost called `{known}`, which tells drives apart",
         help=f"call it `{known}` if that is meant; otherwise rename it, or leave it out",
     )
@@ -59,10 +69,14 @@ def almost_named(column: str, known: str) -> RulecError:
 
 def unnamed_drives(why: str, path: str = "") -> RulecError:
     return NO_DRIVES_TABLE.error(
-        SourceLocation(path) if path else None,
+        _place(path),
         f"drives of the table cannot be told by their names: {why}",
         help="write the table's texts in UTF-8",
     )
+
+
+def _place(path: str) -> SourceLocation | None:
+    return SourceLocation(path) if path else None
 
 
 NOT_COMPILED = Code(

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
+from collections import Counter, OrderedDict
 from collections.abc import Hashable, Sequence
 from typing import Any, Literal
 
 from rulec.diagnostics import nearest_name
-from rulec.fleet.fleet_messages import almost_named, no_drives
+from rulec.fleet.fleet_messages import almost_named, no_drives, twice_named
 from rulec.recordings.table_heads import SAME_NAME, is_track_head
 from rulec.trace.formats.table_reader import STEP, TRACE
 
@@ -22,21 +22,25 @@ They contain a row's file, recording, map, and the row count of its recording or
 MOST_SEEN = 1 << 12
 
 
-def kind_of(columns: Sequence[str]) -> TableKind:
-    """The kind of a table with these columns.
+def kind_of(columns: Sequence[str], path: str = "") -> TableKind:
+    """The kind of a table with these columns, from the file at ``path`` if there is one.
 
-    Raises RulecError R0710, also for a column that is almost called as one that identifies drives.
+    Raises RulecError R0710, also for two columns of one name, and for one that is almost called as a
+    column that identifies drives.
     """
+    name, times = Counter(columns).most_common(1)[0] if columns else ("", 0)
+    if times > 1:
+        raise twice_named(name, path)
     for name in columns:
         own = nearest_name(name.strip(), (FILE, RECORDING, MAP, ROWS), SAME_NAME)
         if own is not None and own != name and own not in columns:
-            raise almost_named(name, own)
+            raise almost_named(name, own, path)
     names = [name.casefold() for name in columns]
     if TRACE in names and STEP in names:
         return "traces"
     if is_track_head(names):
         return "tracks"
-    raise no_drives(list(columns))
+    raise no_drives(list(columns), path)
 
 
 def keys_of(columns: Sequence[str], kind: TableKind) -> list[str]:

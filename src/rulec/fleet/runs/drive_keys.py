@@ -81,7 +81,7 @@ def keyed_rows(
     from rulec.trace.formats.arrow.table_groups import key_texts, not_utf8, table_of_batch
 
     names = source.schema_arrow.names
-    kind = kind_of(names)
+    kind = kind_of(names, path)
     keys = keys_of(names, kind)
     batches = source.iter_batches(
         ROWS_AT_ONCE, list(row_groups), columns=None if whole else keys, use_threads=False
