@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
+from multiprocessing.reduction import ForkingPickler
 from time import monotonic
 from typing import Generic, NoReturn, TypeVar
 
@@ -106,15 +107,20 @@ def _without_interrupts() -> Iterator[None]:
 class _Worker(Generic[Task, Result]):
     """A process, and the number of the task it works on."""
 
-    def __init__(self, work: Callable[[Task], Iterator[Result]]) -> None:
+    def __init__(self) -> None:
         # A forked process would inherit locks held by threads that it does not have.
         context = multiprocessing.get_context("spawn")
         self.connection, theirs = context.Pipe()
-        given = work, theirs, recalled()
-        self.process: BaseProcess = context.Process(target=_serve, args=given, daemon=True)
+        # Long arguments would be written for ever if the process is killed before it reads them.
+        self.process: BaseProcess = context.Process(target=_serve, args=(theirs,), daemon=True)
         self.process.start()
         theirs.close()
         self.number: int | None = None
+
+    def begin(self, work: memoryview) -> None:
+        """Send the pickled work. That the process is gone shows when it is given a task."""
+        with suppress(OSError):
+            self.connection.send_bytes(work)
 
 
 class _Pool(Generic[Task, Result]):
@@ -127,7 +133,7 @@ class _Pool(Generic[Task, Result]):
         jobs: int,
         lost: Callable[[Task, int | None], object],
     ) -> None:
-        self._work = work
+        self._work = ForkingPickler.dumps((work, recalled()))
         self._tasks = tasks
         self._jobs = jobs
         self._lost = lost
@@ -174,9 +180,7 @@ class _Pool(Generic[Task, Result]):
             if worker is None:
                 if len(self._workers) == self._jobs:
                     return
-                with _without_interrupts():
-                    worker = _Worker(self._work)
-                    self._workers.append(worker)
+                worker = self._started()
             if self._again:
                 number = self._again.popleft()
             else:
@@ -189,6 +193,17 @@ class _Pool(Generic[Task, Result]):
                 worker.connection.send(self._tasks[number])
             except OSError:
                 self._lose(worker)
+
+    def _started(self) -> _Worker[Task, Result]:
+        """Start all processes that are missing, and return one of them."""
+        new: list[_Worker[Task, Result]] = []
+        with _without_interrupts():
+            for _ in range(self._jobs - len(self._workers)):
+                new.append(_Worker())
+                self._workers.append(new[-1])
+        for worker in new:
+            worker.begin(self._work)
+        return new[0]
 
     def _receive(self, wanted: int) -> None:
         """Wait for results of any process, and take one from each process that has some."""
@@ -229,25 +244,29 @@ class _Pool(Generic[Task, Result]):
         self._lost(self._tasks[number], killed)
 
 
-def _serve(
-    work: Callable[[Task], Iterator[Result]],
-    connection: Connection,
-    cached: Recalled,
-) -> None:
-    """Run tasks until the connection closes; ``cached`` is the parent process's cache."""
+def _serve(connection: Connection) -> None:
+    """Receive the work, and the parent process's cache; do tasks until the connection closes."""
     # Ending by an exception also cleans up what a task has started, such as its own processes.
     signal.signal(signal.SIGTERM, _leave)
-    with suppress(EOFError, OSError), recalling(cached):
-        while True:
-            task = connection.recv()
-            try:
-                for result in work(task):
-                    connection.send(result)
-            except OSError:
-                raise
-            except Exception as error:
-                connection.send(_Raised(error))
-            connection.send(_Done())
+    work: Callable[[object], Iterator[object]]
+    cached: Recalled
+    with suppress(EOFError, OSError):
+        work, cached = connection.recv()
+        with recalling(cached):
+            _do_tasks(connection, work)
+
+
+def _do_tasks(connection: Connection, work: Callable[[object], Iterator[object]]) -> NoReturn:
+    while True:
+        task = connection.recv()
+        try:
+            for result in work(task):
+                connection.send(result)
+        except OSError:
+            raise
+        except Exception as error:
+            connection.send(_Raised(error))
+        connection.send(_Done())
 
 
 def _leave(number: int, _: object) -> NoReturn:

@@ -25,7 +25,7 @@ MOST_SEEN = 1 << 12
 def kind_of(columns: Sequence[str], path: str = "") -> TableKind:
     """The kind of a table with these columns, from the file at ``path`` if there is one.
 
-    Raises RulecError R0710, also for two columns of one name, and for one that is almost called as a
+    Raises RulecError R0710, also for two columns of one name, and one that is almost called as a
     column that identifies drives.
     """
     name, times = Counter(columns).most_common(1)[0] if columns else ("", 0)

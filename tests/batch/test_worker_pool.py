@@ -4,6 +4,7 @@ import os
 import signal
 import time
 from functools import partial
+from multiprocessing import resource_tracker, util
 
 import pytest
 
@@ -45,6 +46,10 @@ def die_once(marker, number):
 
 def process(_):
     yield os.getpid()
+
+
+def longer(text, number):
+    yield len(text) + number
 
 
 def fail(number):
@@ -105,6 +110,26 @@ def test_a_process_that_is_killed_twice_loses_its_task_alone():
         (2, "begun"),
         (2, "done"),
     ]
+
+
+def test_a_process_that_is_killed_before_it_reads_anything_is_replaced(monkeypatch):
+    """However much it would have to read."""
+    start, started = util.spawnv_passfds, []
+
+    def killed_at_once(*arguments):
+        started.append(start(*arguments))
+        if len(started) == 1:
+            os.kill(started[0], signal.SIGKILL)
+        return started[-1]
+
+    resource_tracker.ensure_running()  # which is started in the same way
+    monkeypatch.setattr(util, "spawnv_passfds", killed_at_once)
+    lost = []
+    work = partial(longer, b" " * 1_000_000)
+    found = list(in_order(work, range(3), Jobs(2), lost=lambda *about: lost.append(about)))
+    assert found == [(n, 1_000_000 + n) for n in range(3)]
+    assert lost == [(0, signal.SIGKILL)]
+    assert len(started) == 3
 
 
 def test_a_mistake_is_raised_where_it_belongs():
