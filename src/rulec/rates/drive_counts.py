@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from sys import intern
+from typing import Any, Literal
 
 from rulec.rates.finding_rows import FindingRow
 from rulec.rates.rates_messages import judged_otherwise, no_findings, twice
@@ -47,7 +48,7 @@ class DriveCounts:
     duration_s: float
     distance_m: float | None
     rules: dict[str, RuleCounts] = field(default_factory=dict)
-    not_judged: set[str] = field(default_factory=set)
+    not_judged: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +73,7 @@ class Counted:
     judged_by: dict[str, FindingRow] = field(default_factory=dict)
     not_judged: int = 0
     _files: dict[DriveKey, str] = field(default_factory=dict)
+    _alike: dict[Any, Any] = field(default_factory=dict)
     _first: tuple[str, FindingRow] | None = None
     _waiting: list[tuple[str, DriveKey, FindingRow]] = field(default_factory=list)
 
@@ -83,7 +85,9 @@ class Counted:
         """
         for row in rows:
             self._check(file, row)
-            key = row.rulebook_hash, row.file, row.recording, row.vehicle
+            texts = row.rulebook_hash, row.file, row.recording, row.vehicle
+            # A text that many rows have is kept once: there may be millions of drives.
+            key = intern(texts[0]), intern(texts[1]), intern(texts[2]), texts[3]
             if row.kind == "drive":
                 self._drive(file, key, row)
             else:
@@ -124,16 +128,17 @@ class Counted:
         if row.outcome == "not_judged" or row.duration_s is None:
             self.not_judged += 1
             return
-        group = tuple([str(getattr(row, name)) for name in self.by])
+        group = tuple([intern(str(getattr(row, name))) for name in self.by])
         self.drives[key] = DriveCounts(group, row.duration_s, row.distance_m)
 
     def _rule(self, file: str, key: DriveKey, row: FindingRow) -> None:
-        drive = self.drives[key]
+        drive, rule = self.drives[key], intern(row.rule)
         self.rules.setdefault(row.rulebook_hash, {}).setdefault(
-            row.rule, RuleTitle(row.provision, row.strength)
+            rule, RuleTitle(row.provision, row.strength)
         )
         if row.outcome == "not_judged" or row.opportunities is None:
-            drive.not_judged.add(row.rule)
+            lacking = *drive.not_judged, rule
+            drive.not_judged = self._alike.setdefault(lacking, lacking)
             return
         counts = RuleCounts(
             (row.opportunities, row.perhaps_opportunities or row.opportunities),
@@ -144,4 +149,4 @@ class Counted:
             why = f"rule `{row.rule}` is violated more often than it had opportunities"
             raise no_findings(file, f"{why}, in drive `{row.vehicle}`")
         if counts.opportunities[1] or counts.violated[1]:
-            drive.rules[row.rule] = counts
+            drive.rules[rule] = self._alike.setdefault(counts, counts)
