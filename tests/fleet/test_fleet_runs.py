@@ -393,22 +393,34 @@ def asked_of_duckdb(out):
     return [duckdb.sql(text.replace("'findings/", f"'{out}/")) for text in questions]
 
 
-def test_rates_of_duckdb_are_those_of_rulec(folder_of, tmp_path):
-    """Traces, whose distance nobody knows, and tracks; of 22 drives 14 break some rule."""
-    parquet.write_table(pyarrow.table(tracks([0, 1, 3, 6])), folder_of / "tracks.parquet")
-    run([folder_of], tmp_path / "out", road_map=lanes(tmp_path))
-    found = asked_of_duckdb(tmp_path / "out")[2]
+def rates_of_duckdb(out):
+    """The rates that the page asks for, by rule; they are those of rulec."""
+    found = asked_of_duckdb(out)[2]
     rates = [dict(zip(found.columns, row, strict=True)) for row in found.fetchall()]
-    expected = {row["rule"]: row for row in rulec.rates_of_findings(tmp_path / "out").rows()}
+    expected = {row["rule"]: row for row in rulec.rates_of_findings(out).rows()}
     assert {row["rule"] for row in rates} <= expected.keys()
     for row in rates:
         own = {name: expected[row["rule"]][name] for name in row}
         assert row == pytest.approx(own, nan_ok=False), row["rule"]
-    by_rule = {row["rule"]: row for row in rates}
+    return {row["rule"]: row for row in rates}
+
+
+def test_rates_of_duckdb_are_those_of_rulec(folder_of, tmp_path):
+    """Traces, whose distance nobody knows, and tracks; of 22 drives 14 break some rule."""
+    parquet.write_table(pyarrow.table(tracks([0, 1, 3, 6])), folder_of / "tracks.parquet")
+    run([folder_of], tmp_path / "out", road_map=lanes(tmp_path))
+    by_rule = rates_of_duckdb(tmp_path / "out")
     # Two of three vehicles in each recording that is too fast, and each third trace.
     assert (by_rule["slowly"]["violated"], by_rule["slowly"]["drives"]) == (2 * 3 + 4, 22)
     assert by_rule["slowly"]["per_1000_km"] > 0
-    assert any(row["perhaps_violated"] > row["violated"] for row in rates)
+    assert any(row["perhaps_violated"] > row["violated"] for row in by_rule.values())
+
+
+def test_a_rule_that_may_have_applied_and_was_then_kept_has_the_same_rate(folder_of, tmp_path):
+    run([folder_of], tmp_path / "out")
+    idle = rates_of_duckdb(tmp_path / "out")["never_so_fast"]
+    assert idle["opportunities"] == 0 < idle["perhaps_opportunities"]
+    assert idle["perhaps_per_opportunity"] == 0
 
 
 def test_what_the_page_asks_duckdb_is_what_the_summary_says(folder_of, tmp_path):

@@ -27,6 +27,10 @@ soft rule lets_go (v: vehicle) {
 hard rule no_lights (b: vehicle) {
   require always (beside(b) and warning_lights(b) implies speed <= 10 km/h)
 }
+
+hard rule never_so_fast (v: vehicle) {
+  require always (eventually[<= 5 s] not behind(v) implies speed <= 500 km/h)
+}
 """
 
 LANES = "lane,x,y\n" + "".join(
