@@ -1,7 +1,7 @@
 """Ego's state, size and lanelet at time 0."""
 
 from dataclasses import replace
-from math import pi
+from math import cos, pi, sin
 
 import pytest
 
@@ -85,11 +85,27 @@ def test_the_lanelet_is_the_one_under_ego_or_the_one_chosen():
             reference_lanelet(FOUND, choice, state, "file")
 
 
-def test_who_goes_back_along_its_lanelet_starts_nowhere():
-    def moving(speed, heading):
-        own = start(ego=7)
-        return replace(own, state=replace(own.state, speed=speed, heading=heading))
+def moving(speed, heading):
+    own = start(ego=7)
+    return replace(own, state=replace(own.state, speed=speed, heading=heading))
 
+
+@pytest.mark.parametrize(
+    ("speed", "heading"), [(1e-7, 1.5), (0.05, 0.8), (-1e-6, 0.05), (-1.0, 0.3)]
+)
+def test_who_hardly_moves_or_backs_slowly_stands(speed, heading):
+    found = ego_motion(FOUND, moving(speed, heading), 0.0, "1", "file")
+    assert (found["speed"], found["lateral_speed"]) == (0, 0)
+
+
+@pytest.mark.parametrize(("speed", "heading"), [(0.2, 0.8), (1.0, 1.7), (-1.0, 2.5)])
+def test_who_turns_or_backs_into_a_lane_moves_aside(speed, heading):
+    found = ego_motion(FOUND, moving(speed, heading), 0.0, "1", "file")
+    assert found["speed"] == pytest.approx(max(speed * cos(heading), 0))
+    assert found["lateral_speed"] == pytest.approx(speed * sin(heading))
+
+
+def test_who_goes_back_along_its_lanelet_starts_nowhere():
     # Turning round, or backing out of a place to park
     assert ego_motion(FOUND, moving(1.5, pi), 0.0, "1", "file")["speed"] == 0
     assert ego_motion(FOUND, moving(9.0, pi / 2), 0.0, "1", "file")["speed"] == pytest.approx(0)

@@ -24,6 +24,9 @@ _SAME_PLACE_M = 0.1
 _AGAINST_MPS = 2.0
 """Ego moving backwards faster than this (m/s) is on the oncoming side or reverses, not turning."""
 
+_TREMBLES_MPS = 0.1
+"""The track of a standing vehicle moves slower than this (m/s), in any direction."""
+
 
 @dataclass(frozen=True, slots=True)
 class EgoStart:
@@ -126,8 +129,9 @@ def ego_motion(
 ) -> EgoMotionFields:
     """Ego's speed along and across a road with direction ``heading`` (rad), and its motion bounds.
 
-    They are those of the type of the participant that ego replaces, else a car's. Raises RulecError
-    R0612 if ego moves backwards along its lanelet ``reference``: maneuvers only go ahead.
+    The bounds are those of the type of the participant that ego replaces, else a car's. Ego stands
+    if its track only trembles, or backs slowly; else it could go aside without going ahead. Raises
+    RulecError R0612 if it moves backwards along its lanelet ``reference``: maneuvers only go ahead.
     """
     types = (body.object_types for body in recording.participants if body.id == start.participant)
     bounds = bounds_of(next(types, ()))
@@ -143,6 +147,8 @@ def ego_motion(
             "backwards, reverse its points, and exchange its borders",
             file,
         )
+    if abs(speed) < _TREMBLES_MPS or speed < 0 < cos(turned):
+        ahead = sideways = 0.0
     return {"speed": max(ahead, 0.0), "lateral_speed": sideways, "bounds": bounds}
 
 
