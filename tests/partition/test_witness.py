@@ -105,6 +105,16 @@ def test_who_goes_on_at_its_speed_costs_nothing():
     assert first.trajectory.states[-1][:3] == pytest.approx((4.0, 40.0, 10.0), abs=1e-4)
 
 
+def test_who_cannot_quite_reach_its_lanes_middle_is_not_drawn_to_another_lane():
+    """One beside ego reaches to 0.1 m from it: its lane's middle, at 3.5 m, is not free."""
+    road = Road((-20.0, 200.0), (-1.75, 1.75, 5.25))
+    ego = Ego(0.0, 3.2, length=4.5, width=1.8, speed=10.0, bounds=MotionBounds())
+    beside = Obstacle("b", "vehicle", 4.5, 1.8, ConstantAcceleration(0.0, 5.1, 10.0))
+    scene = Scenario("s", road, ego, (beside,), step_s=0.5)
+    (first,) = find_maneuvers(scene, PAPER, extent="body").cheapest(1)
+    assert [state[3] for state in first.trajectory.states] == pytest.approx([3.2] * 41, abs=0.1)
+
+
 def test_it_brakes_behind_one_that_stands():
     # 20 m from ego's nose to its rear on a single lane: 10 m/s are gone with 2.5 m/s².
     road = Road((-50.0, 500.0), (-2.0, 2.0))

@@ -27,6 +27,9 @@ PER_JERK, PER_LANE, PER_END = 0.25, 0.2, 0.1
 The last counts the difference from ego's initial speed, and the speed across the road.
 """
 
+_ASIDE_M = 0.5
+"""Ego keeps to its own lane's middle if it can come as near (m) as this."""
+
 COMFORTABLE, PER_HARD = 4.0, 4.0
 """The greatest usual acceleration (m/s²), and the extra cost of each m/s² above it."""
 
@@ -219,15 +222,18 @@ class MotionProgram:
         self._at_most(program, -rows, slacks, -fixed)
 
     def _middles(self, boxes: Sequence[Box]) -> Iterator[float]:
-        """A lane's middle for each layer: of those in the cell, the one nearest to the previous."""
+        """A lane's middle for each layer: of those in the cell, the one nearest to the previous.
+
+        That of ego's lane stays the one if ego can come near it.
+        """
         scenario = self.graph.scenario
         lanes = [(low + high) / 2 for low, high in pairwise(scenario.road.lanes)]
         last = min(lanes, key=lambda d: abs(d - scenario.ego.d))
         for box in boxes:
             inside = [d for d in lanes if box.d_min <= d <= box.d_max]
-            nearest = last
-            if inside:
-                last = nearest = min(inside, key=lambda d: abs(d - nearest))
+            own = last
+            if inside and not box.d_min - _ASIDE_M <= own <= box.d_max + _ASIDE_M:
+                last = min(inside, key=lambda d: abs(d - own))
             yield min(max(last, box.d_min), box.d_max)
 
 
