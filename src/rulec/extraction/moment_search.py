@@ -8,14 +8,12 @@ from dataclasses import dataclass
 from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection import RequestedDrives, selected_drives
-from rulec.logic.bounds import NotAMultipleError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.moments.formula_moments import Moment, moments
 from rulec.monitoring.state_validation import StateValidator, check_objects, check_told
 from rulec.recordings.recording import Recording
 from rulec.rulebook.query_model import FormulaQuery
-from rulec.rulebook.query_reader import bound_between_states
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_trace
 from rulec.value_display import short_repr
@@ -91,17 +89,12 @@ def in_traces(
             continue
         try:
             yield in_trace(item, query, assumed, file)
-        except NotAMultipleError as misfit:
-            yield bound_between_states(query, misfit)
         except RulecError as error:
             yield error
 
 
 def in_trace(trace: Trace, query: FormulaQuery, assumed: Assumptions, file: str) -> DriveMoments:
-    """The moments of a trace.
-
-    Raises RulecError R0501 to R0506 for an invalid trace, NotAMultipleError for a misfit bound.
-    """
+    """The moments of a trace. Raises RulecError R0501 to R0506 for an invalid trace."""
     trace = assumed.applied(trace) if assumed else trace
     check_trace(trace)
     check_objects(trace.objects, query.vocabulary, trace.place)

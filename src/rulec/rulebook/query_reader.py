@@ -8,8 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, Source
-from rulec.logic.bounds import NotAMultipleError
-from rulec.rulebook.elaborate.rule_messages import no_multiple
 from rulec.rulebook.elaborate.time_reach_messages import FIRST_STATE_ONLY
 from rulec.rulebook.loader import (
     Trees,
@@ -34,11 +32,6 @@ _NO_WORD = (
     "`rulec list vocabularies` says where words are; those of a rulebook take `--rulebook NAME`"
 )
 _USUAL = "road"
-
-
-def bound_between_states(query: FormulaQuery, error: NotAMultipleError) -> RulecError:
-    """The error (R0407) that a bound of the formula is no multiple of a trace's step."""
-    return RulecError([_in_words(no_multiple(query.rule, error))])
 
 
 def read_query(

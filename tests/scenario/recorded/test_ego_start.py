@@ -90,9 +90,7 @@ def moving(speed, heading):
     return replace(own, state=replace(own.state, speed=speed, heading=heading))
 
 
-@pytest.mark.parametrize(
-    ("speed", "heading"), [(1e-7, 1.5), (0.05, 0.8), (-1e-6, 0.05), (-1.0, 0.3)]
-)
+@pytest.mark.parametrize(("speed", "heading"), [(1e-7, 1.5), (0.05, 0.8), (-1e-6, 0.1), (-1, 0.3)])
 def test_who_hardly_moves_or_backs_slowly_stands(speed, heading):
     found = ego_motion(FOUND, moving(speed, heading), 0.0, "1", "file")
     assert (found["speed"], found["lateral_speed"]) == (0, 0)

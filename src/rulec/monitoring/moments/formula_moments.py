@@ -43,9 +43,8 @@ class Moment:
 def moments(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Moment]:
     """The moments at which a formula holds in a checked trace, by objects and time.
 
-    Moments are maximal. In a cut trace, bounds that are no multiple of its step are rounded down
-    and up, and what holds under both is certain; for other traces such bounds raise
-    NotAMultipleError.
+    Moments are maximal. Bounds that are no multiple of the trace's step are rounded down and up;
+    what holds under both is certain.
     """
     roundings = _in_steps(trace, query)
     tables = tables_of(trace, query.vocabulary)
@@ -85,8 +84,6 @@ def _in_steps(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Formula]:
     try:
         return [in_steps(query.rule.formula, step)]
     except NotAMultipleError:
-        if trace.ends != "cut":
-            raise
         return [
             in_steps(query.rule.formula, step, rounding) for rounding in (math.floor, math.ceil)
         ]
