@@ -11,10 +11,13 @@ from numpy import float64, intp
 from numpy.typing import NDArray
 
 from rulec.recordings.recording import Points
-from rulec.trace.plain_arrays import distinct
+from rulec.trace.plain_arrays import distinct, median
 
 _SHARPEST = 0.5
 """The largest factor by which a border is displaced at a sharp turn of the line."""
+
+_THIRD_OF_NOISE = 0.6745 * 20**0.5
+"""The median size of third differences of normal noise with the standard deviation 1."""
 
 Angle = TypeVar("Angle", float, NDArray[float64])
 
@@ -48,6 +51,29 @@ def without_repeats(points: Points, closest_m: float) -> Points:
         if np.hypot(*(point - kept[-1])) > closest_m:
             kept.append(point)
     return np.array(kept)
+
+
+def far_apart(points: Points, least_m: float) -> NDArray[intp]:
+    """The indices of the first point, and of each that is so far from the last of them."""
+    kept, (x, y) = [0], points[0].tolist()
+    for number, (own_x, own_y) in enumerate(points[1:].tolist(), 1):
+        if (own_x - x) ** 2 + (own_y - y) ** 2 >= least_m**2:
+            kept.append(number)
+            x, y = own_x, own_y
+    return np.array(kept)
+
+
+def noise_of(places: Points) -> float:
+    """The standard deviation (m) along an axis of noise of places at even times.
+
+    By their third differences, in which driving hardly shows. 0 for fewer than four places.
+    """
+    return noise_by_thirds(np.diff(places, 3, axis=0))
+
+
+def noise_by_thirds(thirds: NDArray[float64]) -> float:
+    """The standard deviation of noise by third differences (m); 0 if there are none."""
+    return median(np.abs(thirds)) / _THIRD_OF_NOISE if thirds.size else 0.0
 
 
 def densified(points: Points, every_m: float) -> Points:

@@ -8,6 +8,7 @@ import pytest
 
 import rulec
 from rulec import RulecError, build_lanelet, read_recording
+from rulec.recordings.doubts.long_ways import long_ways
 from rulec.recordings.doubts.road_doubts import road_doubts
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.recording_files import read_recordings
@@ -212,7 +213,7 @@ def test_lanes_that_do_not_begin_where_those_before_end(gap, said):
     ]
     rows = np.array([[10.0 * k, 0.0, 0.0, 10.0, 0.0] for k in range(10)])
     track = Track(np.arange(10), rows, 4.5, 1.8)
-    found = list(road_doubts({lane.id: lane for lane in lanes}, [track]))
+    found = list(road_doubts({lane.id: lane for lane in lanes}, [long_ways(track)]))
     assert [remark for remark in found if "at 1 of 2 places" in remark and said] == found
     assert all(f"`b` {said} from that of `a`" in remark for remark in found)
     assert len(found) == (said is not None)

@@ -86,12 +86,15 @@ def _shares(
     outlines = [
         shapely.Polygon(np.vstack((lanelet.left, lanelet.right[::-1]))) for lanelet in lanes
     ]
-    every = max(1, round(_EVERY_S / step_s))
+    usual = max(1, round(_EVERY_S / step_s))
     shares: tuple[list[float], list[float]] = ([], [])
     for track in tracks:
-        ways = np.hypot(*np.diff(track.rows[:, :2], axis=0).T)
-        speeds = (ways / (np.diff(track.steps) * step_s))[::every]
-        rows, lane = places_in(outlines, *track.rows[1::every, :2].T)
+        every = min(usual, len(track.steps) - 1)
+        places = track.rows[::every, :2]
+        # Over so long, noise does not make anybody fast
+        ways = np.hypot(*np.diff(places, axis=0).T)
+        speeds = ways / (np.diff(track.steps[::every]) * step_s)
+        rows, lane = places_in(outlines, *places[:-1].T)
         if not len(rows):
             continue
         highest, lowest = np.zeros(len(speeds)), np.full(len(speeds), np.inf)

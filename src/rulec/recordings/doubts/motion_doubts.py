@@ -6,16 +6,17 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
-from numpy import float64
+from numpy import float64, intp
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.doubts.impossible_speeds import without_impossible_speeds
 from rulec.recordings.doubts.limit_doubts import limit_doubts
+from rulec.recordings.doubts.long_ways import LongWays, long_ways
 from rulec.recordings.doubts.road_doubts import road_doubts
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Recording
-from rulec.recordings.track import Track, TrackStates
+from rulec.recordings.track import TrackStates
 from rulec.trace.plain_arrays import median
 
 _MOST_BODIES = 60
@@ -46,11 +47,12 @@ def with_doubts(recording: Recording, refused: Callable[[str], RulecError]) -> R
     """
     recording = without_impossible_speeds(recording)
     tracks = _tracks(recording)
-    doubts = (*limit_doubts(recording, tracks), *road_doubts(recording.lanelets, tracks))
+    moving = [moved.track for moved in tracks]
+    doubts = (*limit_doubts(recording, moving), *road_doubts(recording.lanelets, tracks))
     recording = replace(recording, remarks=(*recording.remarks, *doubts)) if doubts else recording
     if len(tracks) < _FEWEST_BODIES:
         return recording
-    angle = median(np.array([_askew_deg(track) for track in tracks]))
+    angle = median(np.array([_askew_deg(moved) for moved in tracks]))
     if angle > _ACROSS_DEG:
         why = (
             f"headings do not fit the motion: vehicles move {angle:.0f}° away from them in the "
@@ -61,29 +63,31 @@ def with_doubts(recording: Recording, refused: Callable[[str], RulecError]) -> R
     return replace(recording, remarks=remarks) if remarks != recording.remarks else recording
 
 
-def _tracks(recording: Recording) -> list[Track]:
+def _tracks(recording: Recording) -> list[LongWays]:
     """The first tracks of vehicles that move far enough."""
-    tracks: list[Track] = []
+    tracks: list[LongWays] = []
     for body in recording.participants:
         if "vehicle" in body.object_types and isinstance(body.states, TrackStates):
             rows = body.states.track.rows
             if len(rows) > 1 and np.hypot(*np.ptp(rows[:, :2], axis=0)) > _LEAST_M:
-                tracks.append(body.states.track)
+                moved = long_ways(body.states.track)
+                if len(moved.ways):
+                    tracks.append(moved)
                 if len(tracks) == _MOST_BODIES:
                     break
     return tracks
 
 
-def _doubts(tracks: list[Track], recording: Recording, angle: float) -> Iterator[str]:
+def _doubts(tracks: list[LongWays], recording: Recording, angle: float) -> Iterator[str]:
     if angle > _ASKEW_DEG:
         yield f"vehicles move {angle:.0f}° off their headings, which may be in degrees"
-    fastest = median(np.array([_mean_mps(track, recording.step_s) for track in tracks]))
+    fastest = median(np.array([_mean_mps(moved, recording.step_s) for moved in tracks]))
     if fastest > _FASTEST_MPS:
         yield (
             f"half of the vehicles move at {fastest * 3.6:,.0f} km/h or more: columns, or units of "
             "times or places, may be wrong"
         )
-    ratio = median(np.array([_speed_ratio(track, recording.step_s) for track in tracks]))
+    ratio = median(np.array([_speed_ratio(moved, recording.step_s) for moved in tracks]))
     # Tables have said so themselves, of all their rows
     already_said = any(remark.startswith(_SPEEDS) for remark in recording.remarks)
     if ratio > 0 and not 1 / _ALIKE <= ratio <= _ALIKE and not already_said:
@@ -91,7 +95,7 @@ def _doubts(tracks: list[Track], recording: Recording, angle: float) -> Iterator
             f"{_SPEEDS} {ratio:.3g} times what places and times say, by which it is judged: "
             "time steps, or units of speeds or places, may be wrong"
         )
-    if np.mean([track.length < track.width for track in tracks]) > 0.5:
+    if np.mean([moved.track.length < moved.track.width for moved in tracks]) > 0.5:
         yield "most vehicles are wider than long: lengths and widths may be exchanged"
     cars = (body.states for body in recording.participants if body.type == "car")
     lengths = [states.track.length for states in cars if isinstance(states, TrackStates)]
@@ -99,32 +103,39 @@ def _doubts(tracks: list[Track], recording: Recording, angle: float) -> Iterator
         yield f"cars are {middle:.3g} m long in the median: lengths may be in feet or centimetres"
 
 
-def _ways(track: Track) -> NDArray[float64]:
-    """The distances from each position of a track to the next (m)."""
-    ways: NDArray[float64] = np.diff(track.rows[:, :2], axis=0)
-    return ways
-
-
-def _mean_mps(track: Track, step_s: float) -> float:
+def _mean_mps(moved: LongWays, step_s: float) -> float:
     """The mean speed of a track by its positions."""
-    took = float(track.steps[-1] - track.steps[0]) * step_s
-    return float(np.hypot(*_ways(track).T).sum() / took)
+    took = float(np.ptp(moved.track.steps[moved.rows])) * step_s
+    return float(np.hypot(*moved.ways.T).sum() / took)
 
 
-def _askew_deg(track: Track) -> float:
+def _askew_deg(moved: LongWays) -> float:
     """The mean angle between a track's motion and its headings, weighted by distance.
 
     A vehicle that reverses, by its own speeds, moves the opposite way.
     """
-    dx, dy = _ways(track).T
-    speed = track.rows[:, 3]
-    away = np.arctan2(dy, dx) - track.rows[1:, 2] + np.pi * (speed[1:] + speed[:-1] < 0)
-    turned = np.abs(wrapped(away))
+    dx, dy = moved.ways.T
+    heading = moved.track.rows[:, 2]
+    cos, sin = (_sums(own, moved.rows) for own in (np.cos(heading), np.sin(heading)))
+    backs = _driven(moved) < 0
+    turned = np.abs(wrapped(np.arctan2(dy, dx) - np.arctan2(sin, cos) + np.pi * backs))
     return float(np.degrees(np.average(turned, weights=np.hypot(dx, dy))))
 
 
-def _speed_ratio(track: Track, step_s: float) -> float:
+def _speed_ratio(moved: LongWays, step_s: float) -> float:
     """The ratio of the distance by speeds to the distance between positions."""
-    speed = np.abs(track.rows[:, 3])
-    by_speed = (speed[1:] + speed[:-1]) / 2 * np.diff(track.steps) * step_s
-    return float(by_speed.sum() / np.hypot(*_ways(track).T).sum())
+    by_speed = np.abs(_driven(moved)) * step_s
+    return float(by_speed.sum() / np.hypot(*moved.ways.T).sum())
+
+
+def _driven(moved: LongWays) -> NDArray[float64]:
+    """The distance driven on each way, by speeds (m/s) and time steps."""
+    speed = moved.track.rows[:, 3]
+    driven = (speed[1:] + speed[:-1]) / 2 * np.diff(moved.track.steps)
+    return _sums(np.append(0.0, driven), moved.rows)
+
+
+def _sums(values: NDArray[float64], rows: NDArray[intp]) -> NDArray[float64]:
+    """The sums of values between rows, without each first one."""
+    sums: NDArray[float64] = np.diff(values.cumsum()[rows])
+    return sums

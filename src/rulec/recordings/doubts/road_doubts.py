@@ -11,11 +11,12 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.diagnostics import SourceLocation
+from rulec.recordings.doubts.long_ways import LongWays
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.polylines import arc_lengths, places_in
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
 from rulec.recordings.recording_messages import OTHER_NET
-from rulec.recordings.track import Track, TrackStates
+from rulec.recordings.track import TrackStates
 from rulec.trace.plain_arrays import distinct
 
 NEAR_M = 50.0
@@ -70,14 +71,14 @@ def check_near(recording: Recording, path: Path | None) -> None:
     )
 
 
-def road_doubts(lanelets: Mapping[str, Lanelet], tracks: Sequence[Track]) -> Iterator[str]:
+def road_doubts(lanelets: Mapping[str, Lanelet], tracks: Sequence[LongWays]) -> Iterator[str]:
     """Remarks on roads; ``tracks`` are those of moving vehicles."""
     lanes = [lanelet for lanelet in lanelets.values() if is_lane(lanelet)]
     if not lanes or not tracks:
         return
     yield from _gaps(lanes)
     roads = _Roads(lanes)
-    moves = [_moves(track) for track in tracks]
+    moves = [_moves(moved) for moved in tracks]
     on, along = roads.shares(moves)
     if along < _HALF and len(tracks) >= _FEWEST_BODIES:
         for fault, change in _AXES.items():
@@ -196,9 +197,9 @@ def _leads(middle: Points, moves: Moves) -> NDArray[np.bool_]:
     return leads
 
 
-def _moves(track: Track) -> Moves:
+def _moves(moved: LongWays) -> Moves:
     """Some positions of a track, with the displacements from there."""
-    places = track.rows[:, :2]
+    places = moved.track.rows[moved.rows, :2]
     driven = arc_lengths(places)
     rows = np.searchsorted(driven, np.linspace(0.0, driven[-1], _MOST_PLACES))
     some = places[distinct(rows)]

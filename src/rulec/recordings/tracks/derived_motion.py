@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+from math import ceil
+
 import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.recordings.polylines import wrapped
+from rulec.recordings.polylines import far_apart, noise_of, wrapped
 from rulec.recordings.recording import Points
 
 FLICKER_M = 1.0
 """A direction is that of so much way: trackers place somebody who stands a little here, there."""
+
+_STEADY = 10.0
+"""The direction of a way of so many times the noise of places is off by 8°."""
+
+_NOISES = 6.0
+"""The difference of two places is off by less than so many times their noise."""
 
 Floats = NDArray[float64]
 
@@ -18,26 +26,18 @@ Floats = NDArray[float64]
 def headings_of(places: Points) -> Floats | None:
     """The direction (rad) at each place of a track: where it leads to, over a metre or more.
 
+    If places are noisy, it is that over so much more that noise hardly turns it.
+
     Before somebody sets off and after stopping it is that of the way next to it. None for who does
     not move as far.
     """
-    anchors = _anchors(places)
+    anchors = far_apart(places, max(FLICKER_M, _STEADY * noise_of(places)))
     if len(anchors) < 2:
         return None
     ahead = np.diff(places[anchors], axis=0)
     directions = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
     middles = (anchors[:-1] + anchors[1:]) / 2
     return wrapped(np.interp(np.arange(len(places)), middles, directions))
-
-
-def _anchors(places: Points) -> NDArray[np.intp]:
-    """The first place, and each that is far enough from the one before."""
-    kept, (x, y) = [0], places[0].tolist()
-    for number, (own_x, own_y) in enumerate(places.tolist()):
-        if (own_x - x) ** 2 + (own_y - y) ** 2 >= FLICKER_M**2:
-            kept.append(number)
-            x, y = own_x, own_y
-    return np.array(kept)
 
 
 def velocities_of(places: Points, times: Floats | float) -> Points:
@@ -48,6 +48,20 @@ def velocities_of(places: Points, times: Floats | float) -> Points:
     if len(places) < 2:
         return np.zeros_like(places)
     velocities: Points = np.gradient(places, times, axis=0)
+    return velocities
+
+
+def steady_velocities(places: Points, times: Floats, known_to_mps: float) -> Points:
+    """Velocities (m/s) at two or more places, over so long that noise is no faster than that.
+
+    The times (s) ascend. Each place is in the middle of its own time, except at a track's ends.
+    """
+    step_s = float(np.diff(times).min())
+    reach = max(1, ceil(_NOISES * noise_of(places) / known_to_mps / step_s / 2))
+    most = len(places) - 1
+    first = (np.arange(len(places)) - reach).clip(0, max(most - 2 * reach, 0))
+    last = np.minimum(first + 2 * reach, most)
+    velocities: Points = (places[last] - places[first]) / (times[last] - times[first])[:, None]
     return velocities
 
 

@@ -29,6 +29,7 @@ from rulec.recordings.recording import OBSTACLE_TYPES, Lamp, Participant, id_ord
 from rulec.recordings.track import Track, tracked
 from rulec.recordings.tracks import derived_motion as motion
 from rulec.recordings.tracks.even_times import EvenTimes
+from rulec.recordings.tracks.motions_of_rows import MOVING_MPS, PlacesOfRows, motions_of
 from rulec.recordings.tracks.road_user_types import TYPES, USUAL_TYPE, type_of, usual_size
 from rulec.trace.plain_arrays import distinct
 
@@ -37,11 +38,16 @@ HeadingAt = Callable[[float, float], float]
 
 LONGEST_BODY_M = 100.0
 _NAMED = 3
-_MOVING_MPS = 2.0
 _BACKING_MPS = 0.5
 _TURNED = np.pi / 4
 _ALIKE = 1.25
 _ENOUGH = 20
+_NOISES_OF_DIRECTION, _NOISES_OF_SPEED = 8.0, 20.0
+"""How far (in the noise of places) bodies move while their direction or speed is measured.
+
+No body that stands seems to move in so long a time, none that moves seems faster by 1.25.
+"""
+
 _UNITS = ((3.6, "`speed_kmh` if it holds km/h"), (2.237, "`speed_mph` if it holds miles an hour"))
 
 
@@ -296,7 +302,7 @@ class _Reading:
         if self.rows.velocity is None:
             return None
         vx, vy = (component[own] for component in self.rows.velocity)
-        fast = np.flatnonzero(np.hypot(vx, vy) >= _MOVING_MPS / 2)
+        fast = np.flatnonzero(np.hypot(vx, vy) >= MOVING_MPS / 2)
         if not len(fast):
             return None
         directions = np.unwrap(np.arctan2(vy[fast], vx[fast]))
@@ -313,6 +319,12 @@ class _Reading:
         else:
             return moved
         other_way = (np.abs(moved) > _BACKING_MPS) & (moved * stated < 0)
+        if other_way.any():
+            # Noise alone moves bodies back from step to step
+            places = np.column_stack((rows.x[own], rows.y[own]))
+            times = (rows.times.steps[own] * rows.times.step_s).astype(float64)
+            moved = motion.along(motion.steady_velocities(places, times, _BACKING_MPS), heading)
+            other_way = (np.abs(moved) > _BACKING_MPS) & (moved * stated < 0)
         return np.where(other_way, -stated, stated)
 
     def _stated_lamps(self, own: NDArray[np.intp]) -> dict[Lamp, Floats]:
@@ -359,9 +371,9 @@ def _speeds_that_differ(rows: TrackRows) -> Iterator[str]:
     """Remarks on speeds that differ from those of positions by a factor; they are not used."""
     if rows.speed is None or rows.front:
         return
-    order, follow, (dx, dy) = _motions(rows)
-    moved, stated = np.hypot(dx, dy), np.abs(rows.speed[order][:-1])
-    chosen = follow & ~np.isnan(stated) & (np.maximum(moved, stated) > _MOVING_MPS)
+    found = motions_of(_places(rows), _NOISES_OF_SPEED)
+    moved, stated = np.hypot(found.dx, found.dy), np.abs(rows.speed[found.middle])
+    chosen = moved + stated > 2 * MOVING_MPS
     if chosen.sum() < _ENOUGH:
         return
     by_places, by_column = float(np.median(moved[chosen])), float(np.median(stated[chosen]))
@@ -376,15 +388,8 @@ def _speeds_that_differ(rows: TrackRows) -> Iterator[str]:
     )
 
 
-def _motions(rows: TrackRows) -> tuple[NDArray[np.intp], NDArray[np.bool_], tuple[Floats, Floats]]:
-    """The rows by track and time, whether the next row continues the track, and velocities.
-
-    The latter two have a value for each row except the last.
-    """
-    order = np.lexsort((rows.times.steps, rows.track.codes))
-    follow = (np.diff(rows.track.codes[order]) == 0) & (np.diff(rows.times.steps[order]) == 1)
-    dx, dy = (np.diff(place[order]) / rows.times.step_s for place in (rows.x, rows.y))
-    return order, follow, (dx, dy)
+def _places(rows: TrackRows) -> PlacesOfRows:
+    return PlacesOfRows(rows.track.codes, rows.times, rows.x, rows.y)
 
 
 def _rough_tracks(rows: TrackRows, tracks: Sequence[NDArray[np.intp]]) -> list[int]:
@@ -456,14 +461,15 @@ def _check_headings(rows: TrackRows) -> None:
         why = f"its heading is {heading[row]:g}, which is no angle in radians"
         way_out = "call the column `heading_deg` if it holds degrees"
         raise rows.columns.wrong(row, why, help_text=way_out)
-    order, follow, (dx, dy) = _motions(rows)
-    moving = follow & (np.hypot(dx, dy) > _MOVING_MPS) & ~np.isnan(heading[order][:-1])
+    found = motions_of(_places(rows), _NOISES_OF_DIRECTION)
+    own = heading[found.middle]
+    moving = (np.hypot(found.dx, found.dy) > MOVING_MPS) & ~np.isnan(own)
     # Who backs, by its own speeds, goes the other way
-    backs = 0.0 if rows.speed is None else np.pi * (rows.speed[order][:-1] < 0)
-    turned = np.arctan2(dy, dx) - heading[order][:-1]
+    backs = 0.0 if rows.speed is None else np.pi * (rows.speed[found.middle] < 0)
+    turned = np.arctan2(found.dy, found.dx) - own
     off = np.abs(wrapped(turned - backs))[moving]
     if len(off) > _ENOUGH and np.median(off) > _TURNED:
-        row = int(order[:-1][moving][int(np.argmax(off))])
+        row = int(found.middle[moving][int(np.argmax(off))])
         if np.median(np.abs(wrapped(turned))[moving]) <= _TURNED:
             why = "most who move have a negative speed, and do not move backwards by their headings"
             way_out = "leave out the sign: only who drives backwards has a negative speed"
