@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy import float64, int64, intp
@@ -36,6 +37,31 @@ def without_short_holes(recording: Recording, longest_s: float) -> Recording:
 def most_steps(longest_s: float, step_s: float) -> int:
     """The most steps between two states at most ``longest_s`` (s) apart."""
     return int(longest_s / step_s + 1e-9)
+
+
+class TrackHoles(NamedTuple):
+    """The holes of a track, each as the row before it.
+
+    Those longer than ``LONGEST_HOLE_S``; shorter ones in which it jumps; and others.
+    """
+
+    longer: NDArray[intp]
+    with_jumps: NDArray[intp]
+    short: NDArray[intp]
+
+
+def holes_of(steps: NDArray[int64], rows: NDArray[float64], step_s: float) -> TrackHoles:
+    """The holes of a track; ``rows`` are x, y (m), heading (rad) and speed (m/s) by ``steps``."""
+    apart = np.diff(steps)
+    holes = (apart > 1).nonzero()[0]
+    most = max(most_steps(LONGEST_HOLE_S, step_s), 1)
+    known = _Known(steps, rows, 2 * most, step_s)
+    is_long = apart[holes] > most
+    jumps = [
+        not far and known.jumps(hole) for far, hole in zip(is_long, holes.tolist(), strict=True)
+    ]
+    jumped = np.array(jumps, dtype=bool)
+    return TrackHoles(holes[is_long], holes[jumped], holes[~is_long & ~jumped])
 
 
 def _filled(body: Participant, most: int, step_s: float) -> Participant:

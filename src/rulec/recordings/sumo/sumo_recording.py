@@ -29,6 +29,7 @@ from rulec.recordings.recording_messages import OTHER_NET
 from rulec.recordings.road_map import RoadMap
 from rulec.recordings.sumo.fcd import demand_beside, net_beside, read_fcd
 from rulec.recordings.sumo.fcd_content import FCD, MICROSECONDS, FcdTrack, FloatingCarData
+from rulec.recordings.sumo.fcd_holes import FcdGrid, FcdHoles, holes_of_rows, starts_of
 from rulec.recordings.sumo.lanelets import net_lanelets
 from rulec.recordings.sumo.light_states import (
     light_states_beside,
@@ -88,7 +89,8 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     types = read_vehicle_types(demand_beside(path, data.head))
     unknown: set[str] = set()
     rounding = _rounding(data)  # before ``_participants`` frees the tracks
-    participants = tuple(_participants(data, types, step_s, unknown))
+    holes = FcdHoles()
+    participants = tuple(_participants(data, types, step_s, unknown, holes))
     replaced = programmes_beside(path, data.head)
     # A missing file may replace the programme of any light
     replaced = dict.fromkeys(net.programmes) if replaced is None else replaced
@@ -107,8 +109,13 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
         participants=participants,
         form="SUMO data",
         side=net.side,
-        remarks=(*_remarks(unknown, net), *_left_out(data), *_start(start_s)),
-        complete=COMPLETE - _TRAFFIC if data.head.leaves_out else COMPLETE,
+        remarks=(
+            *_remarks(unknown, net),
+            *_left_out(data),
+            *holes.remarks(),
+            *_start(start_s),
+        ),
+        complete=COMPLETE - _TRAFFIC if data.head.leaves_out or holes.missing else COMPLETE,
         rounding=rounding,
     )
 
@@ -159,17 +166,21 @@ def _are_whole(numbers: NDArray[float64]) -> bool:
 
 
 def _participants(
-    data: FloatingCarData, types: dict[str, VehicleType], step_s: float, unknown: set[str]
+    data: FloatingCarData,
+    types: dict[str, VehicleType],
+    step_s: float,
+    unknown: set[str],
+    holes: FcdHoles,
 ) -> Iterator[Participant]:
     """All participants; each track is freed once its participants are made."""
     step = round(step_s * MICROSECONDS)
-    steps = [moment // step for moment in data.moments]
+    grid = FcdGrid([moment // step for moment in data.moments], step_s)
     for key in list(data.tracks):
         track = data.tracks.pop(key)
         kind, known = vehicle_type(track.type, track.element, types)
         if not known:
             unknown.add(f"`{short(track.type)}` ({kind.kind}, {kind.length:g} m)")
-        yield from fcd_participants(key, track, kind, steps, step_s)
+        yield from fcd_participants(key, track, kind, grid, holes)
 
 
 def _remarks(unknown: Iterable[str], net: SumoNet) -> Iterator[str]:
@@ -251,22 +262,26 @@ def time_step(path: Path, moments: list[int]) -> float:
 
 
 def fcd_participants(
-    key: str, track_rows: FcdTrack, kind: VehicleType, steps: Sequence[int], step_s: float
+    key: str, track_rows: FcdTrack, kind: VehicleType, grid: FcdGrid, holes: FcdHoles
 ) -> Iterator[Participant]:
-    """The participants of a track; one that disappears and returns becomes another participant.
+    """The participants of a track; one that is away for long, or jumps meanwhile, becomes another.
 
-    ``steps``: the time step of every moment of the file.
+    ``holes`` counts what was found of vehicles.
     """
+    steps, step_s = grid
     count = len(track_rows.moments)
     own = np.fromiter(map(steps.__getitem__, track_rows.moments), dtype=int64, count=count)
-    starts = np.flatnonzero(np.diff(own, prepend=own[0] - 2) > 1)
     rows = np.array(track_rows.rows, dtype=float).reshape(-1, 4)
-    if track_rows.element == "vehicle":
+    is_vehicle = track_rows.element == "vehicle"
+    found = holes_of_rows(own, rows, step_s)
+    if found is not None and is_vehicle:
+        holes.note(key, found, rows[:, 3])
+    starts = starts_of(found)
+    if is_vehicle:
         rows[:, 2] = _steered(rows, starts)
-    articulated = track_rows.element == "vehicle" and kind.articulated
     rows = (
-        _centres_along_way(rows, starts, kind.length, step_s)
-        if articulated
+        _centres_along_way(rows, starts, kind.length, np.diff(own) * step_s)
+        if is_vehicle and kind.articulated
         else _centres(rows, kind.length)
     )
     rows = np.column_stack((rows, _accelerations(track_rows, rows[:, 3], own, step_s)))
@@ -282,6 +297,7 @@ def fcd_participants(
             track,
             lamps={step: lit for step, lit in lamps.items() if first <= step <= last},
             shows=_SHOWN if lamps else frozenset(),
+            resumes=None if number == 1 else int(own[start - 1]),
         )
 
 
@@ -299,7 +315,7 @@ def _steered(rows: NDArray[float64], starts: NDArray[intp]) -> NDArray[float64]:
 
 
 def _centres_along_way(
-    rows: NDArray[float64], starts: NDArray[intp], length: float, step_s: float
+    rows: NDArray[float64], starts: NDArray[intp], length: float, times: NDArray[float64]
 ) -> NDArray[float64]:
     """The rows of an articulated vehicle: x, y of its middle, heading (rad), and speed.
 
@@ -307,13 +323,13 @@ def _centres_along_way(
     front was half a length and a length earlier on its way, and the heading points from the rear to
     the front. A straight way leads to the first position. A movement more across the heading than
     along it that is longer than the speed permits is a lane change by a jump, or sliding: it moves
-    all parts.
+    all parts. ``times`` (s) lead from each row to the next.
     """
     centred: NDArray[float64] = rows.copy()
     for start, end in zip(starts, [*starts[1:], len(rows)], strict=True):
         x, y, angle, speed = rows[start:end].T
         heading = np.pi / 2 - np.radians(angle)
-        drives = _JUMPS * step_s * np.maximum(speed[1:], speed[:-1])
+        drives = _JUMPS * times[start : end - 1] * np.maximum(speed[1:], speed[:-1])
         ways = np.stack((np.diff(x), np.diff(y)), axis=1)
         cos, sin = np.cos(heading[1:]), np.sin(heading[1:])
         along, across = ways[:, 0] * cos + ways[:, 1] * sin, ways[:, 1] * cos - ways[:, 0] * sin
