@@ -18,7 +18,7 @@ from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.findings import JudgedTrace
 from rulec.monitoring.batch.stacked.verify_arrays import answer_to, judge_arrays, verify_arrays
 from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
-from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed
+from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed, agreed_by_type
 from rulec.recordings.recording import Recording
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import Rows, short_repr
@@ -101,6 +101,7 @@ class RecordingVerdicts(Rows):
             traffic=self.rules.traffic,
             vocabulary=self.rules.vocabulary,
             names=names_read(self.rules),
+            possible_types=True,
         )
         self.recording = self.drives.recording
         self.mirrored = self.drives.mirrored
@@ -191,10 +192,37 @@ def judged_drives(
     drives: Sequence[Drive | NoDrive], roundings: Sequence[CompiledRulebook]
 ) -> Iterator[JudgedDrive | NoDrive]:
     """The judged drives, whose verdicts are built on demand, in the same order."""
-    traces = [drive.arrays for drive in drives if isinstance(drive, Drive)]
+    known = [drive for drive in drives if isinstance(drive, Drive)]
+    traces = [trace for drive in known for trace in (drive.arrays, *drive.otherwise)]
     judged = iter(_judged(traces, roundings))
     for drive in drives:
-        yield JudgedDrive(drive, next(judged)) if isinstance(drive, Drive) else drive
+        if isinstance(drive, Drive):
+            own = next(judged)
+            others = [(trace, next(judged)) for trace in drive.otherwise]
+            yield JudgedDrive(drive, _of_any_type(drive, own, others) if others else own)
+        else:
+            yield drive
+
+
+def _of_any_type(
+    drive: Drive,
+    own: JudgedTrace | Verdict | NotJudged,
+    others: Sequence[tuple[TraceArrays, JudgedTrace | Verdict | NotJudged]],
+) -> Verdict | NotJudged:
+    """The common verdict on a drive, whatever the participants of unknown type are.
+
+    Where it differs it depends on the types that they may have.
+    """
+    known, objects = answer_to(own, drive.arrays), drive.arrays.objects.items()
+    if not isinstance(known, Verdict):
+        return known
+    verdicts: list[tuple[Sequence[str], Verdict]] = []
+    for trace, judged in others:
+        answer = answer_to(judged, trace)
+        if isinstance(answer, Verdict):
+            types = dict.fromkeys(kind for _, kind in trace.objects.items() - objects)
+            verdicts.append((sorted(types), answer))
+    return agreed_by_type(known, verdicts)
 
 
 def agreed_answers(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
@@ -11,6 +11,7 @@ from functools import partial
 from rulec.diagnostics import SourceLocation, did_you_mean, first_of, named
 from rulec.diagnostics.argument_kinds import expected
 from rulec.extraction.drives import Drives, NoDrive
+from rulec.extraction.possible_types import PossibleTypes
 from rulec.extraction.recording_parts import RecordingPart, egos_of, recording_parts
 from rulec.extraction.traces.recorded_drive import Drive, DrivePlaces
 from rulec.extraction.traces.to_trace import TraceWriter
@@ -21,6 +22,7 @@ from rulec.recordings.recording import Recording, Side
 from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.rulebook.rulebook_model import Traffic
 from rulec.trace import Value
+from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import short_repr
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 from rulec.vocabulary.units import parse_unit
@@ -56,6 +58,35 @@ class RequestedDrives:
 
 
 @dataclass(slots=True)
+class _PartLookedAt:
+    """A part's drives, and those of ``doubtful`` egos if unknown types were one or another."""
+
+    part: RecordingPart
+    drives: Drives
+    doubtful: frozenset[str] = frozenset()
+    others: Sequence[Drives] = ()
+
+    def of(self, ego: str) -> Iterator[Drive | NoDrive]:
+        """The drives of an ego, each with the traces of its others."""
+        if ego not in self.doubtful:
+            return self.drives.of(ego)
+        others = [
+            {drive.arrays.id: drive.arrays for drive in other.of(ego) if isinstance(drive, Drive)}
+            for other in self.others
+        ]
+        return (
+            replace(drive, otherwise=_like(drive, others)) if isinstance(drive, Drive) else drive
+            for drive in self.drives.of(ego)
+        )
+
+
+def _like(drive: Drive, others: Sequence[Mapping[str, TraceArrays]]) -> tuple[TraceArrays, ...]:
+    """The traces of a drive that are as long as it is."""
+    found = [own[drive.arrays.id] for own in others if drive.arrays.id in own]
+    return tuple([trace for trace in found if trace.n_states == drive.arrays.n_states])
+
+
+@dataclass(slots=True)
 class SelectedDrives:
     """The drives of ``egos`` and the ``recording`` that they are from, perhaps mirrored.
 
@@ -67,7 +98,8 @@ class SelectedDrives:
     egos: tuple[str, ...]
     parts: tuple[RecordingPart, ...] = field(repr=False)
     _drives_of: Callable[..., Drives] = field(repr=False)
-    _looked_at: tuple[RecordingPart, Drives] | None = field(default=None, repr=False)
+    _unknown_reach_m: float | None = field(repr=False)
+    _looked_at: _PartLookedAt | None = field(default=None, repr=False)
 
     def __iter__(self) -> Iterator[Drive | NoDrive]:
         """All drives, in the order of the file."""
@@ -75,17 +107,26 @@ class SelectedDrives:
 
     def of(self, ego: str) -> Iterator[Drive | NoDrive]:
         """The drives of one vehicle, computed when they are asked for."""
-        if self._looked_at is None or ego not in self._looked_at[0].egos:
+        if self._looked_at is None or ego not in self._looked_at.part.egos:
             part = next(part for part in self.parts if ego in part.egos)
             # Free the old part first, so that there are never two in memory
             self._looked_at = None
-            if part.recording.whole is None:
-                seen = self.recording
-            else:
-                seen = mirrored_recording(part.recording) if self.mirrored else part.recording
-            self._looked_at = part, self._drives_of(seen, expected=part.egos)
-        found = self._looked_at[1].of(ego)
+            self._looked_at = self._look_at(part)
+        found = self._looked_at.of(ego)
         return map(_where_recorded, found) if self.mirrored else found
+
+    def _look_at(self, part: RecordingPart) -> _PartLookedAt:
+        if part.recording.whole is None:
+            seen = self.recording
+        else:
+            seen = mirrored_recording(part.recording) if self.mirrored else part.recording
+        drives = self._drives_of(seen, expected=part.egos)
+        if self._unknown_reach_m is None:
+            return _PartLookedAt(part, drives)
+        types = PossibleTypes(seen)
+        near = types.near(part.egos, self._unknown_reach_m)
+        others = [self._drives_of(other, expected=near) for other in types.recordings() if near]
+        return _PartLookedAt(part, drives, frozenset(near), others)
 
     def kinds(self) -> dict[str, type]:
         """The Python type of each signal, the same for all drives; empty if there is no drive."""
@@ -118,8 +159,12 @@ def selected_drives(
     vocabulary: Vocabulary | None = None,
     *,
     names: frozenset[str] | None = None,
+    possible_types: bool = False,
 ) -> SelectedDrives:
     """The drives of a recording in a vocabulary's words, for rules for a side of ``traffic``.
+
+    With ``possible_types`` they have the traces that there would be if participants of unknown type
+    had one that they may have.
 
     Raises RulecError R0612 for a vehicle that the recording does not contain, or if it has no
     vehicle that drives; R0502 or R0503 for an assumption that does not fit the vocabulary.
@@ -146,7 +191,10 @@ def selected_drives(
     drives_of = partial(Drives, side=side, thresholds=request.thresholds, writer=writer)
     if mirrored:
         recording = mirrored_recording(recording)
-    return SelectedDrives(recording, mirrored, egos, parts, drives_of)
+    in_doubt = possible_types and not request.defaults
+    # At junctions also those count that come on other roads
+    reach_m = 2 * request.thresholds.near_m if in_doubt else None
+    return SelectedDrives(recording, mirrored, egos, parts, drives_of, _unknown_reach_m=reach_m)
 
 
 def with_night_assumed(recording: Recording, assumed: Mapping[str, Value]) -> Recording:

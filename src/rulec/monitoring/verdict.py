@@ -182,10 +182,13 @@ def rule_for(result: Violation | OpenVerdict) -> RuleFor:
     return result.rule, tuple(result.binding.values())
 
 
-def agreed(verdicts: Sequence[Verdict]) -> Verdict:
-    """The common part of verdicts on one trace by rules with differently rounded bounds.
+def agreed(
+    verdicts: Sequence[Verdict], because: Reason = "step", depends_on: Sequence[str] = ()
+) -> Verdict:
+    """The common part of verdicts on one trace, by rules with differently rounded bounds.
 
-    Where they differ the verdict is open, because of the step.
+    Where they differ the verdict is open, because of the step; or they are on traces of which one
+    is the real one: then it is open for another reason, and ``depends_on`` has what decides which.
     """
     first, *others = verdicts
     violations = {rule_for(violation): violation for violation in first.violations}
@@ -195,11 +198,15 @@ def agreed(verdicts: Sequence[Verdict]) -> Verdict:
         further_open = {rule_for(result): result for result in verdict.open}
         for key in violations.keys() ^ further.keys():
             known = violations.get(key) or further[key]
-            doubtful[key] = OpenVerdict(known.rule, known.strength, known.binding, ("step",))
+            if key not in doubtful:
+                doubtful[key] = OpenVerdict(
+                    known.rule, known.strength, known.binding, (because,), tuple(depends_on)
+                )
         for key in doubtful.keys() ^ further_open.keys():
             known_open = doubtful.get(key) or further_open[key]
-            because = tuple(dict.fromkeys((*known_open.because, *_STEP)))
-            doubtful[key] = replace(known_open, because=because, outcomes=())
+            reasons = tuple(dict.fromkeys((*known_open.because, because)))
+            names = tuple(dict.fromkeys((*known_open.depends_on, *depends_on)))
+            doubtful[key] = replace(known_open, because=reasons, depends_on=names, outcomes=())
         violations = {
             key: replace(violation, step=_later(violation.step, further[key].step))
             for key, violation in violations.items()
@@ -208,7 +215,33 @@ def agreed(verdicts: Sequence[Verdict]) -> Verdict:
     return replace(first, violations=tuple(violations.values()), open=tuple(doubtful.values()))
 
 
-_STEP: tuple[Reason, ...] = ("step",)
+def agreed_by_type(known: Verdict, others: Sequence[tuple[Sequence[str], Verdict]]) -> Verdict:
+    """The common part of a verdict and of those if participants had types that they may have.
+
+    Where they differ the verdict is open, and depends on the types by which it does.
+    """
+    violations = {rule_for(violation): violation for violation in known.violations}
+    doubtful = {rule_for(result): result for result in known.open}
+    for types, other in others:
+        pair = agreed([known, other], "not told", types)
+        # Each time a part of those before, and where they agree no earlier
+        common = agreed([replace(known, violations=tuple(violations.values())), other])
+        violations = {rule_for(violation): violation for violation in common.violations}
+        for result in pair.open:
+            key = rule_for(result)
+            doubtful[key] = _either(doubtful.get(key, result), result)
+    return replace(known, violations=tuple(violations.values()), open=tuple(doubtful.values()))
+
+
+def _either(one: OpenVerdict, other: OpenVerdict) -> OpenVerdict:
+    if one is other:
+        return one
+    return replace(
+        one,
+        because=tuple(dict.fromkeys((*one.because, *other.because))),
+        depends_on=tuple(dict.fromkeys((*one.depends_on, *other.depends_on))),
+        outcomes=(),
+    )
 
 
 def _later(first: int | None, second: int | None) -> int | None:

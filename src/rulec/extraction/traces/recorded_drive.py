@@ -118,6 +118,8 @@ class Drive:
     that the recording supplies, whether or not there is any object to have them; ``decided_by`` has
     the numbers behind Boolean signals. ``places`` are where ego's middle is in each state. ``whom``
     has, for signals of the world, the ids of the participants that cause their value in each state.
+    ``otherwise`` is the trace if participants of unknown type near ego had a type that they may
+    have, once for each type.
     """
 
     __repr__ = short_repr
@@ -129,6 +131,7 @@ class Drive:
     decided_by: Mapping[str, DecidedBy] = field(default_factory=dict, compare=False)
     places: Sequence[Place] = field(default=(), compare=False)
     whom: Mapping[str, Sequence[tuple[str, ...]]] = field(default_factory=dict, compare=False)
+    otherwise: tuple[TraceArrays, ...] = field(default=(), compare=False, repr=False)
 
     @cached_property
     def trace(self) -> Trace:

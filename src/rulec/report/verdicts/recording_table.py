@@ -54,7 +54,9 @@ def _rule_counts(verdicts: RecordingVerdicts, tally: ViolationTally, width: int)
     if not tally.judged:
         return
     rules = verdicts.rules.rules
-    order = list(verdicts.rules.vocabulary.declarations)
+    vocabulary = verdicts.rules.vocabulary
+    # It may also depend on the types that participants of unknown type have
+    order = [*vocabulary.declarations, *vocabulary.types]
     judged = [rule for rule in rules if tally.judged_in[rule.name]]
     never = [rule for rule in rules if rule not in judged and rule.name not in tally.open_rules]
     some_open = [rule for rule in rules if rule.name in tally.open_rules]
