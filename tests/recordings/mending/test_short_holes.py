@@ -50,7 +50,7 @@ def test_what_is_missing_is_where_it_was(form, missing):
 
 def test_a_long_hole_stays():
     told = recording(braking([*range(5), *range(20, 30)]))
-    assert without_short_holes(told, 1.0) is told
+    assert without_short_holes(told, 1.0).participants is told.participants
 
 
 def test_who_jumps_was_nowhere_between():
@@ -74,3 +74,29 @@ def test_lamps_are_lit_that_are_lit_on_both_sides():
     body = replace(braking([0, 2, 4]), lamps=lamps)
     (filled,) = without_short_holes(recording(body), 1.0).participants
     assert filled.lamps == lamps | {1: frozenset({"brake_light"})}
+
+
+def of_kind(steps, kind="car", name="1"):
+    return replace(braking(steps), type=kind, id=name)
+
+
+def test_who_is_missing_for_longer_is_named():
+    """What it does meanwhile, such as a whole change of lanes, is in no drive."""
+    some = [k for k in range(40) if not 10 <= k < 25]
+    bodies = [of_kind(some, name=name) for name in "1234"]
+    (remark,) = without_short_holes(recording(*bodies, of_kind(range(40), name="5")), 1.0).remarks
+    assert remark == (
+        "4 vehicles are missing for more than 1 s on the way, and what happens meanwhile is not "
+        "judged: `1`, `2`, `3`, and 1 more"
+    )
+
+
+@pytest.mark.parametrize("kind", ["pedestrian", "unknown"])
+def test_who_has_no_drive_may_be_missing(kind):
+    some = [k for k in range(40) if not 10 <= k < 25]
+    assert without_short_holes(recording(of_kind(some, kind)), 1.0).remarks == ()
+
+
+def test_who_is_missing_for_a_moment_needs_no_remark():
+    some = [k for k in range(40) if not 10 <= k < 15]
+    assert without_short_holes(recording(of_kind(some)), 1.0).remarks == ()

@@ -215,7 +215,8 @@ def test_who_comes_back_after_a_second_is_another_one(tmp_path):
     assert (second.id, list(second.states), second.resumes) == ("7_2", [13, 14, 15], 2)
     (remark,) = (remark for remark in recording.remarks if "cut" in remark)
     assert remark == (
-        "1 track is cut at holes of more than 1 s, and what follows is another road user: `7`"
+        "1 track is cut at holes of more than 1 s, in which nothing is judged, and what follows is "
+        "another road user: `7`"
     )
 
 

@@ -9,13 +9,17 @@ import numpy as np
 from numpy import float64, int64, intp
 from numpy.typing import NDArray
 
+from rulec.recordings.mending.cut_tracks import missing_remark
 from rulec.recordings.mending.rows_of_states import moved_outline, rows_of, steps_of, with_mended
+from rulec.recordings.mending.track_jumps import DRIVERS
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Lamp, Participant, Recording, TrackState
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
 
 LONGEST_HOLE_S = 1.0
 """Who is missing for longer is another participant when it returns, unless told otherwise."""
+
+HOLES_WHY = f"holes of more than {LONGEST_HOLE_S:g} s, in which nothing is judged"
 
 _FASTER, _FASTER_MPS = 1.3, 3.0
 """The factor and difference by which a jump in a hole exceeds the speeds on both sides."""
@@ -28,10 +32,27 @@ def without_short_holes(recording: Recording, longest_s: float) -> Recording:
     """A recording without holes of tracks between two states at most ``longest_s`` apart.
 
     The added states are on the cubic through the two states before and the two after. None are
-    added if the participant jumped; lamps are lit in them only if they are lit on both sides.
+    added if the participant jumped; lamps are lit in them only if they are lit on both sides. A
+    remark names those who drive, and are missing for longer.
     """
     most = most_steps(longest_s, recording.step_s)
-    return with_mended(recording, lambda body: _filled(body, most, recording.step_s))
+    missing: list[str] = []
+
+    def filled(body: Participant) -> Participant:
+        if body.standing:
+            return body
+        steps = steps_of(body)
+        if len(steps) and steps[-1] - steps[0] >= len(steps):
+            if (np.diff(steps) > max(most, 1)).any() and not DRIVERS.isdisjoint(body.object_types):
+                missing.append(body.id)
+            return _filled(body, steps, most, recording.step_s)
+        return body
+
+    whole = with_mended(recording, filled)
+    if not missing:
+        return whole
+    remark = missing_remark(missing, longest_s)
+    return replace(whole, remarks=(*whole.remarks, remark))
 
 
 def most_steps(longest_s: float, step_s: float) -> int:
@@ -64,11 +85,10 @@ def holes_of(steps: NDArray[int64], rows: NDArray[float64], step_s: float) -> Tr
     return TrackHoles(holes[is_long], holes[jumped], holes[~is_long & ~jumped])
 
 
-def _filled(body: Participant, most: int, step_s: float) -> Participant:
-    steps = steps_of(body)
+def _filled(body: Participant, steps: NDArray[int64], most: int, step_s: float) -> Participant:
     apart = np.diff(steps)
     holes = ((apart > 1) & (apart <= most)).nonzero()[0]
-    if body.standing or not len(holes) or body.states.keys() != body.outlines.keys():
+    if not len(holes) or body.states.keys() != body.outlines.keys():
         return body
     track = body.states.track if isinstance(body.states, TrackStates) else None
     rows = rows_of(body)

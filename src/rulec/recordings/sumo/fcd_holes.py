@@ -11,7 +11,7 @@ from numpy import float64, int64, intp
 from numpy.typing import NDArray
 
 from rulec.recordings.mending.cut_tracks import cut_remark, first_ids
-from rulec.recordings.mending.short_holes import LONGEST_HOLE_S, TrackHoles, holes_of
+from rulec.recordings.mending.short_holes import HOLES_WHY, TrackHoles, holes_of
 
 _MOVING_MPS = 1.0
 """SUMO takes out vehicles that wait for too long; of one that moves, states are missing."""
@@ -47,7 +47,7 @@ class FcdHoles:
     def remarks(self) -> Iterator[str]:
         """What the recording says of them."""
         if self.cut:
-            yield cut_remark(self.cut, f"holes of more than {LONGEST_HOLE_S:g} s")
+            yield cut_remark(self.cut, HOLES_WHY)
         if self.jumped:
             yield cut_remark(self.jumped, "holes in which it jumps")
         if self.missing:

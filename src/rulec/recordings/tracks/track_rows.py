@@ -15,7 +15,7 @@ from rulec.diagnostics import RulecError, did_you_mean
 from rulec.recordings.encodings.table_columns import Columns, Texts
 from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.recordings.mending.cut_tracks import cut_remark
-from rulec.recordings.mending.short_holes import LONGEST_HOLE_S, most_steps
+from rulec.recordings.mending.short_holes import HOLES_WHY, LONGEST_HOLE_S, most_steps
 from rulec.recordings.mending.track_jumps import CUT_WHY, DRIVERS, jumps, parts_between
 from rulec.recordings.mending.wrong_places import (
     FARTHER_M,
@@ -355,7 +355,7 @@ class _Reading:
         if self.wrong:
             yield wrong_places_remark([*self.wrong], sum(self.wrong.values()))
         if self.cut:
-            yield cut_remark(self.cut, f"holes of more than {LONGEST_HOLE_S:g} s")
+            yield cut_remark(self.cut, HOLES_WHY)
         if self.jumped:
             yield cut_remark(self.jumped, CUT_WHY)
         usual = [unstated for unstated, _ in self.taken.most_common()]
