@@ -164,6 +164,14 @@ def test_cargo_has_nothing_to_say(tmp_path):
             assert done.returncode == 0, done.stderr.decode()
 
 
+def test_a_word_may_be_called_like_a_constant():
+    """Clippy wants no name twice in a field that has its constant's name."""
+    source = "rulebook u\nsignal UNKNOWN default false\nhard rule a { require never UNKNOWN }"
+    written = rust_source(layout_of(rulec.compile(rulec.parse_rulebook(source))))
+    assert "UNKNOWN: UNKNOWN" not in written
+    assert "Self { objects, UNKNOWN }" in " ".join(written.split())
+
+
 def test_the_report_stands_beside_it(tmp_path):
     if shutil.which("rustc") is None:
         pytest.skip("there is no Rust compiler")

@@ -230,7 +230,9 @@ def _field(item: Declaration, layout: MonitorLayout, kind: str) -> Iterator[str]
 
 def _inits(items: Iterable[Declaration], layout: MonitorLayout, *, defaults: bool) -> list[str]:
     names = layout.fields.identifiers
-    return [f"{names[item.name]}: {_init(item, defaults=defaults)}" for item in items]
+    inits = [(names[item.name], _init(item, defaults=defaults)) for item in items]
+    # A word may be called like a constant: clippy wants such a field without its value
+    return [name if name == value else f"{name}: {value}" for name, value in inits]
 
 
 def _init(item: Declaration, *, defaults: bool) -> str:
