@@ -82,6 +82,29 @@ def test_what_libraries_make_of_an_interrupt_is_one(error):
     assert ended(AN_ERROR_OF_ITS_OWN, error, *VERIFY) == (130, b"", b"rulec: interrupted")
 
 
+TERMINATED_IN_A_FINALIZER = """
+import os, signal, sys, time
+from rulec.cli import entry_point, main
+class Terminated:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(1)
+class Unfinished:
+    def __del__(self):
+        raise ValueError("write to closed file")
+def interrupted():
+    unfinished = Unfinished()
+    Terminated()
+    time.sleep(60)
+main.main = interrupted
+sys.exit(entry_point.run())
+"""
+
+
+def test_a_signal_to_end_where_nothing_can_be_raised():
+    assert ended(TERMINATED_IN_A_FINALIZER) == (143, b"", b"")
+
+
 ON_A_BUSY_MACHINE = """
 import threading, time
 start = threading.Thread.start

@@ -35,6 +35,10 @@ if TYPE_CHECKING:
     from sys import UnraisableHookArgs
 
 
+_leaving: list[int] = []
+"""The signals that have ended the program."""
+
+
 def run() -> int:
     """Run the command line as a process, and end the process with its exit status.
 
@@ -117,9 +121,15 @@ def _prepare() -> None:
 
 
 def _unraisable(problem: UnraisableHookArgs) -> None:
-    """Repeat an interrupt that came where nothing can be raised, such as in a finalizer."""
-    if not issubclass(problem.exc_type, KeyboardInterrupt):
-        sys.__unraisablehook__(problem)
+    """Repeat a signal that came where nothing can be raised, such as in a finalizer."""
+    if issubclass(problem.exc_type, KeyboardInterrupt):
+        number = int(signal.SIGINT)
+    elif _leaving and issubclass(problem.exc_type, SystemExit):
+        number = _leaving[-1]
+    else:
+        # What is left when the program is ended may be unfinished.
+        if not _leaving:
+            sys.__unraisablehook__(problem)
         return
     # Late import, rarely needed (3 ms).
     from threading import Timer, get_ident
@@ -127,8 +137,8 @@ def _unraisable(problem: UnraisableHookArgs) -> None:
     # Delayed, since nothing can be raised here either; on a busy machine not for long enough.
     for delay_s in (0.01, 0.1, 1.0):
         try:
-            Timer(delay_s, signal.pthread_kill, (get_ident(), signal.SIGINT)).start()
-        except KeyboardInterrupt:
+            Timer(delay_s, signal.pthread_kill, (get_ident(), number)).start()
+        except (KeyboardInterrupt, SystemExit):
             continue
         return
 
@@ -155,4 +165,5 @@ def _let_go_of(stream: TextIO) -> None:
 
 
 def _leave(number: int, _: FrameType | None) -> None:
+    _leaving.append(number)
     raise SystemExit(128 + number)
