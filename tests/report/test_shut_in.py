@@ -103,7 +103,7 @@ def test_who_is_in_the_way_is_named(tmp_path, capsys):
 def test_the_bounds_are_named_where_they_close_the_way(tmp_path, capsys):
     # 22 m to the rear of one that stands: from 20 m/s ego has come 18 m after 1 s, and 32 after 2
     file = tmp_path / "fast.toml"
-    ego = ROAD.replace("d = 0", 'd = 0\nspeed = 20\nbounds = "braking=4"')
+    ego = ROAD.replace("d = 0", 'd = 0\nspeed = 20\nbounds = "braking=4"').replace("60", "70")
     file.write_text(ego + CAR.format(name="c", s=54, speed=0))
     assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "1", "--json"]) == 1
     end = json.loads(capsys.readouterr().out)["dead_end"]
@@ -111,6 +111,26 @@ def test_the_bounds_are_named_where_they_close_the_way(tmp_path, capsys):
     assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "1"]) == 1
     text = capsys.readouterr().out
     assert "none leads on from between 1 s and 2 s within the bounds of ego's motion" in text
+
+
+def test_one_that_does_not_close_the_way_is_not_named(tmp_path, capsys):
+    """The road ends there, too: without the other there is no way either."""
+    file = tmp_path / "end.toml"
+    ego = ROAD.replace("d = 0", 'd = 0\nspeed = 20\nbounds = "braking=4"')
+    file.write_text(ego + CAR.format(name="c", s=54, speed=0))
+    assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "1", "--json"]) == 1
+    end = json.loads(capsys.readouterr().out)["dead_end"]
+    assert (end["last_s"], end["closed_by"]) == (1.0, [])
+
+
+def test_of_two_the_one_that_closes_the_way_is_named(tmp_path, capsys):
+    """From 20 m/s ego has come 32 m after 2 s, at 4 m/s²; without the near one that is enough."""
+    file = tmp_path / "two.toml"
+    ego = ROAD.replace("d = 0", 'd = 0\nspeed = 20\nbounds = "braking=4"').replace("60", "90")
+    cars = CAR.format(name="c", s=54, speed=0) + CAR.format(name="far", s=75, speed=0)
+    file.write_text(ego + cars)
+    assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "1", "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["dead_end"]["closed_by"] == ["c"]
 
 
 def test_no_way_within_bounds_leads_to_the_goal(tmp_path, capsys):

@@ -2,29 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from rulec.diagnostics import RulecError
 from rulec.partition.cell_graph import NavigationGraph
 from rulec.partition.navigation_graph import GraphOptions, has_way
-from rulec.scenario import Box
+from rulec.scenario import Box, Scenario
 from rulec.scenario.motion import swept
 from rulec.scenario.time_grid import MAX_LAYERS
 
 MOST_TIMES_FINER = 4
 """The step is divided by this at most, by halving, to find one that opens a way."""
 
+_MOST_TRIED = 12
+"""With more obstacles in the way it is not tried which of them close it."""
+
 
 @dataclass(frozen=True, slots=True)
 class DeadEnd:
     """The last layer that a path from the start reaches, and why none goes on.
 
-    ``closed_by`` are the obstacles that in the next layer sweep lanes within the cells reached, or
-    within ego's reach from there; empty if paths reach the last layer but no goal, or if the road
-    ends. ``opened_by`` are options of a graph, as typed on the command line, each of which alone
-    opens a way.
+    ``closed_by`` are obstacles that in the next layer sweep lanes within the cells reached, or
+    within ego's reach from there, and without which a path goes on; empty if paths reach the last
+    layer but no goal, or if something else ends them, such as the road's end. ``opened_by`` are
+    options of a graph, as typed on the command line, each of which alone opens a way.
     """
 
     layer: int
@@ -37,11 +40,37 @@ def dead_end(graph: NavigationGraph) -> DeadEnd | None:
     if graph.leads_to_a_goal:
         return None
     layer = graph.last_layer
-    closed = () if layer == len(graph.layers) - 1 else tuple(_closing(graph, layer))
+    is_last = layer == len(graph.layers) - 1
+    closed = () if is_last else _closing(graph, layer, tuple(_in_the_way(graph, layer)))
     return DeadEnd(layer, closed, tuple(_openings(graph)))
 
 
-def _closing(graph: NavigationGraph, layer: int) -> Iterator[str]:
+def _closing(graph: NavigationGraph, layer: int, in_the_way: Sequence[str]) -> tuple[str, ...]:
+    """Those of some obstacles that close the way; none if it ends without them, too."""
+    if not in_the_way or not _goes_on(graph, layer, in_the_way):
+        return ()
+    if not 1 < len(in_the_way) <= _MOST_TRIED:
+        return tuple(in_the_way)
+    # Those that have to be gone, if some may stay, and those that are enough to close the way.
+    gone, enough = list(in_the_way), list(in_the_way)
+    for name in in_the_way:
+        if _goes_on(graph, layer, fewer := [other for other in gone if other != name]):
+            gone = fewer
+        fewer = [other for other in enough if other != name]
+        if not _goes_on(graph, layer, [other for other in in_the_way if other not in fewer]):
+            enough = fewer
+    return tuple([name for name in in_the_way if name in gone or name in enough])
+
+
+def _goes_on(graph: NavigationGraph, layer: int, without: Collection[str]) -> bool:
+    """Whether some path goes on from a layer to the next, without some obstacles."""
+    obstacles = tuple([one for one in graph.scenario.obstacles if one.id not in without])
+    scenario = replace(graph.scenario, obstacles=obstacles, goal=None)
+    horizon = float(graph.step * (layer + 1))
+    return _opens(graph, {"horizon_s": horizon}, scenario)
+
+
+def _in_the_way(graph: NavigationGraph, layer: int) -> Iterator[str]:
     """Obstacles that in the next layer sweep lanes within the cells reached, or ahead of ego."""
     lanes = graph.scenario.road.lanes
     boxes = [box for i in graph.reached[layer] for box in _onward(graph, layer, i)]
@@ -87,7 +116,7 @@ def _openings(graph: NavigationGraph) -> Iterator[str]:
         yield "--bounds none"
 
 
-def _opens(graph: NavigationGraph, change: GraphOptions) -> bool:
+def _opens(graph: NavigationGraph, change: GraphOptions, scenario: Scenario | None = None) -> bool:
     options: GraphOptions = {
         "partition": graph.partition,
         "adjacency": graph.adjacency,
@@ -98,6 +127,6 @@ def _opens(graph: NavigationGraph, change: GraphOptions) -> bool:
         **change,
     }
     try:
-        return has_way(graph.scenario, **options)
+        return has_way(scenario or graph.scenario, **options)
     except RulecError:
         return False
