@@ -77,7 +77,7 @@ def page_of(books: Sequence[Book], asked: Situations) -> str:
         for book in books
     }
     rows = [
-        [escaped(title), *(cells[topic, book.name] for book in books)]
+        [f"{escaped(title)}: {code(topic)}", *(cells[topic, book.name] for book in books)]
         for topic, title in topics.items()
     ]
     head = ["topic", *(code(book.name) for book in books)]

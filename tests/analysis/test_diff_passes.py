@@ -33,7 +33,7 @@ from rulec.analysis.lineage.rule_lineage import (
 from rulec.analysis.shared_compilation import compile_shared
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import Atom, Binary, BinaryOperator
-from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.loader import load_rulebook, parse_rulebook
 from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.trace import Trace
 from rulec.witnesses.object_universe import Itself
@@ -416,3 +416,44 @@ def test_numbers_are_below_zero_where_nothing_else_shows_the_difference(
             if not isinstance(value, bool | str) and value < 0
         }
         assert numbers == set(below)
+
+
+OLD = (
+    "rulebook depot signal red, near default false hard rule slow { require never (red and near) }"
+)
+
+
+def test_editions_of_one_name_are_told_apart_by_their_files(tmp_path):
+    new = OLD.replace("(red and near)", "red")
+    books = []
+    for folder, text in (("old", OLD), ("new", new)):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "depot.rules").write_text(text)
+        books.append(load_rulebook(tmp_path / folder / "depot.rules"))
+    names = ["depot (old/depot.rules)", "depot (new/depot.rules)"]
+    diff = diff_rulebooks(*books)
+    assert [diff.first.name, diff.second.name] == names
+    ((forbids, allows, _),) = diff.tables(diff.pairs[0])
+    assert (forbids, allows) == (names[1], names[0])
+    matrix = comparison_matrix(books)
+    assert [book.name for book in matrix.books] == names
+    (rule,) = matrix.shared
+    assert (rule.relation(*names), rule.relation(*names[::-1])) == ("laxer", "stricter")
+
+
+def test_editions_without_files_are_numbered():
+    books = [parse_rulebook(OLD), parse_rulebook(OLD)]
+    assert [book.name for book in comparison_matrix(books).books] == ["depot (1)", "depot (2)"]
+
+
+def test_books_that_declare_a_type_differently_have_no_tables():
+    other = OLD.replace("signal", "type tram signal").replace(
+        "near default", "near(x: tram), other default"
+    )
+    one = parse_rulebook(other.replace("(red and near)", "red"))
+    two = parse_rulebook(
+        other.replace("type tram", "type rail type tram is rail").replace("(red and near)", "other")
+    )
+    diff = diff_rulebooks(one, two)
+    assert diff.pairs[0].comparison.undecided == "`tram` is a different type in the two"
+    assert list(diff.tables(diff.pairs[0])) == []

@@ -12,6 +12,7 @@ from rulec.analysis.diff.rule_comparison import compare
 from rulec.analysis.lint.conflict_search import conflict
 from rulec.analysis.lint.questions import RuleAnswers
 from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied_by
+from rulec.cli.main import main
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.trace import Trace
 from rulec.witnesses.undecided import UndecidedError
@@ -423,3 +424,27 @@ def test_inherited_rules_of_another_step_are_compared_at_one_step(tmp_path):
     path.write_text(f"rulebook own\nextends base\nstep 0.5 s\nhard rule s {{ {soon.format(1)} }}\n")
     (found,) = analyze(path)
     assert found.message == "rule `r` adds nothing: `s` forbids all that it forbids"
+
+
+def test_a_trace_with_the_objects_that_are_counted_can_be_an_example(tmp_path, capsys):
+    """What the other rulebook is said to forbid is a `reject` example that it has."""
+    (tmp_path / "base.rules").write_text(
+        "rulebook base\ntype lorry\nsignal near(x: lorry), p default false\n"
+        "hard rule r { require never (p and some x: lorry (not near(x))) }\n"
+        "hard rule s { require never some x: lorry (near(x)) }\n"
+    )
+    path = tmp_path / "example.rules"
+    path.write_text(
+        "rulebook example\nextends base\noverride rule r { unless near_by }\n"
+        "override rule s { unless p }\nsignal near_by default false\n"
+    )
+    notes = [note for one in analyze(path) if one.code == "R0806" for note in one.notes]
+    traces = [note.removeprefix("`base` forbids: ") for note in notes]
+    assert traces == ["(lorry1: lorry) { p and near_by }", "(lorry1: lorry) { near(lorry1) and p }"]
+    path.write_text(
+        "rulebook example\nextends base\nsignal near_by default false\n"
+        f'override rule r {{ reject "r" {traces[0]} }}\n'
+        f'override rule s {{ reject "s" {traces[1]} }}\n'
+    )
+    assert main(["test", str(path)]) == 0
+    assert "passed" in capsys.readouterr().out

@@ -256,6 +256,7 @@ SCOPES = "a scope is `initially`, `at start`, `throughout`, `at some point`, or 
 ONE_VALUE = "a state gives a quantity one value, such as `speed = 50 km/h`"
 LINES = [
     ("hard rule a { require p accept { x = –5 m } }", "–", "write `-`"),
+    ("hard rule a { require x < —5 m }", "—", "write `-`"),
     (
         "hard rule a { require p accept { p(v) = true } }",
         "true",

@@ -71,14 +71,18 @@ def trace_table(
 def trace_note(title: str, trace: Trace, rules: Sequence[AnalyzedRule]) -> tuple[str, ...]:
     """A note with the trace as a literal in the words of these rules.
 
-    ``{ behind(v); beside(v) and fog }``: omitted words have their defaults.
+    ``{ behind(v); beside(v) and fog }``: omitted words have their defaults. Objects for which the
+    rules have no variable come first, as in an example.
     """
     names = frozenset(name for analyzed in rules for name in declarations_read(analyzed.rule))
     vocabulary = rules[0].rulebook.vocabulary
     states = "; ".join(_state(state, trace, names, vocabulary) for state in trace.states)
     own = special_types(trace, [analyzed.rule for analyzed in rules])
     special = [f"{name}: {kind}" for name, kind in own.items()]
-    return (f"{title}{', for ' + named(special) if special else ''}: {{ {states} }}",)
+    variables = {variable.name for each in rules for variable in each.rule.variables}
+    others = [f"{name}: {kind}" for name, kind in trace.objects.items() if name not in variables]
+    objects = f"({', '.join(others)}) " if others else ""
+    return (f"{title}{', for ' + named(special) if special else ''}: {objects}{{ {states} }}",)
 
 
 def special_types(trace: Trace, rules: Iterable[CompiledRule]) -> dict[str, str]:

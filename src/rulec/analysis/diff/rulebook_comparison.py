@@ -11,6 +11,7 @@ from typing import Any
 
 from rulec.analysis.counterexample import declarations_read, shared_vocabulary
 from rulec.analysis.diff.rule_comparison import RuleComparison, RuleRelation, compare
+from rulec.analysis.diff.told_apart import told_apart
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory, ConstantKind
 from rulec.analysis.shared_compilation import at_one_step, compile_shared
 from rulec.analysis.trace_display import TraceTable, special_types, trace_table
@@ -125,6 +126,8 @@ class RulebookDiff(Rows):
 
     def tables(self, pair: RulePair) -> Iterator[tuple[str, str, TraceTable]]:
         """For each trace, the names of the forbidding and the allowing rulebook, and its table."""
+        if not (pair.comparison.first_forbids or pair.comparison.second_forbids):
+            return  # perhaps since the two have no vocabulary in common
         words = shared_vocabulary(self.first.vocabulary, self.second.vocabulary)
         names = declarations_read(pair.machines[0]) | declarations_read(pair.machines[1])
         books = self.first.name, self.second.name
@@ -194,6 +197,7 @@ def diff_rulebooks(
 
     Raises RulecError if a rule cannot be compiled.
     """
+    first, second = told_apart((first, second))
     ours, theirs = (rules_matching(book, patterns) for book in (first, second))
     others = {rule.name: rule for rule in second.rules}
     partners = {name: theirs[name] for name in theirs if name in ours and name not in paired}

@@ -16,7 +16,7 @@ _SIGNS: Final = {
     **dict.fromkeys(("≥", "⩾", ">=="), ">="),
     **dict.fromkeys(("≠", "<>", "!=="), "!="),
     **dict.fromkeys(("×", "·"), "*"),
-    **dict.fromkeys(("−", "–"), "-"),
+    **dict.fromkeys(("−", "–", "—", "‒", "―"), "-"),
     "÷": "/",
 }
 _IN_WORDS: Final[dict[tuple[str, ...], str]] = {
