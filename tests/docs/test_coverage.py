@@ -71,7 +71,7 @@ def test_cells_are_counted():
         "4 topics in 1 books are 4 cells: 1 whole (25 %), 1 in part (25 %), 1 silent with a reason "
         "(25 %), 1 nothing (25 %). Topics on which no book has a rule: 2."
     ) in page
-    assert "| Gaps: `gap` | ● |\n| Lamps: `lights` | ◐ es |\n| Signs: `signs` | – |\n" in page
+    assert "| Gaps: `gaps` | ● |\n| Lamps: `lights` | ◐ es |\n| Signs: `signs` | – |\n" in page
     assert "| Lanes: `lanes` | · |\n| **whole** | 1 |" in page
 
 
