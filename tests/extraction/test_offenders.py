@@ -9,8 +9,8 @@ import pytest
 
 import rulec
 from rulec.extraction.tracks.mirror import mirrored_recording
+from support.builders.crossroads import STEP_S, crossroads, driven
 
-STEP_S = 0.1
 KINDS = {"limit_mps": 36.0, "types": ("highway", "interstate", "mainCarriageWay")}
 MOTORWAY = [
     rulec.build_lanelet("near", [(0, 0), (2000, 0)], left_of="far", **KINDS),
@@ -21,52 +21,6 @@ COUNTRY = [
     rulec.build_lanelet("back", [(2000, 3.5), (0, 3.5)], limit_mps=28.0, types=("country",)),
 ]
 CROSSING = rulec.build_lanelet("walk", [(500, -8), (500, 12)], width=4.0, types=("crosswalk",))
-ARMS = {
-    "east": [("in_w", -200, -8), ("over", -8, 8), ("out_e", 8, 200)],
-    "west": [("in_e", 200, 8), ("back", 8, -8), ("out_w", -8, -200)],
-}
-
-
-def junction():
-    """A crossroads of roads with a lane each way; who comes along x has to give way."""
-    found = []
-    for name, y in (("east", -1.75), ("west", 1.75)):
-        for along in (True, False):
-            ids = [f"{lane}{'' if along else '_n'}" for lane, _, _ in ARMS[name]]
-            for k, (_, begin, end) in enumerate(ARMS[name]):
-                # Along y it is the same, turned to the left
-                line = [(begin, y), (end, y)] if along else [(-y, begin), (-y, end)]
-                signs = () if k else (("YIELD",) if along else ("PRIORITY",))
-                more = {"junction": "x"} if k == 1 else {}
-                ways = {"successors": ids[k + 1 : k + 2], "predecessors": ids[max(k - 1, 0) : k]}
-                found.append(
-                    rulec.build_lanelet(
-                        ids[k], line, signs=signs, types=("urban",), limit_mps=14.0, **ways, **more
-                    )
-                )
-    return found
-
-
-def driven(name, speeds, at, ys=((0, 0.0),), kind="car", lamp=None, along=True, seconds=20.0):
-    """A vehicle by times (s) with speeds (m/s), at a time and place (m), and its places across."""
-    t = np.arange(round(seconds / STEP_S)) * STEP_S
-    mps = np.interp(t, *zip(*speeds, strict=True))
-    way = np.concatenate(([0.0], np.cumsum((mps[1:] + mps[:-1]) / 2 * STEP_S)))
-    x = way + at[1] - np.interp(at[0], t, way)
-    y = np.interp(t, *zip(*ys, strict=True))
-    lamps = {"left_indicator": [False] * len(t), "right_indicator": [False] * len(t)}
-    lamps["hazard_lights"] = [False] * len(t)
-    if lamp:
-        lamps[lamp[0]] = [bool(lamp[1] <= one <= lamp[2]) for one in t]
-    place = (x, y) if along else (-y, x)
-    moves = np.hypot(np.gradient(x, STEP_S), np.gradient(y, STEP_S)) > 0.1
-    heading = np.where(moves, np.arctan2(np.gradient(y), np.gradient(x)), 0.0)
-    heading += 0.0 if along else np.pi / 2
-    return rulec.build_participant(
-        name, kind, t, *place, step_s=STEP_S, heading=heading, speed=mps, lamps=lamps
-    )
-
-
 def violated(lanes, bodies, book, side):
     """The rules that ego surely violates."""
     complete = ("YIELD", "PRIORITY", "STOP", "light", "arrivals")
@@ -100,8 +54,8 @@ def gives_no_way(offends):
     ego = driven("ego", [(0, 9.0), (4, 0.0), (8, 0.0), (14, 9.0)], (6, -11.0), [(0, -1.75)])
     speeds = [(0, 6.0), (9.0, 6.0), (10.8, 2.0), (13, 2.0), (15, 6.0)] if offends else [(0, 6.0)]
     at = (9.0, -19.0) if offends else (9.0, -90.0)
-    cycle = driven("cycle", speeds, at, [(0, -2.6)], "bicycle", along=False)
-    return junction(), [ego, cycle]
+    cycle = driven("cycle", speeds, at, [(0, -2.6)], "bicycle", turned=1)
+    return crossroads(), [ego, cycle]
 
 
 def stands_at_zebra(offends):

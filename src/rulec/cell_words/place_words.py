@@ -96,6 +96,7 @@ NEEDS_JUNCTION = frozenset(
         "conflict_from_left",
         "conflict_from_right",
         "conflict_with_rail",
+        "conflict_with_rail_from_side",
         "in_way_of_oncoming",
         "turns_in_way_of",
         "enters_roundabout",
@@ -115,7 +116,11 @@ NEEDS_JUNCTION = frozenset(
 NEEDS_CROSSING = frozenset({"crossing_use", "stopped_for_pedestrian", "nearest_to_crossing"})
 """Words that are the same everywhere on a road without pedestrian crossings."""
 
-_NEEDS_TYPE = {"emergency_vehicle_near": "emergency_vehicle", "conflict_with_rail": "rail_vehicle"}
+_NEEDS_TYPE = {
+    "emergency_vehicle_near": "emergency_vehicle",
+    "conflict_with_rail": "rail_vehicle",
+    "conflict_with_rail_from_side": "rail_vehicle",
+}
 """Word -> the type of participant without which it is False."""
 
 _AT_ZONE: Mapping[str, Any] = {"enters_junction": False, "turn": "straight_on"}

@@ -25,7 +25,8 @@ _EITHER = frozenset(
         *("arrived_together", "being_overtaken", "braking_hard", "broken_on_own_side"),
         *("built_up", "came_up_beside", "can_stop_at_once", "compulsory_roundabout"),
         "conflict_from_left",
-        *("conflict_from_right", "conflict_on_roundabout", "congested", "crosses_light_line"),
+        *("conflict_from_right", "conflict_on_roundabout", "conflict_with_rail_from_side"),
+        *("congested", "crosses_light_line"),
         *("crosses_side_road", "crosses_stop_line", "crossing_kind", "crossing_use"),
         *("crossing_zone", "dense_all_lanes", "distance_to_crossing", "divided", "ego_length"),
         *(

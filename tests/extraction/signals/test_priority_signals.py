@@ -595,6 +595,8 @@ def test_a_tram_comes_from_a_side_and_whether_it_has_the_order_of_all_is_open(
     road, heading, side, other, comes_s, conflict
 ):
     found = with_a_tram(on_tracks(road, "rail"), comes_s, heading=heading)
+    assert found.world["conflict_with_rail_from_side"][3] == conflict
+    assert not found.unknown["conflict_with_rail_from_side"].any()
     assert found.unknown[f"conflict_from_{side}"][3] == conflict
     assert not found.unknown[f"conflict_from_{other}"].any()
     assert not any(found.world[f"conflict_from_{x}"].any() for x in (side, other))
@@ -604,6 +606,7 @@ def test_a_tram_from_a_side_is_in_conflict_in_few_words_at_a_level_crossing():
     over = [replace(x, types=x.types | {"level_crossing"}) if x.id == "2" else x for x in EAST]
     found = with_a_tram(on_tracks(NORTH, "rail"), 2.5, way=over)
     assert found.world["conflict_with_rail"][3]
+    assert not found.world["conflict_with_rail_from_side"].any()
     assert not found.world["conflict_from_right"].any()
     assert not found.unknown["conflict_from_right"].any()
 
@@ -612,8 +615,9 @@ def test_a_tram_from_a_side_is_in_conflict_in_few_words_at_a_level_crossing():
 def test_a_tram_in_the_junction_on_no_way_of_it_may_be_in_conflict(x, unknown):
     """The map has no way across; 30 m farther on the tram is not in the junction."""
     found = with_a_tram([], 2.5, x=x)
-    assert not found.world["conflict_with_rail"].any()
-    assert found.unknown["conflict_with_rail"][3] == unknown
+    for word in ("conflict_with_rail", "conflict_with_rail_from_side"):
+        assert not found.world[word].any()
+        assert found.unknown[word][3] == unknown
 
 
 @pytest.mark.parametrize("step_s", [0.1, 0.5, 1.0])

@@ -55,7 +55,8 @@ from rulec.scenario.recorded.reference_line import turn
 
 _SIDES = (*FROM_SIDES, ONCOMING)
 _RING, _RAIL = "conflict_on_roundabout", "conflict_with_rail"
-_CONFLICTS = (*_SIDES, _RING, _RAIL)
+_RAIL_FROM_SIDE = "conflict_with_rail_from_side"
+_CONFLICTS = (*_SIDES, _RING, _RAIL, _RAIL_FROM_SIDE)
 _PRIORITY = frozenset({"PRIORITY", "RIGHT_OF_WAY"})
 _ROADS = ("unregulated_junction", "own_road_ends", "other_road_ends", "on_priority_road")
 
@@ -82,7 +83,7 @@ def _conflicts(context: DriveContext) -> SignalColumns:
     )
     whom, encounters = {name: nobody(context.states) for name in _CONFLICTS}, []
     trains = context.surroundings.tracks.of_type("rail_vehicle").any()
-    possible = [name for name in _CONFLICTS if trains or name != _RAIL]
+    possible = [x for x in _CONFLICTS if trains or x not in (_RAIL, _RAIL_FROM_SIDE)]
     for passage in own_passages(context):
         for met in _encounters(context, passage):
             encounters.append(met)
@@ -121,6 +122,7 @@ def _possible_conflicts(context: DriveContext, own: Passage, row: int, side: str
         yield from () if along and abs(turned) < least else (_RAIL,)
         if is_train(context, own, row):
             return
+        yield from () if along else (_RAIL_FROM_SIDE,)
     if not along or (side == ONCOMING and turns_far(context, own)):
         yield side
     way, ring = context.surroundings.passages.way(own), context.surroundings.ring(context.side)
@@ -314,7 +316,7 @@ def _kinds(
     """The kinds of conflict with another one whose way meets ego's, and whether each is sure.
 
     Whether one on rails, for which laws have an order of its own, also has that of all other
-    traffic laws differ; no train at a level crossing has.
+    traffic laws differ, so that it has words of its own; no train at a level crossing has.
     """
     on_rails = _is_on_rails(context, other.row)
     if on_rails:
@@ -328,6 +330,8 @@ def _kinds(
         unsure = settled is None or (not from_side and may_have_to_stop(context, own, other))
         if not settled:
             yield sides, not (unsure or on_rails)
+        if on_rails and from_side and not settled:
+            yield (_RAIL_FROM_SIDE,), not unsure
 
 
 def _sides(context: DriveContext, own: Passage, other: Passage) -> tuple[str, ...]:
