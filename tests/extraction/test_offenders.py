@@ -21,6 +21,8 @@ COUNTRY = [
     rulec.build_lanelet("back", [(2000, 3.5), (0, 3.5)], limit_mps=28.0, types=("country",)),
 ]
 CROSSING = rulec.build_lanelet("walk", [(500, -8), (500, 12)], width=4.0, types=("crosswalk",))
+
+
 def violated(lanes, bodies, book, side):
     """The rules that ego surely violates."""
     complete = ("YIELD", "PRIORITY", "STOP", "light", "arrivals")

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, get_args
 
 import numpy as np
 from numpy import intp
@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from rulec.cell_words.ego_boxes import EgoBoxes, Floats
 from rulec.cell_words.probe_drives import EVERY_M, LaneProbe, ProbeDrives
+from rulec.extraction.tracks.at_junctions.rings import ring_lanelets
+from rulec.recordings.recording import Side
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 
 Words: TypeAlias = dict[str, Any]
@@ -315,15 +317,20 @@ class SceneWords:
             for name in self._guarded
             if any(isinstance(value, Mapping) for value in self._values(name))
         }
-        if self.straight:
+        if self.straight and not self._has_rings:
             of_all |= dict.fromkeys(self.names & {"turns_in_way_of"}, False)
         return of_all
+
+    @cached_property
+    def _has_rings(self) -> bool:
+        return any(ring_lanelets(self.probes.recording, side) for side in get_args(Side))
 
     @cached_property
     def _guarded(self) -> frozenset[str]:
         names = frozenset[str]()
         if self.no_junction:
-            names |= NEEDS_JUNCTION
+            # Where a road leaves a ring there may be none
+            names |= NEEDS_JUNCTION - ({"turns_in_way_of"} if self._has_rings else set())
         if self.no_crossing:
             names |= NEEDS_CROSSING
         return names & self.names

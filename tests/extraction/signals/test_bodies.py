@@ -36,7 +36,7 @@ def gap(mps, other_mps, late_s, comes=None):
     through = context.surroundings.passages.of_row
     (own,), (foe,) = through[0], through[1]
     until = MEETS + round(2 * late_s) if comes is None else comes
-    return gap_s(context, (own, foe), (MEETS - 1, until))
+    return gap_s(context, (own.row, foe.row), (MEETS - 1, until))
 
 
 @given(st.floats(4, 14), st.floats(4, 14), st.floats(1.5, 3))

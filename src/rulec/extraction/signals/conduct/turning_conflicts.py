@@ -11,18 +11,18 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.conduct.beside_on_rings import (
+    ASIDE_M,
+    BEHIND_M,
+    LAPS_M,
+    cut_on_ring,
+)
 from rulec.extraction.signals.conduct.leaving_rings import crossed_on_ring
 from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_passages
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.extraction.tracks.tracks import Flags, Floats
-
-_BEHIND_M, _ASIDE_M = 30.0, 8.0
-"""A participant that goes on beside ego is at most this far behind it or aside when ego turns."""
-
-_LAPS_M = 0.25
-"""One that laps ego's side by at most this much may ride beside it: roads bend."""
 
 _BEFORE_M = 8.0
 _STRAIGHT_RAD = np.radians(30.0)
@@ -32,7 +32,7 @@ _CREEPS_MPS = 0.5
 @drive_by_drive
 def _turns_in_way_of(context: DriveContext) -> SignalColumns:
     met: Flags = np.zeros(context.relevant.shape, dtype=bool)
-    unsure = crossed_on_ring(context).copy()
+    unsure: Flags = crossed_on_ring(context) | cut_on_ring(context)
     least = np.radians(context.thresholds.turned_deg)
     ring = context.surroundings.ring(context.side)
     for passage in own_passages(context):
@@ -70,7 +70,7 @@ def _conflict(
     clear = to_left if towards > 0 else to_right
     behind = float(_in_frame(context, own.row, origin, heading)[0][begin] - along[begin])
     half = float(passages.lengths[own.row]) / 2
-    beside = -max(place, _LAPS_M) <= clear <= _ASIDE_M and -half <= behind <= _BEHIND_M
+    beside = -max(place, LAPS_M) <= clear <= ASIDE_M and -half <= behind <= BEHIND_M
     if not beside or abs(float(angle[begin])) > _STRAIGHT_RAD:
         return None
     crosses = _crossed(context, own, begin, (*origin, heading), float(left[begin]))

@@ -37,7 +37,7 @@ def collision(
     And by ``least_m`` more; also between it and the next one.
     """
     (ours, ours_at), (theirs, theirs_at) = (
-        _laid_out(context, passage, columns.start, columns.stop) for passage in (own, other)
+        _laid_out(context, passage.row, columns.start, columns.stop) for passage in (own, other)
     )
     _, here, there = np.intersect1d(ours_at, theirs_at, return_indices=True)
     if not len(here):
@@ -50,30 +50,24 @@ def collision(
     return int(ours_at[here[near]][overlap][0]) if overlap.any() else None
 
 
-def gap_s(
-    context: DriveContext, passages: tuple[Passage, Passage], columns: tuple[int, int]
-) -> float:
+def gap_s(context: DriveContext, rows: tuple[int, int], columns: tuple[int, int]) -> float:
     """How long (s) after ego's body another one is where ego's was: the post-encroachment time.
 
-    ``columns``: when ego and the other get to the place where their ways meet. Infinite if the
-    other's body is nowhere where ego's was before.
+    ``rows`` are ego's and the other's, ``columns`` when they get to the place where their ways
+    meet. Infinite if the other's body is nowhere where ego's was before.
     """
     step_s = context.recording.step_s
     begin, end = columns[0] - 1, columns[1] + ceil(_FOLLOWS_S / step_s)
-    (ours, ours_at), (theirs, theirs_at) = (
-        _laid_out(context, passage, begin, end) for passage in passages
-    )
+    (ours, ours_at), (theirs, theirs_at) = (_laid_out(context, row, begin, end) for row in rows)
     later, earlier = shapely.STRtree(ours).query(theirs, predicate="intersects")
     gaps = theirs_at[later] - ours_at[earlier]
     return float(gaps[gaps >= 0].min(initial=np.inf)) * step_s
 
 
-def _laid_out(
-    context: DriveContext, passage: Passage, begin: int, end: int
-) -> tuple[Floats, Floats]:
+def _laid_out(context: DriveContext, row: int, begin: int, end: int) -> tuple[Floats, Floats]:
     """A body's polygons between two columns, interpolated, and the columns of each."""
     tracks = context.surroundings.passages.tracks
-    outlines = tracks.participants[passage.row].outlines
+    outlines = tracks.participants[row].outlines
     parts = ceil(context.recording.step_s / _FINE_S)
     polygons, places = [], []
     for column in range(max(begin, 0), end):

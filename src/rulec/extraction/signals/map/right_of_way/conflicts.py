@@ -157,7 +157,8 @@ def _runs_into(
         return None
     if hit is None:
         briefly = (until - enters) * context.recording.step_s <= BEHIND_S
-        behind = gap_s(context, (own, other), (enters, until)) >= context.thresholds.yielding_s
+        late_s = gap_s(context, (own.row, other.row), (enters, until))
+        behind = late_s >= context.thresholds.yielding_s
         near_m = _CLEAR_M + 2 * context.tolerances.place_m
         if (briefly or behind) and not collide(context, own, other, there, -near_m):
             return None

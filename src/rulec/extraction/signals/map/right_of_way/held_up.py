@@ -107,7 +107,7 @@ def _held_up_until(
         own_reason = (
             not (train or late_s < _NEAR * limits.yielding_s)
             and _slows_for_itself(context, ego, other, first + decides, comes)
-            and gap_s(context, (own, other), (enters, comes)) >= limits.yielding_s
+            and gap_s(context, (own.row, other.row), (enters, comes)) >= limits.yielding_s
         )
         waits = _stands(context, other, moved_in) or own_reason
         return first, drove_on and not late and not waits
