@@ -34,6 +34,9 @@ def driven(number, x, y, heading=0.0, kind="car"):
     return vehicle(number, places, kind, heading=heading)
 
 
+OBSTACLE = driven(9, np.full(len(TIMES), 100.0), np.full(len(TIMES), -1.0))
+
+
 def ego(over_m=2.5):
     """Ego's middle is so far from its lane's middle as it goes past."""
     return driven(7, 10 * TIMES, np.where(OUT, over_m, 0.0))
@@ -50,8 +53,7 @@ def coming(room_m, brakes=(0.0, 0.0), y=4.0, mps=10.0, kind="car"):
 
 def scene(other, own=None, lanes=None):
     """Both, and a car that stands at the edge, which leaves 2 m of ego's lane."""
-    stands = driven(9, np.full(len(TIMES), 100.0), np.full(len(TIMES), -1.0))
-    return recording(lanes or two_ways(), [own or ego(), other, stands], step_s=STEP_S)
+    return recording(lanes or two_ways(), [own or ego(), other, OBSTACLE], step_s=STEP_S)
 
 
 def told(other, own=None, lanes=None):
@@ -77,8 +79,29 @@ def test_one_that_need_not_brake_so_hard(brakes, says):
 
 
 def test_one_that_is_far_away_or_stands():
-    assert set(told(coming(85, (5.0, 8.5)))) == {"False"}
+    assert set(told(coming(85))) == {"False"}
+    assert set(told(coming(110, (5.0, 8.5)))) == {"False"}
     assert set(told(coming(60, mps=0.0))) == {"False"}
+
+
+@pytest.mark.parametrize(
+    ("room_m", "brakes"),
+    # It would be there half a second after ego is back; or it got slower before ego was there, as
+    # from 10 to 7 m/s, with which it comes late enough
+    [(85, (5.0, 8.5)), (85, (2.0, 9.0)), (75, (1.5, 6.0)), (70, (2.0, 6.5))],
+)
+def test_one_that_brakes_for_no_reason_but_ego(room_m, brakes):
+    """It need not brake, for ego is back in time; whether it did so for ego is open."""
+    found = told(coming(room_m, brakes))
+    assert found == ["?" if out else "False" for out in OUT]
+
+
+def test_one_that_brakes_for_somebody_ahead():
+    """11 m ahead of it another one brakes, which may be for ego; this one has to brake for that."""
+    first = replace(coming(70, (2.0, 8.5)), id="6")
+    found = recording(two_ways(), [ego(), coming(85, (2.0, 8.5)), first, OBSTACLE], step_s=STEP_S)
+    rows = told_on_both_sides(oncoming_conflicts, found, ("1",))["holds_up_oncoming"]
+    assert sum("?" in map(str, row) for row in rows) == 1
 
 
 def test_one_that_ego_leaves_room_for():

@@ -3,7 +3,9 @@
 What decides is the situation when ego begins to be there, or the other vehicle is first seen:
 whether that vehicle, at its speed then, would meet ego in its way, and whether it could avoid that
 without braking harder than ``disturbing_mps2`` after its reaction time. A vehicle that already
-stands, or is so far away that gentle braking is enough, may let ego go first.
+stands, or is so far away that gentle braking is enough, may let ego go first. One that gets slower
+may do so for ego if it would have come less than ``yielding_s`` after ego was back, also if it had
+gone on as fast as up to 2 s before; but not if somebody is ahead of it.
 """
 
 from __future__ import annotations
@@ -29,6 +31,12 @@ _GOES_FIRST = "PRIORITY_OVER_ONCOMING"
 
 _ALONG_RAD = np.pi / 4
 """A vehicle at a larger angle to the road does not drive along it."""
+
+_BEFORE_S = 2.0
+"""Who sees that ego is about to go over the middle may brake so long (s) before it does."""
+
+_AHEAD_S, _AHEAD_M, _SAME_LANE_M = 2.0, 10.0, 1.5
+"""Somebody this near ahead, by time at its speed and by place beside that, may make one brake."""
 
 _SLOWED_MPS = 0.5
 """A vehicle that is slower by more afterwards may have had to brake."""
@@ -57,6 +65,8 @@ def _holds_up_oncoming(context: DriveContext) -> SignalColumns:
                 continue
             in_way = far[seen : stay.end] - near[row, seen]
             found = _has_to_brake(context, stay, (row, seen), in_way)
+            if found is None and _may_brake_for_ego(context, stay, (row, seen), near):
+                found = False
             if found is not None:
                 sure = found and stay.sure and seen == stay.first
                 (held if sure else perhaps)[row, stay.first : stay.end] = True
@@ -128,6 +138,31 @@ def _has_to_brake(
     if hard and (brakes or _touch(context, row, slice(seen, stay.end))):
         return _is_passed(context, row, slice(seen, stay.drive_end))
     return False if hard or slower else None
+
+
+def _may_brake_for_ego(
+    context: DriveContext, stay: _Stay, other: tuple[int, int], near: Floats
+) -> bool:
+    """Whether one that need not brake does get slower, and nobody ahead of it may be why.
+
+    ``near``: how far (m) each one's near side is beyond the middle, by state.
+    """
+    row, seen = other
+    limits, others, step_s = context.thresholds, context.extents, context.recording.step_s
+    begin = max(seen - round(_BEFORE_S / step_s), int(context.spans.first[seen]))
+    there = context.relevant[row, begin : seen + 1]
+    speeds = np.where(there, context.tracks.speed[row, begin : seen + 1], -np.inf)
+    fastest = begin + int(speeds.argmax())
+    speed, least = float(speeds.max()), _SLOWED_MPS + context.tolerances.speed_mps
+    if float(np.fmin.reduce(context.tracks.speed[row, fastest : stay.end])) >= speed - least:
+        return False
+    passed_s = (np.arange(seen, stay.end) - fastest) * step_s + limits.yielding_s
+    room = float(others.s_min[row, fastest]) - context.ego_extents.s_max[0, seen : stay.end]
+    if not (speed * passed_s >= room).any():
+        return False
+    ahead = others.s_min[row, fastest] - others.s_max[:, fastest]
+    close = (ahead > 0) & (ahead < speed * _AHEAD_S + _AHEAD_M)
+    return not (close & (np.abs(near[:, fastest] - near[row, fastest]) < _SAME_LANE_M)).any()
 
 
 def _closing(context: DriveContext, stay: _Stay, speed: float) -> float:
