@@ -1,6 +1,8 @@
 """What ego can drive is kept; sets of places and speeds hold what was sampled."""
 
 import random
+from dataclasses import replace
+from itertools import product
 
 import pytest
 from hypothesis import assume, given
@@ -9,7 +11,7 @@ from hypothesis import strategies as st
 from rulec import RulecError, load_scenario, navigation_graph
 from rulec.scenario import Box, ConstantAcceleration, Ego, MotionBounds, Obstacle, Road, Scenario
 from support.builders.recorded_data import RECORDINGS
-from support.generators.driven_motions import driven, paths_of
+from support.generators.driven_motions import cells_of, driven, paths_of
 from support.generators.random_scenarios import scenarios
 
 EMPTY = Scenario("empty", Road((-50.0, 500.0), (-2.0, 2.0, 6.0)), Ego(0.0, 0.0, speed=10.0))
@@ -100,6 +102,47 @@ def test_motions_in_all_recorded_scenes():
             chance = random.Random(file.stem)
             found += check_kept(scenario, scenario.ego.bounds, partition, chance, 2000)
     assert found > 1000
+
+
+BESIDE = list(product((-12.0, -2.0, 8.0), (17.0, 23.0), (-4.0, 6.0, 20.0), (14.0, 17.0, 20.0)))
+
+
+@pytest.mark.parametrize(("right", "slower", "left", "other"), BESIDE)
+def test_who_drives_on_beside_others_is_kept(right, slower, left, other):
+    """Nobody is in ego's lane; in a step it passes borders on both sides."""
+    beside = [
+        Obstacle(name, "vehicle", 4.5, 1.8, ConstantAcceleration(s, d, speed))
+        for name, s, d, speed in (("r", right, -3.5, slower), ("l", left, 3.5, other))
+    ]
+    ego = Ego(0.0, 0.0, 4.5, 1.8, speed=20.0, bounds=MotionBounds())
+    road = Road((-200.0, 600.0), (-5.25, -1.75, 1.75, 5.25))
+    scene = Scenario("beside", road, ego, tuple(beside), step_s=0.5, horizon_s=4.0)
+    graph = navigation_graph(scene, partition="fine", extent="clearance")
+    states = [(20.0 * 0.5 * p, 20.0, 0.0, 0.0) for p in range(9)]
+    assert paths_of(graph, states) is not None
+
+
+@given(scenarios(most=6), st.floats(0, 25), st.integers(0, 10**6))
+def test_motions_that_are_never_in_anybodys_way_are_kept(scenario, speed, seed):
+    """In each step they are only where nobody comes meanwhile: every one is a path."""
+    bounds, pieces = MotionBounds(speed=30.0, acceleration=4.0, braking=8.0), 10
+    start = replace(with_ego(scenario, bounds, speed, 0.0), goal=None)
+    try:
+        graph = navigation_graph(start, partition="fine")
+    except RulecError:
+        assume(False)
+    layers, chance = len(graph.layers), random.Random(seed)
+    for _ in range(5):
+        step = graph.step_s / pieces
+        states = driven(start.ego, bounds, step, pieces * (layers - 1) + 1, chance, pieces=1)
+        if all(_is_free(graph, k, pieces, s, d) for k, (s, _, d, _) in enumerate(states)):
+            assert paths_of(graph, states[::pieces]) is not None
+
+
+def _is_free(graph, k, pieces, s, d):
+    """Whether a place is in a cell, at the end of a layer also in one of that layer."""
+    ends = (k // pieces, (k - 1) // pieces) if k else (0,)
+    return all(cells_of(graph.layers[p], s, d) for p in {*ends})
 
 
 def test_a_motion_on_an_empty_road_is_bounded_by_hand():

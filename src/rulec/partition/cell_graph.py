@@ -9,7 +9,7 @@ from math import lcm
 from typing import TYPE_CHECKING
 
 from rulec.partition.cells.cell_links import AdjacencyName
-from rulec.partition.cells.cell_model import Cell, Layer, Reach
+from rulec.partition.cells.cell_model import Cell, Layer, Reach, passes_only
 from rulec.partition.cells.occupancy import Predicted
 from rulec.partition.cells.regions import LATERAL_OF, STATION_OF, ExtentName, PartitionName
 from rulec.scenario import MotionBounds, Obstacle, Scenario
@@ -153,12 +153,7 @@ class NavigationGraph:
         True if only the surface differs, or only ego's station relative to objects that stay in
         other lanes on the same side.
         """
-        here, there = self.layers[p].cells[i], self.layers[p + 1].cells[j]
-        before, after = here.signature, there.signature
-        changed = [name for name in before.keys() & after.keys() if before[name] != after[name]]
-        if here.surface == there.surface and not changed:
-            return False
-        return all(_keeps_its_side(before[name], after[name]) for name in changed)
+        return passes_only(self.layers[p].cells[i], self.layers[p + 1].cells[j])
 
     def _states(self, layer: Layer) -> tuple[State, ...]:
         signals = self.signals_of({name: self.objects[name] for name in layer.objects})
@@ -222,13 +217,6 @@ def valuation(cell: Cell, names: Sequence[str], code: bytes) -> State:
         "lateral": dict(zip(names, map(LATERAL_OF.__getitem__, code), strict=False)),
         "surface": cell.surface,
     }
-
-
-def _keeps_its_side(before: str | tuple[str, str], after: str | tuple[str, str]) -> bool:
-    """Whether ego is on the same side of an object both times, and never in its lane."""
-    if isinstance(before, str) or isinstance(after, str):
-        return False
-    return before[1] == after[1] != "same_lane"
 
 
 def _weights(margins: Margins, whole: int) -> tuple[tuple[int, ...], ...]:

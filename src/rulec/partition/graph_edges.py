@@ -5,6 +5,11 @@ and B° are adjacent or the same at p, and so are A' and B at p + 1. If B contin
 Otherwise it is a change, which stays open as long as the two cells remain adjacent: the longest run
 of layers back from (A, B°) and on from (A', B), following continuations. The 2019 paper names the
 quantity; this reading of it is ours.
+
+Within bounds of motion there may be more edges. Among many obstacles the cells are small, and ego
+crosses several borders in a step: to wherever it comes through so many cells of layer p. Which of
+them it can drive depends on its bounds. Such a change stays open as long as each of the borders on
+the way that stays open longest, without those by which ego only passes others.
 """
 
 from __future__ import annotations
@@ -14,18 +19,19 @@ from operator import itemgetter
 
 from rulec.partition.cell_graph import Edges, Margins
 from rulec.partition.cells import cell_links
-from rulec.partition.cells.cell_model import Layer
+from rulec.partition.cells.cell_model import Layer, passes_only
 
 _Runs = Sequence[Mapping[int, int]]
 """For each cell, its neighbours, each with the number of layers for which it has been one."""
 
 
 def edges(
-    layers: Sequence[Layer], onward: Sequence[cell_links.Links]
+    layers: Sequence[Layer], onward: Sequence[cell_links.Links], borders: int = 1
 ) -> tuple[tuple[Edges, ...], tuple[Margins, ...]]:
     """Successors of every cell and their margins, in layers.
 
-    ``onward[p]`` are the continuations from layer p to p + 1. The margin of staying is None.
+    ``onward[p]`` are the continuations from layer p to p + 1, ``borders`` how many borders ego may
+    cross in a step. The margin of staying is None.
     """
     back = [
         cell_links.inverse(links, len(after.cells))
@@ -33,6 +39,10 @@ def edges(
     ]
     so_far = _runs(layers, back)
     to_come = _runs(layers[::-1], onward[::-1])[::-1]
+    open_for = [
+        _open_for(*three, len(layers)) if borders > 1 else []
+        for three in zip(layers, so_far, to_come, strict=True)
+    ]
     successors: list[Edges] = []
     margins: list[Margins] = []
     for p, links in enumerate(onward):
@@ -42,6 +52,12 @@ def edges(
             before = _longest((run, links[origin]) for origin, run in so_far[p][a].items())
             after = _longest_of(to_come[p + 1][image] for image in continued)
             changes = {b: before[b] + after[b] for b in before.keys() & after.keys() - continued}
+            if borders > 1:
+                several = _longest(
+                    (run, links[near])
+                    for near, run in _widest(a, open_for[p], borders, len(layers)).items()
+                )
+                changes = {b: several[b] for b in several.keys() - continued} | changes
             reached = sorted({*continued, *changes})
             rows.append(tuple(reached))
             values.append(tuple([changes.get(b) for b in reached]))
@@ -73,6 +89,41 @@ def _runs(layers: Sequence[Layer], back: Sequence[cell_links.Links]) -> list[_Ru
     return runs
 
 
+def _open_for(layer: Layer, so_far: _Runs, to_come: _Runs, most: int) -> _Runs:
+    """For each cell its neighbours, each with the number of layers for which it is one in all.
+
+    It is ``most`` where ego only passes others.
+    """
+    return [
+        {
+            other: most
+            if passes_only(layer.cells[cell], layer.cells[other])
+            else run + to_come[cell][other] - 1
+            for other, run in row.items()
+        }
+        for cell, row in enumerate(so_far)
+    ]
+
+
+def _widest(cell: int, open_for: _Runs, borders: int, most: int) -> dict[int, int]:
+    """The cells across so many borders or fewer, each with the layers for which its way is open.
+
+    This is the shortest time for which one of the borders on a way is open, on the best way.
+    """
+    widest = {cell: most}
+    edge = [cell]
+    for _ in range(borders):
+        wider: dict[int, int] = {}
+        for one in edge:
+            so_wide = widest[one]
+            for other, run in open_for[one].items():
+                width = min(run, so_wide)
+                if width > widest.get(other, 0):
+                    widest[other] = wider[other] = width
+        edge = list(wider)
+    return widest
+
+
 def _longest_of(rows: Iterable[Mapping[int, int]]) -> dict[int, int]:
     """For each cell the longest of its runs."""
     longest: dict[int, int] = {}
@@ -92,8 +143,21 @@ def _longest(runs: Iterable[tuple[int, Iterable[int]]]) -> dict[int, int]:
     return longest
 
 
-def cells_after(cell: int, now: Layer, links: cell_links.Links, then: Layer) -> frozenset[int]:
+def _across_several(cell: int, now: Layer, links: cell_links.Links, borders: int) -> frozenset[int]:
+    """The successors of one cell, staying included, if ego may cross several borders in a step."""
+    near = edge = {cell}
+    for _ in range(borders):
+        edge = {other for one in edge for other in now.neighbours[one]} - near
+        near = near | edge
+    return frozenset[int]().union(*(links[one] for one in near))
+
+
+def cells_after(
+    cell: int, now: Layer, links: cell_links.Links, then: Layer, borders: int = 1
+) -> frozenset[int]:
     """The successors of one cell, staying included; ``links`` are the continuations."""
+    if borders > 1:
+        return _across_several(cell, now, links, borders)
     before = frozenset[int]().union(*(links[origin] for origin in now.neighbours[cell]))
     after = frozenset[int]().union(*(then.neighbours[image] for image in links[cell]))
     return links[cell] | (before & after)

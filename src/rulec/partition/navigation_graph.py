@@ -40,6 +40,9 @@ GENTLE, COMFORTABLE = 2.0, 4.0
 COMFORTABLE_S = Fraction(1, 8)
 """The shortest such step (s). The longest with a gentle path is used, else with a comfortable."""
 
+MOST_BORDERS = 4
+"""The most borders between the cells of `fine` that ego crosses in a step, within its bounds."""
+
 
 class GraphOptions(TypedDict, total=False):
     """The options of ``navigation_graph``; None is the same as leaving one out."""
@@ -152,6 +155,11 @@ class _Plan:
     extent: ExtentName
     bounds: MotionBounds | None
 
+    @property
+    def borders(self) -> int:
+        """How many borders of cells ego may cross in a step."""
+        return MOST_BORDERS if self.partition == "fine" and self.bounds is not None else 1
+
 
 def _planned(
     scenario: Scenario,
@@ -201,7 +209,7 @@ def _cut(plan: _Plan, times: Timing) -> NavigationGraph:
     first, *rest = _layers(plan, times, places)
     start = _start(plan, times, places, first.flat)
     layers = (first.layer, *(layer.layer for layer in rest))
-    steps = edges(layers, [layer.links for layer in rest])
+    steps = edges(layers, [layer.links for layer in rest], plan.borders)
     graph = _graph(plan, times, places, start=start, layers=layers, steps=steps)
     if plan.bounds is None:
         return graph
@@ -221,7 +229,7 @@ def _reached(plan: _Plan, times: Timing) -> NavigationGraph | None:
     start = _start(plan, times, places, first.flat)
     layers, successors, reached = [first.layer], [], {start}
     for _, layer, links in cut:
-        rows = {cell: cells_after(cell, layers[-1], links, layer) for cell in reached}
+        rows = {cell: cells_after(cell, layers[-1], links, layer, plan.borders) for cell in reached}
         reached = {after for row in rows.values() for after in row}
         successors.append(tuple([tuple(sorted(rows.get(cell, ()))) for cell in range(len(links))]))
         layers.append(layer)

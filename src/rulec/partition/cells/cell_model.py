@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -62,6 +62,28 @@ class Cell:
     def meets(self, region: Box) -> bool:
         """Whether the cell shares some area with the region."""
         return any(box.overlaps(region) for box in self.boxes)
+
+
+def passes_only(here: Cell, there: Cell) -> bool:
+    """Whether ego, going from one cell to the other, changes only the surface, or passes others.
+
+    These stay in other lanes on the same side; only ego's station relative to them differs.
+    """
+    if here.partition == "paper":
+        before, after = here.signature, there.signature
+        changed = any(before[name] != after[name] for name in before.keys() & after.keys())
+        return here.surface != there.surface and not changed
+    if here.objects == there.objects:
+        size = len(here.objects)
+        pairs: Iterable[tuple[int, int]] = zip(here.code[:size], there.code[:size], strict=True)
+    else:
+        own = dict(zip(there.objects, there.code, strict=False))
+        codes = zip(here.objects, here.code, strict=False)
+        pairs = ((code, own[name]) for name, code in codes if name in own)
+    changed_codes = [(before, after) for before, after in pairs if before != after]
+    if here.surface == there.surface and not changed_codes:
+        return False
+    return all(LATERAL_OF[x] == LATERAL_OF[y] != "same_lane" for x, y in changed_codes)
 
 
 @dataclass(frozen=True, slots=True)
