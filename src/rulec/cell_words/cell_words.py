@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from rulec.array_types import Flags
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.cell_words.conduct_words import CONDUCT, ConductWords
 from rulec.cell_words.ego_boxes import EgoBoxes, body_size, ego_boxes
@@ -28,7 +29,7 @@ from rulec.cell_words.place_words import (
 )
 from rulec.cell_words.probe_drives import ProbeDrives, probe_drives
 from rulec.cell_words.relation_words import FLOWS, RELATIONS, Relations
-from rulec.cell_words.road_frame import Flags, RoadFrame
+from rulec.cell_words.road_frame import RoadFrame
 from rulec.extraction.drive_context import KMH
 from rulec.extraction.recording_verdicts import names_read
 from rulec.extraction.selection import RequestedDrives, chosen_side

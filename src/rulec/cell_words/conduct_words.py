@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from rulec.cell_words.ego_boxes import EgoBoxes, Floats, column
+from rulec.array_types import Flags, Floats
+from rulec.cell_words.ego_boxes import EgoBoxes, column
 from rulec.cell_words.relation_words import BEHIND, BESIDE, IN_FRONT, LEFT, RIGHT, Relations
-from rulec.cell_words.road_frame import Flags, OthersNow, RoadFrame
+from rulec.cell_words.road_frame import OthersNow, RoadFrame
 from rulec.extraction.drive_context import KMH
 from rulec.extraction.signals.conduct.reason_signals import FOLLOWS_S, reach_at
 from rulec.extraction.signals.map.zone_signals import ROOM_M

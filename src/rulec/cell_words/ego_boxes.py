@@ -7,14 +7,12 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
-from numpy import float64
-from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.partition import NavigationGraph
 from rulec.partition.cells.cell_model import Layer, Reach
 from rulec.scenario import MotionBounds
 
-Floats: TypeAlias = NDArray[float64]
 Bounds: TypeAlias = tuple[Floats, Floats]
 """The least and the greatest values, a row for each cell."""
 

@@ -12,7 +12,7 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
-from rulec.cell_words.ego_boxes import Floats
+from rulec.array_types import Floats
 from rulec.cell_words.probe_drives import ProbeDrives
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.recordings.recording import Lanelet

@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from rulec.cell_words.ego_boxes import EgoBoxes, Floats, column
+from rulec.array_types import Flags, Floats
+from rulec.cell_words.ego_boxes import EgoBoxes, column
 from rulec.cell_words.place_words import LOOSE_M, Words, hull, lanes_of
 from rulec.cell_words.probe_drives import EVERY_M, ProbeDrives
-from rulec.cell_words.road_frame import Flags, LaneLight, RoadFrame
+from rulec.cell_words.road_frame import LaneLight, RoadFrame
 from rulec.extraction.drive_context import KMH
 from rulec.extraction.signals.map.line_signals import COLOURS, colour_at
 from rulec.extraction.signals.map.stop_lines import LINE_REACH_M

@@ -12,7 +12,8 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.cell_words.ego_boxes import EgoBoxes, Floats
+from rulec.array_types import Floats
+from rulec.cell_words.ego_boxes import EgoBoxes
 from rulec.cell_words.probe_drives import EVERY_M, LaneProbe, ProbeDrives
 from rulec.extraction.tracks.at_junctions.rings import ring_lanelets
 from rulec.recordings.recording import Side

@@ -10,8 +10,9 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from rulec.array_types import Floats
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.cell_words.ego_boxes import Floats, body_size
+from rulec.cell_words.ego_boxes import body_size
 from rulec.extraction.candidate_drives import CandidateDrives
 from rulec.extraction.presences import participant_called
 from rulec.extraction.recording_verdicts import names_read

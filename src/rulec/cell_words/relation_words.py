@@ -14,8 +14,9 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.cell_words.ego_boxes import Bounds, EgoBoxes, Floats, column
-from rulec.cell_words.road_frame import Flags, OthersNow, RoadFrame
+from rulec.array_types import Flags, Floats
+from rulec.cell_words.ego_boxes import Bounds, EgoBoxes, column
+from rulec.cell_words.road_frame import OthersNow, RoadFrame
 from rulec.extraction.drive_context import KMH
 from rulec.extraction.signals.flow_signals import TIMES_AS_FAST
 from rulec.extraction.signals.measured_numbers import LONGEST_S

@@ -6,13 +6,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, pairwise
-from typing import TypeAlias
 
 import numpy as np
-from numpy import bool_, intp
+from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.cell_words.ego_boxes import Floats
+from rulec.array_types import Flags, Floats
 from rulec.cell_words.lane_roads import lane_roads, linked_with
 from rulec.cell_words.probe_drives import ProbeDrives
 from rulec.extraction.drive_context import KMH
@@ -31,8 +30,6 @@ _PARTS = 4
 
 _BENDS = np.radians(USUAL.turned_deg - 15.0)
 """A way in a junction that turns by less than this goes straight on."""
-
-Flags: TypeAlias = NDArray[bool_]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

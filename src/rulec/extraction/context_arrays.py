@@ -11,11 +11,11 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
-from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import Side
 from rulec.trace.end_to_end import EndToEnd
 from rulec.trace.laid_out import LaidOut, columns_of, one_behind_the_other

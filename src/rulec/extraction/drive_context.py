@@ -11,13 +11,14 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.lane_sets import LaneSets, is_in
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.source_tolerances import Tolerances
 from rulec.extraction.tracks.surroundings import KMH as KMH
 from rulec.extraction.tracks.surroundings import Surroundings
-from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
+from rulec.extraction.tracks.tracks import Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Recording, Side
 from rulec.scenario.recorded.route import ways_on

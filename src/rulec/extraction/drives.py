@@ -12,6 +12,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.extraction.context_arrays import EgosOnRoad, drive_context, drives_context
 from rulec.extraction.recording_parts import egos_of
 from rulec.extraction.traces.recorded_drive import Drive
@@ -30,7 +31,7 @@ from rulec.extraction.tracks.road_extents import (
 from rulec.extraction.tracks.road_places import RoadPlaces, are_on_road, near_road, rows_in_reach
 from rulec.extraction.tracks.surroundings import BACKS_MPS, Surroundings
 from rulec.extraction.tracks.towed import towed_by
-from rulec.extraction.tracks.tracks import Flags, Tracks, tracks_of
+from rulec.extraction.tracks.tracks import Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.garbage_collection import no_garbage_collection
 from rulec.recordings.recording import Lanelet, Recording, Side

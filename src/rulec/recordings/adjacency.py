@@ -14,6 +14,7 @@ import shapely
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.array_types import Indices
 from rulec.diagnostics import first_of
 from rulec.recordings.recording import Lanelet, Points, Recording, Side, is_lane
 
@@ -39,8 +40,6 @@ _EVERY_M = 2.0
 _HAIR_M = 1e-6
 _LIKE = cos(radians(30))
 _NAMED = 3
-
-_Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +114,7 @@ class _Borders:
         self._along = np.cumsum(steps)
         self.lengths = self._along[self._last] - self._along[self._first]
 
-    def points(self, lines: _Indices, at: NDArray[float64]) -> Points:
+    def points(self, lines: Indices, at: NDArray[float64]) -> Points:
         """The points at places along some of the lines."""
         along = self._along[self._first[lines]] + np.clip(at, 0.0, self.lengths[lines])
         before = np.searchsorted(self._along, along, "right") - 1
@@ -125,14 +124,14 @@ class _Borders:
         points: Points = (1 - share) * self._points[before] + share * self._points[before + 1]
         return points
 
-    def may_reach(self, lines: _Indices, places: Points) -> NDArray[np.bool_]:
+    def may_reach(self, lines: Indices, places: Points) -> NDArray[np.bool_]:
         """Mask of places that may be within ``BORDER_M`` of a line, one line for each place."""
         bounds = shapely.bounds(self.lines)[lines]
         beyond = np.maximum(bounds[:, :2] - places, places - bounds[:, 2:])
         flags: NDArray[np.bool_] = beyond.max(axis=1) <= BORDER_M + _HAIR_M
         return flags
 
-    def directions(self, lines: _Indices, at: NDArray[float64]) -> Points:
+    def directions(self, lines: Indices, at: NDArray[float64]) -> Points:
         """The directions there, from a metre before to a metre after."""
         steps = self.points(lines, at + 1) - self.points(lines, at - 1)
         directions: Points = steps / np.maximum(np.hypot(*steps.T), 1e-9)[:, None]
@@ -140,7 +139,7 @@ class _Borders:
 
 
 def _near(
-    lines: _Borders, ones: _Indices, others: _Borders, second: _Indices, *, sense: int = 1
+    lines: _Borders, ones: Indices, others: _Borders, second: Indices, *, sense: int = 1
 ) -> NDArray[float64]:
     """The share of each line along which the other line coincides and leads the same way.
 

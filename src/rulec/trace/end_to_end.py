@@ -12,11 +12,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy import bool_, intp
+from numpy import intp
 from numpy.typing import NDArray
 
-_Flags = NDArray[bool_]
-_Columns = NDArray[intp]
+from rulec.array_types import Flags, Indices
 
 
 class UnlikeDrivesError(Exception):
@@ -53,43 +52,43 @@ class EndToEnd:
         return tuple(map(slice, self.bounds[:-1], self.bounds[1:]))
 
     @cached_property
-    def lengths(self) -> _Columns:
+    def lengths(self) -> Indices:
         """The number of states of each drive."""
         return np.array(self.bounds[1:], dtype=intp) - self.begins
 
     @cached_property
-    def columns(self) -> _Columns:
+    def columns(self) -> Indices:
         """All columns."""
         return np.arange(self.n_states)
 
     @cached_property
-    def begins(self) -> _Columns:
+    def begins(self) -> Indices:
         """The first column of each drive."""
         return np.array(self.bounds[:-1], dtype=intp)
 
     @cached_property
-    def number(self) -> _Columns:
+    def number(self) -> Indices:
         """The index of the drive, by column."""
         return np.arange(self.n_drives).repeat(self.lengths)
 
     @cached_property
-    def first(self) -> _Columns:
+    def first(self) -> Indices:
         """The first column of the drive, by column."""
         return self.spread(self.begins)
 
     @cached_property
-    def end(self) -> _Columns:
+    def end(self) -> Indices:
         """The column after the drive's last one, by column."""
         return self.spread(self.begins + self.lengths)
 
     @cached_property
-    def begins_here(self) -> _Flags:
+    def begins_here(self) -> Flags:
         """Mask of the columns in which drives begin."""
         flags = np.zeros(self.n_states, dtype=bool)
         flags[self.begins] = True
         return flags
 
-    def latest(self, flags: _Flags) -> _Columns:
+    def latest(self, flags: Flags) -> Indices:
         """For each column, the last up to it with a flag; if none, the one before the drive."""
         # Repeating a value for each gap between flags is faster than searching state by state
         edges = np.concatenate(((-1,), flags.ravel().nonzero()[0], (flags.size,)))
@@ -98,7 +97,7 @@ class EndToEnd:
         latest = self._in_rows(edges[:-1].repeat(lengths), flags)
         return np.maximum(latest, self.first - 1, out=latest)
 
-    def next_state(self, flags: _Flags, beyond: int = 0) -> _Columns:
+    def next_state(self, flags: Flags, beyond: int = 0) -> Indices:
         """For each state the column of the first state, from it on, where a flag holds.
 
         If there is none in its drive, the column after the drive's last one plus ``beyond``.
@@ -112,25 +111,25 @@ class EndToEnd:
             return np.where(states < self.end, states, self.end + beyond)
         return np.minimum(states, self.end, out=states)
 
-    def _in_rows(self, places: NDArray[intp], flags: _Flags) -> _Columns:
+    def _in_rows(self, places: NDArray[intp], flags: Flags) -> Indices:
         """Columns within each row, from indices in the flattened array."""
         if flags.ndim == 1:
             return places
         begins = np.arange(0, flags.size, self.n_states).reshape(*flags.shape[:-1], 1)
         return places.reshape(flags.shape) - begins
 
-    def within(self, flags: _Flags, steps: int, *, around: bool = False) -> _Flags:
+    def within(self, flags: Flags, steps: int, *, around: bool = False) -> Flags:
         """Mask of states with a flag then or up to ``steps`` later; ``around``: or earlier."""
         if not flags.any():
             return flags
-        soon: _Flags = flags & (steps >= 0)
+        soon: Flags = flags & (steps >= 0)
         for shift, is_inside in self._shifts(steps):
             soon[..., :-shift] |= soon[..., shift:] & is_inside
         return soon | self.within_last(flags, steps) if around else soon
 
-    def within_last(self, flags: _Flags, steps: int) -> _Flags:
+    def within_last(self, flags: Flags, steps: int) -> Flags:
         """Mask of states where a flag holds then or up to ``steps`` states earlier."""
-        held: _Flags = flags & (steps >= 0)
+        held: Flags = flags & (steps >= 0)
         for shift, is_inside in self._shifts(steps):
             held[..., shift:] |= held[..., :-shift] & is_inside
         return held
@@ -143,7 +142,7 @@ class EndToEnd:
             most[..., shift:] = np.where(is_inside, np.maximum(earlier, later), later)
         return most
 
-    def _shifts(self, steps: int) -> Iterator[tuple[int, _Flags]]:
+    def _shifts(self, steps: int) -> Iterator[tuple[int, Flags]]:
         """Shifts, doubling, that together join each state with ``steps`` states on one side of it.
 
         With each comes a mask of the pairs of columns that far apart that belong to the same drive.
@@ -171,30 +170,30 @@ class EndToEnd:
         shifted[..., -1] = values[..., -1]
         return shifted
 
-    def enters(self, flags: _Flags) -> _Flags:
+    def enters(self, flags: Flags) -> Flags:
         """Mask of states where a flag holds, but not one state earlier; never a drive's first."""
-        entered: _Flags = flags & ~self.before(flags)
+        entered: Flags = flags & ~self.before(flags)
         return entered
 
-    def changes(self, values: NDArray[Any]) -> _Flags:
+    def changes(self, values: NDArray[Any]) -> Flags:
         """Mask of states whose value differs from the previous one; never a drive's first state."""
-        changed: _Flags = values != self.before(values)
+        changed: Flags = values != self.before(values)
         return changed
 
-    def any(self, flags: _Flags) -> _Flags:
+    def any(self, flags: Flags) -> Flags:
         """Whether a flag holds in any state of a drive, by column."""
         return self.spread(np.logical_or.reduceat(flags, self.begins, axis=-1))
 
-    def all(self, flags: _Flags) -> _Flags:
+    def all(self, flags: Flags) -> Flags:
         """Whether a flag holds in all states of a drive, by column."""
         return self.spread(np.logical_and.reduceat(flags, self.begins, axis=-1))
 
-    def count_of_last(self, flags: _Flags, steps: int) -> _Columns:
+    def count_of_last(self, flags: Flags, steps: int) -> Indices:
         """In how many of the ``steps`` states up to and including each one a flag holds."""
         sums = np.zeros((*flags.shape[:-1], self.n_states + 1), dtype=intp)
         flags.cumsum(axis=-1, out=sums[..., 1:])
         since = np.maximum(self.columns + 1 - steps, self.first)
-        counts: _Columns = sums[..., 1:] - sums[..., since]
+        counts: Indices = sums[..., 1:] - sums[..., since]
         return counts
 
     def each(self, function: Callable[[slice], NDArray[Any]], axis: int = -1) -> NDArray[Any]:
@@ -213,7 +212,7 @@ class EndToEnd:
         """Values of the drives, repeated in all columns of each."""
         return np.asarray(values).repeat(self.lengths, axis=-1)
 
-    def those(self, drives: _Flags) -> Iterator[tuple[int, slice]]:
+    def those(self, drives: Flags) -> Iterator[tuple[int, slice]]:
         """The index and the columns of each drive marked in ``drives``, a mask by column."""
         for number in drives[self.begins].nonzero()[0].tolist():
             yield number, self.slices[number]

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.trace.trace_columns import Array
 from rulec.trace.trace_model import Ending, Trace
 from rulec.value_display import short_repr
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
-Flags = NDArray[np.bool_]
 Places = NDArray[np.intp] | Flags | slice
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
@@ -14,7 +15,6 @@ from rulec.extraction.signals.ego_lanelets import own_lanelets, travel_lanes
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.lane_sets import is_in
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct
 

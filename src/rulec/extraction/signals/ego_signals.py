@@ -9,6 +9,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
     on_both_halves,
@@ -25,7 +26,6 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.track import TrackOutlines
 from rulec.trace.plain_arrays import medians
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import travel_lanes_first
@@ -28,7 +29,6 @@ from rulec.extraction.signals.queues import (
 )
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.tracks import Flags
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import medians_hold
 

@@ -9,12 +9,12 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import SHOULDER, map_contents
 from rulec.extraction.signals.measured_numbers import own_widths
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Lanelet, LaneMark, is_lane
 from rulec.scenario.recorded.route import lanelet_area

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import Bounds, rounded_outward
 from rulec.extraction.tracks.road_extents import RoadExtents
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
 
 _NEXT_TO_M = 5.0

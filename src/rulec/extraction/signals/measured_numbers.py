@@ -9,11 +9,11 @@ from math import ceil
 
 import numpy as np
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import Bounds, rounded_outward
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.cells import Cells
 

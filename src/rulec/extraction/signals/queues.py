@@ -15,12 +15,12 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import travel_lanes_first
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import medians_hold
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
-from rulec.extraction.tracks.tracks import Flags
 from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
 from rulec.trace.plain_arrays import distinct

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.tracks import Flags
+from rulec.array_types import Flags
 from rulec.trace.plain_arrays import are_new
 
 SignalColumn = NDArray[Any]

@@ -11,7 +11,7 @@ from typing import NamedTuple, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.tracks import Floats
+from rulec.array_types import Floats
 from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
 from rulec.trace import Trace

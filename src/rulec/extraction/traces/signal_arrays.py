@@ -10,8 +10,8 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
-from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.paper_words import PAPER_SURFACE
 from rulec.trace import Value
 from rulec.trace.end_to_end import EndToEnd, UnlikeDrivesError

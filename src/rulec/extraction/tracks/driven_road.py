@@ -11,8 +11,8 @@ import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.extraction.tracks.matching.driven_route import pieces_of
-from rulec.extraction.tracks.tracks import Floats
 from rulec.recordings.recording import LIMIT_SIGN, Lanelet, Points, Recording
 from rulec.scenario.recorded.junction_lanelets import marks_junctions
 from rulec.scenario.recorded.lane_coordinates import (

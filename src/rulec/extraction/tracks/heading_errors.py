@@ -11,6 +11,7 @@ from math import comb, sqrt
 
 import numpy as np
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.recording_parts import (
     ENOUGH_DIFFERENCES,
     MOVES_M,
@@ -18,7 +19,7 @@ from rulec.extraction.recording_parts import (
     order_of_differences,
 )
 from rulec.extraction.tracks.source_tolerances import MOST_SIGMAS
-from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
+from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.recording import WholeRecording
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.plain_arrays import median

@@ -9,8 +9,8 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.tracks.road_extents import RoadExtents
-from rulec.extraction.tracks.tracks import Flags, Floats
 
 LaneSets: TypeAlias = NDArray[Any]
 """Sets of lanes as whole numbers: bit ``k`` is set if lane ``k`` is in the set."""

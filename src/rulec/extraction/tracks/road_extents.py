@@ -18,8 +18,9 @@ import numpy as np
 from numpy import int8, intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.tracks import Floats, Tracks
+from rulec.extraction.tracks.tracks import Tracks
 from rulec.scenario.recorded.lane_coordinates import outline_bounds
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.cells import Cells

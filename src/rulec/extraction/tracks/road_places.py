@@ -10,10 +10,11 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.lane_sets import LaneSets, lane_sets, lanes_touched
 from rulec.extraction.tracks.road_extents import RoadExtents, and_row
-from rulec.extraction.tracks.tracks import Flags, Tracks
+from rulec.extraction.tracks.tracks import Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.trace.cells import Cells
 

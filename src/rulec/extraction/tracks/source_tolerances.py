@@ -10,17 +10,13 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TypeAlias
 
 import numpy as np
-from numpy import float64
-from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.extraction.recording_parts import whole_recording
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.recordings.recording import Recording, Rounding, StatedError, WholeRecording
-
-Floats: TypeAlias = NDArray[float64]
 
 
 @dataclass(frozen=True, slots=True)

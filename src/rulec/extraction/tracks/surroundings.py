@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 import shapely
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.recording_parts import whole_recording
 from rulec.extraction.tracks.at_junctions.junction_passages import (
     JunctionPassages,
@@ -17,7 +18,7 @@ from rulec.extraction.tracks.at_junctions.junction_passages import (
 from rulec.extraction.tracks.at_junctions.rings import ring_lanelets
 from rulec.extraction.tracks.heading_errors import head_as_they_move, heading_errors
 from rulec.extraction.tracks.source_tolerances import Tolerances, tolerances_of
-from rulec.extraction.tracks.tracks import Flags, Floats, ObjectTypes, Tracks
+from rulec.extraction.tracks.tracks import ObjectTypes, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import HEADINGS, Lanelet, Recording, Side, WholeRecording, is_lane
 from rulec.scenario.recorded.reference_line import turn

@@ -6,7 +6,8 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.tracks import Flags, Tracks
+from rulec.array_types import Flags
+from rulec.extraction.tracks.tracks import Tracks
 
 _DRAWBAR_M = 1.5
 """A towed body is no farther (m) behind the vehicle that tows it."""

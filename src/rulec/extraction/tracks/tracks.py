@@ -10,12 +10,13 @@ from copy import copy
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from operator import itemgetter
-from typing import Any, TypeAlias, cast
+from typing import Any, cast
 
 import numpy as np
-from numpy import bool_, float64, intp
+from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.recording_parts import looked_at
 from rulec.extraction.tracks.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.track_motion import Poses, motion_of
@@ -34,9 +35,6 @@ from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.laid_out import LaidOut
 from rulec.trace.plain_arrays import zero_if_nan
-
-Floats: TypeAlias = NDArray[float64]
-Flags: TypeAlias = NDArray[bool_]
 
 
 class ObjectTypes:

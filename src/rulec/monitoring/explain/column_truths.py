@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.logic.fold import Algebra, fold
@@ -22,7 +23,7 @@ from rulec.monitoring.uncertainty.one_completion import (
     Supposed,
     number_at,
 )
-from rulec.trace.trace_arrays import Flags, TraceArrays
+from rulec.trace.trace_arrays import TraceArrays
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import Interval
 from rulec.vocabulary.vocabulary_model import default_value

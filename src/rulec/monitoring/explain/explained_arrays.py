@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import overload
 
+from rulec.array_types import Flags
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in, reads_in
@@ -27,7 +28,7 @@ from rulec.monitoring.uncertainty.one_completion import (
 )
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import Violation
-from rulec.trace.trace_arrays import Flags, TraceArrays
+from rulec.trace.trace_arrays import TraceArrays
 from rulec.vocabulary import Vocabulary
 
 

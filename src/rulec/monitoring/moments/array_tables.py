@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.monitoring.moments.name_tables import NameTables, ValueRows, default_of
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Enumeration, Vocabulary
-
-Flags = NDArray[np.bool_]
 
 
 class ArrayTables(NameTables):

@@ -9,10 +9,11 @@ from typing import Literal
 
 import numpy as np
 
+from rulec.array_types import Flags
 from rulec.automata.thresholds import exact_step
 from rulec.logic.bounds import NotAMultipleError, in_steps
 from rulec.logic.formula import Formula
-from rulec.monitoring.moments.stretches import Flags, stretches_of
+from rulec.monitoring.moments.stretches import stretches_of
 from rulec.monitoring.moments.trace_truth import (
     ReadyFormula,
     TraceTruth,

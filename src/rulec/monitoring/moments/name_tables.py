@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.automata.thresholds import EXACT_IN_FLOATS
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.trace_groups import group_traces
@@ -24,8 +25,6 @@ from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 from rulec.vocabulary.vocabulary_model import least_value
 from rulec.vocabulary.written_numbers import WrittenNumber
-
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rulec.monitoring.moments.name_tables import Flags, NameTables
+from rulec.array_types import Flags
+from rulec.monitoring.moments.name_tables import NameTables
 from rulec.vocabulary import Enumeration, Signal
 
 MOTORWAY, BUILT_UP, OUTSIDE = "motorway", "built-up", "outside"

@@ -9,6 +9,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.array_types import Indices
 from rulec.automata.thresholds import ThresholdScale
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN
@@ -23,9 +24,6 @@ from rulec.monitoring.moments.truth_rows import RowStretches, TruthRows, known
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Enumeration
 
-Places = NDArray[np.intp]
-"""Object numbers in the tables' order, one per row, or one for all rows."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RowEvaluation:
@@ -38,11 +36,11 @@ class RowEvaluation:
     """
 
     tables: NameTables
-    spans: Places
+    spans: Indices
     stretches: RowStretches
-    states: Places
+    states: Indices
     comparisons: dict[int, ComparisonSides]
-    trace: Places | None = None
+    trace: Indices | None = None
 
     @property
     def n_states(self) -> int:
@@ -57,7 +55,7 @@ class RowEvaluation:
             return False
         return int(self.states[-1]) == n_states - 1
 
-    def of(self, formula: ltl.Formula, bound: Mapping[str, Places]) -> TruthRows:
+    def of(self, formula: ltl.Formula, bound: Mapping[str, Indices]) -> TruthRows:
         """The truth of a formula.
 
         ``bound`` has the objects of its variables, per row or for all rows.
@@ -81,7 +79,7 @@ class RowEvaluation:
             case ltl.Binary():
                 return self._binary(formula, bound)
 
-    def _binary(self, formula: ltl.Binary, bound: Mapping[str, Places]) -> TruthRows:
+    def _binary(self, formula: ltl.Binary, bound: Mapping[str, Indices]) -> TruthRows:
         first = self.of(formula.left, bound)
         match formula.operator:
             case ltl.BinaryOperator.AND:
@@ -114,7 +112,7 @@ class RowEvaluation:
         shape = len(truth.sure), self.n_states
         return TruthRows(np.broadcast_to(truth.sure, shape), np.broadcast_to(truth.possible, shape))
 
-    def _atom(self, atom: ltl.Atom, bound: Mapping[str, Places]) -> TruthRows:
+    def _atom(self, atom: ltl.Atom, bound: Mapping[str, Indices]) -> TruthRows:
         rows = self._rows(atom.name, atom.arguments, bound)
         values = rows.values
         declaration = self.tables.vocabulary.declarations[atom.name]
@@ -124,7 +122,7 @@ class RowEvaluation:
         return TruthRows(values & ~rows.unknown, values | rows.unknown)
 
     def _rows(
-        self, name: str, arguments: tuple[str, ...], bound: Mapping[str, Places]
+        self, name: str, arguments: tuple[str, ...], bound: Mapping[str, Indices]
     ) -> ValueRows:
         """The values of a name for the objects of variables."""
         tables = self.tables
@@ -136,7 +134,7 @@ class RowEvaluation:
         several = np.broadcast_arrays(*[bound[argument] for argument in arguments])
         return tables.about_several(name, np.stack(several, axis=1)).at(states=states)
 
-    def _comparison(self, comparison: ltl.Comparison, bound: Mapping[str, Places]) -> TruthRows:
+    def _comparison(self, comparison: ltl.Comparison, bound: Mapping[str, Indices]) -> TruthRows:
         ready = self.comparisons.get(id(comparison))
         if ready is None:
             ready = comparison_sides(comparison.terms, comparison.relation, comparison.limit)
@@ -152,7 +150,7 @@ class RowEvaluation:
         high = low if same else _digits(ready.scale, highs, unknown)
         return TruthRows(ready.every[low, high] & ~unknown, ready.some[low, high] | unknown)
 
-    def _term(self, term: ltl.Term, bound: Mapping[str, Places]) -> ValueRows:
+    def _term(self, term: ltl.Term, bound: Mapping[str, Indices]) -> ValueRows:
         if isinstance(term, ltl.QuantityTerm):
             return self._rows(term.name, term.arguments, bound)
         sure = np.zeros((1, self.n_states), dtype=np.int64)

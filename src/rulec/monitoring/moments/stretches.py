@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Flags = NDArray[np.bool_]
-Places = NDArray[np.intp]
+from rulec.array_types import Flags, Indices
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -18,22 +16,22 @@ class Stretches:
     They are sorted by row, and within a row by time.
     """
 
-    rows: Places
-    first: Places
-    last: Places
+    rows: Indices
+    first: Indices
+    last: Indices
 
     def __len__(self) -> int:
         return len(self.rows)
 
-    def of_rows(self, rows: Places) -> Stretches:
+    def of_rows(self, rows: Indices) -> Stretches:
         """The stretches of some rows (ascending), with these rows renumbered from 0."""
         place = np.minimum(np.searchsorted(rows, self.rows), len(rows) - 1)
         own = rows[place] == self.rows
         return Stretches(place[own], self.first[own], self.last[own])
 
-    def per_row(self, n_rows: int, which: Flags | None = None) -> Places:
+    def per_row(self, n_rows: int, which: Flags | None = None) -> Indices:
         """How many stretches each row has: of all, or of those with a flag."""
-        result: Places = np.bincount(
+        result: Indices = np.bincount(
             self.rows if which is None else self.rows[which], minlength=n_rows
         )
         return result
@@ -92,7 +90,7 @@ def opportunity_stretches(sure: Flags, possible: Flags) -> tuple[Stretches, Stre
     return at_least, at_most
 
 
-def most_violated(sure: Flags, possible: Flags, breached: Flags) -> Places:
+def most_violated(sure: Flags, possible: Flags, breached: Flags) -> Indices:
     """For each row the most opportunities with a breach in one of their states (rows x states).
 
     An opportunity certainly holds where ``sure`` and perhaps where ``possible``; there are at most

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.array_types import Indices
 from rulec.diagnostics import SourceLocation
 from rulec.logic.formula import Formula
 from rulec.logic.free_names import variables_of
@@ -16,7 +17,7 @@ from rulec.logic.semantics import Semantics, steps_to_settle
 from rulec.monitoring.batch.columns.column_numbers import ComparisonSides
 from rulec.monitoring.moments.array_tables import ArrayTables
 from rulec.monitoring.moments.name_tables import NameTables, tables_of_trace
-from rulec.monitoring.moments.row_evaluation import Places, RowEvaluation
+from rulec.monitoring.moments.row_evaluation import RowEvaluation
 from rulec.monitoring.moments.truth_rows import RowEnding, RowStretches
 from rulec.resource_limits import LOOKBACK
 from rulec.rulebook.rulebook_model import Variable
@@ -38,13 +39,13 @@ class ChosenObjects:
     """
 
     variables: tuple[str, ...]
-    trace: Places
-    items: Places
+    trace: Indices
+    items: Indices
 
     def __len__(self) -> int:
         return len(self.trace)
 
-    def at(self, rows: Places) -> ChosenObjects:
+    def at(self, rows: Indices) -> ChosenObjects:
         """Some of the rows."""
         return ChosenObjects(self.variables, self.trace[rows], self.items[rows])
 
@@ -59,8 +60,8 @@ class FormulaTruth:
     """
 
     choices: ChosenObjects
-    rows: Places
-    last: Places
+    rows: Indices
+    last: Indices
     sure: NDArray[np.bool_]
     possible: NDArray[np.bool_]
 
@@ -131,14 +132,14 @@ class TraceTruth:
         first, last = self.stretch_of(every)
         return every.at(np.flatnonzero(first <= last))
 
-    def stretch_of(self, chosen: ChosenObjects) -> tuple[Places, Places]:
+    def stretch_of(self, chosen: ChosenObjects) -> tuple[Indices, Indices]:
         """The first and last state in which the objects of each choice are present."""
         if not chosen.variables:
             return np.zeros(len(chosen), dtype=np.intp), self.tables.last[chosen.trace]
         spans = self._spans[chosen.items]
         return spans[:, :, 0].max(axis=1), spans[:, :, 1].min(axis=1)
 
-    def _part(self, ready: ReadyFormula, wanted: ChosenObjects, rows: Places) -> FormulaTruth:
+    def _part(self, ready: ReadyFormula, wanted: ChosenObjects, rows: Indices) -> FormulaTruth:
         own = wanted.at(rows)
         first, last = self.stretch_of(own)
         states, end = np.arange(self.tables.n_states), last
@@ -174,7 +175,7 @@ class TraceTruth:
         return result
 
     def _evaluation(
-        self, ready: ReadyFormula, stretches: RowStretches, states: Places, trace: Places
+        self, ready: ReadyFormula, stretches: RowStretches, states: Indices, trace: Indices
     ) -> RowEvaluation:
         return RowEvaluation(
             self.tables,

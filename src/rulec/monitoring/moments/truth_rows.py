@@ -11,10 +11,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import PAST, Range, range_of
-
-Flags = NDArray[np.bool_]
 
 RowEnding = Literal["over", "goes on", "cut"]
 """What follows a row's last state: nothing, the same state for ever, or unobserved states.

@@ -5,25 +5,24 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy import float64, int64, intp
+from numpy import int64, intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable
-
-_Floats = NDArray[float64]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CityPoses:
     """Rotations (3 x 3 matrices) and translations (m), one row each."""
 
-    rotations: _Floats
-    translations: _Floats
+    rotations: Floats
+    translations: Floats
 
     @property
-    def headings(self) -> _Floats:
+    def headings(self) -> Floats:
         """The directions (rad) of the x axes in the plane."""
-        headings: _Floats = np.arctan2(self.rotations[:, 1, 0], self.rotations[:, 0, 0])
+        headings: Floats = np.arctan2(self.rotations[:, 1, 0], self.rotations[:, 0, 0])
         return headings
 
     def taken(self, rows: NDArray[intp]) -> CityPoses:
@@ -37,7 +36,7 @@ class CityPoses:
 
 
 def poses_in(
-    table: ArrowTable, rows: NDArray[int64], places: _Floats, quaternions: _Floats
+    table: ArrowTable, rows: NDArray[int64], places: Floats, quaternions: Floats
 ) -> CityPoses:
     """The poses in rows of a table. Raises RulecError R0610 for a quaternion of 0."""
     flat = np.abs(quaternions).max(axis=1, initial=0.0) < 1e-6
@@ -46,7 +45,7 @@ def poses_in(
     return CityPoses(rotations(quaternions), places)
 
 
-def rotations(quaternions: _Floats) -> _Floats:
+def rotations(quaternions: Floats) -> Floats:
     """The rotation matrices of quaternions (w, x, y, z) of any length except 0."""
     w, x, y, z = (quaternions / np.linalg.norm(quaternions, axis=1)[:, None]).T
     rows = (
@@ -54,5 +53,5 @@ def rotations(quaternions: _Floats) -> _Floats:
         (2 * (x * y + z * w), -x * x + y * y - z * z + w * w, 2 * (y * z - x * w)),
         (2 * (x * z - y * w), 2 * (y * z + x * w), -x * x - y * y + z * z + w * w),
     )
-    matrices: _Floats = np.stack([np.stack(row, axis=-1) for row in rows], axis=1)
+    matrices: Floats = np.stack([np.stack(row, axis=-1) for row in rows], axis=1)
     return matrices

@@ -9,9 +9,10 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy import bool_, float64, int64
+from numpy import bool_, int64
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.diagnostics import RulecError, nearest_name
 from rulec.recordings.encodings.xml_element import LARGEST, number_in, short
 from rulec.value_display import short_repr
@@ -24,7 +25,6 @@ MOST_COLUMNS = 1000
 _ALIKE = 0.75
 """A slip in a name: one letter of four or more is another, or two have changed places."""
 
-Floats = NDArray[float64]
 Refused = Callable[..., RulecError]
 """Makes a table's error from ``why``, the row's place or None, ``expected``, ``help_text``."""
 

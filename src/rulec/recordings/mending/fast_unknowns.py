@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
-from numpy import bool_, float64
+from numpy import bool_
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.recordings.mending.rows_of_states import rows_of, steps_of, with_mended
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import OBSTACLE_TYPES, Participant, Recording, is_lane
@@ -24,8 +25,6 @@ _BESIDE_M = 2.5
 """Whoever drives along a lane is no farther from its middle line, and moves in its direction."""
 
 _AHEAD_M = 1.0
-
-Floats = NDArray[float64]
 
 
 def with_fast_unknowns(recording: Recording) -> Recording:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy import bool_, float64, int64, intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.recordings.mending.rows_of_states import moved_outline, rows_of, steps_of, with_mended
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Participant, Recording, TrackState
@@ -38,8 +39,6 @@ _SLOW_M = 1.5
 _HAIR = 1e-6
 
 _DRIVERS = frozenset({"vehicle", "light_rider"})
-
-Floats = NDArray[float64]
 
 
 def with_steady_headings(recording: Recording) -> Recording:

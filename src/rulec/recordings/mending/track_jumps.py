@@ -12,11 +12,11 @@ from itertools import count, pairwise
 
 import numpy as np
 
+from rulec.array_types import Floats
 from rulec.recordings.mending.cut_tracks import cut_remark
 from rulec.recordings.mending.rows_of_states import with_states_at
 from rulec.recordings.mending.wrong_places import (
     LEAST_MPS2,
-    Floats,
     Path,
     farthest_by_noise,
     is_smooth,

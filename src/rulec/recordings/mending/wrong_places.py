@@ -12,6 +12,7 @@ import numpy as np
 from numpy import bool_, float64, int64
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.recordings.mending.cut_tracks import first_ids
 from rulec.recordings.mending.rows_of_states import rows_of, steps_of, with_mended, with_states_at
 from rulec.recordings.recording import Participant, Recording
@@ -34,8 +35,6 @@ _SMOOTH = 0.5
 otherwise the track slipped, or jumped for good."""
 
 _HAIR = 1e-9
-
-Floats = NDArray[float64]
 
 
 @dataclass(frozen=True, eq=False, slots=True)

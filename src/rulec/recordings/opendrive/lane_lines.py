@@ -13,9 +13,10 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.recordings.opendrive.content.elements import LaneSection, MapRoad
 from rulec.recordings.opendrive.pieces import RoadPiece
-from rulec.recordings.opendrive.plan_view import Numbers, cubics_at, places_on
+from rulec.recordings.opendrive.plan_view import cubics_at, places_on
 from rulec.recordings.recording import Points
 
 WITHIN_M = 0.004
@@ -54,7 +55,7 @@ def lane_borders(piece: RoadPiece) -> Mapping[int, Lines]:
     }
 
 
-def _check_widths(section: LaneSection, s: Numbers) -> None:
+def _check_widths(section: LaneSection, s: Floats) -> None:
     """Raise ValueError for a width far below 0; slightly negative widths occur where lanes end."""
     for number, lane in section.lanes.items():
         least = cubics_at(lane.widths, s - section.start).min()
@@ -67,7 +68,7 @@ def _in_order(section: LaneSection) -> list[int]:
     return sorted(section.lanes)
 
 
-def _fine_enough(piece: RoadPiece, s: Numbers) -> Numbers:
+def _fine_enough(piece: RoadPiece, s: Floats) -> Floats:
     """Values of ``s`` close enough that no line is farther from its curve than allowed."""
     parts = [
         np.linspace(low, high, max(1, int(np.ceil((high - low) / _LONGEST_M))), endpoint=False)
@@ -99,7 +100,7 @@ def _fine_enough(piece: RoadPiece, s: Numbers) -> Numbers:
     return np.unique(np.concatenate(done))
 
 
-def _lines(piece: RoadPiece, s: Numbers) -> Lines:
+def _lines(piece: RoadPiece, s: Floats) -> Lines:
     """All borders of a piece from right to left, at ascending values of ``s``."""
     inside = np.minimum(s, piece.end - _BEFORE_M) if piece.end > piece.start else s
     t = border_offsets(piece.road, piece.section, inside)
@@ -132,13 +133,13 @@ def places_beside(road: MapRoad, places: Sequence[tuple[float, float]]) -> Point
     return points
 
 
-def border_offsets(road: MapRoad, section: LaneSection, s: Numbers) -> Lines:
+def border_offsets(road: MapRoad, section: LaneSection, s: Floats) -> Lines:
     """The ``t`` of all borders of a lane section from right to left, one row each."""
     centre = cubics_at(road.offsets, s)
     way = s - section.start
-    sides: list[list[Numbers]] = []
+    sides: list[list[Floats]] = []
     for side in (-1, 1):
-        borders: list[Numbers] = []
+        borders: list[Floats] = []
         inner = centre
         for number in sorted((x for x in section.lanes if x * side > 0), key=abs):
             lane = section.lanes[number]

@@ -11,12 +11,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy import float64
-from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.recordings.opendrive.content.elements import Cubic, Geometry
-
-Numbers = NDArray[float64]
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _TURNED_IN_PIECE = 0.5
@@ -28,12 +25,12 @@ _ROUNDS = 3
 class Places(NamedTuple):
     """Points (m) with the direction (rad) of the line at each of them."""
 
-    x: Numbers
-    y: Numbers
-    heading: Numbers
+    x: Floats
+    y: Floats
+    heading: Floats
 
 
-def places_on(geometries: Sequence[Geometry], s: Numbers) -> Places:
+def places_on(geometries: Sequence[Geometry], s: Floats) -> Places:
     """The points of a reference line at ascending values of ``s``.
 
     Each piece is used up to the start of the next one, which the file gives as well.
@@ -52,7 +49,7 @@ def places_on(geometries: Sequence[Geometry], s: Numbers) -> Places:
     return result
 
 
-def _in_own_frame(piece: Geometry, way: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+def _in_own_frame(piece: Geometry, way: Floats) -> tuple[Floats, Floats, Floats]:
     """Points and directions at ``way`` (m) in a piece that starts at 0, 0 along the first axis."""
     match piece.shape:
         case "line":
@@ -71,14 +68,14 @@ def _in_own_frame(piece: Geometry, way: Numbers) -> tuple[Numbers, Numbers, Numb
             return _parametric(first, second, p)
 
 
-def _arc(curvature: float, way: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+def _arc(curvature: float, way: Floats) -> tuple[Floats, Floats, Floats]:
     half = curvature * way / 2
     # The chord has the direction of the arc's middle; np.sinc multiplies by pi
     chord = way * np.sinc(half / np.pi)
     return chord * np.cos(half), chord * np.sin(half), 2 * half
 
 
-def _spiral(piece: Geometry, way: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+def _spiral(piece: Geometry, way: Floats) -> tuple[Floats, Floats, Floats]:
     start, end = piece.numbers
     sharper = (end - start) / piece.length if piece.length else 0.0
     reached = np.append(0.0, way)
@@ -99,17 +96,17 @@ def _spiral(piece: Geometry, way: Numbers) -> tuple[Numbers, Numbers, Numbers]:
     return u[rows], v[rows], start * way + sharper * way**2 / 2
 
 
-def _grid(end: float, step: float) -> Numbers:
+def _grid(end: float, step: float) -> Floats:
     count = int(np.ceil(end / step)) if np.isfinite(step) else 1
     return np.linspace(0.0, end, max(count, 1) + 1)
 
 
-def _parametric(first: Numbers, second: Numbers, p: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+def _parametric(first: Floats, second: Floats, p: Floats) -> tuple[Floats, Floats, Floats]:
     u, v = _value(first, p), _value(second, p)
     return u, v, np.arctan2(_slope(second, p), _slope(first, p))
 
 
-def _at_way(first: Numbers, second: Numbers, way: Numbers, whole: float | None) -> Numbers:
+def _at_way(first: Floats, second: Floats, way: Floats, whole: float | None) -> Floats:
     """The parameter of a curve at a distance ``way`` along it.
 
     ``whole``: the length of the curve whose parameter goes from 0 to 1; if None, the parameter is
@@ -146,19 +143,19 @@ def _at_way(first: Numbers, second: Numbers, way: Numbers, whole: float | None) 
     return np.where(beyond, 1.0, parameter)
 
 
-def _value(numbers: Numbers, p: Numbers) -> Numbers:
+def _value(numbers: Floats, p: Floats) -> Floats:
     a, b, c, d = numbers.tolist()
-    result: Numbers = a + p * (b + p * (c + p * d))
+    result: Floats = a + p * (b + p * (c + p * d))
     return result
 
 
-def _slope(numbers: Numbers, p: Numbers) -> Numbers:
+def _slope(numbers: Floats, p: Floats) -> Floats:
     _, b, c, d = numbers.tolist()
-    result: Numbers = b + p * (2 * c + p * 3 * d)
+    result: Floats = b + p * (2 * c + p * 3 * d)
     return result
 
 
-def cubics_at(cubics: Sequence[Cubic], s: Numbers) -> Numbers:
+def cubics_at(cubics: Sequence[Cubic], s: Floats) -> Floats:
     """The values of polynomials, each used from its start; 0 before the first start."""
     if not cubics:
         return np.zeros(len(s))
@@ -167,5 +164,5 @@ def cubics_at(cubics: Sequence[Cubic], s: Numbers) -> Numbers:
     row = np.searchsorted(starts, s, side="right") - 1
     a, b, c, d = table[np.maximum(row, 0)].T
     way = s - starts[np.maximum(row, 0)]
-    value: Numbers = np.where(row < 0, 0.0, a + way * (b + way * (c + way * d)))
+    value: Floats = np.where(row < 0, 0.0, a + way * (b + way * (c + way * d)))
     return value

@@ -5,9 +5,8 @@ from __future__ import annotations
 from math import ceil
 
 import numpy as np
-from numpy import float64
-from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.recordings.polylines import far_apart, noise_of, wrapped
 from rulec.recordings.recording import Points
 
@@ -19,8 +18,6 @@ _STEADY = 10.0
 
 _NOISES = 6.0
 """The difference of two places is off by less than so many times their noise."""
-
-Floats = NDArray[float64]
 
 
 def headings_of(places: Points) -> Floats | None:

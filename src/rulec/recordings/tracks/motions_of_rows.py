@@ -6,17 +6,16 @@ from math import ceil
 from typing import NamedTuple
 
 import numpy as np
-from numpy import float64, int64, intp
+from numpy import int64, intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.recordings.polylines import noise_by_thirds
 from rulec.recordings.tracks.even_times import EvenTimes
 
 MOVING_MPS = 2.0
 
 _SAMPLE = 10_000
-
-Floats = NDArray[float64]
 
 
 class Motions(NamedTuple):

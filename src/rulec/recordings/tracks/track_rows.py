@@ -11,6 +11,7 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.diagnostics import RulecError, did_you_mean
 from rulec.recordings.encodings.table_columns import Columns, Texts
 from rulec.recordings.encodings.xml_element import LARGEST, short
@@ -33,7 +34,6 @@ from rulec.recordings.tracks.motions_of_rows import MOVING_MPS, PlacesOfRows, mo
 from rulec.recordings.tracks.road_user_types import TYPES, USUAL_TYPE, type_of, usual_size
 from rulec.trace.plain_arrays import distinct
 
-Floats = NDArray[float64]
 HeadingAt = Callable[[float, float], float]
 
 LONGEST_BODY_M = 100.0

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy import float64, intp
+from numpy import intp
 from numpy.typing import NDArray
+
+from rulec.array_types import Floats
 
 _HAIR_M = 1e-6
 """Upper bound (m) of the rounding error when a place is assigned to a cell."""
 
 _FEWEST, _MOST_CELLS, _MOST_TRIED = 8, 1 << 14, 2
-
-_Values = NDArray[float64]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -35,9 +35,9 @@ class _Cells:
 class Borders:
     """Ascending borders (m) between the pieces of a line."""
 
-    places: _Values
+    places: Floats
 
-    def before(self, s: _Values) -> NDArray[intp]:
+    def before(self, s: Floats) -> NDArray[intp]:
         """For each place the number of the last border at or before it; 0 before the first border.
 
         The result for NaN is arbitrary.
@@ -54,7 +54,7 @@ class Borders:
         return numbers
 
     @cached_property
-    def _next(self) -> _Values:
+    def _next(self) -> Floats:
         return np.append(self.places[1:], np.inf)
 
     @cached_property

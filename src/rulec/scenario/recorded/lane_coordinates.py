@@ -16,9 +16,10 @@ from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy import float64, intp
+from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.recordings.polylines import densified, densified_lines
 from rulec.recordings.recording import Lanelet, Points, Recording
 from rulec.scenario.recorded.borders import Borders
@@ -50,7 +51,6 @@ _HAIR_M = 0.01
 _AT_ONCE = 1 << 10
 """Outlines processed per batch, so that intermediate arrays stay in the processor's cache."""
 
-_Values = NDArray[float64]
 _Beside = Sequence["Lanelet | None"]
 
 
@@ -62,9 +62,9 @@ class Lanes:
     ``there[i][k]``: whether lane k (from 0) exists between ``s[i]`` and ``s[i + 1]``.
     """
 
-    s: _Values
-    bounds: _Values
-    straight: _Values
+    s: Floats
+    bounds: Floats
+    straight: Floats
     there: NDArray[np.bool_]
 
     @cached_property
@@ -98,15 +98,15 @@ class Lanes:
         left_of: Points = np.subtract(off, first, out=first).T
         return left_of
 
-    def existing_at(self, s: _Values) -> NDArray[np.bool_]:
+    def existing_at(self, s: Floats) -> NDArray[np.bool_]:
         """Mask of the lanes (last axis, from the right) that exist at places."""
         return self.there[self.pieces_at(s)]
 
-    def pieces_at(self, s: _Values) -> NDArray[intp]:
+    def pieces_at(self, s: Floats) -> NDArray[intp]:
         """The index of the interval of ``self.s`` at each place; the nearest beyond the ends."""
         return self._piece(np.where(np.isnan(s), 0.0, s))
 
-    def _piece(self, s: _Values) -> NDArray[intp]:
+    def _piece(self, s: Floats) -> NDArray[intp]:
         return np.minimum(self._borders.before(s), len(self.s) - 2)
 
     def missing(self, start: float, end: float, shift: float) -> tuple[MissingLane, ...]:
@@ -131,7 +131,7 @@ def lanes_along(
     line: ReferenceLine,
     ego_s: float,
     numbers: Sequence[int] | None = None,
-    borders: _Values | None = None,
+    borders: Floats | None = None,
 ) -> Lanes:
     """The lanes of the road along a route: the route's own and those beside it in its direction.
 
@@ -188,12 +188,12 @@ class _Strip:
     recording: Recording
     way: Sequence[Lanelet]
     line: ReferenceLine
-    borders: _Values
-    grid: _Values
+    borders: Floats
+    grid: Floats
     own_number: NDArray[np.int_]
 
 
-def borders_along(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
+def borders_along(lanelets: Sequence[Lanelet], line: ReferenceLine) -> Floats:
     """The places along the line (m) at which the lanelets begin, and where the last one ends."""
     ends = np.array([lanelets[0].centre[0], *(lanelet.centre[-1] for lanelet in lanelets)])
     # A line that passes a place twice has several feet there, so search near the expected one
@@ -201,13 +201,13 @@ def borders_along(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
     about *= line.length / about[-1] if about[-1] else 0.0
     places = line.coordinates_near(ends, about, np.full(len(ends), _ABOUT_M))[:, 0]
     places = np.where(np.isnan(places), about, places)
-    borders: _Values = np.maximum.accumulate(np.clip(places, 0.0, line.length))
+    borders: Floats = np.maximum.accumulate(np.clip(places, 0.0, line.length))
     borders[-1] = line.length
     return borders
 
 
 def _usual_widths(
-    grid: _Values, widths: _Values, there: NDArray[np.bool_], ego_s: float
+    grid: Floats, widths: Floats, there: NDArray[np.bool_], ego_s: float
 ) -> Iterator[float]:
     at = pieces_at(grid, np.array(ego_s))
     for width, own in zip(widths.T, there.T, strict=True):
@@ -218,8 +218,8 @@ def _usual_widths(
 
 
 def _by_number(
-    strip: _Strip, by_rank: Sequence[tuple[_Values, NDArray[np.bool_]]]
-) -> Iterator[tuple[_Values, NDArray[np.bool_]]]:
+    strip: _Strip, by_rank: Sequence[tuple[Floats, NDArray[np.bool_]]]
+) -> Iterator[tuple[Floats, NDArray[np.bool_]]]:
     """Widths and presence by lane, from those by rank beside the route's own lanelet."""
     # Rank 0 is the rightmost; if the route is one lane, ranks are lane numbers
     own = strip.own_number - strip.own_number.min()
@@ -237,8 +237,8 @@ def _by_number(
 
 
 def _side(
-    strip: _Strip, inner: _Values, lanes: Iterable[tuple[_Beside, _Values]], *, left: bool
-) -> list[tuple[_Values, NDArray[np.bool_]]]:
+    strip: _Strip, inner: Floats, lanes: Iterable[tuple[_Beside, Floats]], *, left: bool
+) -> list[tuple[Floats, NDArray[np.bool_]]]:
     """Widths and presence of the lanes on one side, given with their outer bounds."""
     columns = []
     for lanelets, bound in lanes:
@@ -261,7 +261,7 @@ def _beside(strip: _Strip, *, left: bool) -> list[_Beside]:
     ]
 
 
-def _bounds(strip: _Strip, lanes: Sequence[tuple[_Beside, bool]]) -> list[_Values]:
+def _bounds(strip: _Strip, lanes: Sequence[tuple[_Beside, bool]]) -> list[Floats]:
     """The offsets of lanes' bounds on the grid: left where the flag is true, else right."""
     bounds_of = [
         [(k, lanelet.left if left else lanelet.right) for k, lanelet in enumerate(lane) if lanelet]
@@ -292,8 +292,8 @@ def outline_bounds(
     outlines: JoinedOutlines,
     line: ReferenceLine,
     across: Callable[[Points], Points],
-    expected: tuple[_Values, _Values] | None = None,
-) -> tuple[_Values, _Values]:
+    expected: tuple[Floats, Floats] | None = None,
+) -> tuple[Floats, Floats]:
     """The least and the greatest coordinates of each outline, one row each; at least one is needed.
 
     Columns: ``s``, ``d`` (m from the line), and what ``across`` computes from these two. NaN for
@@ -325,12 +325,12 @@ def outline_bounds(
     return least, greatest
 
 
-def _with_across(feet: Points, across: Callable[[Points], Points]) -> _Values:
+def _with_across(feet: Points, across: Callable[[Points], Points]) -> Floats:
     """Coordinates of places and what a function computes from them; one row per coordinate."""
     return np.concatenate((feet.T, across(feet).T))
 
 
-def kept_off_touched(low: _Values, high: _Values, straight: _Values) -> tuple[_Values, _Values]:
+def kept_off_touched(low: Floats, high: Floats, straight: Floats) -> tuple[Floats, Floats]:
     """Extents across the lanes, cut off at the bound of a lane that they merely touch.
 
     A narrow body, such as a pedestrian's, is in the lane that contains more than half of it.

@@ -12,9 +12,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy import float32, float64, intp
+from numpy import float32, intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.recordings.recording import Points
 
 _MARGIN_M, _MARGIN_PART = 1e-2, 1e-6
@@ -23,7 +24,6 @@ _MARGIN_M, _MARGIN_PART = 1e-2, 1e-6
 _AT_ONCE = 1 << 17
 _MOST_PLACES = 256
 _FEW = 1 << 16
-_Values = NDArray[float64]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -37,7 +37,7 @@ class LineFans:
 
     origin: Points
     normals: NDArray[float32]
-    margin: _Values
+    margin: Floats
 
     def candidates(
         self, places: Points, low: NDArray[intp], high: NDArray[intp]
@@ -80,7 +80,7 @@ class LineFans:
             yield numbers, pieces
 
 
-def line_fans(start: Points, ahead: Points, lengths: _Values, slopes: Points) -> LineFans:
+def line_fans(start: Points, ahead: Points, lengths: Floats, slopes: Points) -> LineFans:
     """The fans of pieces; ``slopes`` has a column for the bounding lines at either end."""
     origin = start[:1]
     corners = np.concatenate((start, start[-1:] + ahead[-1:] * lengths[-1:, None])) - origin

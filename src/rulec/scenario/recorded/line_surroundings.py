@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy import bool_, float64
+from numpy import bool_
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.recordings.polylines import arc_lengths, interpolated
 from rulec.recordings.recording import Points
 
@@ -15,8 +16,6 @@ _SQUARE_M = 10.0
 _MOST_SQUARES = 1 << 22
 _MOST_ALONG = 1 << 16
 """The most squares along the line, however far it is extended beyond its ends."""
-
-_Values = NDArray[float64]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -31,7 +30,7 @@ class LineSurroundings:
     size: float
     flags: NDArray[bool_]
 
-    def holds(self, x: _Values, y: _Values) -> NDArray[bool_]:
+    def holds(self, x: Floats, y: Floats) -> NDArray[bool_]:
         """Mask of the places that may be near, including all that are; False for NaN."""
         (i, j) = (
             # NaN is put in the outermost square, which has no flag

@@ -14,9 +14,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy import float64, intp
+from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.recordings.polylines import (
     Angle,
     arc_lengths,
@@ -48,7 +49,6 @@ _SMOOTH_M = 5.0
 _STEP_M = 0.5
 _TURN_RAD = np.radians(5.0)
 _HAIR = 1e-9
-_Values = NDArray[float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,35 +59,35 @@ class ReferenceLine:
     relative to the piece, and by how much the slope changes up to its end.
     """
 
-    arc: _Values
+    arc: Floats
     start: Points
     ahead: Points
-    lengths: _Values
-    first: _Values
-    change: _Values
+    lengths: Floats
+    first: Floats
+    change: Floats
 
     @property
     def length(self) -> float:
         """The length (m) from the first corner to the last, without the extensions."""
         return float(self.arc[-1])
 
-    def headings_at(self, s: _Values) -> _Values:
+    def headings_at(self, s: Floats) -> Floats:
         """The directions (rad) of the pieces at places."""
         return self._headings[self._piece(s)]
 
     @cached_property
-    def _headings(self) -> _Values:
-        headings: _Values = np.arctan2(self.ahead[:, 1], self.ahead[:, 0])
+    def _headings(self) -> Floats:
+        headings: Floats = np.arctan2(self.ahead[:, 1], self.ahead[:, 0])
         return headings
 
-    def directions_at(self, s: _Values) -> tuple[_Values, _Values, _Values]:
+    def directions_at(self, s: Floats) -> tuple[Floats, Floats, Floats]:
         """The directions (rad) of the pieces at places, with their cosines and sines."""
         pieces = self._piece(s)
         headings, cosines, sines = (values.take(pieces) for values in self._directions)
         return headings, cosines, sines
 
     @cached_property
-    def _directions(self) -> tuple[_Values, _Values, _Values]:
+    def _directions(self) -> tuple[Floats, Floats, Floats]:
         return self._headings, np.cos(self._headings), np.sin(self._headings)
 
     def heading_at(self, s: float) -> float:
@@ -102,7 +102,7 @@ class ReferenceLine:
         coordinates[left] = self._nearest(places[left], low, low + len(self.arc) - 1)
         return coordinates
 
-    def coordinates_near(self, places: Points, around: _Values, reach: _Values) -> Points:
+    def coordinates_near(self, places: Points, around: Floats, reach: Floats) -> Points:
         """Frenet coordinates of places, with feet within ``reach`` of ``around`` (``s``)."""
         low, high = self._piece(around - reach), self._piece(around + reach)
         if len(places) < MANY:
@@ -113,7 +113,7 @@ class ReferenceLine:
         coordinates[left] = self._nearest(places[left], low[left], high[left])
         return coordinates
 
-    def coordinates_of_rows(self, places: Points, around: _Values, reach: _Values) -> Points:
+    def coordinates_of_rows(self, places: Points, around: Floats, reach: Floats) -> Points:
         """Like ``coordinates_near`` for rows of equally many places, with one ``around`` per row.
 
         Axes: row, place, and x and y or ``s`` and ``d``. A row whose ``around`` is NaN gets NaN.
@@ -133,7 +133,7 @@ class ReferenceLine:
             self.start[pieces] + (at - self.arc[pieces])[:, None] * self.ahead[pieces], near_m
         )
 
-    def _piece(self, s: _Values) -> NDArray[intp]:
+    def _piece(self, s: Floats) -> NDArray[intp]:
         return self.piece_fans.at(s)
 
     @cached_property
@@ -172,7 +172,7 @@ class ReferenceLine:
         return coordinates
 
 
-def _least_of_each(groups: NDArray[intp], values: _Values) -> NDArray[intp]:
+def _least_of_each(groups: NDArray[intp], values: Floats) -> NDArray[intp]:
     """The index of the first least value in each group; the values of a group are consecutive."""
     if not len(groups):
         return groups
@@ -274,7 +274,7 @@ def turn(before: Angle, after: Angle) -> Angle:
     return wrapped(after - before)
 
 
-def pieces_at(borders: _Values, s: _Values) -> NDArray[intp]:
+def pieces_at(borders: Floats, s: Floats) -> NDArray[intp]:
     """The index of the piece between ascending borders at each place; beyond, the nearest."""
     pieces = borders.searchsorted(np.where(np.isnan(s), 0.0, s), "right") - 1
     return np.minimum(np.maximum(pieces, 0), len(borders) - 2)

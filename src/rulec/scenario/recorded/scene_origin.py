@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy import float64
-from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.recordings.recording import Points, Recording
 from rulec.scenario.recorded.ego_start import EgoStart
 from rulec.scenario.recorded.lane_coordinates import Lanes
 from rulec.scenario.recorded.reference_line import ReferenceLine
-
-_Values = NDArray[float64]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -30,7 +27,7 @@ class SceneOrigin:
     ego_s: float
     way: tuple[str, ...]
 
-    def places(self, s: _Values, d: _Values) -> tuple[Points, _Values]:
+    def places(self, s: Floats, d: Floats) -> tuple[Points, Floats]:
         """The recording's places (x, y in m, a row each) of scene coordinates, and road directions.
 
         Directions (rad) are interpolated along the line's pieces, as for feet.
@@ -46,7 +43,7 @@ class SceneOrigin:
         places = foot + left * across[:, None] - ahead * (across * slope)[:, None]
         return places, np.arctan2(ahead[:, 1], ahead[:, 0]) + np.arctan(slope)
 
-    def _across(self, along: _Values, d: _Values) -> _Values:
+    def _across(self, along: Floats, d: Floats) -> Floats:
         """The offset (m) from the line, to the left, of a scene's straightened ``d``."""
         lanes, straight = self.lanes, self.lanes.straight
         bounds = -lanes.from_bounds(np.column_stack((along, np.zeros(len(along)))))
@@ -57,5 +54,5 @@ class SceneOrigin:
         inside = low + (d - straight[lane]) / wide * (high - low)
         beyond = np.where(d < straight[0], low + d - straight[lane], high + d - straight[lane + 1])
         outside = (d < straight[0]) | (d > straight[-1])
-        across: _Values = np.where(outside, beyond, inside)
+        across: Floats = np.where(outside, beyond, inside)
         return across

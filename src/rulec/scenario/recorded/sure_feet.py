@@ -13,9 +13,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy import bool_, float64, intp
+from numpy import bool_, intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.recordings.recording import Points
 from rulec.scenario.recorded.borders import Borders
 
@@ -31,7 +32,6 @@ MANY = 256
 _WIDEST, _MOST_PIECES = 64, 512
 _HAIR_M = 1e-6
 _ROUNDS = 2
-_Values = NDArray[float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,24 +42,24 @@ class PieceFans:
     beginning and how much it changes, and the place along the line (m).
     """
 
-    columns: _Values
+    columns: Floats
 
     @cached_property
-    def room(self) -> _Values:
+    def room(self) -> Floats:
         """How far (m) from a piece its fan has half the piece's length at least, minus that length.
 
         With the length subtracted, the distance can be measured from the piece's start.
         """
         lengths, change = self.columns[4], np.abs(self.columns[6])
         with np.errstate(divide="ignore", over="ignore"):
-            room: _Values = lengths / (2 * change) - lengths
+            room: Floats = lengths / (2 * change) - lengths
         return room
 
     @cached_property
-    def _rooms(self) -> dict[int, _Values]:
+    def _rooms(self) -> dict[int, Floats]:
         return {}
 
-    def room_around(self, width: int) -> _Values:
+    def room_around(self, width: int) -> Floats:
         """For each piece the least ``room`` among the pieces up to ``width`` away from it."""
         if width not in self._rooms:
             padded = np.pad(self.room, width, constant_values=np.inf)
@@ -68,7 +68,7 @@ class PieceFans:
         return self._rooms[width]
 
     @cached_property
-    def alone(self) -> _Values:
+    def alone(self) -> Floats:
         """How far (m) aside a piece's fan overlaps no other fan; 0 if there are many pieces.
 
         That is as far as both bounding lines of the fan meet none of the others.
@@ -89,11 +89,11 @@ class PieceFans:
         beyond[np.triu_indices(len(slope), 1)] *= -1
         np.fill_diagonal(beyond, np.inf)
         with np.errstate(divide="ignore", over="ignore"):
-            room: _Values = ((beyond - _HAIR_M) / gained).min(axis=1) / across
-        alone: _Values = np.minimum(room[:-1], room[1:])
+            room: Floats = ((beyond - _HAIR_M) / gained).min(axis=1) / across
+        alone: Floats = np.minimum(room[:-1], room[1:])
         return alone
 
-    def at(self, s: _Values) -> NDArray[intp]:
+    def at(self, s: Floats) -> NDArray[intp]:
         """The numbers of the pieces at places (m) along the line."""
         return self._borders.before(s)
 
@@ -103,7 +103,7 @@ class PieceFans:
 
 
 def sure_feet_near(
-    fans: PieceFans, places: Points, around: _Values, reach: _Values
+    fans: PieceFans, places: Points, around: Floats, reach: Floats
 ) -> tuple[Points, NDArray[bool_]]:
     """Frenet coordinates of the places whose only foot within ``reach`` of ``around`` is found.
 
@@ -125,8 +125,8 @@ class _Near:
     """Rows of places, with the approximate ``s`` (m) of the feet of each row."""
 
     places: Points
-    around: _Values
-    reach: _Values
+    around: Floats
+    reach: Floats
 
 
 def _find(fans: PieceFans, near: _Near, coordinates: Points, sure: NDArray[bool_]) -> None:
@@ -184,8 +184,8 @@ def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
 
 
 def _on(
-    fans: PieceFans, x: _Values, y: _Values, pieces: NDArray[intp]
-) -> tuple[_Values, _Values, NDArray[bool_]]:
+    fans: PieceFans, x: Floats, y: Floats, pieces: NDArray[intp]
+) -> tuple[Floats, Floats, NDArray[bool_]]:
     """Frenet coordinates of places on a given piece each, and a mask of those well in its fan."""
     own = fans.columns.take(pieces, axis=1, mode="clip")
     ux, uy, x0, y0, lengths, slope, change, arc = own

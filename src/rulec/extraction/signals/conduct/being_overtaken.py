@@ -8,6 +8,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
@@ -23,7 +24,6 @@ from rulec.extraction.signals.queues import dense_lines
 from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.lane_sets import is_in
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import RAMPS
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct

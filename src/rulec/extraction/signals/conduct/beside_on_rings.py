@@ -8,12 +8,12 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.map.right_of_way.bodies import gap_s
 from rulec.extraction.signals.map.right_of_way.conflicts import LONGEST_WAIT_S
 from rulec.extraction.signals.map.right_of_way.held_up import DRIVES_MPS
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
-from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.recorded.route import lanelet_area
 
 BEHIND_M, ASIDE_M = 30.0, 8.0

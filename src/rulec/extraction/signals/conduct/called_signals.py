@@ -10,6 +10,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
@@ -23,7 +24,6 @@ from rulec.extraction.signals.conduct.others_lamps import (
 from rulec.extraction.signals.ego_lanelets import own_lanelets, room_beside
 from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.tracks import Flags
 
 _OWN = "ego_on_call"
 

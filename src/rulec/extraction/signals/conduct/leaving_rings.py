@@ -10,12 +10,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_passages
 from rulec.extraction.signals.map.right_of_way.conflicts import in_conflict
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
-from rulec.extraction.tracks.tracks import Flags
 
 _CROSSED = "crossed"
 

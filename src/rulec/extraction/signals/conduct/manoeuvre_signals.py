@@ -7,13 +7,14 @@ from typing import cast
 import numpy as np
 import shapely
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.surroundings import BACKS_MPS
-from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
+from rulec.extraction.tracks.tracks import Tracks
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.plain_arrays import zero_if_nan
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import CYCLE_LANE, SHOULDER, own_lanelets, travel_lanes
@@ -24,7 +25,7 @@ from rulec.extraction.signals.signal_passes import (
     once_a_recording,
     once_a_road,
 )
-from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
+from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.recording import RAMPS, Lanelet, LaneMark, Side
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import ranges

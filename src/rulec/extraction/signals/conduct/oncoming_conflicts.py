@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rulec.array_types import Floats
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
@@ -24,7 +25,6 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.tracks import Floats
 
 _GOES_FIRST = "PRIORITY_OVER_ONCOMING"
 """The sign that gives ego priority where the road is narrow."""

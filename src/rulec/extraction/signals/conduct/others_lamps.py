@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.conduct.lamp_signals import FLASH_S
 from rulec.extraction.signals.signal_passes import once_a_recording
-from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import Lamp
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.being_overtaken import being_overtaken
@@ -19,7 +20,6 @@ from rulec.extraction.signals.ego_lanelets import (
 from rulec.extraction.signals.settling import fewest_states, without_blips
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.tracks import Flags
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.trace.cells import Cells
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.braking_causes.map_causes import (
@@ -37,7 +38,6 @@ from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.measured_numbers import moves
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
 

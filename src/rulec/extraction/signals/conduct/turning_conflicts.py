@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.conduct.beside_on_rings import (
     ASIDE_M,
@@ -22,7 +23,6 @@ from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_pa
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
-from rulec.extraction.tracks.tracks import Flags, Floats
 
 _BEFORE_M = 8.0
 _STRAIGHT_RAD = np.radians(30.0)

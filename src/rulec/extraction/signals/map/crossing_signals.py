@@ -15,6 +15,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.map.map_signals import crossings_told, next_crossing
 from rulec.extraction.signals.map.zone_signals import (
@@ -26,7 +27,6 @@ from rulec.extraction.signals.map.zone_signals import (
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.lane_sets import is_in
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import ranges
 

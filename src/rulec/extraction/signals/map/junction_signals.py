@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.priority_signals import (
@@ -24,7 +25,6 @@ from rulec.extraction.signals.measured_numbers import own_front
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.at_junctions.junctions import all_have_to_stop
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import STOP_SIGNS, STRAIGHT_ON
 from rulec.trace.plain_arrays import distinct
 

@@ -10,13 +10,13 @@ from itertools import pairwise
 
 import numpy as np
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import once_a_recording, once_a_road
 from rulec.extraction.tracks.at_junctions.junctions import JunctionWay
-from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import Lanelet
 from rulec.scenario.recorded.reference_line import turn
 

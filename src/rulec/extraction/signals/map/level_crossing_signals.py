@@ -7,12 +7,12 @@ from heapq import heappop, heappush
 
 import numpy as np
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.stop_lines import may_have_passed
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses, once_a_map, once_a_road
 from rulec.extraction.tracks.driven_road import runs_along
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.route import lanelet_length
 
 _SIGNS_M = 300.0

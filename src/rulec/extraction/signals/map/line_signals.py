@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.junction_signals import way_not_known
@@ -27,7 +28,6 @@ from rulec.extraction.signals.signal_columns import (
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import STOP_SIGNS, Light, ObservedLight, Recording
 from rulec.trace.plain_arrays import distinct
 

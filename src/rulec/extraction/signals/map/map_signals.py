@@ -9,6 +9,7 @@ import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
@@ -28,7 +29,6 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses, once_a_recording, once_a_road
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import (
     BUSES_ONLY,
     CROSSWALK,

@@ -15,11 +15,11 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses, once_a_road
-from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import RAMPS, Lanelet, Recording
 from rulec.scenario.recorded.route import lanelet_length, turns_back
 

@@ -12,6 +12,7 @@ from math import ceil
 
 import numpy as np
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.right_of_way.arrivals import (
@@ -50,7 +51,6 @@ from rulec.extraction.signals.signal_columns import (
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.extraction.tracks.at_junctions.junctions import Junction, approaches, before_joining
-from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.recorded.reference_line import turn
 
 _SIDES = (*FROM_SIDES, ONCOMING)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.ego_lanelets import lanelets_at, map_contents, own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
@@ -17,7 +18,6 @@ from rulec.extraction.signals.signal_passes import (
     once_a_map,
 )
 from rulec.extraction.tracks.surroundings import Directions
-from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import BROAD_LEFT, BROAD_RIGHT, RAMPS, Lanelet
 from rulec.scenario.recorded.route import lanes_beside
 

@@ -9,10 +9,10 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.measured_numbers import moves, own_front, own_speed
 from rulec.extraction.signals.signal_passes import once_a_road
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import STOP_SIGNS, Lanelet
 
 LINE_REACH_M = 40.0

@@ -9,6 +9,7 @@ import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import map_contents
@@ -23,7 +24,6 @@ from rulec.extraction.signals.signal_passes import (
     once_a_map,
     once_a_road,
 )
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Recording, is_lane, is_there
 from rulec.scenario.recorded.lane_coordinates import crossings_along
 from rulec.scenario.recorded.route import lanelet_area

@@ -10,6 +10,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.others_lamps import (
@@ -25,7 +26,6 @@ from rulec.extraction.signals.signal_passes import (
     SignalPasses,
     once_a_recording,
 )
-from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
 

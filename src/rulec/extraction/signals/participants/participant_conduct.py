@@ -6,6 +6,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.recording_parts import span_of
 from rulec.extraction.signals.ego_lanelets import (
@@ -17,7 +18,6 @@ from rulec.extraction.signals.ego_lanelets import (
 from rulec.extraction.signals.participants.intention_signals import may_have_broken_down
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.road_extents import RoadExtents
-from rulec.extraction.tracks.tracks import Flags
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.presences import in_presences, presence_cells, presence_runs
 from rulec.extraction.signals import relations
@@ -38,7 +39,6 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, STATIONS
 
 _ASKED_FOR_M = 3.0

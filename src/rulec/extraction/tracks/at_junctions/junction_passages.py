@@ -18,6 +18,7 @@ import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.extraction.tracks.at_junctions.junctions import (
     Interval,
     Junction,
@@ -27,7 +28,7 @@ from rulec.extraction.tracks.at_junctions.junctions import (
     places_along,
 )
 from rulec.extraction.tracks.matching.junction_stays import Stay, body_length, junction_stays
-from rulec.extraction.tracks.tracks import Floats, Tracks
+from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.polylines import line_length
 from rulec.recordings.recording import Recording
 from rulec.recordings.track import TrackOutlines, outlines_on_track

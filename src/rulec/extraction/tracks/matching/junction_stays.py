@@ -10,7 +10,8 @@ import shapely
 from numpy import float64, intp
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.tracks import Flags, Tracks
+from rulec.array_types import Flags
+from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Participant
 from rulec.trace.plain_arrays import distinct

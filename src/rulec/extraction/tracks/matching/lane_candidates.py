@@ -12,8 +12,9 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
-from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
+from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.recording import Points
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_at

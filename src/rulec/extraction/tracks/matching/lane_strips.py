@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.array_types import Flags, Floats
 from rulec.recordings.recording import Lanelet, Points
 
 _HAIR_M = 1e-6

@@ -26,9 +26,10 @@ import numpy as np
 from numpy import bool_, intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Floats
 from rulec.extraction.tracks.matching.lane_candidates import SIGMA_M, LaneCandidates, candidates
 from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
-from rulec.extraction.tracks.tracks import Floats, Tracks
+from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.recording import Recording
 from rulec.trace.plain_arrays import distinct
 

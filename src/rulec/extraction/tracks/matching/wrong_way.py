@@ -16,8 +16,9 @@ import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.tracks.matching.driven_route import RouteStretch
-from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
+from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.recording import Lanelet, Recording, is_lane
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_beside, lanelet_area

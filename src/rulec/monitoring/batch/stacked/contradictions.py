@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from rulec.array_types import Indices
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.logic.formula import Atom, atoms_of
 from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.columns.column_numbers import Mask, alike_places
-from rulec.monitoring.batch.stacked.stack import Places, Stack
+from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions.completions import can_be
@@ -109,7 +110,7 @@ def _facts_at_spots(together: Sequence[CompiledAxiom], stack: Stack) -> Iterator
 
 def _contradicted_states(
     facts: Sequence[CompiledAxiom], reader: StackReader, spots: Spots, objects: Mapping[str, str]
-) -> Places:
+) -> Indices:
     """The states of those spots in which some of the linked axioms cannot all hold."""
     holds: Mask = np.True_
     for fact in facts:
@@ -129,11 +130,11 @@ def _contradicted_states(
         state = {(name, items): value for name, value in zip(names, values, strict=True)}
         view = StateView(with_values({}, state), objects, reader.stack.vocabulary)
         broken.append(not can_be(view, facts))
-    contradicting: Places = spots.states[np.array(broken)[kinds]]
+    contradicting: Indices = spots.states[np.array(broken)[kinds]]
     return contradicting
 
 
-def _alike(names: Sequence[str], stack: Stack, spots: Spots) -> Places:
+def _alike(names: Sequence[str], stack: Stack, spots: Spots) -> Indices:
     """A group number from 0 for each spot; spots of one group have states with the same values."""
     where = spots.cells.get(_OBJECT, spots.states)
     columns = (column for name in names if (column := stack.column(name)) is not None)

@@ -14,8 +14,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Indices
 from rulec.monitoring.batch.columns.column_numbers import alike_places
-from rulec.monitoring.batch.stacked.stack import Places, StackColumn
+from rulec.monitoring.batch.stacked.stack import StackColumn
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in, enough_alike
@@ -23,7 +24,6 @@ from rulec.monitoring.uncertainty.state_letters.entangled_reads import Entangled
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.trace import Value
 from rulec.trace.plain_arrays import places_among
-from rulec.trace.trace_arrays import Flags
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, PartialValue
 
 MOST_KINDS = 1 << 7
@@ -38,10 +38,10 @@ class _AlikeStates:
     kind.
     """
 
-    firsts: Places
-    groups: Places
+    firsts: Indices
+    groups: Indices
     often: NDArray[np.intp]
-    examples: Places
+    examples: Indices
 
 
 class CrowdedStates:
@@ -63,7 +63,7 @@ class CrowdedStates:
         self._world = [name for name in names if not declared[name].parameters]
         self._about = [name for name in names if declared[name].parameters]
         self._counted = sorted({count.type for count in map(count_in, reads) if count is not None})
-        self._known: tuple[Places, _AlikeStates | None] | None = None
+        self._known: tuple[Indices, _AlikeStates | None] | None = None
         self._numbers: dict[tuple[Value | None, ...], tuple[EntangledReads, list[int]]] = {}
 
     @cached_property
@@ -87,7 +87,7 @@ class CrowdedStates:
         return entangled
 
     def numbers(
-        self, states: Places, supposed: Mapping[Subject, Value]
+        self, states: Indices, supposed: Mapping[Subject, Value]
     ) -> tuple[EntangledReads, list[int]] | None:
         """The rule's entangled reads, and the place of their joint letters in each state.
 
@@ -104,7 +104,7 @@ class CrowdedStates:
             self._numbers[own] = reads, np.array(numbers, dtype=np.intp)[alike.groups].tolist()
         return self._numbers[own]
 
-    def _alike(self, states: Places) -> _AlikeStates | None:
+    def _alike(self, states: Indices) -> _AlikeStates | None:
         """The states in groups that are alike.
 
         Cached, since mostly the same states are asked about again.
@@ -114,7 +114,7 @@ class CrowdedStates:
             self._numbers = {}
         return self._known[1]
 
-    def _grouped(self, states: Places) -> _AlikeStates | None:
+    def _grouped(self, states: Indices) -> _AlikeStates | None:
         stack = self._stack
         is_meant = np.zeros(stack.n_states, dtype=bool)
         is_meant[states] = True
@@ -134,7 +134,7 @@ class CrowdedStates:
         examples[kinds[::-1]] = cells[::-1]
         return _AlikeStates(firsts, groups, often, examples)
 
-    def _cells(self, states: Flags) -> Places:
+    def _cells(self, states: Flags) -> Indices:
         """The cells, in some states, of the objects that may count."""
         stack = self._stack
         suits = np.zeros(len(stack.types), dtype=bool)
@@ -142,7 +142,7 @@ class CrowdedStates:
             suits |= stack.of_type(kind)
         return (suits[stack.object_of] & states[stack.state_of]).nonzero()[0]
 
-    def _kinds(self, cells: Places) -> Places:
+    def _kinds(self, cells: Indices) -> Indices:
         """A number for each cell, equal for cells with the same values of objects of one type."""
         stack = self._stack
         columns = (codes for name in self._about for codes in _codes(stack.column(name), cells))
@@ -150,9 +150,9 @@ class CrowdedStates:
 
     def _numbers_of(
         self,
-        states: Places,
+        states: Indices,
         often: NDArray[np.intp],
-        examples: Places,
+        examples: Indices,
         supposed: Sequence[Value | None],
     ) -> tuple[EntangledReads, list[int]]:
         """The places of the joint letters in states that contain these example objects this often.
@@ -202,7 +202,7 @@ def supposed_instead(
     return [instead if type(value) in UNKNOWN_TYPES else value for value in values]
 
 
-def _codes(column: StackColumn | None, where: Places) -> list[Places]:
+def _codes(column: StackColumn | None, where: Indices) -> list[Indices]:
     """Numbers for the values of a column at some places, equal where the values are equal."""
     if column is None:
         return []

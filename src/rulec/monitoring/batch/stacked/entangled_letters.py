@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.monitoring.batch.stacked.crowded_states import CrowdedStates, supposed_instead
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
@@ -20,7 +21,6 @@ from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.trace import Value
-from rulec.trace.trace_arrays import Flags
 from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
 
 

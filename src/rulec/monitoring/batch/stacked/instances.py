@@ -14,8 +14,9 @@ from typing import overload
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.array_types import Indices
 from rulec.monitoring.batch.columns.column_numbers import Mask
-from rulec.monitoring.batch.stacked.stack import FEW, Places, Stack
+from rulec.monitoring.batch.stacked.stack import FEW, Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
@@ -53,7 +54,7 @@ class NumbersAt(Sequence[Numbers]):
             self._known[place] = self._reader.numbers(self._rule.reads[place], self._spots)
         return self._known[place]
 
-    def part(self, spots: Spots, at: Places) -> NumbersAt:
+    def part(self, spots: Spots, at: Indices) -> NumbersAt:
         """The numbers at some of the spots, given by their places ``at``."""
         part = NumbersAt(self._rule, self._reader, spots)
         # Numbers computed from several values are not recomputed
@@ -73,13 +74,13 @@ class Instances:
     numbered as in the stack. ``letters`` are those of all states, if there are no variables.
     """
 
-    traces: Places
-    objects: tuple[Places, ...]
-    firsts: Places
-    lasts: Places
+    traces: Indices
+    objects: tuple[Indices, ...]
+    firsts: Indices
+    lasts: Indices
     letters: Numbers | None = None
 
-    def part(self, members: Places) -> Instances:
+    def part(self, members: Indices) -> Instances:
         """Some of the choices."""
         return Instances(
             self.traces[members],
@@ -89,7 +90,7 @@ class Instances:
             self.letters,
         )
 
-    def spots(self, rule: StackedRule, stack: Stack) -> tuple[Places, Spots]:
+    def spots(self, rule: StackedRule, stack: Stack) -> tuple[Indices, Spots]:
         """The states of all choices, one choice after the other, with the cells of its objects.
 
         The first item has where the states of each choice begin, and where the last ones end.
@@ -152,7 +153,7 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
         traces = (~rule.are_surely_kept(every, stack.begins[:-1])).nonzero()[0]
         firsts, lasts = stack.begins[traces], stack.begins[traces + 1] - 1
         return Instances(traces, (), firsts, lasts, every)
-    objects: tuple[Places, ...]
+    objects: tuple[Indices, ...]
     if len(rule.variables) == 1:
         objects = (_doubtful_objects(rule, reader, busy),)
     else:
@@ -164,7 +165,7 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     return _of_objects(objects, stack)
 
 
-def _of_objects(objects: tuple[Places, ...], stack: Stack) -> Instances:
+def _of_objects(objects: tuple[Indices, ...], stack: Stack) -> Instances:
     """The choices of these objects, one per variable, while all of them are present."""
     first, *others = objects
     firsts, lasts = stack.firsts[first], stack.lasts[first]
@@ -174,7 +175,7 @@ def _of_objects(objects: tuple[Places, ...], stack: Stack) -> Instances:
     return Instances(stack.trace_of[first], objects, firsts, lasts)
 
 
-def _doubtful_of_few(rule: StackedRule, reader: StackReader) -> Places:
+def _doubtful_of_few(rule: StackedRule, reader: StackReader) -> Indices:
     """The objects for the only variable that letters alone do not show to be kept.
 
     Letters are computed in all cells, since there are few.
@@ -190,7 +191,7 @@ def _doubtful_of_few(rule: StackedRule, reader: StackReader) -> Places:
     return objects[stack.of_type(kind)[objects] & ~are_kept]
 
 
-def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Places:
+def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Indices:
     """The objects for the only variable that letters alone do not show to be kept.
 
     They are present in some ``busy`` state. Letters are computed only where some read changes.
@@ -219,7 +220,7 @@ def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Pla
     ]
     letters = rule.letters.numbers(numbers)
     begins = stack.are_first[cells].nonzero()[0]
-    objects: Places = stack.object_of[cells[begins]]
+    objects: Indices = stack.object_of[cells[begins]]
     return objects[~rule.are_surely_kept(letters, begins)]
 
 
@@ -234,7 +235,7 @@ def _busy_cells(
     reader: StackReader,
     busy: Mask,
     about: tuple[str, str],
-) -> Places:
+) -> Indices:
     """The cells of objects for a variable in which a letter may have an effect."""
     (variable, kind), stack = about, reader.stack
     cells, states = stack.cells_of_type(kind), stack.states_of_type(kind)
@@ -250,8 +251,8 @@ def _busy_cells(
 
 
 def _pairs(
-    rule: StackedRule, reader: StackReader, first: Places, second: Places
-) -> tuple[Places, Places]:
+    rule: StackedRule, reader: StackReader, first: Indices, second: Indices
+) -> tuple[Indices, Indices]:
     """The pairs of objects with cells in the same state in which a letter may have an effect."""
     stack = reader.stack
     n_objects = len(stack.types)
@@ -268,7 +269,7 @@ def _pairs(
     return every // n_objects, every % n_objects
 
 
-def _joined(first: Places, second: Places, stack: Stack) -> Iterator[tuple[Places, Places]]:
+def _joined(first: Indices, second: Indices, stack: Stack) -> Iterator[tuple[Indices, Indices]]:
     """The pairs of cells in the same state, some at a time."""
     second = second[stack.state_of[second].argsort(kind="stable")]
     states, theirs = stack.state_of[first], stack.state_of[second]

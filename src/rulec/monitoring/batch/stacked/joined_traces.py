@@ -8,8 +8,9 @@ from itertools import pairwise
 from operator import attrgetter
 from typing import Any
 
+from rulec.array_types import Flags
 from rulec.trace.shared_columns import SharedColumns
-from rulec.trace.trace_arrays import Flags, TraceArrays
+from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_columns import Array
 
 _COLUMNS = ("world", "about", "unknown", "absent", "bounds", "only")

@@ -9,6 +9,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import reads_in
@@ -21,7 +22,6 @@ from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
 from rulec.monitoring.uncertainty.supposed_constants import by_name
 from rulec.monitoring.uncertainty.within_tolerance import told_within_bounds
 from rulec.monitoring.verdict import OpenReasons
-from rulec.trace.trace_arrays import Flags
 from rulec.vocabulary.partial_values import UNKNOWN
 
 _Value = TypeVar("_Value")

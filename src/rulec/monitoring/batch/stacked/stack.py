@@ -12,8 +12,8 @@ from math import isfinite
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Indices
 from rulec.automata.thresholds import EXACT_IN_FLOATS
 from rulec.monitoring.batch.columns.columnize import (
     UnencodableError,
@@ -22,13 +22,11 @@ from rulec.monitoring.batch.columns.columnize import (
 )
 from rulec.monitoring.batch.stacked.joined_traces import joined_traces
 from rulec.trace.plain_arrays import distinct
-from rulec.trace.trace_arrays import Flags, TraceArrays, starts_of
+from rulec.trace.trace_arrays import TraceArrays, starts_of
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 from rulec.vocabulary.vocabulary_model import least_value
-
-Places = NDArray[np.intp]
 
 FEW = 1 << 12
 """Columns with at most so many values are stacked before reduction, which takes fewer calls."""
@@ -84,29 +82,29 @@ class Stack:
         self.types = [kind for trace in traces for kind in trace.objects.values()]
         self.kinds = tuple(dict.fromkeys(self.types))
         numbers = {kind: number for number, kind in enumerate(self.kinds)}
-        self.kind_of: Places = np.array([numbers[kind] for kind in self.types], dtype=np.intp)
+        self.kind_of: Indices = np.array([numbers[kind] for kind in self.types], dtype=np.intp)
         self.names = [name for trace in traces for name in trace.objects]
         about = dict.fromkeys(traces[0].about, True)
         self.is_about_objects = {**dict.fromkeys(traces[0].world, False), **about}
         self._ends: dict[str, tuple[float, float]] = {}
         self._of_type: dict[str, Flags] = {}
         self._whole_types: dict[str, bool] = {}
-        self._cells_of_type: dict[str, Places] = {}
-        self._states_of_type: dict[str, Places] = {}
+        self._cells_of_type: dict[str, Indices] = {}
+        self._states_of_type: dict[str, Indices] = {}
 
     @cached_property
-    def _n_cells(self) -> Places:
+    def _n_cells(self) -> Indices:
         return self.starts[1:] - self.starts[:-1]
 
     @cached_property
-    def object_of(self) -> Places:
+    def object_of(self) -> Indices:
         """The object of each cell."""
         return np.arange(len(self.types)).repeat(self._n_cells)
 
     @cached_property
-    def state_of(self) -> Places:
+    def state_of(self) -> Indices:
         """The state of each cell."""
-        shift: Places = self.firsts - self.starts[:-1]
+        shift: Indices = self.firsts - self.starts[:-1]
         return np.arange(self.starts[-1]) + shift.repeat(self._n_cells)
 
     @cached_property
@@ -127,7 +125,7 @@ class Stack:
         """Whether some object is of a type or one of its subtypes."""
         return any(self.vocabulary.is_subtype(own, kind) for own in self.kinds)
 
-    def cells_of_type(self, kind: str) -> Places:
+    def cells_of_type(self, kind: str) -> Indices:
         """The cells of the objects of a type."""
         if kind not in self._cells_of_type:
             suits = self.of_type(kind)
@@ -135,7 +133,7 @@ class Stack:
             self._cells_of_type[kind] = every if suits.all() else every[suits[self.object_of]]
         return self._cells_of_type[kind]
 
-    def states_of_type(self, kind: str) -> Places:
+    def states_of_type(self, kind: str) -> Indices:
         """The states of the cells of the objects of a type."""
         if kind not in self._states_of_type:
             cells = self.cells_of_type(kind)
@@ -173,7 +171,7 @@ class Stack:
                             odd.update(self.traces_at(name, changed.nonzero()[0]))
         return odd
 
-    def traces_at(self, name: str, places: Places) -> list[int]:
+    def traces_at(self, name: str, places: Indices) -> list[int]:
         """The traces of a name's values at some places."""
         if self.is_about_objects[name]:
             places = self.state_of[places]

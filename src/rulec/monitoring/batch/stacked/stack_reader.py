@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rulec.array_types import Flags, Indices
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import ThresholdScale
 from rulec.logic import formula as ltl
@@ -22,10 +23,9 @@ from rulec.monitoring.batch.columns.column_numbers import (
 )
 from rulec.monitoring.batch.columns.column_reader import KLEENE_COLUMNS, UNKNOWN, Truth, known
 from rulec.monitoring.batch.stacked.met_values import MetValues
-from rulec.monitoring.batch.stacked.stack import Places, Stack, StackColumn, either
+from rulec.monitoring.batch.stacked.stack import Stack, StackColumn, either
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRead
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
-from rulec.trace.trace_arrays import Flags
 from rulec.trace.trace_columns import Array, smallest_unsigned
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN_VALUE
@@ -40,12 +40,12 @@ class Spots(NamedTuple):
     objects of that type (of any type if it is empty).
     """
 
-    states: Places
-    cells: Mapping[str, Places]
+    states: Indices
+    cells: Mapping[str, Indices]
     whole: bool = False
     kind: str | None = None
 
-    def part(self, chosen: Places | slice) -> Spots:
+    def part(self, chosen: Indices | slice) -> Spots:
         """Some of the spots."""
         cells = {variable: own[chosen] for variable, own in self.cells.items()}
         return Spots(self.states[chosen], cells)
@@ -64,7 +64,7 @@ class StackReader:
         self._every_state = np.arange(stack.n_states)
 
     @cached_property
-    def _every_cell(self) -> Places:
+    def _every_cell(self) -> Indices:
         return np.arange(self.stack.starts[-1])
 
     def every_cell_of(self, variable: str) -> Spots:

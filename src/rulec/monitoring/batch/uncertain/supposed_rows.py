@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.array_types import Indices
 from rulec.monitoring.batch.columns.column_numbers import alike_places
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
@@ -16,8 +17,6 @@ from rulec.trace import Value
 from rulec.trace.plain_arrays import distinct
 from rulec.trace.trace_columns import Layout, layout_of
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, PartialValue
-
-Places = NDArray[np.intp]
 
 NOT_SUPPOSED = -1
 
@@ -30,7 +29,7 @@ class SupposedValues:
     """
 
     values: Sequence[Value]
-    of_rows: Places
+    of_rows: Indices
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,10 +42,10 @@ class SupposedRows:
     """
 
     layout: Layout
-    begins: Places | None = None
-    traces: Places | None = None
-    rows: Places | None = None
-    states: Places | None = None
+    begins: Indices | None = None
+    traces: Indices | None = None
+    rows: Indices | None = None
+    states: Indices | None = None
     supposed: Mapping[Subject, SupposedValues] = field(default_factory=dict)
 
     def numbers(self, of_traces: Numbers) -> Numbers:
@@ -59,7 +58,7 @@ class SupposedRows:
         """Flags of the traces' states, for the states of rows."""
         return of_traces if self.states is None else of_traces.take(self.states)
 
-    def places(self, places: Places) -> Places:
+    def places(self, places: Indices) -> Indices:
         """The states of traces for these places in rows."""
         return places if self.states is None else self.states.take(places)
 
@@ -75,13 +74,13 @@ class SupposedRows:
         """Whether all rows of each trace have a flag."""
         return flags if self.begins is None else np.logical_and.reduceat(flags, self.begins)
 
-    def traces_at(self, places: Places) -> Places:
+    def traces_at(self, places: Indices) -> Indices:
         """The traces with states at some places."""
         rows = self.layout.traces_at(places)
-        traces: Places = distinct(rows if self.traces is None else self.traces.take(rows))
+        traces: Indices = distinct(rows if self.traces is None else self.traces.take(rows))
         return traces
 
-    def where_supposed(self, subject: Subject) -> tuple[Sequence[Value], Places] | None:
+    def where_supposed(self, subject: Subject) -> tuple[Sequence[Value], Indices] | None:
         """The supposed values of a constant, and for each state the place of its value.
 
         The place is negative where nothing is supposed. None if nothing is supposed anywhere.
@@ -92,7 +91,7 @@ class SupposedRows:
         return own.values, own.of_rows.take(self.rows)
 
     def with_supposed(
-        self, subject: Subject, values: Sequence[PartialValue | None], places: Places
+        self, subject: Subject, values: Sequence[PartialValue | None], places: Indices
     ) -> Sequence[PartialValue | None]:
         """A subject's values at places of rows, with supposed values instead of unknown ones."""
         where = self.where_supposed(subject)

@@ -10,6 +10,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.array_types import Indices
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.monitoring.batch.engine import rule_bindings
@@ -49,8 +50,6 @@ from rulec.trace.trace_columns import Array, Layout, TraceColumns, smallest_unsi
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 
-Places = NDArray[np.intp]
-
 _RuleReads: TypeAlias = tuple[RuleLetters, SupposedRows, Sequence[Numbers]]
 """A rule's letters, and the numbers of its reads in the states of rows."""
 
@@ -67,10 +66,10 @@ class UncertainOutcomes:
     """
 
     binding: RuleBinding
-    violated: Places
+    violated: Indices
     lost_at: NDArray[np.int64]
-    open: Places
-    unread: Places
+    open: Indices
+    unread: Indices
 
 
 def uncertain_outcomes(
@@ -151,7 +150,7 @@ class _Engine:
         return cells
 
     def _joint_letters(
-        self, binding: RuleBinding, machines: SetTables, rule_reads: _RuleReads, places: Places
+        self, binding: RuleBinding, machines: SetTables, rule_reads: _RuleReads, places: Indices
     ) -> list[int]:
         """The number of the letter set at each place, where reads depend on each other.
 
@@ -159,7 +158,7 @@ class _Engine:
         """
         own, rows, numbers = rule_reads
 
-        def sets_at(places: Places) -> list[int]:
+        def sets_at(places: Indices) -> list[int]:
             digits = [machines.digits(n, numbers[n], places) for n in own.independent]
             keys = self._keys(binding, own.entangled, (places, digits), rows)
             return [machines.letters.number_of(each) for each in own.classes(keys)]
@@ -179,7 +178,7 @@ class _Engine:
         return [known[code] for code in codes]
 
     def _codes(
-        self, binding: RuleBinding, machines: SetTables, rule_reads: _RuleReads, places: Places
+        self, binding: RuleBinding, machines: SetTables, rule_reads: _RuleReads, places: Indices
     ) -> tuple[object, Sequence[object]] | None:
         """A kind of codes, and a code for each place.
 
@@ -222,7 +221,7 @@ class _Engine:
         self,
         binding: RuleBinding,
         entangled: EntangledReads,
-        independent: tuple[Places, Sequence[Sequence[int]]],
+        independent: tuple[Indices, Sequence[Sequence[int]]],
         rows: SupposedRows,
     ) -> list[tuple[int, ...]]:
         """The keys of letters at some places, where independent reads have these digits."""
@@ -281,7 +280,7 @@ class _Engine:
 
     def _rows_of(
         self, binding: RuleBinding, machine: UncertainMachine
-    ) -> tuple[SupposedRows, Places]:
+    ) -> tuple[SupposedRows, Indices]:
         """The rows for all choices of unknown constants, and the traces to be judged one by one."""
         layout = self._columns.layout
         unknown, odd = self._unknown_constants(binding)
@@ -336,7 +335,7 @@ class _Engine:
         return unknown_in, odd
 
 
-def _joined_codes(columns: Sequence[tuple[Numbers, int]], places: Places) -> Sequence[object]:
+def _joined_codes(columns: Sequence[tuple[Numbers, int]], places: Indices) -> Sequence[object]:
     """One or several numbers for the joint values of columns at some places."""
     words, codes, size = [], np.zeros(len(places), dtype=np.int64), 1
     for column, width in columns:
@@ -356,14 +355,14 @@ def _subject_of(read: Read | NumberRead, binding: RuleBinding) -> Subject:
     return name, tuple([binding.objects[variable] for variable in variables])
 
 
-def _on_stretch(binding: RuleBinding, layout: Layout, places: Places) -> Places:
+def _on_stretch(binding: RuleBinding, layout: Layout, places: Indices) -> Indices:
     (first, last), starts = binding.stretch, layout.starts
     end = starts[-1 if last is None else last + 1]
-    chosen: Places = places[(places >= starts[first]) & (places < end)]
+    chosen: Indices = places[(places >= starts[first]) & (places < end)]
     return chosen
 
 
-def _impossible(binding: RuleBinding, tables: SetTable, rows: SupposedRows, word: Array) -> Places:
+def _impossible(binding: RuleBinding, tables: SetTable, rows: SupposedRows, word: Array) -> Indices:
     """The traces with a state that can have no letter, whatever is supposed."""
     if not tables.impossible:
         return np.empty(0, dtype=np.intp)

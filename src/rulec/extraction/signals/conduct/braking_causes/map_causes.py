@@ -13,6 +13,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.conduct.braking_causes.others_around import (
     CROSSES_M,
@@ -25,7 +26,6 @@ from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.map.stop_lines import ends_at_line, stop_line
 from rulec.extraction.signals.map.zone_signals import crossings_lit
 from rulec.extraction.signals.measured_numbers import moves, own_front
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import GIVE_WAY_SIGNS, STOP_SIGNS
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.plain_arrays import distinct, zero_if_nan

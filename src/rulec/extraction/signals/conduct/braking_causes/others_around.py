@@ -8,9 +8,9 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.reference_line import turn
 
 CROSSES_M, ACROSS_RAD = 30.0, np.radians(30.0)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.braking_causes.others_around import (
@@ -18,7 +19,6 @@ from rulec.extraction.signals.conduct.braking_causes.others_around import (
 )
 from rulec.extraction.signals.map.priority_signals import approach, own_passages, passages_of
 from rulec.extraction.signals.measured_numbers import moves
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
 
 IN_WAY_M, COMES_M = 2.5, 6.0

@@ -9,6 +9,7 @@ import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
@@ -25,7 +26,6 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
 from rulec.extraction.signals.map.junction_signals import lies_askew_in_turn
 from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.plain_arrays import distinct
 

@@ -10,12 +10,12 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lane_changes.lanes_from_behind import comes_from_before
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.queues import lanes_that_go_on
-from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct, ranges

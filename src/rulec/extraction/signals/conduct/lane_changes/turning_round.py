@@ -6,9 +6,9 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.measured_numbers import own_widths
-from rulec.extraction.tracks.tracks import Flags, Floats
 
 _SLOWED_MPS = 0.5
 """A vehicle that is slower by more afterwards may have had to brake."""

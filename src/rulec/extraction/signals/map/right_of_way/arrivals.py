@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.right_of_way.conflicts import FROM_SIDES, Encounter
 from rulec.extraction.signals.map.right_of_way.held_up import DRIVES_MPS
@@ -13,7 +14,6 @@ from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.extraction.tracks.at_junctions.junctions import all_have_to_stop
-from rulec.extraction.tracks.tracks import Flags
 
 ARRIVALS = ("arrived_together", "other_arrived_first", "other_in_junction")
 

@@ -11,9 +11,9 @@ from math import ceil
 import numpy as np
 import shapely
 
+from rulec.array_types import Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
-from rulec.extraction.tracks.tracks import Floats
 
 _FINE_S = 0.05
 """Bodies are interpolated at least this often: by then they have moved a fraction of a metre."""

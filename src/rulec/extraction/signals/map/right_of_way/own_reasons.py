@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from rulec.array_types import Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS, turns_far
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
@@ -24,7 +25,6 @@ from rulec.extraction.tracks.at_junctions.junctions import (
     approaches,
     entry_lights,
 )
-from rulec.extraction.tracks.tracks import Floats
 from rulec.recordings.recording import GIVE_WAY_SIGNS, LIMIT_SIGN, STOP_SIGNS
 from rulec.scenario.recorded.reference_line import turn
 

@@ -9,13 +9,13 @@ import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.map.right_of_way.conflicts import side_of
 from rulec.extraction.signals.map.right_of_way.held_up import drives_in
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS
 from rulec.extraction.signals.signal_passes import once_a_recording
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
-from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.recorded.reference_line import turn
 
 _NEVER = np.iinfo(np.intp).max
