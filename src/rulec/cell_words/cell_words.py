@@ -30,11 +30,11 @@ from rulec.cell_words.place_words import (
 from rulec.cell_words.probe_drives import ProbeDrives, probe_drives
 from rulec.cell_words.relation_words import FLOWS, RELATIONS, Relations
 from rulec.cell_words.road_frame import RoadFrame
-from rulec.extraction.drive_context import KMH
 from rulec.extraction.recording_verdicts import names_read
 from rulec.extraction.selection import RequestedDrives, chosen_side
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.partition import NavigationGraph
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.scenario.recorded.scene_origin import SceneOrigin
 from rulec.trace import State
 from rulec.vocabulary import Vocabulary
@@ -287,7 +287,7 @@ class _Words:
     def _own_words(self, boxes: EgoBoxes) -> dict[str, list[Any]]:
         """Words of ego's speed, by cell."""
         found: dict[str, list[Any]] = {}
-        slow, fast = (speed * KMH for speed in boxes.mean_speed)
+        slow, fast = (speed * KMH_PER_MPS for speed in boxes.mean_speed)
         standing = USUAL.standing_kmh
         if "speed" in self._names:
             low = np.where(slow < 2 * standing, 0.0, slow)

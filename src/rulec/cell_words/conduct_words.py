@@ -16,10 +16,10 @@ from rulec.array_types import Flags, Floats
 from rulec.cell_words.ego_boxes import EgoBoxes, column
 from rulec.cell_words.relation_words import BEHIND, BESIDE, IN_FRONT, LEFT, RIGHT, Relations
 from rulec.cell_words.road_frame import OthersNow, RoadFrame
-from rulec.extraction.drive_context import KMH
 from rulec.extraction.signals.conduct.reason_signals import FOLLOWS_S, reach_at
 from rulec.extraction.signals.map.zone_signals import ROOM_M
 from rulec.extraction.traffic_thresholds import USUAL
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.vocabulary.partial_values import UNKNOWN
 
 CONDUCT = frozenset(
@@ -118,7 +118,7 @@ class ConductWords:
         others = self._others
         side = RIGHT if self._frame.probes.among.side == "right" else LEFT
         faster = others.along[1] - column(self._boxes.mean_speed[0])
-        comes = others.may_go_along & (faster * KMH >= USUAL.clearly_faster_kmh)
+        comes = others.may_go_along & (faster * KMH_PER_MPS >= USUAL.clearly_faster_kmh)
         comes &= self._relations.stations & (BESIDE | IN_FRONT) > 0
         comes &= self._relations.laterals & side > 0
         comes &= self._relations.gaps[0] <= np.maximum(faster, 0.0) * USUAL.passed_s

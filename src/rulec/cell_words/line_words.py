@@ -18,10 +18,10 @@ from rulec.cell_words.ego_boxes import EgoBoxes, column
 from rulec.cell_words.place_words import LOOSE_M, Words, hull, lanes_of
 from rulec.cell_words.probe_drives import EVERY_M, ProbeDrives
 from rulec.cell_words.road_frame import LaneLight, RoadFrame
-from rulec.extraction.drive_context import KMH
 from rulec.extraction.signals.map.line_signals import COLOURS, colour_at
 from rulec.extraction.signals.map.stop_lines import LINE_REACH_M
 from rulec.extraction.traffic_thresholds import USUAL
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import STOP_SIGNS
 from rulec.vocabulary.partial_values import UNKNOWN, OneOf
 
@@ -30,7 +30,7 @@ _LIT, _SIGNED = "crosses_light_line", "crosses_stop_line"
 _DARK = "no_light"
 _ANY = OneOf(frozenset(COLOURS.values()))
 
-_SLOWEST_MPS = USUAL.standing_kmh / KMH
+_SLOWEST_MPS = USUAL.standing_kmh / KMH_PER_MPS
 _CROSSING_S = USUAL.touching_m / _SLOWEST_MPS
 """A moving vehicle is over a line that the map contains within this time (s)."""
 

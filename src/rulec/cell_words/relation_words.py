@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from rulec.array_types import Flags, Floats
 from rulec.cell_words.ego_boxes import Bounds, EgoBoxes, column
 from rulec.cell_words.road_frame import OthersNow, RoadFrame
-from rulec.extraction.drive_context import KMH
 from rulec.extraction.signals.flow_signals import TIMES_AS_FAST
 from rulec.extraction.signals.measured_numbers import LONGEST_S
 from rulec.extraction.traffic_thresholds import USUAL
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.scenario.paper_words import LATERALS, STATIONS
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 
@@ -208,7 +208,7 @@ class Relations:
 
         A lane may flow where a vehicle may be much faster, and an empty lane may have others.
         """
-        others, limit = self._others, below_kmh / KMH
+        others, limit = self._others, below_kmh / KMH_PER_MPS
         near, far = self.gaps
         may = others.may_go_along & (near <= USUAL.near_m)
         must = others.goes_along & (far <= USUAL.flow_reach_m)
@@ -245,7 +245,7 @@ class Relations:
         return np.maximum(least, 0.0), np.maximum(most, 0.0)
 
     def _differences(self) -> Bounds:
-        standing = USUAL.standing_kmh / KMH
+        standing = USUAL.standing_kmh / KMH_PER_MPS
         low, high = (np.asarray(speed) for speed in self._others.along)
         # A participant that may stand has no speed
         still = (np.minimum(np.abs(low), np.abs(high)) < standing) | (low * high < 0)
@@ -254,11 +254,11 @@ class Relations:
             np.where(still, np.maximum(high, 0.0), high),
         )
         slow, fast = self._boxes.mean_speed
-        return (column(slow) - high) * KMH, (column(fast) - low) * KMH
+        return (column(slow) - high) * KMH_PER_MPS, (column(fast) - low) * KMH_PER_MPS
 
     def _headways(self, near: Floats, far: Floats) -> Bounds:
         slow, fast = (column(speed) for speed in self._boxes.mean_speed)
-        standing = USUAL.standing_kmh / KMH
+        standing = USUAL.standing_kmh / KMH_PER_MPS
         may_stand = slow < 2 * standing
         longest = np.where(may_stand, LONGEST_S, far / np.maximum(slow, standing))
         shortest = near / np.maximum(fast, standing)

@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 from rulec.array_types import Flags, Floats
 from rulec.cell_words.lane_roads import lane_roads, linked_with
 from rulec.cell_words.probe_drives import ProbeDrives
-from rulec.extraction.drive_context import KMH
 from rulec.extraction.signals.ego_lanelets import CYCLE_LANE, SHOULDER, lanes_of_type
 from rulec.extraction.signals.map.line_signals import lights_of
 from rulec.extraction.signals.settling import fewest_states
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.traffic_thresholds import LEAST_S, USUAL
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import Lanelet, Light, ObservedLight
 
 _FAR_M = 300.0
@@ -226,7 +226,7 @@ class RoadFrame:
     def _come(self) -> Flags:
         """Mask of participants that count and move against ego's direction."""
         slowest = self.places.extents.along - self.places.tracks.speed_error
-        come: Flags = self.places.counts & (slowest * KMH < -USUAL.standing_kmh)
+        come: Flags = self.places.counts & (slowest * KMH_PER_MPS < -USUAL.standing_kmh)
         return come
 
     def _with_partings(self, now: OthersNow, ego_s: float) -> OthersNow:

@@ -16,7 +16,6 @@ from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.lane_sets import LaneSets, is_in
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.source_tolerances import Tolerances
-from rulec.extraction.tracks.surroundings import KMH as KMH
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.extraction.traffic_thresholds import Thresholds

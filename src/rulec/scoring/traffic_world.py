@@ -16,7 +16,7 @@ from rulec.extraction.candidate_drives import CandidateDrives
 from rulec.extraction.recording_parts import egos_of, span_of, whole_recording
 from rulec.extraction.selection import RequestedDrives, chosen_side, with_night_assumed
 from rulec.extraction.tracks.mirror import mirrored_recording
-from rulec.recordings.encodings.speed_units import KMH
+from rulec.recordings.encodings.speed_units import MPS_PER_KMH
 from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.mending.mended_recording import mended
 from rulec.recordings.recording import HEADINGS, Participant, Recording, is_lane
@@ -150,7 +150,7 @@ class TrafficWorld:
         before[:, 0] = past[-1] if len(past) else paths[:, 0]
         x, y = (paths - before).transpose(2, 0, 1)[:2]
         is_back = x * np.cos(paths[..., 2]) + y * np.sin(paths[..., 2]) < 0
-        most_mps = self.wanted.thresholds.walking_pace_kmh * KMH
+        most_mps = self.wanted.thresholds.walking_pace_kmh * MPS_PER_KMH
         back: NDArray[bool_] = is_back & (np.hypot(x, y) > most_mps * self.recording.step_s)
         return back
 

@@ -7,7 +7,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.manoeuvre_signals import on_both_halves, oncoming_side
@@ -15,6 +15,7 @@ from rulec.extraction.signals.ego_lanelets import own_lanelets, travel_lanes
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.lane_sets import is_in
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct
 
@@ -69,7 +70,7 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     ends = context.spans.columns + steps >= context.spans.end
     far_enough = 2 * own * limits.overtaking_s <= limits.near_m
     present = presence_cells(context)
-    against = present.of(context.extents.along) * KMH < -limits.standing_kmh
+    against = present.of(context.extents.along) * KMH_PER_MPS < -limits.standing_kmh
     against &= context.tracks.of_type("vehicle")[present.rows]
     cells = present.part(against.nonzero()[0])
     if not len(cells):
@@ -175,7 +176,7 @@ def _obstructed(context: DriveContext) -> tuple[Flags, Flags]:
 def _obstacles(context: DriveContext) -> tuple[Cells, Floats]:
     """The cells of those that stand, or walk along the road, and the room (m) beside each."""
     present = presence_cells(context)
-    stands = present.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
+    stands = present.of(context.tracks.speed) * KMH_PER_MPS < context.thresholds.standing_kmh
     walks = context.tracks.of_type("pedestrian")[present.rows]
     walks &= np.abs(np.cos(present.of(context.extents.turned))) >= _ALONG
     chosen = ((stands | walks) & present.of(context.relevant)).nonzero()[0]
@@ -244,7 +245,7 @@ def _near_obstacle(context: DriveContext, cells: Cells) -> Flags:
     early = ~near & (gap <= along[cells.columns] * context.thresholds.parting_s)
     near |= early & context.tracks.of_type("pedestrian")[cells.rows]
     early &= cells.of(relations.station(context)) == relations.BEHIND
-    early &= cells.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
+    early &= cells.of(context.tracks.speed) * KMH_PER_MPS < context.thresholds.standing_kmh
     rows, never_moves = distinct(cells.rows[early]), np.zeros(len(context.relevant), dtype=bool)
     never_moves[rows] = context.stays[rows]
     near |= early & never_moves[cells.rows]

@@ -10,7 +10,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
     on_both_halves,
     oncoming_side,
@@ -26,6 +26,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.track import TrackOutlines
 from rulec.trace.plain_arrays import medians
 
@@ -68,7 +69,9 @@ def _ego_length(context: DriveContext) -> SignalColumns:
 
 def _speed(context: DriveContext) -> SignalColumns:
     speed, _ = own_speed(context)
-    return SignalColumns({"speed": rounded(speed * KMH)}, bounds={"speed": speed_bounds(context)})
+    return SignalColumns(
+        {"speed": rounded(speed * KMH_PER_MPS)}, bounds={"speed": speed_bounds(context)}
+    )
 
 
 def _change_of_speed(context: DriveContext) -> SignalColumns:
@@ -95,7 +98,7 @@ def _acceleration(context: DriveContext) -> SignalColumns:
 
 
 def _stopping(context: DriveContext) -> SignalColumns:
-    (speed, error), slow = own_speed(context), context.thresholds.stops_at_once_kmh / KMH
+    (speed, error), slow = own_speed(context), context.thresholds.stops_at_once_kmh / KMH_PER_MPS
     return SignalColumns(
         {"can_stop_at_once": speed <= slow},
         unknown={"can_stop_at_once": abs(speed - slow) < error},

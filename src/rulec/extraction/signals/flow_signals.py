@@ -12,7 +12,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import travel_lanes_first
 from rulec.extraction.signals.queues import (
@@ -29,6 +29,7 @@ from rulec.extraction.signals.queues import (
 )
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import medians_hold
 
@@ -60,7 +61,7 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
         return used
 
     def slow(below_kmh: float) -> tuple[Flags, Flags]:
-        own = (around.speed * KMH < below_kmh).nonzero()[0]
+        own = (around.speed * KMH_PER_MPS < below_kmh).nonzero()[0]
         called: Flags = enough & (2 * used_by(own) >= several)
         if not called.any():
             return called, called
@@ -135,7 +136,7 @@ def _is_behind_moving_bottleneck(context: DriveContext, slow: Flags) -> Flags:
     apart = gaps > longest_gaps(context, speed[order], speed_error[order])[LOOSE]
     leaders = order[apart]
     state, nearest = np.unique(states[leaders], return_index=True)
-    found[state] = speed[leaders[nearest]] * KMH >= context.thresholds.standing_kmh
+    found[state] = speed[leaders[nearest]] * KMH_PER_MPS >= context.thresholds.standing_kmh
     return found
 
 
@@ -162,7 +163,10 @@ def _is_slow(
 
     def are_below(limit_kmh: float, groups: NDArray[intp], own: NDArray[intp], count: int) -> Flags:
         return medians_hold(
-            groups.take(own), around.speed.take(own), count, lambda mps: mps * KMH < limit_kmh
+            groups.take(own),
+            around.speed.take(own),
+            count,
+            lambda mps: mps * KMH_PER_MPS < limit_kmh,
         )
 
     state, place, fast_kmh = around.state, around.place, TIMES_AS_FAST * below_kmh

@@ -10,11 +10,12 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import SHOULDER, map_contents
 from rulec.extraction.signals.measured_numbers import own_widths
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Lanelet, LaneMark, is_lane
 from rulec.scenario.recorded.route import lanelet_area
@@ -97,7 +98,7 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     if not map_contents(context).marks:
         return _NONE
     names = ("on_solid_line", "broken_on_own_side", "single_line")
-    stays = context.spans.all(context.ego.speed[0] * KMH < context.thresholds.standing_kmh)
+    stays = context.spans.all(context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh)
     if stays.all():
         return SignalColumns(dict.fromkeys(names, np.zeros(context.states, dtype=bool)))
     place, offsets = context.tolerances.place_m, context.map_offset_m

@@ -10,10 +10,11 @@ from math import ceil
 import numpy as np
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import Bounds, rounded_outward
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.cells import Cells
 
@@ -41,7 +42,7 @@ _AT_LIMIT_MPS = 0.01
 @once
 def moves(context: DriveContext) -> Flags:
     """Mask of states in which ego moves."""
-    drives: Flags = context.ego.speed[0] * KMH >= context.thresholds.standing_kmh
+    drives: Flags = context.ego.speed[0] * KMH_PER_MPS >= context.thresholds.standing_kmh
     return drives
 
 
@@ -79,9 +80,9 @@ def speed_bounds(context: DriveContext) -> Bounds:
     speed, error = own_speed(context)
     differs = _differs_from_mean(context)
     low, high = speed - np.maximum(error, -differs), speed + np.maximum(error, differs)
-    may_stand = (low * KMH < context.thresholds.standing_kmh) & (error > 0)
+    may_stand = (low * KMH_PER_MPS < context.thresholds.standing_kmh) & (error > 0)
     may_stand |= _may_have_stood_beside(context, low, high)
-    return rounded_outward(np.where(may_stand, 0.0, low * KMH), high * KMH)
+    return rounded_outward(np.where(may_stand, 0.0, low * KMH_PER_MPS), high * KMH_PER_MPS)
 
 
 def _differs_from_mean(context: DriveContext) -> Floats:
@@ -158,7 +159,9 @@ def difference_bounds(context: DriveContext) -> Bounds:
     difference, speeds = speed_differences(context)
     cells = presence_cells(context)
     their_error = np.where(speeds == 0, 0.0, cells.of(context.tracks.speed_error))
-    wrong = context.tolerances.joint(cells.of(context.ego.speed_error[0]), their_error) * KMH
+    wrong = (
+        context.tolerances.joint(cells.of(context.ego.speed_error[0]), their_error) * KMH_PER_MPS
+    )
     return rounded_outward(difference - wrong, difference + wrong)
 
 
@@ -166,8 +169,8 @@ def difference_bounds(context: DriveContext) -> Bounds:
 def speed_differences(context: DriveContext) -> tuple[Floats, Floats]:
     """By how much (km/h) ego is faster along the road; the others' speeds, 0 if they stand."""
     cells = presence_cells(context)
-    speeds = context.zero_if_standing(cells.of(context.extents.along) * KMH)
-    difference: Floats = cells.of(context.ego_extents.along[0]) * KMH - speeds
+    speeds = context.zero_if_standing(cells.of(context.extents.along) * KMH_PER_MPS)
+    difference: Floats = cells.of(context.ego_extents.along[0]) * KMH_PER_MPS - speeds
     return difference, speeds
 
 

@@ -16,11 +16,12 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import travel_lanes_first
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.driven_road import DrivenRoad
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import medians_hold
 
@@ -240,7 +241,7 @@ def queues_by_lane(context: DriveContext) -> tuple[Flags, Flags]:
         place,
         around.speed.take(several),
         n_places,
-        lambda speed: speed * KMH < context.thresholds.slow_queue_kmh,
+        lambda speed: speed * KMH_PER_MPS < context.thresholds.slow_queue_kmh,
     )
     queues = np.zeros((len(READINGS), n_places), dtype=bool)
     if len(several):

@@ -20,12 +20,10 @@ from rulec.extraction.tracks.heading_errors import head_as_they_move, heading_er
 from rulec.extraction.tracks.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.tracks import ObjectTypes, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import HEADINGS, Lanelet, Recording, Side, WholeRecording, is_lane
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_beside, lanelet_area, lanes_beside
-
-KMH = 3.6
-"""km/h in one m/s."""
 
 SAME_CARRIAGEWAY_M = 1.5
 OTHER_CARRIAGEWAY_M = 30.0
@@ -159,7 +157,7 @@ class Surroundings:
     @cached_property
     def in_traffic(self) -> Flags:
         """Mask of participants, by row, that move at some time or ``waits`` says so of."""
-        moves: Flags = self.tracks.fastest * KMH >= self.thresholds.standing_kmh
+        moves: Flags = self.tracks.fastest * KMH_PER_MPS >= self.thresholds.standing_kmh
         return moves | self.waits
 
     @cached_property

@@ -8,6 +8,7 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import Participant, Recording
 from rulec.recordings.track import Track, TrackStates
 
@@ -39,7 +40,7 @@ def without_impossible_speeds(recording: Recording) -> Recording:
         return recording
     some = "one speed is" if mended == 1 else f"{mended:,} speeds are up to"
     remark = (
-        f"{some} {fastest * 3.6:,.0f} km/h, where places say otherwise: "
+        f"{some} {fastest * KMH_PER_MPS:,.0f} km/h, where places say otherwise: "
         "there it is the speeds of places that count"
     )
     return replace(recording, participants=tuple(bodies), remarks=(*recording.remarks, remark))

@@ -10,6 +10,7 @@ import shapely
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Lanelet, Recording, is_lane
 from rulec.recordings.track import Track
@@ -49,7 +50,7 @@ def limit_doubts(recording: Recording, tracks: Sequence[Track]) -> Iterator[str]
     if not lanes:
         return
     limits = np.array([lanelet.limit_mps for lanelet in lanes], dtype=float)
-    highest = float(limits.max()) * 3.6
+    highest = float(limits.max()) * KMH_PER_MPS
     if highest > _HIGHEST_KMH:
         yield f"limits are up to {highest:.0f} km/h: they may be in another unit than m/s"
         return

@@ -14,6 +14,7 @@ from rulec.recordings.doubts.impossible_speeds import without_impossible_speeds
 from rulec.recordings.doubts.limit_doubts import limit_doubts
 from rulec.recordings.doubts.long_ways import LongWays, long_ways
 from rulec.recordings.doubts.road_doubts import road_doubts
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Recording
 from rulec.recordings.track import TrackStates
@@ -84,8 +85,8 @@ def _doubts(tracks: list[LongWays], recording: Recording, angle: float) -> Itera
     fastest = median(np.array([_mean_mps(moved, recording.step_s) for moved in tracks]))
     if fastest > _FASTEST_MPS:
         yield (
-            f"half of the vehicles move at {fastest * 3.6:,.0f} km/h or more: columns, or units of "
-            "times or places, may be wrong"
+            f"half of the vehicles move at {fastest * KMH_PER_MPS:,.0f} km/h or more: columns, or "
+            "units of times or places, may be wrong"
         )
     ratio = median(np.array([_speed_ratio(moved, recording.step_s) for moved in tracks]))
     # Tables have said so themselves, of all their rows

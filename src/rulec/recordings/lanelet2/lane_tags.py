@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from math import isfinite
 from types import MappingProxyType
 
-from rulec.recordings.encodings.speed_units import KMH, SPEED_UNITS
+from rulec.recordings.encodings.speed_units import MPS_PER_KMH, SPEED_UNITS
 from rulec.recordings.encodings.xml_element import number_in
 from rulec.recordings.recording import BUSES_ONLY, CYCLES_TOO, TAXIS_TOO, LaneMark
 
@@ -86,7 +86,7 @@ def leads_both_ways(tags: _Tags) -> bool:
     return next((tags[key] for key in keys if key in tags), "yes") in _FALSE
 
 
-_UNITS = {**SPEED_UNITS, "": KMH}
+_UNITS = {**SPEED_UNITS, "": MPS_PER_KMH}
 
 
 def speed_limit(tags: _Tags) -> float | None:

@@ -19,7 +19,7 @@ from rulec.recordings.commonroad.traffic_signs import (
     national_sign,
     with_plates,
 )
-from rulec.recordings.encodings.speed_units import KMH
+from rulec.recordings.encodings.speed_units import MPS_PER_KMH
 from rulec.recordings.lanelet2.lane_tags import velocity
 from rulec.recordings.lanelet2.osm_file import OsmFile, OsmRelation, OsmWay
 from rulec.recordings.lanelet2.region_codes import sign_parts
@@ -45,7 +45,7 @@ def sign_of(kind: str) -> Sign:
     limit = _GERMAN_LIMIT.match(kind)
     if limit is not None and int(limit["kmh"]) >= _SLOWEST_KMH:
         name = ZONE if limit["zone"] else MIN_SPEED if limit["least"] else MAX_SPEED
-        return Sign(name, int(limit["kmh"]) * KMH)
+        return Sign(name, int(limit["kmh"]) * MPS_PER_KMH)
     country, number = sign_parts(kind)
     if country and country not in CATALOGUED | {"DEU"}:
         return Sign(UNKNOWN)

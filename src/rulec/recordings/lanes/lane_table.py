@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError, did_you_mean
 from rulec.recordings.encodings.file_format import FileFormat
-from rulec.recordings.encodings.speed_units import KMH, MPH
+from rulec.recordings.encodings.speed_units import MPS_PER_KMH, MPS_PER_MPH
 from rulec.recordings.encodings.table_columns import (
     ColumnKind,
     ColumnTable,
@@ -49,7 +49,7 @@ LANE_COLUMNS = (
     ColumnKind("x", {"x_m": 1}, required=True),
     ColumnKind("y", {"y_m": 1}, required=True),
     ColumnKind("width", {"width_m": 1}),
-    ColumnKind("limit_mps", {"limit_kmh": KMH, "limit_mph": MPH}),
+    ColumnKind("limit_mps", {"limit_kmh": MPS_PER_KMH, "limit_mph": MPS_PER_MPH}),
     ColumnKind("stop_line", {}),
     *(
         ColumnKind(name, dict.fromkeys(also.split(), 1.0), True)

@@ -21,7 +21,7 @@ from rulec.recordings.commonroad.traffic_signs import (
     is_plate,
     national_sign,
 )
-from rulec.recordings.encodings.speed_units import KMH, SPEED_UNITS
+from rulec.recordings.encodings.speed_units import MPS_PER_KMH, SPEED_UNITS
 from rulec.recordings.opendrive.content.elements import RoadSignal
 from rulec.recordings.recording import REGULATING
 
@@ -202,8 +202,8 @@ def _limit(signal: RoadSignal, country: str, name: str) -> float | None:
     if country not in _GERMAN or name == MIN_SPEED:
         return None
     if name == MAX_SPEED and number in _OLD_LIMITS:
-        return (number - 50) * 10 * KMH
-    return number * KMH if number in _NEW_LIMITS else None
+        return (number - 50) * 10 * MPS_PER_KMH
+    return number * MPS_PER_KMH if number in _NEW_LIMITS else None
 
 
 _OLD_LIMITS = frozenset({*range(51, 60), 61, 62, 63})

@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 import shapely
 
-from rulec.recordings.encodings.speed_units import MPH
+from rulec.recordings.encodings.speed_units import MPS_PER_MPH
 from rulec.recordings.lane_centres.road_features import (
     BoundaryPart,
     CentreLane,
@@ -108,7 +108,7 @@ def _lane(name: str, kind: str, entry: KeyedValue, known: DataSet) -> CentreLane
         id=name,
         centre=centre,
         types=frozenset({_LANE_TYPES[kind]} if kind in _LANE_TYPES else ()),
-        limit_mps=limit * MPH if limit > 0 else None,
+        limit_mps=limit * MPS_PER_MPH if limit > 0 else None,
         follows=_ids(entry.get("entry_lanes")),
         leads_to=_ids(entry.get("exit_lanes")),
         left=sides[0],

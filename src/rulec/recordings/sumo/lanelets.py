@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Set
 
 import numpy as np
 
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.polylines import interpolated, parallel_line, without_repeats
 from rulec.recordings.recording import (
     BUSES_ONLY,
@@ -45,7 +46,6 @@ _ALL = frozenset(
     | _BUSES
 )
 _RAILS = {name for name in _ALL if name.startswith("rail")} | {"tram", "subway", "ship"}
-_KMH = 3.6
 _ROUNDED_KMH = 0.02
 """Nets give limits in m/s with two decimals; these are at most this far from whole km/h."""
 
@@ -186,8 +186,8 @@ def _origins(net: SumoNet, before: Mapping[str, list[str]]) -> dict[str, NetLane
 
 
 def _unrounded(limit_mps: float) -> float:
-    kmh = limit_mps * _KMH
-    return round(kmh) / _KMH if abs(kmh - round(kmh)) <= _ROUNDED_KMH else limit_mps
+    kmh = limit_mps * KMH_PER_MPS
+    return round(kmh) / KMH_PER_MPS if abs(kmh - round(kmh)) <= _ROUNDED_KMH else limit_mps
 
 
 def _mark(lane: NetLane, step: int, there: set[str], forbidden: bool) -> LaneMark | None:
@@ -281,7 +281,7 @@ def _place_types(road: NetEdge, net: SumoNet, lane: NetLane) -> Iterator[str]:
         yield "ordinary"
     if any(word in road.type for word in _URBAN):
         yield "urban"
-    elif lane.edge.function == "" and lane.speed * _KMH > _FAST_KMH:
+    elif lane.edge.function == "" and lane.speed * KMH_PER_MPS > _FAST_KMH:
         yield "rural"
     if lane.edge.parameters.get("tunnel", "no") not in ("no", ""):
         yield "tunnel"

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.encodings.table_columns import NamedColumns
 from rulec.recordings.encodings.xml_element import number_in, short
 from rulec.recordings.lanes.lanes_along import lanelet_along
@@ -17,7 +18,6 @@ from rulec.recordings.road_map import RoadMap
 _BEYOND_M = 20.0
 _EVERY_M = 20.0
 _WIDEST_M = 20.0
-_KMH = 3.6
 _ROUNDED_KMH = 0.1
 
 
@@ -27,10 +27,10 @@ def highd_roads(about: NamedColumns, reach: tuple[float, float]) -> RoadMap:
     Lanes are numbered from the right, as in ``upper_1``. Raises RulecError for invalid marks.
     """
     limit = float(about.numbers["speedLimit"][0])
-    kmh = limit * _KMH
+    kmh = limit * KMH_PER_MPS
     limit_mps = None if limit <= 0 else limit
     if limit_mps is not None and abs(kmh - round(kmh)) < _ROUNDED_KMH:
-        limit_mps = round(kmh) / _KMH
+        limit_mps = round(kmh) / KMH_PER_MPS
     low, high = reach[0] - _BEYOND_M, reach[1] + _BEYOND_M
     if high - low > LONGEST_M:
         raise about.columns.refused(f"tracks reach from x = {low:g} to {high:g}")

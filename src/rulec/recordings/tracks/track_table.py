@@ -14,7 +14,7 @@ from rulec.recordings.doubts.motion_doubts import with_doubts
 from rulec.recordings.doubts.road_doubts import check_near
 from rulec.recordings.encodings.csv_head import is_number
 from rulec.recordings.encodings.file_format import FileFormat
-from rulec.recordings.encodings.speed_units import KMH, MPH
+from rulec.recordings.encodings.speed_units import MPS_PER_KMH, MPS_PER_MPH
 from rulec.recordings.encodings.table_columns import (
     ColumnKind,
     ColumnTable,
@@ -74,7 +74,9 @@ TRACK_COLUMNS = (
         {"heading_rad": 1, "yaw": 1, "yaw_rad": 1, "psi_rad": 1}
         | {"heading_deg": _DEG, "yaw_deg": _DEG},
     ),
-    ColumnKind("speed", {"speed_mps": 1, "v": 1, "speed_kmh": KMH, "speed_mph": MPH}),
+    ColumnKind(
+        "speed", {"speed_mps": 1, "v": 1, "speed_kmh": MPS_PER_KMH, "speed_mph": MPS_PER_MPH}
+    ),
     ColumnKind("vx", {"vel_x": 1, "vx_mps": 1}),
     ColumnKind("vy", {"vel_y": 1, "vy_mps": 1}),
     ColumnKind("acceleration", {"acc": 1, "acceleration_mps2": 1}),

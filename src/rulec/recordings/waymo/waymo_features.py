@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rulec.recordings.encodings.speed_units import MPH
+from rulec.recordings.encodings.speed_units import MPS_PER_MPH
 from rulec.recordings.lane_centres.road_features import (
     BoundaryPart,
     CentreLane,
@@ -70,7 +70,7 @@ def _line(message: CheckedMessage) -> Places3d:
 def _limit(lane: CheckedMessage) -> float | None:
     """The speed limit (m/s), or None; Waymo writes 0 mph where there is no limit."""
     mph = lane.number("speed_limit_mph") if "speed_limit_mph" in lane.values else 0.0
-    return mph * MPH if mph > 0 else None
+    return mph * MPS_PER_MPH if mph > 0 else None
 
 
 def _side(lane: CheckedMessage, side: str, count: int) -> LaneSide:

@@ -14,6 +14,7 @@ from statistics import median
 
 import numpy as np
 
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.mending.mended_recording import mended
 from rulec.recordings.recording import Lanelet, Recording, TrackState
 from rulec.scenario.geometry import Box
@@ -64,7 +65,6 @@ _SIGNS = {
 _COLOURS = {"red": "red_light", "yellow": "amber_light", "green": "green_light"}
 _MOTORWAYS = {"highway", "interstate"}
 _COUNTS = {1: "one_lane", 2: "two_lanes"}
-_KMH = 3.6
 
 
 def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
@@ -202,7 +202,7 @@ def map_signals(
     signals: dict[str, tuple[SignalValue, str]] = {}
     here = f"lanelet {own.id}"
     if own.limit_mps is not None:
-        signals["limit"] = round(own.limit_mps * _KMH, 2), f"the limit of {here}"
+        signals["limit"] = round(own.limit_mps * KMH_PER_MPS, 2), f"the limit of {here}"
     for sign, signal in _SIGNS.items():
         if sign in own.signs:
             signals[signal] = True, f"the sign of {here}"
@@ -222,7 +222,7 @@ def map_signals(
 def congested(obstacles: Iterable[Obstacle], road: Box, below_kmh: float) -> tuple[bool, str]:
     """Whether traffic is congested, and the reason as text."""
     speeds = [
-        speed * _KMH
+        speed * KMH_PER_MPS
         for obstacle in obstacles
         if "vehicle" in (obstacle.type, *obstacle.broader)
         and (speed := _speed(obstacle, road)) is not None

@@ -9,7 +9,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
     on_both_halves,
@@ -24,6 +24,7 @@ from rulec.extraction.signals.queues import dense_lines
 from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.lane_sets import is_in
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import RAMPS
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct
@@ -187,7 +188,9 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     limits, station = context.thresholds, relations.station(context)
     near = relations.RIGHT_OF if context.side == "right" else relations.LEFT_OF
     faster_mps = context.extents.along - context.ego_extents.along
-    comes: Flags = (faster_mps * KMH >= limits.clearly_faster_kmh) & (station != relations.BEHIND)
+    comes: Flags = (faster_mps * KMH_PER_MPS >= limits.clearly_faster_kmh) & (
+        station != relations.BEHIND
+    )
     over = _over_the_middle(context)
     comes &= ((relations.lateral(context) == near) & context.going_along) | over
     closing = relations.gap(context) <= faster_mps * limits.passed_s

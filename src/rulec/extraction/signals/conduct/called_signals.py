@@ -11,7 +11,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
 from rulec.extraction.signals.conduct.others_lamps import (
@@ -24,6 +24,7 @@ from rulec.extraction.signals.conduct.others_lamps import (
 from rulec.extraction.signals.ego_lanelets import own_lanelets, room_beside
 from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 
 _OWN = "ego_on_call"
 
@@ -72,7 +73,7 @@ def _way_cleared(context: DriveContext) -> SignalColumns:
     Unknown where the vehicles that are near have another lane or are clear of ego sideways: they
     get past, and laws may still want ego at the edge.
     """
-    still = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
+    still = context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh
     cleared = still | _at_edge(context)
     near = _surely_near(context)
     if not near.any():
@@ -132,7 +133,7 @@ def _comes_near(context: DriveContext) -> Flags:
 def _against(context: DriveContext) -> Flags:
     along, faces = context.extents.along, np.cos(context.extents.turned) < _FACES
     against: Flags = np.where(
-        stands(context), faces, along * KMH < -context.thresholds.standing_kmh
+        stands(context), faces, along * KMH_PER_MPS < -context.thresholds.standing_kmh
     )
     return against
 

@@ -8,13 +8,14 @@ import numpy as np
 import shapely
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.surroundings import BACKS_MPS
 from rulec.extraction.tracks.tracks import Tracks
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.plain_arrays import zero_if_nan
 
@@ -47,7 +48,7 @@ def _reversing(context: DriveContext) -> SignalColumns:
     """
     heading = context.ego.heading[0]
     forward = context.ego.vx[0] * np.cos(heading) + context.ego.vy[0] * np.sin(heading)
-    error, least = context.ego.speed_error[0], context.thresholds.standing_kmh / KMH
+    error, least = context.ego.speed_error[0], context.thresholds.standing_kmh / KMH_PER_MPS
     backs = forward < -least
     unknown = np.abs(forward + least) < error
     stays = _comes_back_nowhere(context, unknown | backs, backs)
@@ -102,7 +103,7 @@ def _for_long(context: DriveContext, flags: Flags) -> Flags:
         moved = np.hypot(x[end - 1] - x[first], y[end - 1] - y[first])
         steps = context.steps[first:end].tolist()
         stated = np.array([abs(states[step].speed) for step in steps if step in states])
-        drives = bool((stated * KMH >= context.thresholds.standing_kmh).any())
+        drives = bool((stated * KMH_PER_MPS >= context.thresholds.standing_kmh).any())
         found[first:end] = drives and moved >= _DRIFT_M
     return found
 
@@ -146,7 +147,7 @@ def may_back(context: DriveContext) -> Flags:
     if not there.any():
         return found
     speed = context.ego.speed[0]
-    moves = speed * KMH >= context.thresholds.standing_kmh
+    moves = speed * KMH_PER_MPS >= context.thresholds.standing_kmh
     own_side = _along_road(context) & _on_map(context) & ~at_junctions(context) & ~there & ~perhaps
     firsts = (moves & (spans.begins_here | ~spans.before(moves))).nonzero()[0]
     ends = np.minimum(spans.next_state(~moves), spans.end)[firsts]
@@ -266,7 +267,7 @@ def _beyond_edges(context: DriveContext) -> tuple[Floats, Floats]:
 
 
 def _along_road(context: DriveContext) -> Flags:
-    drives = context.ego.speed[0] * KMH >= context.thresholds.standing_kmh
+    drives = context.ego.speed[0] * KMH_PER_MPS >= context.thresholds.standing_kmh
     along: Flags = drives & (np.abs(context.ego_extents.turned[0]) <= _ALONG_RAD)
     return along
 
@@ -387,7 +388,7 @@ def _joins_road(context: DriveContext) -> SignalColumns:
     outside = (beyond_near_edge(context) > _loose(context)) & _on_map(context)
     inside, joins = beyond_near_edge(context) <= 0, np.zeros(context.states, dtype=bool)
     perhaps = np.zeros(context.states, dtype=bool)
-    stands = outside & (context.ego.speed[0] * KMH < context.thresholds.standing_kmh)
+    stands = outside & (context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh)
     reach, spans = round(context.thresholds.setting_off_s / context.recording.step_s), context.spans
     comes = (spans.enters(inside).nonzero()[0] - 1).tolist()
     if not comes:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rulec.array_types import Floats
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
     at_junctions,
@@ -25,6 +25,7 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 
 _GOES_FIRST = "PRIORITY_OVER_ONCOMING"
 """The sign that gives ego priority where the road is narrow."""
@@ -101,7 +102,7 @@ def _comes_on_its_half(context: DriveContext, row: int, seen: int, near: Floats)
     """Whether a vehicle comes along the other half of the road ahead of ego, still moving."""
     others, limits = context.extents, context.thresholds
     return bool(
-        others.along[row, seen] * KMH < -limits.standing_kmh
+        others.along[row, seen] * KMH_PER_MPS < -limits.standing_kmh
         and np.cos(others.turned[row, seen]) < -np.cos(_ALONG_RAD)
         and others.s_min[row, seen] > context.ego_extents.s_max[0, seen]
         and near[row, seen] > -limits.touching_m

@@ -7,9 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.conduct.lamp_signals import FLASH_S
 from rulec.extraction.signals.signal_passes import once_a_recording
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import Lamp
 
 
@@ -52,11 +53,11 @@ def flashing(lit: Flags, context: DriveContext) -> Flags:
 
 def stands(context: DriveContext) -> Flags:
     """Mask of participants that stand."""
-    still: Flags = context.tracks.speed * KMH < context.thresholds.standing_kmh
+    still: Flags = context.tracks.speed * KMH_PER_MPS < context.thresholds.standing_kmh
     return still
 
 
 def moves(context: DriveContext) -> Flags:
     """Mask of participants that move."""
-    moving: Flags = context.tracks.speed * KMH >= context.thresholds.standing_kmh
+    moving: Flags = context.tracks.speed * KMH_PER_MPS >= context.thresholds.standing_kmh
     return moving

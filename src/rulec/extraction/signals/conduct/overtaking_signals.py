@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.being_overtaken import being_overtaken
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
@@ -21,6 +21,7 @@ from rulec.extraction.signals.settling import fewest_states, without_blips
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.traffic_thresholds import LEAST_S
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 
 _DRIFT_MPS = 0.2
@@ -37,7 +38,7 @@ def _overtaking(context: DriveContext) -> SignalColumns:
     # Back for so short a time that `driving_side` takes it for noise does not count as back
     least = fewest_states(LEAST_S["driving_side"], context.recording.step_s)
     side = there | perhaps | without_blips(there | perhaps, least, context.spans)
-    stands = (context.tracks.speed * KMH < context.thresholds.standing_kmh) & side
+    stands = (context.tracks.speed * KMH_PER_MPS < context.thresholds.standing_kmh) & side
     overtakes, unsure = _overtakes(context, ~stands)
     if side.any():
         side = _with_all_that_joins(context, side, on_both_halves(context))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.braking_causes.map_causes import (
     LOOKS_S,
@@ -38,6 +38,7 @@ from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.measured_numbers import moves
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
 
@@ -120,7 +121,7 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
         perhaps |= spans.within(broken_down, soon) & ~(stands & _shows_no_hazard(context))
         perhaps |= stands & spans.begins_here
         # A vehicle that is about to reverse has to stand before
-        backs = context.ego_extents.along[0] * KMH <= -context.thresholds.standing_kmh
+        backs = context.ego_extents.along[0] * KMH_PER_MPS <= -context.thresholds.standing_kmh
         perhaps |= stands & spans.within(backs, soon)
     perhaps |= spans.columns + soon // 2 >= spans.end
     # Ego may want to get in behind a vehicle beside it, or let it in
@@ -169,7 +170,7 @@ def _drives_on(context: DriveContext, stands: Flags) -> Flags:
     Not in a drive's first state: why ego stands there is unknown until it could get going.
     """
     spans = context.spans
-    drives = context.ego.speed[0] * KMH >= _DRIVES_KMH
+    drives = context.ego.speed[0] * KMH_PER_MPS >= _DRIVES_KMH
     later = spans.next_state(drives) < spans.end
     drives_on: Flags = stands & later & ~spans.begins_here
     return drives_on

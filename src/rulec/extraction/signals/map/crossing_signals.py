@@ -16,7 +16,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.map.map_signals import crossings_told, next_crossing
 from rulec.extraction.signals.map.zone_signals import (
     crossings_lit,
@@ -27,6 +27,7 @@ from rulec.extraction.signals.map.zone_signals import (
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.lane_sets import is_in
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import ranges
 
@@ -155,7 +156,7 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     spans, seen = context.spans, context.relevant[rows]
     limits, step_s = context.thresholds, context.recording.step_s
     on_lanes, last = in_side_road(context, rows) & seen, spans.end - 1
-    stands = context.tracks.speed[rows] * KMH < limits.standing_kmh
+    stands = context.tracks.speed[rows] * KMH_PER_MPS < limits.standing_kmh
     comes = spans.next_state(seen & (own.s_max >= others.s_min))
     reached, at = comes < spans.end, np.minimum(comes, last)
     goes = np.minimum(spans.next_state(own.s_min > others.s_max), last)
@@ -210,7 +211,7 @@ def _waited_for(
     ``goes``; they are out of its way where ``off``.
     """
     spans, last = context.spans, context.spans.end - 1
-    slow = context.ego.speed[0] * KMH <= context.thresholds.walking_pace_kmh
+    slow = context.ego.speed[0] * KMH_PER_MPS <= context.thresholds.walking_pace_kmh
     slows = spans.next_state(slow)[at]
     waits, since = slows < goes, np.minimum(slows, last)
     faster = spans.next_state(~slow)[since]
@@ -254,7 +255,7 @@ def _crossing_uses(
     cells = own.in_rows(rows, len(context.relevant))
     (low_r, high_r), (low_l, high_l) = _from_edges(context, cells)
     to_road = np.maximum(-high_r, low_l).clip(0.0)
-    walks = cells.of(tracks.speed) * KMH >= limits.standing_kmh
+    walks = cells.of(tracks.speed) * KMH_PER_MPS >= limits.standing_kmh
     # The speed towards the middle of the road, across it (m/s)
     middle_r, middle_l = (low_r + high_r) / 2, (low_l + high_l) / 2
     across, left = cells.of(others.across), middle_r + middle_l
@@ -331,7 +332,7 @@ def _past_ego(context: DriveContext, rows: NDArray[intp]) -> Flags:
     left, right = (low_l + high_l) / 2 > leftmost, (low_r + high_r) / 2 < rightmost
     # Outwards from ego's way
     leaves = np.where(left, others.across, np.where(right, -others.across, 0.0))
-    least = context.thresholds.standing_kmh / KMH
+    least = context.thresholds.standing_kmh / KMH_PER_MPS
     spans = context.spans
     away = spans.latest((on_left | on_right) & (leaves > least))
     back = spans.latest(~(left | right) | (leaves < -least))
@@ -388,7 +389,7 @@ def _behind_another(context: DriveContext, stopped: Flags) -> Flags:
 def _stopped(context: DriveContext, states: NDArray[intp]) -> Flags:
     """Mask of participants stopped on ego's lanes before the crossing ahead, in some states."""
     start, _ = next_crossing(context)
-    stands = context.tracks.speed[:, states] * KMH < context.thresholds.standing_kmh
+    stands = context.tracks.speed[:, states] * KMH_PER_MPS < context.thresholds.standing_kmh
     way = start[states] - context.extents.s_max[:, states]
     stopped: Flags = stands & context.on_lanes[:, states]
     stopped &= (way >= 0) & (way <= 2 * context.thresholds.zone_m)

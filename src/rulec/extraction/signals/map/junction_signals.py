@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.priority_signals import (
     approach,
@@ -25,6 +25,7 @@ from rulec.extraction.signals.measured_numbers import own_front
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.at_junctions.junctions import all_have_to_stop
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import STOP_SIGNS, STRAIGHT_ON
 from rulec.trace.plain_arrays import distinct
 
@@ -209,7 +210,7 @@ def _within_preparation(context: DriveContext, flags: Flags, pace_kmh: float) ->
 
 def _time_driven(context: DriveContext, pace_kmh: float) -> Floats:
     """How long (s) ego has driven at ``pace_kmh`` or faster up to each state."""
-    drives = context.ego.speed[0] * KMH >= pace_kmh
+    drives = context.ego.speed[0] * KMH_PER_MPS >= pace_kmh
     driven: Floats = (drives.cumsum() - drives) * context.recording.step_s
     return driven
 
@@ -221,7 +222,7 @@ def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
     just beyond the line, or where errors of places decide, as when it stands at the line.
     """
     crosses, may_cross = np.zeros((2, context.states), dtype=bool)
-    front, moves = own_front(context), context.ego.speed[0] * KMH
+    front, moves = own_front(context), context.ego.speed[0] * KMH_PER_MPS
     ends, least = context.spans.columns == context.spans.end - 1, context.thresholds.standing_kmh
     for piece in range(len(context.road.rows)):
         if any(row and STOP_SIGNS & row.signs for row in context.road.rows[piece]):
@@ -243,7 +244,7 @@ def _may_have_sign(context: DriveContext) -> Flags:
     if not STOP_SIGNS & map_contents(context).untold_signs:
         return np.zeros(context.states, dtype=bool)
     may = own_lanelets(context).flags(lambda lanelet: bool(STOP_SIGNS & lanelet.untold_signs))
-    moves = context.ego.speed[0] * KMH >= context.thresholds.standing_kmh
+    moves = context.ego.speed[0] * KMH_PER_MPS >= context.thresholds.standing_kmh
     may |= context.spans.before(may)
     may &= moves
     return may

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.junction_signals import way_not_known
 from rulec.extraction.signals.map.stop_lines import (
@@ -28,6 +28,7 @@ from rulec.extraction.signals.signal_columns import (
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.driven_road import DrivenRoad
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import STOP_SIGNS, Light, ObservedLight, Recording
 from rulec.trace.plain_arrays import distinct
 
@@ -145,7 +146,7 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
     front = own_front(context)
     colours = np.full(context.states, "no_light", dtype="<U11")
     crosses, may_cross = np.zeros((2, context.states), dtype=bool)
-    slow = context.ego.speed[0] * KMH <= context.thresholds.stops_at_once_kmh
+    slow = context.ego.speed[0] * KMH_PER_MPS <= context.thresholds.stops_at_once_kmh
     lanes = distinct(context.ego_lane).tolist()
     for piece in range(len(context.road.rows) - 1, -1, -1):
         if not any(row is not None and row.lights for row in context.road.rows[piece]):

@@ -10,7 +10,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
     SHOULDER,
@@ -29,6 +29,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses, once_a_recording, once_a_road
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import (
     BUSES_ONLY,
     CROSSWALK,
@@ -104,7 +105,7 @@ def _limit(context: DriveContext) -> SignalColumns:
     if not map_contents(context).limits:
         return SignalColumns()
     return SignalColumns(
-        {"limit": rounded(np.minimum(context.limit_mps * KMH, NO_LIMIT_KMH))},
+        {"limit": rounded(np.minimum(context.limit_mps * KMH_PER_MPS, NO_LIMIT_KMH))},
         unknown={"limit": context.limit_untold},
     )
 
@@ -114,7 +115,7 @@ def _minimum_limit(context: DriveContext) -> SignalColumns:
         return SignalColumns()
     least = own_lanelets(context).values(lambda at: at.minimum_mps or 0.0)
     return SignalColumns(
-        {"minimum_limit": rounded(np.array(least) * KMH)},
+        {"minimum_limit": rounded(np.array(least) * KMH_PER_MPS)},
         unknown={"minimum_limit": _may_hold(context, {LEAST_SPEED_SIGN})},
     )
 
@@ -259,7 +260,7 @@ def _in_doubt(context: DriveContext, values: SignalColumn, unknown: Flags) -> Fl
     """
     if not unknown.any():
         return unknown
-    moves = context.ego.speed[0] * KMH >= context.thresholds.standing_kmh
+    moves = context.ego.speed[0] * KMH_PER_MPS >= context.thresholds.standing_kmh
     longest = round(context.thresholds.passed_s / context.recording.step_s)
     (passing,) = only_when(values[None], unknown[None], moves[None], longest, context.spans)
     doubt: Flags = unknown & ~passing

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import lanelets_at, map_contents, own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.signals.signal_passes import (
@@ -18,6 +18,7 @@ from rulec.extraction.signals.signal_passes import (
     once_a_map,
 )
 from rulec.extraction.tracks.surroundings import Directions
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import BROAD_LEFT, BROAD_RIGHT, RAMPS, Lanelet
 from rulec.scenario.recorded.route import lanes_beside
 
@@ -177,7 +178,7 @@ def _settled(context: DriveContext) -> bool:
 def _has_fast_town(context: DriveContext) -> bool:
     """Whether some lanelet called urban has a limit that is too high for a built-up area."""
     return any(
-        "urban" in x.types and round((x.limit_mps or 0.0) * KMH, 2) > _URBAN_KMH
+        "urban" in x.types and round((x.limit_mps or 0.0) * KMH_PER_MPS, 2) > _URBAN_KMH
         for x in context.recording.lanelets.values()
     )
 

@@ -10,9 +10,10 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.measured_numbers import moves, own_front, own_speed
 from rulec.extraction.signals.signal_passes import once_a_road
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import STOP_SIGNS, Lanelet
 
 LINE_REACH_M = 40.0
@@ -106,7 +107,7 @@ def may_stop_beyond(context: DriveContext, line: tuple[float, float]) -> Flags:
     if not comes.any():
         return comes
     beyond = front > last
-    stands = ~beyond & (context.ego.speed[0] * KMH < context.thresholds.standing_kmh)
+    stands = ~beyond & (context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh)
     goes_on = spans.next_state(beyond)
     found: Flags = comes & ((goes_on >= spans.end) | (spans.next_state(stands | beyond) < goes_on))
     return found
@@ -122,7 +123,7 @@ def around_crossing(
     all states from the first place on count, or from where ego last stood beyond it.
     """
     first, last = line
-    stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
+    stands = context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh
     latest = context.spans.latest(passes(context, first) | (stands & (front > first)))
     since = np.where(latest < context.spans.first, context.spans.columns, latest)
     at_once = _AT_ONCE_S / context.recording.step_s

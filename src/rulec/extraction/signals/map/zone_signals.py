@@ -10,7 +10,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.junction_signals import turn_at
@@ -24,6 +24,7 @@ from rulec.extraction.signals.signal_passes import (
     once_a_map,
     once_a_road,
 )
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import Recording, is_lane, is_there
 from rulec.scenario.recorded.lane_coordinates import crossings_along
 from rulec.scenario.recorded.route import lanelet_area
@@ -252,7 +253,7 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
     places = [*context.road.junctions, *context.road.crossings, *level_crossings(context)]
     clear, unknown = np.ones(context.states, dtype=bool), np.zeros(context.states, dtype=bool)
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
-    stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
+    stands = context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh
     entered = _entered(front, rear, places, context.thresholds.approach_m)
     if not any((entered == number).any() for number in range(len(places))):
         nobody = np.zeros(context.relevant.shape, dtype=bool)
@@ -261,7 +262,7 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
     beyond = corner_ahead(context) + error
     ahead = _ahead_on_lane(context)
     still, nearest = _standing_rows(context, ahead), np.zeros_like(ahead)
-    holds_up = context.tracks.speed * KMH < context.thresholds.walking_pace_kmh
+    holds_up = context.tracks.speed * KMH_PER_MPS < context.thresholds.walking_pace_kmh
     for number, (start, end) in enumerate(places):
         nears, passed = entered == number, context.spans.any(rear >= end)
         place = _shared(context, start, end)

@@ -16,7 +16,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.presences import in_presences
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.measured_numbers import LONGEST_S, safe_distances
@@ -26,6 +26,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
 from rulec.trace.plain_arrays import begin_runs, distinct
@@ -139,7 +140,7 @@ def parts_soon(context: DriveContext) -> Flags:
 def _back(context: DriveContext, cells: Cells) -> Flags:
     """Mask of cells of participants that surely move against ego's way."""
     slowest = -cells.of(context.extents.along) - cells.of(context.tracks.speed_error)
-    back: Flags = slowest * KMH >= context.thresholds.standing_kmh
+    back: Flags = slowest * KMH_PER_MPS >= context.thresholds.standing_kmh
     return back
 
 
@@ -224,7 +225,7 @@ def keeps_safe_gap(context: DriveContext) -> SignalColumns:
     perhaps_short = (short > -wrong).nonzero()[0]
     short, wrong = short.take(perhaps_short), wrong.take(perhaps_short)
     cells = followed.cells.part(perhaps_short)
-    stands = cells.of(context.tracks.speed) * KMH < limits.standing_kmh
+    stands = cells.of(context.tracks.speed) * KMH_PER_MPS < limits.standing_kmh
     # A standing participant that ego drives past does not drive ahead of it
     aside = cells.of(relations.way_across(context)) - limits.touching_m
     room = np.where(stands, aside, -np.inf)
@@ -272,7 +273,7 @@ def _brief_and_slight(context: DriveContext, late: Cells, far_too_late: Flags) -
 def _stood_before(context: DriveContext, cells: Cells) -> Flags:
     """Mask of cells of participants that stand, and did for ``reaction_s`` or since first seen."""
     rows = distinct(cells.rows)
-    stands = context.tracks.speed[rows] * KMH < context.thresholds.standing_kmh
+    stands = context.tracks.speed[rows] * KMH_PER_MPS < context.thresholds.standing_kmh
     steps = round(context.thresholds.reaction_s / context.recording.step_s)
     moves_there = ~stands & ~np.isnan(context.extents.s_min[rows])
     stood = stands & ~context.spans.within_last(moves_there, steps)

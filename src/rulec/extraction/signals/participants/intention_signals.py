@@ -11,7 +11,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.others_lamps import (
     flashing,
@@ -26,6 +26,7 @@ from rulec.extraction.signals.signal_passes import (
     SignalPasses,
     once_a_recording,
 )
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
 
@@ -273,7 +274,7 @@ def _came_up(context: DriveContext) -> SignalColumns:
 
 def _came_beside(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags]:
     """Masks of participants in ``rows`` beside ego that came up there, or perhaps did."""
-    waits = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
+    waits = context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh
     at_junction = np.zeros(context.states, dtype=bool)
     front = context.ego_extents.s_max[0]
     for start, end in context.road.junctions:

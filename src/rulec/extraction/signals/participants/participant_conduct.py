@@ -7,7 +7,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.recording_parts import span_of
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
@@ -18,6 +18,7 @@ from rulec.extraction.signals.ego_lanelets import (
 from rulec.extraction.signals.participants.intention_signals import may_have_broken_down
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.road_extents import RoadExtents
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct
 
@@ -43,7 +44,7 @@ def comes_towards(context: DriveContext) -> Flags:
     """Mask of participants that move against ego's direction, or wait on lanes of that way."""
     along = context.extents.along
     faces = _faces(context)
-    comes = faces & (along * -KMH >= context.thresholds.standing_kmh)
+    comes = faces & (along * -KMH_PER_MPS >= context.thresholds.standing_kmh)
     others = Cells.at(faces & ~comes)
     comes.ravel()[others.places] = _waits_elsewhere(context, others)
     return comes
@@ -73,7 +74,7 @@ def _waits_elsewhere(context: DriveContext, cells: Cells) -> Flags:
     box drifts: it counts as standing.
     """
     rows = distinct(cells.rows)
-    slow = np.abs(context.extents.along[rows]) * KMH < context.thresholds.standing_kmh
+    slow = np.abs(context.extents.along[rows]) * KMH_PER_MPS < context.thresholds.standing_kmh
     still = context.spans.all(slow)[rows.searchsorted(cells.rows), cells.columns]
     drivers = context.tracks.of_type("vehicle") | context.tracks.of_type("light_rider")
     moves_elsewhere = cells.of(context.elsewhere) & ~still
@@ -87,7 +88,7 @@ def goes_across(context: DriveContext) -> SignalColumns:
     A person or cycle that crosses keeps crossing, even if it stops or is hit, until it leaves the
     road or moves along it. Unknown where the tolerance of speeds decides.
     """
-    least = context.thresholds.standing_kmh / KMH
+    least = context.thresholds.standing_kmh / KMH_PER_MPS
     along, across = np.abs(context.extents.along), np.abs(context.extents.across)
     goes: Flags = (across >= least) & (across > along)
     # The error of a difference of two speeds
@@ -123,7 +124,7 @@ def _mostly_along(context: DriveContext, rows: NDArray[intp]) -> Flags:
 
     By steps: in means over a second, a collision that displaces a body at once lasts as long.
     """
-    least, step_s = context.thresholds.standing_kmh / KMH, context.recording.step_s
+    least, step_s = context.thresholds.standing_kmh / KMH_PER_MPS, context.recording.step_s
     others, spans = context.extents, context.spans
     along, across = others.s[rows], others.d_min[rows] + others.d_max[rows]
     s, d = (np.abs(values - spans.before(values)) for values in (along, across / 2))
@@ -134,7 +135,7 @@ def _mostly_along(context: DriveContext, rows: NDArray[intp]) -> Flags:
 
 def stopped(context: DriveContext) -> SignalColumns:
     """Whether participants stand."""
-    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
+    stands = context.tracks.speed * KMH_PER_MPS < context.thresholds.standing_kmh
     return SignalColumns(about={"stopped": stands})
 
 
@@ -197,7 +198,7 @@ def on_shoulder(context: DriveContext) -> SignalColumns:
     vehicles = on_wheels[:, None] & there.any(axis=2)
     along = vehicles & ~context.elsewhere & (np.abs(np.sin(others.turned)) < _ALONG)
     inside = those_on_lanes(context, SHOULDER, along)
-    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
+    stands = context.tracks.speed * KMH_PER_MPS < context.thresholds.standing_kmh
     loose = context.tolerances.place_m + np.abs(context.map_offset_m)
     beside = along & (inside | (stands & (beyond > 0)))
     unsure = along & ~inside & ((np.abs(beyond) < loose) | (~stands & (beyond > 0)))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import Lanelet, LaneMark, Points, Recording
 from rulec.report.pictures.drives.drive_scene import (
     MarkKind,
@@ -68,7 +69,7 @@ def road_areas(lanelets: Iterable[Lanelet], origin: Points) -> Iterator[RoadArea
     for lanelet in lanelets:
         kinds = ", ".join(sorted(lanelet.types))
         limit = lanelet.limit_mps
-        speed = "" if limit is None else f", limit {limit * 3.6:.0f} km/h"
+        speed = "" if limit is None else f", limit {limit * KMH_PER_MPS:.0f} km/h"
         ring = np.concatenate([lanelet.left, lanelet.right[::-1]]) - origin
         tip = f"lanelet {lanelet.id}{f', {kinds}' if kinds else ''}{speed}"
         yield RoadArea(ring, _surface(lanelet), tip)
@@ -122,7 +123,7 @@ def scene_signs(lanelets: Sequence[Lanelet], origin: Points) -> Iterator[SceneSi
         ]
         limit = lanelet.limit_mps
         if limit is not None and all(other.limit_mps != limit for other in (*before, *beside)):
-            shown.append((f"{limit * 3.6:.0f}", f"limit {limit * 3.6:.0f} km/h"))
+            shown.append((f"{limit * KMH_PER_MPS:.0f}", f"limit {limit * KMH_PER_MPS:.0f} km/h"))
         across = lanelet.right[0] - lanelet.left[0]
         outwards = across / max(float(np.hypot(*across)), 1e-9)
         along = np.array([-outwards[1], outwards[0]])

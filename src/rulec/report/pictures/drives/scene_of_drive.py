@@ -19,6 +19,7 @@ from rulec.extraction.tracks.tracks import Tracks, tracks_of
 from rulec.monitoring.explain.explained_parts import Deciding
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.verdict import Verdict, Violation
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import Points
 from rulec.report.pictures.drives import scene_map
 from rulec.report.pictures.drives.drive_scene import Body, DriveScene, SceneViolation
@@ -36,8 +37,6 @@ MOST_VIOLATIONS = 50
 
 MOST_OPEN = 6
 """Number of rules named that are open, or that cannot be judged."""
-
-_KMH = 3.6
 
 
 def drive_scene(
@@ -149,7 +148,7 @@ def _body(tracks: Tracks, row: int, in_sight: NDArray[np.bool_], origin: Points)
         type=body.type,
         first=first,
         poses=poses - (*origin, 0.0),
-        speeds=tracks.speed[row, first : last + 1] * _KMH,
+        speeds=tracks.speed[row, first : last + 1] * KMH_PER_MPS,
         shapes=tuple(shapes),
         shape=shape,
     )

@@ -14,7 +14,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.conduct.braking_causes.others_around import (
     CROSSES_M,
     others_in,
@@ -26,6 +26,7 @@ from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.map.stop_lines import ends_at_line, stop_line
 from rulec.extraction.signals.map.zone_signals import crossings_lit
 from rulec.extraction.signals.measured_numbers import moves, own_front
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import GIVE_WAY_SIGNS, STOP_SIGNS
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.plain_arrays import distinct, zero_if_nan
@@ -99,7 +100,9 @@ def map_reasons(context: DriveContext, asked: Flags, reach: Floats) -> MapReason
         may |= (front >= start - reach) & (rear <= end)
     # Beyond its map the road is unknown
     may |= (front + reach > road.borders[-1]) | (rear < road.borders[0])
-    may |= (speed * KMH > context.limit_mps * KMH + _SLOWER_KMH) | context.limit_untold
+    may |= (
+        speed * KMH_PER_MPS > context.limit_mps * KMH_PER_MPS + _SLOWER_KMH
+    ) | context.limit_untold
     return MapReasons(may | does, does, freely & ~may)
 
 
@@ -204,6 +207,8 @@ def road_reasons(
     limits, seen = known[number], ahead <= reach
     lower = (limits < speed) | (limits < context.limit_mps[states]) | untold[number]
     too_fast = (
-        seen & (limits * KMH + _SLOWER_KMH < speed * KMH) & (limits < context.limit_mps[states])
+        seen
+        & (limits * KMH_PER_MPS + _SLOWER_KMH < speed * KMH_PER_MPS)
+        & (limits < context.limit_mps[states])
     )
     return (seen & (bends | ~there | lower)).any(axis=0), too_fast.any(axis=0)

@@ -9,8 +9,9 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.scenario.recorded.reference_line import turn
 
 CROSSES_M, ACROSS_RAD = 30.0, np.radians(30.0)
@@ -93,5 +94,5 @@ def motion_of(context: DriveContext, rows: NDArray[intp], states: NDArray[intp])
         along=vx * cos + vy * sin,
         sideways=vy * cos - vx * sin,
         turned=turn(own, tracks.heading[at]),
-        moves=np.hypot(vx, vy) * KMH >= context.thresholds.standing_kmh,
+        moves=np.hypot(vx, vy) * KMH_PER_MPS >= context.thresholds.standing_kmh,
     )

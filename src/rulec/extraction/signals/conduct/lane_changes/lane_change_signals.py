@@ -10,7 +10,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.conduct.lane_changes.lanes_from_behind import come_into_lane
@@ -26,6 +26,7 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
 from rulec.extraction.signals.map.junction_signals import lies_askew_in_turn
 from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.plain_arrays import distinct
 
@@ -63,7 +64,7 @@ def _lane_change(context: DriveContext) -> SignalColumns:
     unknown = changes != _changes_from_beside(context)
     if changes.any():
         swings = swings_round(context) | lies_askew_in_turn(context)
-        stands = np.abs(_speed_ahead(context)) * KMH < context.thresholds.standing_kmh
+        stands = np.abs(_speed_ahead(context)) * KMH_PER_MPS < context.thresholds.standing_kmh
         unknown |= _within_tolerance(context, changes) | _there_and_back(context, changes)
         unknown |= changes & (swings | stands)
         states = (changes & ~unknown).nonzero()[0]
@@ -174,7 +175,7 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
     if not clear.all():
         # Or may stand, by its speed's error
         slowest = context.ego.speed[0] - context.ego.speed_error[0]
-        stands = slowest * KMH < context.thresholds.standing_kmh
+        stands = slowest * KMH_PER_MPS < context.thresholds.standing_kmh
         just_stood = round(_JUST_STOOD_S / context.recording.step_s)
         stands |= _changes(context) & context.spans.within_last(stands, just_stood)
         only_perhaps = np.zeros_like(clear)

@@ -7,8 +7,9 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.measured_numbers import own_widths
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 
 _SLOWED_MPS = 0.5
 """A vehicle that is slower by more afterwards may have had to brake."""
@@ -52,7 +53,7 @@ def _too_near(context: DriveContext, states: NDArray[intp]) -> Flags:
     left = ahead - along - length[1:, None] / 2 - speed * limits.reaction_s
     blocked = (ahead > 0) & (aside < across + widths / 2 - context.tolerances.place_m)
     needs: Flags = speed**2 > 2 * limits.disturbing_mps2 * np.maximum(left, 0.0)
-    found: Flags = blocked & needs & (speed * KMH >= limits.standing_kmh)
+    found: Flags = blocked & needs & (speed * KMH_PER_MPS >= limits.standing_kmh)
     return found
 
 
