@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rulec.diagnostics import first_of
 from rulec.recordings.encodings.xml_element import short
 
 _NAMED = 3
@@ -26,5 +27,4 @@ def missing_remark(names: Sequence[str], longest_s: float) -> str:
 
 def first_ids(names: Sequence[str]) -> str:
     """The first of some tracks' ids, and how many more there are."""
-    some = ", ".join(f"`{short(name)}`" for name in names[:_NAMED])
-    return f"{some}, and {len(names) - _NAMED} more" if len(names) > _NAMED else some
+    return first_of([f"`{short(name)}`" for name in names], _NAMED)

@@ -12,7 +12,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.array_types import Floats
-from rulec.diagnostics import RulecError, did_you_mean
+from rulec.diagnostics import RulecError, did_you_mean, first_of
 from rulec.recordings.encodings.table_columns import Columns, Texts
 from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.recordings.mending.cut_tracks import cut_remark
@@ -349,9 +349,8 @@ class _Reading:
         if self.rows.type is None:
             yield f"all tracks are taken to be of type `{USUAL_TYPE}`, as there is no column `type`"
         if several := self.of_several_types:
-            more = f", and {len(several) - _NAMED} more" if len(several) > _NAMED else ""
-            some = ", ".join(several[:_NAMED])
-            yield f"tracks of several types are taken to be of the most frequent one: {some}{more}"
+            some = first_of(several, _NAMED)
+            yield f"tracks of several types are taken to be of the most frequent one: {some}"
         if self.wrong:
             yield wrong_places_remark([*self.wrong], sum(self.wrong.values()))
         if self.cut:
@@ -360,8 +359,7 @@ class _Reading:
             yield cut_remark(self.jumped, CUT_WHY)
         usual = [unstated for unstated, _ in self.taken.most_common()]
         if usual:
-            more = f", and {len(usual) - _NAMED} more" if len(usual) > _NAMED else ""
-            yield f"what is not stated is taken to be as usual: {', '.join(usual[:_NAMED])}{more}"
+            yield f"what is not stated is taken to be as usual: {first_of(usual, _NAMED)}"
         yield from _speeds_that_differ(self.rows)
         if self.rows.times.start_s:
             yield f"times count from the first one, {self.rows.times.start_s:.10g} s"
