@@ -1,10 +1,14 @@
 """The reason for which there is no maneuver at all."""
 
 import json
+import re
+from pathlib import Path
 
 import pytest
 
 from rulec.cli.main import main
+
+FOLLOWING = str(Path(__file__).resolve().parents[2] / "docs/samples/following.xml")
 
 ROAD = """
 horizon_s = 4
@@ -154,6 +158,19 @@ def test_a_rule_is_named_that_closes_every_way(tmp_path, capsys):
     )
     assert main(["maneuvers", str(file), "-r", str(book)]) == 1
     assert "opened by   a softer away (1 more)" in capsys.readouterr().out
+
+
+def test_whether_a_softer_rule_is_enough_may_be_unknown(tmp_path, capsys):
+    """Some keep the other rule perhaps, as gaps are not exactly known in cells; none for sure."""
+    book = tmp_path / "never.rules"
+    book.write_text(
+        "rulebook never\nuse road\n"
+        "hard rule away (v: vehicle) { require never (behind(v) and same_lane(v)) }\n"
+        "hard rule far (v: vehicle) { require always (behind(v) implies gap(v) > 20 m) }\n"
+    )
+    assert main(["maneuvers", FOLLOWING, "-r", str(book), "--ego", "1"]) == 1
+    (opened,) = [x for x in capsys.readouterr().out.splitlines() if x.startswith("opened by")]
+    assert re.fullmatch(r"opened by   a softer away \([0-9,]+ more, perhaps\)", opened)
 
 
 @pytest.mark.parametrize(("speed", "least", "shown"), [(12, 6.13, "6.1"), (15, 9.578, "9.5")])

@@ -236,7 +236,9 @@ def _without_rules(maneuvers: Maneuvers) -> Iterator[str]:
         return
     counts = maneuvers.without_each_rule()
     if counts:
-        shown = [f"{name} ({shown_count(count)} more)" for name, count in counts.items()]
+        # Where words are unknown, what violates no other rule may still be open.
+        more = "more" if maneuvers.perhaps is maneuvers.hard else "more, perhaps"
+        shown = [f"{name} ({shown_count(count)} {more})" for name, count in counts.items()]
         yield visible(f"opened by   a softer {first_of(shown, MOST_DEFAULTS)}")
     else:
         yield "opened by   no single softer rule: each maneuver violates two or more"
