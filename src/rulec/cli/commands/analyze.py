@@ -51,7 +51,7 @@ def command(
 
     Finds rules that nothing can violate or satisfy, rules implied by others, triggers that never
     occur, hard rules that contradict each other, and rules weaker than those of the rulebook being
-    extended. Each finding comes with a trace that shows it.
+    extended. Contradictions and weaker rules come with a trace that shows them.
 
     Exit status: 0 no mistakes found, 1 mistakes found, 2 a question could not be answered.
     """
