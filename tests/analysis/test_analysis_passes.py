@@ -244,7 +244,7 @@ class TestTraceLiterals:
         )
         trace = Trace("t", 1.0, {"x": "thing", "y": "thing"}, said)
         assert trace_note("seen", trace, reading) == (
-            "seen: { p and gap(x) = 2.5 m; near(x) and speed = 1 m/s; true }",
+            "seen: (y: thing) { p and gap(x) = 2.5 m; near(x) and speed = 1 m/s; true }",
         )
 
 

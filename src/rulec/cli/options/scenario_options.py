@@ -210,7 +210,7 @@ cell_options = combined(
             callback=finite,
             default=30.0,
             show_default=True,
-            metavar="KMH_PER_MPS",
+            metavar="KMH",
             help="Recorded scenes: below this median speed traffic counts as congested.",
         ),
         recording_options,

@@ -42,8 +42,8 @@ UNKNOWN_UNIT = Code(
     why="Numbers have units. The units of quantities, parameters and comparisons must be known so "
     "that they can be converted exactly. Units are case-sensitive. A plain number, such as how "
     "many passengers there are, is declared `in m/m`.",
-    bad="rulebook example\nquantity speed in KMH_PER_MPS default 0\n"
-    "hard rule r { require always speed <= 50 KMH_PER_MPS }\n",
+    bad="rulebook example\nquantity speed in KMH default 0\n"
+    "hard rule r { require always speed <= 50 KMH }\n",
     good="rulebook example\nquantity speed in km/h default 0\n"
     "hard rule r { require always speed <= 50 km/h }\n",
 )
