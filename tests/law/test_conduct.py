@@ -15,7 +15,6 @@ from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
-from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.national_books import NATIONAL, compiled, read
 
 STEPS = (Fraction(1), Fraction(1, 10), Fraction(1, 25))
@@ -216,21 +215,3 @@ def test_a_duty_that_still_runs_at_the_end_is_not_lost_yet(name):
     assert not violations(judge, [*states, cleared])
     late = violations(judge, [*states, *states[-1:] * 60])
     assert [one.step for one in late] != [None]
-
-
-@pytest.mark.parametrize(
-    ("more", "says"),
-    [
-        ({"emergency_vehicle_near": True}, "open"),
-        ({"emergency_vehicle_near": True, "speed": 16}, "violated"),
-        ({}, "violated"),
-    ],
-)
-def test_whether_the_way_may_be_cleared_over_the_line_is_open(more, says):
-    states = [
-        {"light": "red_light", "speed": 5, "cleared_only_over_line": UNKNOWN, **more, **one}
-        for one in ({}, {"crosses_light_line": True}, {})
-    ]
-    verdict = verify(Trace("t", 1.0, {}, tuple(states)), compiled("de"))
-    told = {"violated": verdict.violations, "open": verdict.open}
-    assert [x for x, found in told.items() if "red_light" in {one.rule for one in found}] == [says]

@@ -75,7 +75,7 @@ def test_few_of_the_german_rules_read_what_no_format_tells():
     """Zones where people on foot go first are on no map that is read."""
     audit = audit_source(compiled("de"), "all formats", TOLD)
     partly = [one.rule for one in audit.rules if one.untold or one.lacking]
-    assert len(partly) <= 0.22 * len(audit.rules)
+    assert len(partly) <= 0.21 * len(audit.rules)
     assert {one.rule for one in audit.rules if one.basis == "nothing"} <= set(partly)
 
 
