@@ -9,9 +9,9 @@ from fractions import Fraction
 from itertools import permutations
 from string import ascii_uppercase
 
+from rulec.analysis.diff.distinct_names import with_distinct_names
 from rulec.analysis.diff.rule_comparison import RuleRelation, rule_relation
 from rulec.analysis.diff.rulebook_comparison import rules_matching
-from rulec.analysis.diff.told_apart import told_apart
 from rulec.analysis.shared_compilation import AnalyzedRule, at_one_step, compile_shared
 from rulec.diagnostics.diagnostic import at
 from rulec.resource_limits import COMPARISONS
@@ -107,7 +107,7 @@ def comparison_matrix(
     The arguments are as for ``diff_rulebooks``; ``tell`` is called with the progress out of
     ``steps``. Raises RulecError, R0718 beyond the limit `comparisons`.
     """
-    books = told_apart(books)
+    books = with_distinct_names(books)
     ours = [rules_matching(book, patterns) for book in books]
     having: dict[str, list[int]] = {}
     for number, rules in enumerate(ours):

@@ -10,8 +10,8 @@ from types import MappingProxyType
 from typing import Any
 
 from rulec.analysis.counterexample import declarations_read, shared_vocabulary
+from rulec.analysis.diff.distinct_names import with_distinct_names
 from rulec.analysis.diff.rule_comparison import RuleComparison, RuleRelation, compare
-from rulec.analysis.diff.told_apart import told_apart
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory, ConstantKind
 from rulec.analysis.shared_compilation import at_one_step, compile_shared
 from rulec.analysis.trace_display import TraceTable, special_types, trace_table
@@ -197,7 +197,7 @@ def diff_rulebooks(
 
     Raises RulecError if a rule cannot be compiled.
     """
-    first, second = told_apart((first, second))
+    first, second = with_distinct_names((first, second))
     ours, theirs = (rules_matching(book, patterns) for book in (first, second))
     others = {rule.name: rule for rule in second.rules}
     partners = {name: theirs[name] for name in theirs if name in ours and name not in paired}

@@ -1,4 +1,4 @@
-"""Names that tell rulebooks of one name apart, such as two editions of a book."""
+"""Names by which rulebooks of one name are distinct, such as two editions of a book."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import PurePath
 from rulec.rulebook.rulebook_model import Rulebook
 
 
-def told_apart(books: Sequence[Rulebook]) -> list[Rulebook]:
+def with_distinct_names(books: Sequence[Rulebook]) -> list[Rulebook]:
     """The rulebooks, those of one name with their files, or else numbers, after it."""
     times = Counter(book.name for book in books)
     twins = [number for number, book in enumerate(books) if times[book.name] > 1]
