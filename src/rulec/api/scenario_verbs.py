@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from rulec.api.session_settings import SessionSettings
+from rulec.garbage_collection import no_garbage_collection
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -48,6 +49,7 @@ class ScenarioVerbs(SessionSettings):
 
         return scene_of(reference, choice or Choice(), Path(reference.name))
 
+    @no_garbage_collection()
     def navigation_graph(
         self, scenario: str | Path | Scenario, **options: Unpack[GraphOptions]
     ) -> NavigationGraph:
@@ -57,6 +59,7 @@ class ScenarioVerbs(SessionSettings):
         scene = self.load_scenario(scenario) if isinstance(scenario, str | Path) else scenario
         return navigation_graph(scene, **options)
 
+    @no_garbage_collection()
     def find_maneuvers(
         self,
         scenario: str | Path | Scenario,

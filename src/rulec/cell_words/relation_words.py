@@ -298,17 +298,14 @@ def _one_of(code: int, texts: Sequence[str]) -> Any:
 def _intervals(low: Floats, high: Floats) -> list[list[Any]]:
     low = np.floor(low * 100 + 1e-6) / 100
     high = np.maximum(np.ceil(high * 100 - 1e-6) / 100, low)
-    return [
-        [
-            UNKNOWN
-            if one != one or other != other
-            else one
-            if one == other
-            else Interval(one, other)
-            for one, other in zip(*rows, strict=True)
-        ]
-        for rows in zip(low.tolist(), high.tolist(), strict=True)
-    ]
+    unknown, exact = np.isnan(low) | np.isnan(high), low == high
+    # These few are put in afterwards
+    bounds = np.where(unknown, 0.0, (low, high))
+    rows = [list(map(Interval, *ends)) for ends in zip(*bounds.tolist(), strict=True)]
+    values: list[list[Any]] = rows
+    for row, column in np.argwhere(unknown | exact).tolist():
+        values[row][column] = UNKNOWN if unknown[row, column] else float(low[row, column])
+    return values
 
 
 def _truths(known: Flags, value: bool) -> list[list[Any]]:

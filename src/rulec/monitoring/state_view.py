@@ -63,8 +63,19 @@ def with_values(
     if not values:
         return state
     changed: dict[str, Any] = dict(state)
+    # The mappings that are copied already, by the names on the way to them
+    copied: dict[tuple[str, ...], dict[str, Any]] = {(): changed}
+
+    def copy_at(way: tuple[str, ...]) -> dict[str, Any]:
+        if way not in copied:
+            outer, key = copy_at(way[:-1]), way[-1]
+            known = outer.get(key)
+            copied[way] = outer[key] = dict(known) if isinstance(known, Mapping) else {}
+        return copied[way]
+
     for (name, items), value in values.items():
-        changed[name] = put(changed.get(name), items, value)
+        *way, last = name, *items
+        copy_at(tuple(way))[last] = value
     return changed
 
 

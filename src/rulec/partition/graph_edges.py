@@ -14,7 +14,8 @@ the way that stays open longest, without those by which ego only passes others.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence, Set
+from dataclasses import dataclass, field
 from operator import itemgetter
 
 from rulec.partition.cell_graph import Edges, Margins
@@ -26,102 +27,160 @@ _Runs = Sequence[Mapping[int, int]]
 
 
 def edges(
-    layers: Sequence[Layer], onward: Sequence[cell_links.Links], borders: int = 1
+    layers: Sequence[Layer],
+    onward: Sequence[cell_links.Links],
+    borders: int = 1,
+    origins: Sequence[Collection[int]] | None = None,
 ) -> tuple[tuple[Edges, ...], tuple[Margins, ...]]:
     """Successors of every cell and their margins, in layers.
 
     ``onward[p]`` are the continuations from layer p to p + 1, ``borders`` how many borders ego may
-    cross in a step. The margin of staying is None.
+    cross in a step. The margin of staying is None. If there are ``origins``, cells of each layer,
+    only edges from these are listed.
     """
     back = [
         cell_links.inverse(links, len(after.cells))
         for links, after in zip(onward, layers[1:], strict=True)
     ]
-    so_far = _runs(layers, back)
-    to_come = _runs(layers[::-1], onward[::-1])[::-1]
-    open_for = [
-        _open_for(*three, len(layers)) if borders > 1 else []
-        for three in zip(layers, so_far, to_come, strict=True)
-    ]
+    near = None if origins is None else _surroundings(layers, onward, origins, borders)
+    so_far = _runs(layers, back, near)
+    to_come = _runs(layers[::-1], onward[::-1], near and near[::-1])[::-1]
     successors: list[Edges] = []
     margins: list[Margins] = []
     for p, links in enumerate(onward):
-        rows: list[tuple[int, ...]] = []
-        values: list[tuple[int | None, ...]] = []
-        for a, continued in enumerate(links):
+        rows: list[tuple[int, ...]] = [()] * len(links)
+        values: list[tuple[int | None, ...]] = [()] * len(links)
+        open_for = _OpenFor(layers[p], so_far[p], to_come[p], len(layers))
+        for a in range(len(links)) if origins is None else origins[p]:
+            continued = links[a]
             before = _longest((run, links[origin]) for origin, run in so_far[p][a].items())
             after = _longest_of(to_come[p + 1][image] for image in continued)
             changes = {b: before[b] + after[b] for b in before.keys() & after.keys() - continued}
             if borders > 1:
                 several = _longest(
                     (run, links[near])
-                    for near, run in _widest(a, open_for[p], borders, len(layers)).items()
+                    for near, run in open_for.widest(a, borders).items()
                 )
                 changes = {b: several[b] for b in several.keys() - continued} | changes
             reached = sorted({*continued, *changes})
-            rows.append(tuple(reached))
-            values.append(tuple([changes.get(b) for b in reached]))
+            rows[a] = tuple(reached)
+            values[a] = tuple([changes.get(b) for b in reached])
         successors.append(tuple(rows))
         margins.append(tuple(values))
     return tuple(successors), tuple(margins)
 
 
-def _runs(layers: Sequence[Layer], back: Sequence[cell_links.Links]) -> list[_Runs]:
+def _surroundings(
+    layers: Sequence[Layer],
+    onward: Sequence[cell_links.Links],
+    origins: Sequence[Collection[int]],
+    borders: int,
+) -> list[set[int]]:
+    """The cells of each layer whose runs are needed for the edges from ``origins``."""
+    near = [
+        _across(set(own), layer, borders - 1) for own, layer in zip(origins, layers, strict=True)
+    ]
+    images = [
+        set[int]().union(*[links[cell] for cell in own])
+        for own, links in zip(origins, onward, strict=False)
+    ]
+    return [near[0], *(own | after for own, after in zip(near[1:], images, strict=True))]
+
+
+def _across(cells: set[int], layer: Layer, borders: int) -> set[int]:
+    """These cells and all across so many borders from them."""
+    near = edge = cells
+    for _ in range(borders):
+        edge = {other for one in edge for other in layer.neighbours[one]} - near
+        near = near | edge
+    return near
+
+
+def _runs(
+    layers: Sequence[Layer],
+    back: Sequence[cell_links.Links],
+    wanted: Sequence[Set[int]] | None,
+) -> list[_Runs]:
     """The number of layers for which each adjacent pair has been adjacent so far.
 
     ``back[p]`` leads from layer p + 1 to layer p, in whichever order of time the layers are given.
+    If some cells of each layer are ``wanted``, there are no runs of other cells.
     """
-    runs: list[_Runs] = [
-        [dict.fromkeys(row, 1) for row in layer.neighbours] for layer in layers[:1]
-    ]
-    for layer, links in zip(layers[1:], back, strict=True):
-        earlier, current = runs[-1], []
-        for a, row in enumerate(layer.neighbours):
+    needed = _needed(layers, back, wanted)
+    runs: list[_Runs] = []
+    for p, layer in enumerate(layers):
+        rows: list[Mapping[int, int]] = [{}] * len(layer.cells)
+        for a in needed[p]:
+            if not p:
+                rows[a] = dict.fromkeys(layer.neighbours[a], 1)
+                continue
+            links = back[p - 1]
             # Per earlier neighbour, the longest run among all cells that continue as this one
-            longest = _longest_of(earlier[origin] for origin in links[a])
-            current.append(
-                {
-                    b: 1 + max([longest.get(origin, 0) for origin in links[b]], default=0)
-                    for b in row
-                }
-            )
-        runs.append(current)
+            longest = _longest_of(runs[-1][origin] for origin in links[a])
+            rows[a] = {
+                b: 1 + max([longest.get(origin, 0) for origin in links[b]], default=0)
+                for b in layer.neighbours[a]
+            }
+        runs.append(rows)
     return runs
 
 
-def _open_for(layer: Layer, so_far: _Runs, to_come: _Runs, most: int) -> _Runs:
-    """For each cell its neighbours, each with the number of layers for which it is one in all.
-
-    It is ``most`` where ego only passes others.
-    """
-    return [
-        {
-            other: most
-            if passes_only(layer.cells[cell], layer.cells[other])
-            else run + to_come[cell][other] - 1
-            for other, run in row.items()
-        }
-        for cell, row in enumerate(so_far)
-    ]
+def _needed(
+    layers: Sequence[Layer],
+    back: Sequence[cell_links.Links],
+    wanted: Sequence[Set[int]] | None,
+) -> Sequence[Collection[int]]:
+    """The wanted cells of each layer, and those that they continue."""
+    if wanted is None:
+        return [range(len(layer.cells)) for layer in layers]
+    needed: list[Set[int]] = [wanted[-1]]
+    for cells, links in zip(wanted[-2::-1], back[::-1], strict=True):
+        needed.append(cells.union(*[links[cell] for cell in needed[-1]]))
+    return needed[::-1]
 
 
-def _widest(cell: int, open_for: _Runs, borders: int, most: int) -> dict[int, int]:
-    """The cells across so many borders or fewer, each with the layers for which its way is open.
+@dataclass(frozen=True, slots=True, eq=False)
+class _OpenFor:
+    """For how many layers the borders between the cells of one layer are open, ``most`` at most."""
 
-    This is the shortest time for which one of the borders on a way is open, on the best way.
-    """
-    widest = {cell: most}
-    edge = [cell]
-    for _ in range(borders):
-        wider: dict[int, int] = {}
-        for one in edge:
-            so_wide = widest[one]
-            for other, run in open_for[one].items():
-                width = min(run, so_wide)
-                if width > widest.get(other, 0):
-                    widest[other] = wider[other] = width
-        edge = list(wider)
-    return widest
+    layer: Layer
+    so_far: _Runs
+    to_come: _Runs
+    most: int
+    known: dict[int, dict[int, int]] = field(default_factory=dict)
+
+    def beside(self, cell: int) -> Mapping[int, int]:
+        """A cell's neighbours, each with the number of layers for which it is one.
+
+        It is ``most`` where ego only passes others.
+        """
+        if cell not in self.known:
+            cells, after = self.layer.cells, self.to_come[cell]
+            self.known[cell] = {
+                other: self.most
+                if passes_only(cells[cell], cells[other])
+                else run + after[other] - 1
+                for other, run in self.so_far[cell].items()
+            }
+        return self.known[cell]
+
+    def widest(self, cell: int, borders: int) -> dict[int, int]:
+        """The cells across so many borders or fewer, and for how many layers their way is open.
+
+        This is the shortest time for which one of the borders on a way is open, on the best way.
+        """
+        widest = {cell: self.most}
+        edge = [cell]
+        for _ in range(borders):
+            wider: dict[int, int] = {}
+            for one in edge:
+                so_wide = widest[one]
+                for other, run in self.beside(one).items():
+                    width = min(run, so_wide)
+                    if width > widest.get(other, 0):
+                        widest[other] = wider[other] = width
+            edge = list(wider)
+        return widest
 
 
 def _longest_of(rows: Iterable[Mapping[int, int]]) -> dict[int, int]:

@@ -209,13 +209,17 @@ def _cut(plan: _Plan, times: Timing) -> NavigationGraph:
     first, *rest = _layers(plan, times, places)
     start = _start(plan, times, places, first.flat)
     layers = (first.layer, *(layer.layer for layer in rest))
-    steps = edges(layers, [layer.links for layer in rest], plan.borders)
-    graph = _graph(plan, times, places, start=start, layers=layers, steps=steps)
+    onward = [layer.links for layer in rest]
     if plan.bounds is None:
-        return graph
-    from rulec.partition.motion.reachable_graph import reachable  # NumPy, only if needed
+        steps = edges(layers, onward)
+        return _graph(plan, times, places, start=start, layers=layers, steps=steps)
+    from rulec.partition.motion import reachable_graph  # NumPy, only if needed
 
-    return reachable(graph, plan.bounds)
+    ego, step_s = plan.scenario.ego, float(times.step)
+    near = reachable_graph.cells_within_reach(layers, ego, plan.bounds, step_s)
+    steps = edges(layers, onward, plan.borders, near)
+    graph = _graph(plan, times, places, start=start, layers=layers, steps=steps)
+    return reachable_graph.reachable(graph, plan.bounds)
 
 
 def _reached(plan: _Plan, times: Timing) -> NavigationGraph | None:

@@ -162,11 +162,15 @@ class _StateProjection:
         return self._excluded[name]
 
 
+_KNOWN = bool, int, float, str
+"""The types of known values."""
+
+
 def _fits(name: str, value: _Signal, declaration: Declaration) -> bool:
     if isinstance(value, Mapping) != bool(declaration.parameters):
         return False
     values = value.values() if isinstance(value, Mapping) else (value,)
-    known = [x for x in values if isinstance(x, bool | int | float | str)]
+    known = [x for x in values if isinstance(x, _KNOWN)]
     return fits(name, known, declaration)
 
 

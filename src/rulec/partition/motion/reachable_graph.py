@@ -28,6 +28,9 @@ from rulec.scenario.scenario_model import Ego
 MOST_MOMENTS = 40
 """The most moments for which sets have directions; they are spread over the layers."""
 
+_NEAR_M = 0.01
+"""Cells this near to where ego may be are within its reach, more than rounding can hide."""
+
 _Pair = tuple[Sets, Sets]
 """A pair of sets: along and across the road."""
 
@@ -79,9 +82,8 @@ def reachable(graph: NavigationGraph, bounds: MotionBounds) -> NavigationGraph:
     ]
     times = [step * p for p in range(len(graph.layers))]
     areas = [_areas(layer.cells) for layer in graph.layers]
-    speeds = (0.0, motion.along.speeds[1]) if ego.speed is None else (ego.speed, ego.speed)
     own = (
-        motion.along.at(ego.s, speeds, 0.0),
+        motion.along.at(ego.s, _initial_speeds(ego, motion), 0.0),
         motion.across.at(ego.d, (ego.lateral_speed, ego.lateral_speed), 0.0),
     )
     first = _alone(own, graph.start, len(graph.layers[0].cells))
@@ -93,6 +95,31 @@ def reachable(graph: NavigationGraph, bounds: MotionBounds) -> NavigationGraph:
     if not all(used.any() for used in keep):
         final, keep = forward, _short_of_goals(graph, edges, forward)
     return _without(graph, bounds, keep, final)
+
+
+def cells_within_reach(
+    layers: Sequence[Layer], ego: Ego, bounds: MotionBounds, step: float
+) -> list[list[int]]:
+    """The cells of each layer that ego, within bounds, might reach if nobody were in its way.
+
+    This is a quick estimate, with layers of ``step`` (s): every cell that ``reachable`` keeps is
+    among them.
+    """
+    motion = ego_motion(ego, bounds, step, len(layers))
+    sideways = (ego.lateral_speed, ego.lateral_speed)
+    near = []
+    for p, layer in enumerate(layers):
+        along = motion.along.forward((ego.s, ego.s), _initial_speeds(ego, motion), step * p)
+        across = motion.across.forward((ego.d, ego.d), sideways, step * p)
+        areas = _areas(layer.cells)
+        beside = (areas[:, 0] <= along[1] + _NEAR_M) & (areas[:, 1] >= along[0] - _NEAR_M)
+        beside &= (areas[:, 2] <= across[1] + _NEAR_M) & (areas[:, 3] >= across[0] - _NEAR_M)
+        near.append(beside.nonzero()[0].tolist())
+    return near
+
+
+def _initial_speeds(ego: Ego, motion: EgoMotion) -> tuple[float, float]:
+    return (0.0, motion.along.speeds[1]) if ego.speed is None else (ego.speed, ego.speed)
 
 
 _Nodes = tuple[_Pair, NDArray[np.bool_]]

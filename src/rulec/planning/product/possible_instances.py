@@ -137,9 +137,10 @@ class PossibleNodes:
             possible = self._letters.word(rule, machine.classes, nodes, values)
             is_exact = is_exact and possible.exact
             words[possible.classes] = None
-        for number, classes in enumerate(zip(*words, strict=True), nodes.first):
-            if not any(classes):
-                raise self._letters.impossible(rule, binding.objects, number)
+        if all(0 in word for word in words):
+            for number, classes in enumerate(zip(*words, strict=True), nodes.first):
+                if not any(classes):
+                    raise self._letters.impossible(rule, binding.objects, number)
         return tuple(words), is_exact
 
     def _by_layer(self, letters: Sequence[int], binding: Binding) -> tuple[tuple[int, ...], ...]:

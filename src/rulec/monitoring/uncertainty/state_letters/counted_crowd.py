@@ -7,13 +7,12 @@ an object alone decide whether it counts, each object is evaluated separately.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import product
 from math import ceil, prod
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -46,38 +45,42 @@ MOST_SUPPOSED = 1 << 8
 """How many joint values of the world are supposed one after the other."""
 
 
+_Getter: TypeAlias = Callable[[Any], tuple[Any, ...]]
+"""A getter of some values from those of all subjects."""
+
+
 @dataclass(frozen=True, slots=True)
 class Crowd:
     """All objects except those for which reads are evaluated.
 
-    ``own`` has for each of them the places of its values among those of all subjects; ``others``
-    are the places of values about none of them. Of objects of one type with the same values,
-    ``enough`` count like any larger number.
+    ``own`` gets the values of each of them from those of all subjects, ``others`` the values about
+    none of them. Of objects of one type with the same values, ``enough`` count like any larger
+    number.
     """
 
     enough: int
-    own: Mapping[str, tuple[int, ...]]
-    others: tuple[int, ...]
+    own: Mapping[str, _Getter]
+    others: _Getter
 
     def few(
         self, values: Sequence[PartialValue | None], there: Mapping[str, str]
     ) -> tuple[tuple[object, ...], dict[str, str]]:
         """The values of a state without names, and enough of its objects, with their types."""
         kept: dict[str, str] = {}
-        alike: Counter[tuple[object, ...]] = Counter()
+        alike: dict[tuple[object, ...], int] = {}
         named = []
+        own, enough = self.own, self.enough
         for item, kind in there.items():
-            own = self.own.get(item)
-            if own is None:
-                named.append(item)
-            else:
-                traits = kind, *[values[place] for place in own]
-                if alike[traits] == self.enough:
+            if item in own:
+                traits = kind, own[item](values)
+                number = alike.get(traits, 0)
+                if number == enough:
                     continue
-                alike[traits] += 1
+                alike[traits] = number + 1
+            else:
+                named.append(item)
             kept[item] = kind
-        key = tuple([values[place] for place in self.others]), tuple(named)
-        return (*key, frozenset(alike.items())), kept
+        return (self.others(values), tuple(named), frozenset(alike.items())), kept
 
 
 def crowd_of(
@@ -106,8 +109,10 @@ def crowd_of(
             own[item].append((name, tuple("" if x == item else x for x in items), place))
         if not strangers:
             others.append(place)
-    places = {item: tuple(place for *_, place in sorted(ranked)) for item, ranked in own.items()}
-    return Crowd(enough, places, tuple(others))
+    getters = {
+        item: values_at([place for *_, place in sorted(ranked)]) for item, ranked in own.items()
+    }
+    return Crowd(enough, getters, values_at(others))
 
 
 def enough_alike(reads: Sequence[Read | NumberRead]) -> int | None:
@@ -278,7 +283,7 @@ class _CountedPart(NamedTuple):
     """Pieces of ``reads`` that depend on each other, by the values of their subjects."""
 
     reads: tuple[int, ...]
-    values: Callable[[Any], tuple[Any, ...]]
+    values: _Getter
     ways: ReadWays
     known: dict[tuple[Any, ...], frozenset[Digits]]
     is_of_world: bool

@@ -124,6 +124,7 @@ class PossibleLetters:
         self._vocabulary = vocabulary
         self._where = where
         self._views: dict[tuple[object, ...], StateView] = {}
+        self._named: dict[str, list[Any]] = {}
         self._given: dict[Subject, list[PartialValue | None]] = {}
         self._columns: dict[tuple[object, ...], list[int]] = {}
         if bound is None:
@@ -205,11 +206,19 @@ class PossibleLetters:
             return [supposed[name, items]] * len(self._trace.states)
         if (name, items) not in self._given:
             default: Any = self._vocabulary.declarations[name].default
-            given: Any = [state.get(name) for state in self._trace.states]
+            given: Any = self._of_name(name)
             for item in items:
                 given = [x if x is None or x is UNKNOWN else x.get(item) for x in given]
-            self._given[name, items] = [default if value is None else value for value in given]
+            if None in given:
+                given = [default if value is None else value for value in given]
+            self._given[name, items] = given
         return self._given[name, items]
+
+    def _of_name(self, name: str) -> list[Any]:
+        """What each state gives for a name, about whichever objects."""
+        if name not in self._named:
+            self._named[name] = [state.get(name) for state in self._trace.states]
+        return self._named[name]
 
     def _digits(self, read: ReadDigits, about: _About) -> list[int]:
         """The digits of a read in each state."""
