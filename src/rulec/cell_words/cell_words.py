@@ -72,7 +72,9 @@ def cell_words(graph: NavigationGraph, rules: CompiledRulebook) -> CellWords | N
     side, mirrored = chosen_side(origin.recording, RequestedDrives(), rules.traffic)
     assert not mirrored
     of_others = NEEDS_JUNCTION | NEEDS_CROSSING
-    probes = probe_drives(graph, origin, rules, side, of_others, in_time=OF_OTHERS)
+    probes = probe_drives(
+        graph, origin, rules, side, of_others, in_time=OF_OTHERS, measured=RELATIONS
+    )
     boxes = list(ego_boxes(graph, probes.recording.step_s))
     lanes = {
         lane
@@ -314,16 +316,11 @@ class _Words:
             return {name: [dict(unknown) for _ in boxes.s[0]] for name in names}
         relations = Relations(boxes, now, self._frame)
         flows = {name: relations.flow(FLOWS[name]) for name in self._names & FLOWS.keys()}
-        sure = np.broadcast_to(now.counts, relations.stations.shape)
+        counts = now.counts.tolist()
         rows = [(item, self._rows.get(item)) for item in items]
+        sure = [(item, row) for item, row in rows if row is not None and counts[row]]
         conduct = ConductWords(boxes, (before or now, now), self._frame, relations)
         found: dict[str, list[Any]] = {**flows, **conduct.words(self._names & CONDUCT)}
         for name, values in relations.words(names).items():
-            found[name] = [
-                {
-                    item: values[cell][row] if row is not None and sure[cell, row] else UNKNOWN
-                    for item, row in rows
-                }
-                for cell in range(len(values))
-            ]
+            found[name] = [{**unknown, **{item: own[row] for item, row in sure}} for own in values]
         return found

@@ -135,11 +135,13 @@ def probe_drives(
     side: Side,
     of_others: frozenset[str],
     in_time: frozenset[str] = frozenset(),
+    measured: frozenset[str] = frozenset(),
 ) -> ProbeDrives:
     """Probe extraction for all the words that rules read.
 
     ``of_others`` are the words about others that are kept from drives along lanes; ``in_time`` are
-    those that are also probed along the roads of lanes that ego may change to.
+    those that are also probed along the roads of lanes that ego may change to. Bounds of
+    ``measured`` words are not kept.
     """
     step_s = origin.recording.step_s
     reach = [own.s for row in graph.reach for own in row if own is not None]
@@ -176,12 +178,14 @@ def probe_drives(
                 names = drive.arrays.world.keys() | (of_others & drive.arrays.about.keys())
                 of_lane = drive.arrays.part(names, drive.arrays.objects.keys())
                 lane_probes.append(LaneProbe(lanes[number], s, of_lane.trace().states))
-            elif len(own) == 1 and number < n_timed:
-                timed.append(_timed(drive, drive.trace.states, ids))
             elif len(own) == 1:
-                part = drive.arrays.part(
-                    in_time & drive.arrays.about.keys(), drive.arrays.objects.keys()
-                )
+                about = drive.arrays.about.keys()
+                # Writing the bounds of numbers about others takes long, too
+                bounded = measured & drive.arrays.bounds.keys()
+                names = drive.arrays.world.keys() | about - bounded
+                if number >= n_timed:
+                    names = in_time & about
+                part = drive.arrays.part(names, drive.arrays.objects.keys())
                 timed.append(_timed(drive, part.trace().states, ids))
     return ProbeDrives(
         among=among,

@@ -74,8 +74,14 @@ def with_values(
         return copied[way]
 
     for (name, items), value in values.items():
-        *way, last = name, *items
-        copy_at(tuple(way))[last] = value
+        if items:
+            way = name, *items[:-1]
+            inner = copied.get(way)
+            if inner is None:
+                inner = copy_at(way)
+            inner[items[-1]] = value
+        else:
+            changed[name] = value
     return changed
 
 

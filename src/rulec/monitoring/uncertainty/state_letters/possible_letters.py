@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import repeat
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -36,6 +36,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     unknown_in_read,
 )
 from rulec.trace import Trace, Value
+from rulec.trace.interned import Interned
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
 
@@ -103,6 +104,13 @@ class _About:
         return slice(self.binding.first, self.binding.last + 1)
 
 
+class _Column(NamedTuple):
+    """A read's digits, or the places of joint letters, in each state, with the column's number."""
+
+    number: int
+    items: tuple[int, ...]
+
+
 class PossibleLetters:
     """A reader of the possible letters of a checked trace.
 
@@ -126,7 +134,9 @@ class PossibleLetters:
         self._views: dict[tuple[object, ...], StateView] = {}
         self._named: dict[str, list[Any]] = {}
         self._given: dict[Subject, list[PartialValue | None]] = {}
-        self._columns: dict[tuple[object, ...], list[int]] = {}
+        self._columns: dict[tuple[object, ...], _Column] = {}
+        self._distinct_columns: dict[tuple[int, ...], _Column] = {}
+        self._classes: dict[tuple[object, ...], tuple[int, ...]] = {}
         if bound is None:
             bound = bound_letters(rulebook, trace.objects, vocabulary)
         self._bound = bound
@@ -154,17 +164,25 @@ class PossibleLetters:
         """
         about = _About(rule, binding, supposed)
         letters = self._letters_of(rule, classes, binding.objects)
-        columns = [self._digits(letters.reads[n], about) for n in letters.independent]
+        columns = [self._column(letters.reads[n], about) for n in letters.independent]
         is_exact = True
         if letters.entangled.numbers:
-            columns.append(self._entangled_numbers(letters.entangled, about))
+            columns.append(self._distinct(self._entangled_numbers(letters.entangled, about)))
             joint = letters.entangled.joint_letters
-            is_exact = all(joint[number][1] for number in set(columns[-1]))
-        keys = list(zip(*columns, strict=True)) or [()] * (binding.last - binding.first + 1)
+            is_exact = all(joint[number][1] for number in set(columns[-1].items))
+        length = binding.last - binding.first + 1
+
+        def keys() -> list[tuple[int, ...]]:
+            return list(zip(*[own.items for own in columns], strict=True)) or [()] * length
+
+        # Among many objects, most are alike for a rule
+        alike = Interned(letters), length, *[own.number for own in columns]
+        if alike not in self._classes:
+            self._classes[alike] = tuple(letters.classes(keys()))
         return PossibleWord(
-            tuple(letters.classes(keys)),
+            self._classes[alike],
             is_exact,
-            lambda: tuple([letters.letters(key) for key in keys]),
+            lambda: tuple([letters.letters(key) for key in keys()]),
             lambda: tuple([self._unknown_names(read, about) for read in letters.reads]),
         )
 
@@ -220,15 +238,26 @@ class PossibleLetters:
             self._named[name] = [state.get(name) for state in self._trace.states]
         return self._named[name]
 
+    def _distinct(self, items: Sequence[int]) -> _Column:
+        """The one column with these items."""
+        items = tuple(items)
+        return self._distinct_columns.setdefault(
+            items, _Column(len(self._distinct_columns), items)
+        )
+
     def _digits(self, read: ReadDigits, about: _About) -> list[int]:
+        """The digits of a read in each state."""
+        return list(self._column(read, about).items)
+
+    def _column(self, read: ReadDigits, about: _About) -> _Column:
         """The digits of a read in each state."""
         objects, binding = about.binding.objects, about.binding
         items = tuple([objects[variable] for variable in read.variables])
         key: tuple[object, ...] = (read.kind, items, binding.first, binding.last)
         if about.supposed:
             key += tuple([own for own in about.supposed.items() if own[0][0] in read.names])
-        digits = self._columns.get(key)
-        if digits is None:
+        column = self._columns.get(key)
+        if column is None:
             if read.subject is None:
                 digits = self._digits_of_sums(read, about)
             else:
@@ -237,8 +266,8 @@ class PossibleLetters:
                 digits = read.of_values(self.values(*subject, about.supposed)[about.stretch])
                 if 0 in digits:
                     raise self._missing(subject, binding.first + digits.index(0), about.rule)
-            self._columns[key] = digits
-        return digits
+            column = self._columns[key] = self._distinct(digits)
+        return column
 
     def _digits_of_sums(self, read: ReadDigits, about: _About) -> list[int]:
         """The digits of a sum in each state; exact numbers are used only near a limit."""
