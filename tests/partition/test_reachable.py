@@ -9,6 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rulec import RulecError, load_scenario, navigation_graph
+from rulec.partition.motion import reachable_graph
 from rulec.scenario import Box, ConstantAcceleration, Ego, MotionBounds, Obstacle, Road, Scenario
 from support.builders.recorded_data import RECORDINGS
 from support.generators.driven_motions import cells_of, driven, paths_of
@@ -120,6 +121,26 @@ def test_who_drives_on_beside_others_is_kept(right, slower, left, other):
     graph = navigation_graph(scene, partition="fine", extent="clearance")
     states = [(20.0 * 0.5 * p, 20.0, 0.0, 0.0) for p in range(9)]
     assert paths_of(graph, states) is not None
+
+
+@given(scenarios(most=6), st.floats(0, 25), st.integers(0, 10**6))
+def test_nothing_is_lost_by_leaving_out_what_is_far_from_ego(scenario, speed, seed):
+    """The graph is the same if edges from all cells are made first."""
+    sideways = random.Random(seed).uniform(-1, 1)
+    scenario = with_ego(scenario, MotionBounds(), speed, sideways)
+    partition = random.Random(seed).choice(["fine", "paper"])
+    try:
+        near = navigation_graph(scenario, partition=partition)
+    except RulecError:
+        assume(False)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            reachable_graph,
+            "cells_within_reach",
+            lambda layers, *_: [range(len(layer.cells)) for layer in layers],
+        )
+        whole = navigation_graph(scenario, partition=partition)
+    assert near == whole
 
 
 @given(scenarios(most=6), st.floats(0, 25), st.integers(0, 10**6))

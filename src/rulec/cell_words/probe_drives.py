@@ -182,10 +182,10 @@ def probe_drives(
                 about = drive.arrays.about.keys()
                 # Writing the bounds of numbers about others takes long, too
                 bounded = measured & drive.arrays.bounds.keys()
-                names = drive.arrays.world.keys() | about - bounded
-                if number >= n_timed:
-                    names = in_time & about
-                part = drive.arrays.part(names, drive.arrays.objects.keys())
+                whole = drive.arrays.world.keys() | about - bounded
+                part = drive.arrays.part(
+                    whole if number < n_timed else in_time & about, drive.arrays.objects.keys()
+                )
                 timed.append(_timed(drive, part.trace().states, ids))
     return ProbeDrives(
         among=among,

@@ -301,10 +301,11 @@ def _intervals(low: Floats, high: Floats) -> list[list[Any]]:
     unknown, exact = np.isnan(low) | np.isnan(high), low == high
     # These few are put in afterwards
     bounds = np.where(unknown, 0.0, (low, high))
-    rows = [list(map(Interval, *ends)) for ends in zip(*bounds.tolist(), strict=True)]
-    values: list[list[Any]] = rows
-    for row, column in np.argwhere(unknown | exact).tolist():
-        values[row][column] = UNKNOWN if unknown[row, column] else float(low[row, column])
+    values: list[list[Any]] = [
+        list(map(Interval, *ends)) for ends in zip(*bounds.tolist(), strict=True)
+    ]
+    for row, own in zip(*(unknown | exact).nonzero(), strict=True):
+        values[row][own] = UNKNOWN if unknown[row, own] else float(low[row, own])
     return values
 
 

@@ -18,7 +18,7 @@ from rulec.trace import State
 from rulec.trace.trace_messages import UNKNOWN_OBJECT
 from rulec.value_display import brief
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, OneOf
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, OneOf, UnknownValue
 
 NUMBERS = frozenset({int, float})
 TRUTHS = frozenset({bool})
@@ -289,10 +289,22 @@ def _one_value(declaration: Declaration, *, partial: bool) -> _Look:
             return lambda value: type(value) in NUMBERS and math.isfinite(value)
 
 
+def _unknown_of(declaration: Declaration) -> Iterable[type]:
+    """The types whose values always fit a declaration."""
+    match declaration:
+        case Signal():
+            return (bool, UnknownValue)
+        case Quantity():
+            return UNKNOWN_TYPES
+        case Enumeration():
+            return (UnknownValue,)
+
+
 def _many_values(declaration: Declaration, *, partial: bool) -> _Look:
     if partial:
-        fits = _one_value(declaration, partial=True)
-        return lambda values: all(map(fits, values))
+        fits, unknown = _one_value(declaration, partial=True), frozenset(_unknown_of(declaration))
+        # Most values are of the same kind
+        return lambda values: unknown.issuperset(map(type, values)) or all(map(fits, values))
     match declaration:
         case Enumeration():
             return frozenset(declaration.values).issuperset

@@ -58,8 +58,7 @@ def edges(
             changes = {b: before[b] + after[b] for b in before.keys() & after.keys() - continued}
             if borders > 1:
                 several = _longest(
-                    (run, links[near])
-                    for near, run in open_for.widest(a, borders).items()
+                    (run, links[near]) for near, run in open_for.widest(a, borders).items()
                 )
                 changes = {b: several[b] for b in several.keys() - continued} | changes
             reached = sorted({*continued, *changes})
@@ -75,7 +74,7 @@ def _surroundings(
     onward: Sequence[cell_links.Links],
     origins: Sequence[Collection[int]],
     borders: int,
-) -> list[set[int]]:
+) -> list[Set[int]]:
     """The cells of each layer whose runs are needed for the edges from ``origins``."""
     near = [
         _across(set(own), layer, borders - 1) for own, layer in zip(origins, layers, strict=True)
@@ -135,7 +134,7 @@ def _needed(
         return [range(len(layer.cells)) for layer in layers]
     needed: list[Set[int]] = [wanted[-1]]
     for cells, links in zip(wanted[-2::-1], back[::-1], strict=True):
-        needed.append(cells.union(*[links[cell] for cell in needed[-1]]))
+        needed.append(cells | set[int]().union(*[links[cell] for cell in needed[-1]]))
     return needed[::-1]
 
 

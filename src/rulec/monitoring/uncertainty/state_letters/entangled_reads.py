@@ -159,18 +159,33 @@ class EntangledReads:
 
         Unless the reads are local it matters which objects are ``there``. Raises MissingValueError.
         """
-        key: tuple[object, ...] = values
-        if there is not None:
-            if self._counts is not None and len(there) == len(self._everybody.objects):
-                # Missing values and contradictions of axioms are found below.
-                with suppress(LookupError):
-                    return self._place((self._counts.letters(values), True))
-            key = values, *there
-            if self._crowd is not None:
-                key, there = self._crowd.few(values, there)
+        if there is None:
+            return self._place_of(values, values, self._everybody.objects)
+        if self._counts is not None and len(there) == len(self._everybody.objects):
+            # Missing values and contradictions of axioms are found below.
+            with suppress(LookupError):
+                return self._place((self._counts.letters(values), True))
+        if self._crowd is None:
+            return self._place_of((values, *there), values, there)
+        if values:
+            key, few = self._crowd.few(values, there)
+            return self._place_of(key, values, few)
+        # Only who is there matters, and these are the same in many states
+        alone = (*there,)
+        if alone not in self._known:
+            key, few = self._crowd.few(values, there)
+            self._known[alone] = self._place_of(key, values, few)
+        return self._known[alone]
+
+    def _place_of(
+        self,
+        key: tuple[object, ...],
+        values: tuple[PartialValue | None, ...],
+        there: Mapping[str, str],
+    ) -> int:
         known = self._known.get(key)
         if known is None:
-            joint = self._letters(values, self._everybody.objects if there is None else there)
+            joint = self._letters(values, there)
             if len(self._known) >= MOST_KNOWN:
                 self._known.clear()
             known = self._known[key] = self._place(joint)

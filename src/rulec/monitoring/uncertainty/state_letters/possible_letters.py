@@ -241,9 +241,7 @@ class PossibleLetters:
     def _distinct(self, items: Sequence[int]) -> _Column:
         """The one column with these items."""
         items = tuple(items)
-        return self._distinct_columns.setdefault(
-            items, _Column(len(self._distinct_columns), items)
-        )
+        return self._distinct_columns.setdefault(items, _Column(len(self._distinct_columns), items))
 
     def _digits(self, read: ReadDigits, about: _About) -> list[int]:
         """The digits of a read in each state."""
