@@ -8,6 +8,7 @@ that are too large, by ``build_automata``.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from rulec.automata.compiled_cache import CompiledQuestion, remembered
 from rulec.automata.compiler import lower
 from rulec.automata.step_compilation import StepCompiler, build_automata
 from rulec.book_tests.example_runs import example_warnings
-from rulec.diagnostics import Diagnostic
+from rulec.diagnostics import Diagnostic, RulecError
 from rulec.rulebook.loader import find, parse_all
 from rulec.rulebook.loader import resolve_trees as resolve
 
@@ -41,7 +42,7 @@ def compile_source(
             rule's own examples, and then for any other step that occurs.
         any_step: rules without examples need not fit the step that these would have.
         on_warning: called with warnings, such as an example whose verdict is not the stated one.
-        question: the key under which the cache stores the rulebook, compiled for any step.
+        question: the key under which the cache stores the rulebook, if compiled for ``any_step``.
     """
     file = find(reference, search_path)
     trees = parse_all(file)
@@ -53,4 +54,13 @@ def compile_source(
     compiled = build_automata(formulas, steps)
     if question is None or trees.dependencies is None:
         return compiled
-    return remembered(question, compiled, steps, warnings, trees.dependencies)
+    own = lower(book.rulebook)
+    own_steps = own == lower(book.rulebook, any_step=True)
+    if not own_steps and (step_s is not None or not any_step):
+        return compiled
+    about = warnings, trees.dependencies
+    if step_s is None:
+        return remembered(question, compiled, steps, *about, own_steps=own_steps)
+    with suppress(RulecError):  # for its own steps an automaton may be too large
+        remembered(question, build_automata(own, steps), steps, *about, own_steps=True)
+    return compiled

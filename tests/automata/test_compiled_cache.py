@@ -7,7 +7,9 @@ from fractions import Fraction
 
 import pytest
 
+import rulec
 from rulec import pipeline
+from rulec.api import rulebook_compilation
 from rulec.api.rulebook_compilation import machines
 from rulec.automata import compiled_cache, compiler, prefix_machines
 from rulec.automata.bundle.mapped_tables import MappedTables, TableWriter, mapped
@@ -284,3 +286,46 @@ def test_every_bit_of_a_file_counts():
         changed[number // 8] ^= 1 << number % 8
         with pytest.raises(ValueError, match="it is"):
             MappedTables(bytes(changed))
+
+
+STEPS = [None, 0.5, Fraction(1, 10), (0.5, 0.25)]
+
+
+@pytest.mark.parametrize("step", STEPS, ids=str)
+def test_a_program_recalls_what_it_compiled(folder, made, step):
+    fresh = rulebook_compilation.compile_rulebook("book.rules", step_s=step)
+    first, again = (rulec.compile_rulebook("book.rules", step_s=step) for _ in range(2))
+    assert fresh == first == again
+    assert made == ["book.rules", "book.rules"]
+    assert (again.recompile is None) == (fresh.recompile is None)
+    assert compiled() == machines("book.rules")
+
+
+def test_its_source_is_read_again(folder, made):
+    compiled()
+    again = pickle.loads(pickle.dumps(compiled()))
+    assert again.source == rulec.load_rulebook("book.rules")
+    assert again.at_step(0.5).source == again.source
+    where = again.place_of("second")
+    assert (where.file, where.line) == ("book.rules", 3)
+
+
+def test_without_its_source_a_rule_has_no_place(folder):
+    compiled()
+    again = compiled()
+    (folder / "book.rules").unlink()
+    assert again.place_of("second") is None
+    with pytest.raises(RulecError) as caught:
+        assert again.source
+    assert caught.value.diagnostics[0].code in {"R0701", "R0703"}
+
+
+def test_a_rule_without_examples_that_does_not_fit_their_step_is_no_less_refused(folder):
+    text = "rulebook odd\nuse words\nhard rule odd { require always eventually[<= 0.7 s] p }\n"
+    (folder / "odd.rules").write_text(text)
+    assert compiled("odd.rules").at_step(0.7)
+    for _ in range(2):
+        with pytest.raises(RulecError) as caught:
+            rulec.compile_rulebook("odd.rules")
+        assert caught.value.diagnostics[0].code == "R0407"
+        assert compiled("odd.rules").at_step(0.7)

@@ -43,23 +43,38 @@ def machines(
     # Called for every trace, so the fast case of a compiled rulebook comes first.
     if isinstance(rules, CompiledRulebook):
         return rules
-    if not recalls or not isinstance(rules, str | Path) or Path(rules).suffix == ".json":
-        return compile_rulebook(rules, search_path, warn, at=at, any_step=True)
+    return compile_rulebook(rules, search_path, warn, at=at, any_step=True, recalls=recalls)
+
+
+def _of_source(
+    reference: str | Path,
+    search_path: Sequence[str | Path],
+    warn: Callable[[Sequence[Diagnostic]], object],
+    step: Fraction | None,
+    at: str,
+    *,
+    any_step: bool,
+    recalls: bool,
+) -> CompiledRulebook:
     from rulec.automata.bundle.required_signature import refuse_source
-    from rulec.automata.compiled_cache import question_of, recalled
 
-    refuse_source(rules)
+    refuse_source(reference)
+    question = None
+    if recalls:
+        from rulec.automata.compiled_cache import question_of, recalled
 
-    question = question_of(rules, search_path, at)
-    known = None if question is None else recalled(question)
-    if known is None:
-        from rulec.pipeline import compile_source
+        question = question_of(reference, search_path, at)
+        any_first = any_step or step is not None
+        known = None if question is None else recalled(question, any_step=any_first)
+        if known is not None:
+            warn(known[1])
+            return known[0] if step is None else replace(known[0].at_step(step), recompile=None)
+    # The parser takes 60 ms to import: only where the cache has no answer
+    from rulec.pipeline import compile_source
 
-        return compile_source(
-            rules, search_path, at, any_step=True, on_warning=warn, question=question
-        )
-    warn(known[1])
-    return known[0]
+    return compile_source(
+        reference, search_path, at, step, any_step=any_step, on_warning=warn, question=question
+    )
 
 
 def _prefixes(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
@@ -77,13 +92,15 @@ def compile_rulebook(
     at: str = "",
     *,
     any_step: bool = False,
+    recalls: bool = False,
 ) -> CompiledRulebook:
     """Compile rules for one step, for several, or for that of their examples.
 
     ``step_s`` (above 0, a float meaning its decimal notation) is that step; with several, each
     trace is judged by its own. Without it, rules with bounds in seconds are compiled for the step
-    of their own examples, which they need not have if ``any_step``. R0407 for a bound that is not a
-    multiple of the step, R0507 if the rules have been compiled for another one.
+    of their own examples, which they need not have if ``any_step``; ``recalls`` as in ``machines``.
+    R0407 for a bound that is not a multiple of the step, R0507 if the rules have been compiled for
+    another one.
     """
     from rulec.automata.thresholds import exact_step
 
@@ -93,18 +110,15 @@ def compile_rulebook(
                 f"`step_s` has more than {MOST_STEPS:,} steps: give those that traces have"
             )
         if len(step_s) != 1:
-            return _for_steps(reference, search_path, warn, list(map(exact_step, step_s)), at)
+            steps = list(map(exact_step, step_s))
+            return _for_steps(*(reference, search_path, warn, steps, at), recalls=recalls)
         (step_s,) = step_s
     finite("step_s", step_s)
     step = None if step_s is None else exact_step(step_s)
     if isinstance(reference, str | Path):
         if Path(reference).suffix != ".json":
-            from rulec.automata.bundle.required_signature import refuse_source
-            from rulec.pipeline import compile_source
-
-            refuse_source(reference)
-            return compile_source(
-                reference, search_path, at, step, any_step=any_step, on_warning=warn
+            return _of_source(
+                *(reference, search_path, warn, step, at), any_step=any_step, recalls=recalls
             )
         from rulec.automata.bundle.bundle_file import read_compiled
 
@@ -131,10 +145,12 @@ def _for_steps(
     warn: Callable[[Sequence[Diagnostic]], object],
     steps: Sequence[Fraction],
     at: str,
+    *,
+    recalls: bool,
 ) -> CompiledRulebook:
     from rulec.automata.bundle.stored_steps import for_steps
 
     if not steps:
         raise ValueError("`step_s` has no step: give one, or None")
-    compiled = compile_rulebook(reference, search_path, warn, at=at, any_step=True)
+    compiled = machines(reference, search_path, warn, at, recalls=recalls)
     return for_steps([compiled.at_step(step) for step in steps], steps)

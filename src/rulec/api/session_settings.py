@@ -67,4 +67,4 @@ class SessionSettings:
         # Called for every trace, so imported late, and fast for a compiled rulebook.
         from rulec.api.rulebook_compilation import machines
 
-        return machines(rules, self.search_path, self._warn, self.at)
+        return machines(rules, self.search_path, self._warn, self.at, recalls=True)

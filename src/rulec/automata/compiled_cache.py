@@ -30,6 +30,7 @@ from rulec.version import __version__
 if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
     from rulec.automata.step_compilation import StepCompiler
+    from rulec.rulebook.rulebook_model import Rulebook
 
 _Part = TypeVar("_Part")
 
@@ -79,14 +80,20 @@ def question_of(
 
 
 def recalled(
-    question: CompiledQuestion,
+    question: CompiledQuestion, *, any_step: bool
 ) -> tuple[CompiledRulebook, tuple[Diagnostic, ...]] | None:
-    """The cached rulebook with its warnings; None if it has to be compiled."""
+    """The cached rulebook with its warnings; None if it has to be compiled.
+
+    Unless ``any_step`` it has to be for its rules' ``own_steps``.
+    """
     file = _File(question, _OWN)
     known = file.read()
     if known is None or not _is_valid(known, question) or known.rulebook is None:
         return None
-    text, compiled = replace(known, rulebook=None), known.rulebook
+    if not (any_step or known.own_steps):
+        return None
+    text = replace(known, rulebook=None)
+    compiled = replace(known.rulebook, origin=_ReadAgain(question))
     return _cached(compiled, CachedSteps(question, text, compiled), file), text.warnings
 
 
@@ -96,10 +103,15 @@ def remembered(
     steps: StepCompiler,
     warnings: Sequence[Diagnostic],
     dependencies: Sequence[Dependency],
+    *,
+    own_steps: bool,
 ) -> CompiledRulebook:
     """Cache a newly compiled rulebook; what is later compiled from it is cached, too."""
     day = "" if question.at or compiled.as_of else _today()
-    text = Compilation(question.stamp, day, tuple(dependencies), tuple(warnings))
+    depends_on = tuple(dependencies)
+    text = Compilation(
+        question.stamp, day, depends_on, warnings=tuple(warnings), own_steps=own_steps
+    )
     file = _File(question, _OWN)
     file.write(text, compiled)
     return _cached(compiled, CachedSteps(question, text, compiled, steps), file)
@@ -140,7 +152,7 @@ class _File:
     def write(self, text: Compilation, compiled: CompiledRulebook | None) -> None:
         if compiled is not None:
             prefixes = compiled.prefixes if isinstance(compiled.prefixes, StoredPrefixes) else None
-            compiled = replace(compiled, source=None, recompile=None, prefixes=prefixes)
+            compiled = replace(compiled, origin=None, recompile=None, prefixes=prefixes)
         with suppress(OSError, ValueError):
             write_own(self.path, written(replace(text, rulebook=compiled), self.given))
             tidy(self.path.parent, _ENDING, MOST_FILES)
@@ -149,6 +161,20 @@ class _File:
 def _cached(compiled: CompiledRulebook, steps: CachedSteps, file: _File) -> CompiledRulebook:
     known = compiled.prefixes if isinstance(compiled.prefixes, StoredPrefixes) else None
     return replace(compiled, recompile=steps, prefixes=CachedPrefixes(file, known))
+
+
+@dataclass(frozen=True, slots=True)
+class _ReadAgain:
+    """The ``Origin`` of a cached rulebook."""
+
+    question: CompiledQuestion
+
+    def __call__(self) -> Rulebook:
+        """The rulebook, read from its source. Raises RulecError."""
+        from rulec.rulebook.loader import read_rulebook  # the parser takes 60 ms to import
+
+        question = self.question
+        return read_rulebook(question.source, question.search_path, question.at).rulebook
 
 
 class CachedSteps:
@@ -172,7 +198,7 @@ class CachedSteps:
         self._answers: dict[str, CompiledRulebook | RulecError] = {}
 
     def __reduce__(self) -> tuple[type[CachedSteps], tuple[object, ...]]:
-        own = replace(self._own, source=None, recompile=None, prefixes=None)
+        own = replace(self._own, origin=None, recompile=None, prefixes=None)
         return CachedSteps, (self._question, self._text, own)
 
     def __call__(self, step_s: Fraction) -> CompiledRulebook:
@@ -207,7 +233,7 @@ class CachedSteps:
         if known is not None and _depends_on(known) == _depends_on(text):
             if known.rulebook is None:
                 return RulecError(known.problems)
-            return _cached(known.rulebook, self, file)
+            return _cached(replace(known.rulebook, origin=self._own.origin), self, file)
         try:
             compiled = _sharing(compile_it(), self._own)
         except RulecError as error:
@@ -227,11 +253,8 @@ class CachedSteps:
         if self._steps is None:
             # The parser takes 60 ms to import: only where the cache has no answer.
             from rulec.automata.step_compilation import StepCompiler
-            from rulec.rulebook.loader import read_rulebook
 
-            question = self._question
-            book = read_rulebook(question.source, question.search_path, question.at).rulebook
-            self._steps = StepCompiler(book)
+            self._steps = StepCompiler(_ReadAgain(self._question)())
         return self._steps
 
 

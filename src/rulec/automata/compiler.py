@@ -23,6 +23,7 @@ from rulec.automata.bundle.compiled_rulebook import (
     CompiledAxiom,
     CompiledRule,
     CompiledRulebook,
+    GivenRulebook,
     alike,
 )
 from rulec.automata.compiler_jobs import Done, Failed, Job
@@ -156,7 +157,7 @@ def build_all(
             for axiom in rulebook.axioms
         ),
         priorities=rulebook.priorities,
-        source=rulebook,
+        origin=GivenRulebook(rulebook),
     )
 
 

@@ -136,7 +136,7 @@ class StepCompiler:
             built = build_all(
                 self.rulebook, lacking, more_will_come=more_will_come, time=self._time
             )
-            self._header = replace(built, source=self.rulebook, recompile=self, prefixes=_prefixes)
+            self._header = replace(built, recompile=self, prefixes=_prefixes)
             machines.update({(rule.name, rule.step_s): rule for rule in built.rules})
         return replace(self._header, rules=tuple(machines[key] for key in keys))
 

@@ -87,6 +87,21 @@ class Recompiler(Protocol):
         """As ``CompiledRulebook.rounded_to``, without rules that are too large for the step."""
 
 
+Origin: TypeAlias = Callable[[], model.Rulebook]
+"""A function that gets the rulebook that another one was compiled from."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GivenRulebook:
+    """The ``Origin`` of what is compiled from a rulebook that is at hand."""
+
+    rulebook: model.Rulebook
+
+    def __call__(self) -> model.Rulebook:
+        """The rulebook."""
+        return self.rulebook
+
+
 PrefixCompiler: TypeAlias = "Callable[[CompiledRulebook], Mapping[str, OutcomeMachine | None]]"
 """A function that compiles each rule for prefixes, by name; None where a machine is too large."""
 
@@ -102,8 +117,8 @@ class Prepared(dict[object, Any]):
 class CompiledRulebook(Rows):
     """Compiled rules of a rulebook, with the vocabulary of their traces.
 
-    ``rulec`` and ``spot`` are the versions that compiled it. ``source`` is the rulebook that it was
-    compiled from, None if it was read from a compiled file. ``recompile`` compiles it for other
+    ``rulec`` and ``spot`` are the versions that compiled it. ``origin`` gets the rulebook that it
+    was compiled from, None if it was read from a compiled file. ``recompile`` compiles it for other
     steps; None if it was read from a file, or compiled for one step. ``prefixes`` provides the
     machines for cut traces; ``prepared`` holds data of the engines. ``too_large`` are the rules
     that were left out for the step of recorded traces.
@@ -127,15 +142,31 @@ class CompiledRulebook(Rows):
     at: str = ""
     axioms: tuple[CompiledAxiom, ...] = ()
     traffic: model.Traffic = ""
-    source: model.Rulebook | None = field(default=None, compare=False, repr=False)
+    origin: Origin | None = field(default=None, compare=False, repr=False)
     recompile: Recompiler | None = field(default=None, compare=False, repr=False)
     prefixes: PrefixCompiler | None = field(default=None, compare=False, repr=False)
     too_large: tuple[TooLargeRule, ...] = field(default=(), compare=False, repr=False)
     prepared: Prepared = field(init=False, default_factory=Prepared, compare=False, repr=False)
 
+    @property
+    def source(self) -> model.Rulebook | None:
+        """The rulebook that it was compiled from; None if it was read from a compiled file.
+
+        Read again if the compiled rulebook comes from the cache. Raises RulecError if it is gone.
+        """
+        if self.origin is None:
+            return None
+        if self.origin not in self.prepared:
+            self.prepared[self.origin] = self.origin()
+        found: model.Rulebook = self.prepared[self.origin]
+        return found
+
     def place_of(self, name: str) -> SourceLocation | None:
         """Where a rule is written; None if the rulebook was read from a compiled file."""
-        rules = () if self.source is None else self.source.rules
+        try:
+            rules = () if self.source is None else self.source.rules
+        except RulecError:
+            return None
         return next((at(rule.span) for rule in rules if rule.name == name), None)
 
     def at_step(self, step_s: Fraction | float) -> CompiledRulebook:

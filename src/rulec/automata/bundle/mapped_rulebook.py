@@ -30,7 +30,8 @@ class Compilation:
 
     ``stamp`` is a digest of the source and of the compiler. ``day`` is the day whose law applies,
     if it is today by default; empty if the source or the user sets it. ``problems`` explain why
-    there is no rulebook.
+    there is no rulebook. ``own_steps``: whether each rule is for the step of its examples, or for
+    the step that these would have.
     """
 
     stamp: str
@@ -39,6 +40,7 @@ class Compilation:
     warnings: tuple[Diagnostic, ...] = ()
     problems: tuple[Diagnostic, ...] = ()
     rulebook: CompiledRulebook | None = None
+    own_steps: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +64,7 @@ def _rulebook(*parts: Any) -> CompiledRulebook:
     return replace(CompiledRulebook(*parts[:-1]), prefixes=parts[-1])
 
 
-_RULEBOOK = _of_fields(CompiledRulebook, ["source", "recompile", "too_large"])
+_RULEBOOK = _of_fields(CompiledRulebook, ["origin", "recompile", "too_large"])
 _KINDS: dict[type, _Kind] = {
     tuple: _Kind(tuple, lambda *items: items),
     dict: _Kind(
