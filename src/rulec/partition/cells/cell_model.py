@@ -69,10 +69,6 @@ def passes_only(here: Cell, there: Cell) -> bool:
 
     These stay in other lanes on the same side; only ego's station relative to them differs.
     """
-    if here.partition == "paper":
-        before, after = here.signature, there.signature
-        changed = any(before[name] != after[name] for name in before.keys() & after.keys())
-        return here.surface != there.surface and not changed
     if here.objects == there.objects:
         size = len(here.objects)
         pairs: Iterable[tuple[int, int]] = zip(here.code[:size], there.code[:size], strict=True)
@@ -80,10 +76,12 @@ def passes_only(here: Cell, there: Cell) -> bool:
         own = dict(zip(there.objects, there.code, strict=False))
         codes = zip(here.objects, here.code, strict=False)
         pairs = ((code, own[name]) for name, code in codes if name in own)
-    changed_codes = [(before, after) for before, after in pairs if before != after]
-    if here.surface == there.surface and not changed_codes:
+    changed = [(before, after) for before, after in pairs if before != after]
+    if here.partition == "paper":
+        return here.surface != there.surface and not changed
+    if here.surface == there.surface and not changed:
         return False
-    return all(LATERAL_OF[x] == LATERAL_OF[y] != "same_lane" for x, y in changed_codes)
+    return all(LATERAL_OF[x] == LATERAL_OF[y] != "same_lane" for x, y in changed)
 
 
 @dataclass(frozen=True, slots=True)
