@@ -276,3 +276,27 @@ def test_a_rule_that_is_too_large_for_a_recording_s_step_is_a_finding(verify):
     (row,) = [row for row in rows if row["rule"] == "late"]
     assert (row["outcome"], row["strength"]) == ("not_judged", "hard")
     assert "too large for steps of 0.1 s" in row["because"]
+
+
+def test_editions_of_one_rulebook_are_told_apart(verify):
+    Path("old").mkdir()
+    Path("old/tiny.rules").write_text(BOOK.replace("45 km/h", "40 km/h"))
+    files = ("-o", "found.csv", "-o", "v.json", "--exposure")
+    status, out, err = verify(A, "-r", "./old/tiny.rules", "--explain", "1", *files)
+    old, new = "tiny (old/tiny.rules)", "tiny (tiny.rules)"
+    assert (status, err) == (1, "")
+    headings = [line for line in out.splitlines() if line.startswith("by ")]
+    assert headings[:2] == [f"by {old}", f"by {new}"]
+    assert headings[2].split("  ")[-2:] == [old, new]
+    # The rules are the editions' own, and are not said to be from another book.
+    assert "hard rule slow [Art. 1]:" in out
+    lines = [json.loads(line) for line in Path("v.json").read_text().splitlines()]
+    assert {line["rulebook"] for line in lines} == {old, new}
+    with Path("found.csv").open(newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert {row["rulebook"] for row in rows} == {old, new}
+    # Findings of one edition have its hash, whatever it was judged beside.
+    verify(A, "-o", "alone.csv", "--exposure")
+    with Path("alone.csv").open(newline="") as stream:
+        alone = {row["rulebook_hash"] for row in csv.DictReader(stream)}
+    assert alone == {row["rulebook_hash"] for row in rows if row["rulebook"] == new}

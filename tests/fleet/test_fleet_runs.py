@@ -91,6 +91,19 @@ def test_several_rulebooks_side_by_side(tmp_path, monkeypatch, capsys):
     assert outcomes == {"one": {"violated"}, "two": {"kept"}}
 
 
+def test_editions_of_one_rulebook_have_columns_of_their_own(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    rule = "rulebook depot\nuse road\nhard rule slow {{ require always speed <= {} km/h }}\n"
+    for name, most in (("old", 10), ("new", 50)):
+        Path(f"{name}.rules").write_text(rule.format(most))
+    Path("t.jsonl").write_text(json.dumps({"id": "a", "states": [{"speed": 20}]}) + "\n")
+    rulec.write_traces(rulec.read_traces("t.jsonl"), "t.parquet")
+    assert main(["fleet", "t.parquet", "-r", "./old.rules", "-r", "./new.rules", "-o", "f"]) == 1
+    table = capsys.readouterr().out.splitlines()
+    assert "by          depot (old.rules)  depot (new.rules)" in table
+    assert "slow                        1               kept" in table
+
+
 @pytest.fixture(scope="module")
 def traces():
     return trace_table(range(DRIVES))

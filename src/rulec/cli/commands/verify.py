@@ -138,9 +138,10 @@ def command(
     inputs = input_files(files)
     refuse_overwriting(to, inputs.paths)
     scenario_options.check_thresholds(options["thresholds"])
-    books = [read_machines(name, at) for name in dict.fromkeys(rulebooks_named(rulebooks))]
-    refuse_unmatched(patterns, books)
-    books = [with_rules_like(book, patterns) for book in books]
+    references = list(dict.fromkeys(rulebooks_named(rulebooks)))
+    own = [read_machines(name, at) for name in references]
+    refuse_unmatched(patterns, own)
+    books = _told_apart([with_rules_like(book, patterns) for book in own], references)
     if len(books) > 1 and STANDARD_OUTPUT in inputs.paths:
         raise click.UsageError("standard input is read once; give a file, or one rulebook")
     form = scenario_options.trace_format(options)
@@ -173,11 +174,11 @@ def command(
     with verdict_outputs(to, books[0], with_rows=exposure) as outputs:
         complaints = Complaints()
         results = []
-        for rules in books:
+        for rules, rows_of in zip(books, own, strict=True):
             if len(books) > 1:
                 outputs.text(f"{'' if rules is books[0] else chr(10)}by {rules.name}")
             if exposure:
-                outputs.to_rows = _to_rows(rules, egos, options, ends)
+                outputs.to_rows = _to_rows(rows_of, rules.name, egos, options, ends)
             results.append(_judge(request, rules, outputs, complaints))
         if len(books) > 1:
             # Late import, only if there are recordings: verdicts and recordings.
@@ -190,6 +191,16 @@ def command(
         answered=all(result.judged and result.complete for result in results),
         failed=any(result.violated for result in results),
     )
+
+
+def _told_apart(books: list[CompiledRulebook], references: Sequence[str]) -> list[CompiledRulebook]:
+    """The rulebooks under distinct names."""
+    if len({book.name for book in books}) == len(books):
+        return books
+    # Late import, only for editions of one rulebook: the tables of automata (20 ms).
+    from rulec.automata.bundle.renamed_rulebook import with_distinct_names
+
+    return with_distinct_names(books, references)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -354,17 +365,21 @@ def _c_engine(rules: CompiledRulebook) -> CEngine:
 
 def _to_rows(
     rules: CompiledRulebook,
+    name: str,
     egos: tuple[str, ...],
     options: Mapping[str, Any],
     ends: Ending | None,
 ) -> DriveRows:
-    """The builder of rows of drives and rules."""
+    """The builder of rows of drives and rules; in them the rulebook has this name.
+
+    Its hash remains that of the rulebook itself, by which findings of other calls have it.
+    """
     # Late import, only if requested: verdicts, evidence and Arrow (200 ms).
     from rulec.fleet.drive_rows import DriveRows
     from rulec.fleet.judged_by import judged_by
 
     wanted = scenario_options.requested_drives(egos, options, rules.vocabulary)
-    return DriveRows(rules, judged_by(rules, wanted, ends or ""))
+    return DriveRows(rules, replace(judged_by(rules, wanted, ends or ""), rulebook=name))
 
 
 def _recordings(inputs: InputFiles, form: Format | None, *, named: bool) -> list[str]:
