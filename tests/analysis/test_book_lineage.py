@@ -136,6 +136,24 @@ def test_a_definition_with_parameters():
     assert (one.kind, one.head) == ("definition", "d(v: t, side)")
 
 
+BASE = (
+    "rulebook base type t signal near(o: t), p default false "
+    "lateral(o: t) is one of left_of, right_of default left_of "
+    "define d(v: t, side) = near(v) and side(v)"
+)
+REDEFINED = "rulebook child extends base redefine d(other: t, where) = where(other) and p"
+
+
+def test_each_meaning_of_a_definition_is_under_its_own_head():
+    files = [parse(decode("r.rules", text.encode()))[0] for text in (BASE, REDEFINED)]
+    (one,) = book_lineage_of(files, "2024-01-01").provisions
+    assert one.head == "d(other: t, where)"
+    assert [(value.head, value.text) for value in one.settings] == [
+        ("d(v: t, side)", "near(v) and side(v)"),
+        ("", "where(other) and p"),
+    ]
+
+
 def test_what_rules_speak_of(village):
     # `changed` speaks of `slow`, which speaks of `pace`.
     assert {one.name: one.used for one in village.provisions} == {

@@ -156,6 +156,17 @@ def test_exceptions_are_said_one_by_one(folder, capsys):
     ) in rule
 
 
+def test_a_definition_is_under_the_head_of_its_own_book(folder, capsys):
+    words = "type car\nsignal near(c: car), p default false\n"
+    define = "define d(c: car) = near(c)\nhard rule a (c: car) { require never d(c) }\n"
+    Path("old.rules").write_text(f"rulebook old\n{words}{define}")
+    Path("new.rules").write_text("rulebook new\nextends old\nredefine d(v: car) = near(v) and p\n")
+    page = written(capsys, "./new.rules", "--format", "markdown")
+    definitions = section(page, "## Definitions")
+    assert "`d` is defined by `new`. It was in `old` `d(c: car) = near(c)`.\n" in definitions
+    assert "```rulec\ndefine d(v: car) = near(v) and p\n```" in definitions
+
+
 def test_what_stands_behind_the_rules(page):
     values = section(page, "## Options and parameters")
     assert "\n| `pace` | parameter | `25 km/h` |  | from 2022-01-01 | `mainland` |  |\n" in values

@@ -84,6 +84,22 @@ def test_no_rule_is_like_the_pattern(folder, capsys):
     assert "village has no rule like `x*`" in err
 
 
+def test_a_definition_with_other_parameters_than_its_base_gives_it(folder, capsys):
+    words = "type car\nsignal near(c: car), p default false\n"
+    (folder / "old.rules").write_text(f"rulebook old\n{words}define d(c: car) = near(c)\n")
+    new = "rulebook new\nextends old\nredefine d(v: car) = near(v) and p\n"
+    (folder / "new.rules").write_text(new)
+    status, out, _ = run(capsys, "./new.rules")
+    assert status == 0
+    assert out.endswith(
+        """
+definitions
+└── d(v: car) = near(v) and p  own
+    └── d(c: car) = near(c)  from old
+"""
+    )
+
+
 def test_a_value_for_no_day(folder, capsys):
     (folder / "late.rules").write_text(
         "rulebook late\nparam a = 1 in force from 2030-01-01\n", encoding="utf-8"
@@ -144,6 +160,7 @@ def test_json(folder, capsys):
         "until": "",
         "current": True,
         "note": "",
+        "head": "",
     }
     forest = json.loads(run(capsys, "village", "island", "--json")[1])
     assert [(one["name"], one["extends"]) for one in forest["books"]] == [

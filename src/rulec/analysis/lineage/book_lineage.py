@@ -132,6 +132,7 @@ def _history(
     """All statements of a chain about a provision; the chain begins with the most general book."""
     dates: list[tree.InForce | None] = [getattr(item, "in_force", None) for item, _ in given]
     good = [index for index, own in enumerate(dates) if in_force(own, at)]
+    head = _head(given[-1][0])
     settings = tuple(
         rule_lineage.ConstantValue(
             book,
@@ -140,17 +141,21 @@ def _history(
             until=own.until if own else "",
             current=good[-1:] == [index],
             note=description(item.span),
+            head="" if _head(item) == head else _head(item),
         )
         for index, ((item, book), own) in enumerate(zip(given, dates, strict=True))
     )
-    match given[0][0]:
-        case tree.OptionItem():
-            return rule_lineage.ConstantHistory("option", name, name, settings)
-        case tree.DefineItem(parameters=parameters):
-            head = name + print_parameters(parameters)
-            return rule_lineage.ConstantHistory("definition", name, head, settings)
-        case _:
-            return rule_lineage.ConstantHistory("parameter", name, name, settings)
+    kind: rule_lineage.ConstantKind = "parameter"
+    if isinstance(given[0][0], tree.OptionItem):
+        kind = "option"
+    elif isinstance(given[0][0], tree.DefineItem):
+        kind = "definition"
+    return rule_lineage.ConstantHistory(kind, name, head, settings)
+
+
+def _head(item: _Given) -> str:
+    own = print_parameters(item.parameters) if isinstance(item, tree.DefineItem) else ""
+    return item.name.text + own
 
 
 def _text(item: _Given) -> str:

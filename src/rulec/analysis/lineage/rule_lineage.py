@@ -80,7 +80,8 @@ class RuleHistory:
 class ConstantValue:
     """A value or meaning that a book gave a constant, as written.
 
-    ``current`` marks the one that applies. ``note`` is the comment beside it.
+    ``current`` marks the one that applies. ``note`` is the comment beside it. ``head`` is set if
+    this book gave a definition other parameters than the last one.
     """
 
     book: str
@@ -89,14 +90,20 @@ class ConstantValue:
     until: str = ""
     current: bool = False
     note: str = ""
+    head: str = ""
+
+    @property
+    def written(self) -> str:
+        """The text, after the definition's own head if that is another."""
+        return f"{self.head} = {self.text}" if self.head else self.text
 
 
 @dataclass(frozen=True, slots=True)
 class ConstantHistory:
     """An option, parameter or definition with all its values in order.
 
-    ``head`` is how it is written when used: its name, with a definition's parameters. ``used``:
-    some rule refers to it, directly or indirectly.
+    ``head`` is how it is written when used: its name, with a definition's parameters as the last
+    book gives them. ``used``: some rule refers to it, directly or indirectly.
     """
 
     kind: ConstantKind

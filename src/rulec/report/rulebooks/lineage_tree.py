@@ -167,7 +167,7 @@ def _provision(constant_history: rule_lineage.ConstantHistory, book: str, provis
     for setting in constant_history.settings:
         dated = setting.since or setting.until
         dates = f" {print_in_force(tree.InForce(setting.since, setting.until))}" if dated else ""
-        value = f"{setting.text}{dates}"
+        value = f"{setting.written}{dates}"
         origin = "own" if setting.book == book else f"from {setting.book}"
         if setting.current:
             label.append(visible(f" = {value}  "))

@@ -222,7 +222,7 @@ def _definitions_section(inherited: BookLineage, words: DocumentLanguage) -> Ite
         yield Heading(2, words.say("Definitions"))
     for definition in definitions:
         *earlier, last = definition.settings
-        before = [words.say("in {} {}", code(value.book), code(value.text)) for value in earlier]
+        before = [words.say("in {} {}", code(value.book), code(value.written)) for value in earlier]
         now = words.say("{} is defined by {}.", code(definition.name), code(last.book))
         was = words.say(" It was {}.", listed(before, words.language)) if before else ""
         note = f" {escaped(last.note)}" if last.note else ""
