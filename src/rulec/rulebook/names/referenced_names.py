@@ -13,6 +13,28 @@ def names_used(item: tree.Item) -> Iterator[str]:
         yield from names_in(formula)
 
 
+def free_names(item: tree.Item) -> frozenset[str]:
+    """The names in an item's formulas that its own variables and parameters do not stand for."""
+    own = frozenset[str]()
+    if isinstance(item, tree.RuleItem):
+        own = frozenset(variable.name.text for variable in item.variables)
+    elif isinstance(item, tree.DefineItem):
+        own = frozenset(parameter.name.text for parameter in item.parameters)
+    return frozenset(name for formula in formulas_of(item) for name in _free(formula, own))
+
+
+def _free(formula: tree.Formula, own: frozenset[str]) -> Iterator[str]:
+    if isinstance(formula, tree.AtomUse):
+        names = (formula.name.text, *(argument.text for argument in formula.arguments))
+        yield from (name for name in names if name not in own)
+    if isinstance(formula, tree.Prefix | tree.Infix) and formula.bound is not None:
+        yield from _names_in_bound(formula.bound)
+    if isinstance(formula, tree.Aggregate):
+        own |= {formula.variable.name.text}
+    for part in parts_of(formula):
+        yield from _free(part, own)
+
+
 def formulas_of(item: tree.Item) -> Iterator[tree.Formula]:
     """An item's formulas as written, without its examples."""
     match item:
@@ -64,9 +86,13 @@ def names_in(formula: tree.Formula) -> Iterator[str]:
         yield use.name.text
         yield from (argument.text for argument in use.arguments)
     for bound in _bounds(formula):
-        for side in (bound.low, bound.high):
-            if isinstance(side, tree.AtomUse):
-                yield side.name.text
+        yield from _names_in_bound(bound)
+
+
+def _names_in_bound(bound: tree.BoundNode) -> Iterator[str]:
+    for side in (bound.low, bound.high):
+        if isinstance(side, tree.AtomUse):
+            yield side.name.text
 
 
 def _bounds(formula: tree.Formula) -> Iterator[tree.BoundNode]:
