@@ -219,6 +219,12 @@ def test_provisions_of_the_treaty_that_a_country_inherits(capsys):
     assert "\n  Art. 17(1) " in out.split("\nprovisions cited in vienna")[1]
 
 
+def test_provisions_are_counted_by_whose_law_they_are(folder, capsys):
+    # Of those that its rules cite, § 9 and § 2 are mainland's.
+    _, out, _ = run(capsys, "village.rules", "--at", "2024-06-01")
+    assert "\n  provisions of the law            2\n  provisions of inherited law      2\n" in out
+
+
 def test_a_compiled_rulebook_is_not_enough(folder, capsys):
     status, out, err = run(capsys, "clean.json")
     assert (status, out) == (2, "")

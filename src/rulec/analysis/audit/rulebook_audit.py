@@ -50,6 +50,7 @@ class AuditCounts:
     """Counts of everything; rules are those in force.
 
     ``confirmed`` are those that are the rulebook's own law; ``verified`` rules are among these.
+    ``articles`` are all that are cited, ``inherited_articles`` those of the laws that it extends.
     """
 
     rules: int = 0
@@ -65,6 +66,7 @@ class AuditCounts:
     confirmed: int = 0
     cites_looked_for: int = 0
     cites_found: int = 0
+    inherited_articles: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,6 +160,7 @@ def audit(
             _counts(rulebook, articles, sum(name in used for name in words)),
             cites_looked_for=sum(check.result != "unread" for check in checks),
             cites_found=sum(check.result in ("found", "law-changed") for check in checks),
+            inherited_articles=sum(article.book not in inherited.own_law for article in articles),
         ),
         articles=articles,
         findings=tuple(sorted(findings, key=lambda finding: order.index(finding.kind))),

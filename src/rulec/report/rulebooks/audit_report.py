@@ -75,7 +75,9 @@ def counts(audit: Audit) -> Iterator[tuple[str, str]]:
     yield "own law, not merely inherited", f"{n.confirmed:,} {of_all}"
     yield "verified in the law itself", f"{n.verified:,} of {n.confirmed:,}"
     yield "examples", f"{n.examples:,}"
-    yield "provisions of the law", f"{n.articles:,}"
+    yield "provisions of the law", f"{n.articles - n.inherited_articles:,}"
+    if n.inherited_articles:
+        yield "provisions of inherited law", f"{n.inherited_articles:,}"
     if audit.provisions:
         yield "articles dealt with", progress(audit.provisions)
         n_read = sum(article.certainty == "verified" for article in audit.provisions)
