@@ -173,6 +173,8 @@ class TestRuleComparison:
             (["car", "thing"], ["thing", "car"], None),
             (["thing", "thing"], ["car", "thing"], ("car", "thing")),
             (["thing"], ["thing", "thing"], None),
+            (["car"], ["tree"], ()),
+            (["car", "car"], ["thing", "tree"], ()),
         ],
     )
     def test_common_types(self, first, second, expected):
@@ -457,3 +459,26 @@ def test_books_that_declare_a_type_differently_have_no_tables():
     diff = diff_rulebooks(one, two)
     assert diff.pairs[0].comparison.undecided == "`tram` is a different type in the two"
     assert list(diff.tables(diff.pairs[0])) == []
+
+
+TYPED = "rulebook {} type t type {} is t signal near(c: t) default false "
+
+
+def test_books_that_each_lack_the_types_of_the_other():
+    rule = "hard rule r (c: {}) {{ require never near(c) }}"
+    one = parse_rulebook(TYPED.format("a", "car") + rule.format("car"))
+    other = parse_rulebook(TYPED.format("b", "bus") + rule.format("bus"))
+    comparison = diff_rulebooks(one, other).pairs[0].comparison
+    assert (comparison.relation, comparison.common, comparison.on_common) == (
+        "incomparable",
+        (),
+        None,
+    )
+    # The narrower type is one that the first rulebook does not have.
+    wide = parse_rulebook(TYPED.format("c", "car") + rule.format("t"))
+    comparison = diff_rulebooks(wide, other).pairs[0].comparison
+    assert (comparison.relation, comparison.common, comparison.on_common) == (
+        "stricter",
+        ("bus",),
+        "equal",
+    )

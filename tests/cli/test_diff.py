@@ -196,6 +196,35 @@ def test_other_types_of_variables(tmp_path, capsys):
     ) in capsys.readouterr().out
 
 
+def test_types_that_the_other_rulebook_lacks(tmp_path, capsys):
+    for name, kind in (("a", "car"), ("b", "bus")):
+        words = f"type t type {kind} is t signal near(c: t) default false"
+        rule = f"hard rule r (c: {kind}) {{ require never near(c) }}"
+        (tmp_path / f"{name}.rules").write_text(f"rulebook {name} {words} {rule}")
+    assert main(["diff", "./a.rules", "./b.rules"]) == 1
+    types = (
+        "a speaks of (c: car), b speaks of (c: bus); no objects are of both kinds; "
+        "a has no type bus, b has no type car"
+    )
+    assert capsys.readouterr().out.splitlines()[2:14] == [
+        "r: each forbids something that the other allows",
+        f"  {types}",
+        "  a forbids, b allows",
+        "    state       0",
+        "    " + "─" * 15,
+        "    type of c   car",
+        "    near(c)     T",
+        "  b forbids, a allows",
+        "    state       0",
+        "    " + "─" * 15,
+        "    type of c   bus",
+        "    near(c)     T",
+    ]
+    assert main(["diff", "./a.rules", "./b.rules", "--json"]) == 1
+    (rule,) = json.loads(capsys.readouterr().out)["rules"]
+    assert (rule["common_types"], rule["on_common_types"]) == ([], None)
+
+
 def test_words_that_mean_different_things(tmp_path, capsys):
     for name, unit in (("a", "m"), ("b", "ft")):
         (tmp_path / f"{name}.rules").write_text(

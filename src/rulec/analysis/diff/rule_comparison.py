@@ -15,7 +15,12 @@ from dataclasses import dataclass, replace
 from itertools import permutations
 from typing import Literal
 
-from rulec.analysis.counterexample import Contest, numbers_in, shortest_contest
+from rulec.analysis.counterexample import (
+    Contest,
+    numbers_in,
+    shared_vocabulary,
+    shortest_contest,
+)
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.monitoring.state_view import value_in
 from rulec.rulebook.rulebook_model import Variable
@@ -39,8 +44,9 @@ class RuleComparison:
     ``first_forbids`` are traces that the first rule forbids and the second one allows, a shortest
     one first, then shortest ones for other reasons; ``second_forbids`` are the reverse. Either is
     empty if there are none. ``on_common`` is the relation restricted to the ``common`` types of
-    objects, if one rule applies to more objects than the other. ``undecided`` is the reason why a
-    question was left open.
+    objects, if one rule applies to more objects than the other; ``common`` is empty if no object is
+    of the types of both, None if the types do not differ or cannot be paired. ``undecided`` is the
+    reason why a question was left open.
     """
 
     __repr__ = short_repr
@@ -49,7 +55,7 @@ class RuleComparison:
     first_forbids: tuple[Trace, ...] = ()
     second_forbids: tuple[Trace, ...] = ()
     undecided: str = ""
-    common: tuple[str, ...] = ()
+    common: tuple[str, ...] | None = None
     on_common: RuleRelation | None = None
 
 
@@ -66,10 +72,14 @@ def compare(first: AnalyzedRule, second: AnalyzedRule, most: int = 1) -> RuleCom
     if first.law == second.law:
         return RuleComparison("equal")
     comparison = _compare(first, second, most)
-    common = common_types(first.rule.variables, second.rule.variables, first.rulebook.vocabulary)
-    if common is None or comparison.undecided:
+    if comparison.undecided:
         return comparison
-    narrow, narrower = (_narrowed(side, common) for side in (first, second))
+    # A rulebook may lack the types that the other one speaks of.
+    words = shared_vocabulary(first.rulebook.vocabulary, second.rulebook.vocabulary)
+    common = common_types(first.rule.variables, second.rule.variables, words.vocabulary)
+    if not common:
+        return replace(comparison, common=common)
+    narrow, narrower = (_narrowed(side, common, words.vocabulary) for side in (first, second))
     return replace(comparison, common=common, on_common=rule_relation(narrow, narrower))
 
 
@@ -127,7 +137,8 @@ def common_types(
 ) -> tuple[str, ...] | None:
     """The object types common to both rules, in the order of the first's variables.
 
-    None if both have the same types, or have no objects in common.
+    None if both have the same types, or another number of variables; empty if no object is of the
+    types of both.
     """
     types = [variable.type for variable in first]
     second_types = [variable.type for variable in second]
@@ -140,12 +151,14 @@ def common_types(
         )
         if all(narrow):
             return narrow
-    return None
+    return ()
 
 
-def _narrowed(analyzed: AnalyzedRule, common: tuple[str, ...]) -> AnalyzedRule:
+def _narrowed(
+    analyzed: AnalyzedRule, common: tuple[str, ...], vocabulary: Vocabulary
+) -> AnalyzedRule:
     """The rule restricted to objects of these types."""
-    is_subtype = analyzed.rulebook.vocabulary.is_subtype
+    is_subtype = vocabulary.is_subtype
     for order in permutations(common):
         pairs = list(zip(order, analyzed.rule.variables, strict=True))
         if all(is_subtype(kind, variable.type) for kind, variable in pairs):

@@ -136,7 +136,7 @@ class RulebookDiff(Rows):
             (pair.comparison.second_forbids, books[::-1]),
         ):
             for trace in traces:
-                types = special_types(trace, pair.machines)
+                types = special_types(trace, pair.machines) | _of_two_types(trace, pair)
                 yield forbids, allows, trace_table(trace, names, words.vocabulary, types)
 
     def rows(self) -> list[dict[str, Any]]:
@@ -156,6 +156,19 @@ class RulebookDiff(Rows):
             for relation, left, right in (*both, *first, *second)
             if (rule := left or right)
         ]
+
+
+def _of_two_types(trace: Trace, pair: RulePair) -> dict[str, str]:
+    """The types of objects for which the two rules declare variables of different types."""
+    ours, theirs = (
+        {variable.name: variable.type for variable in rule.variables}
+        for rule in (pair.first, pair.second)
+    )
+    return {
+        name: kind
+        for name, kind in trace.objects.items()
+        if ours.get(name, kind) != theirs.get(name, kind)
+    }
 
 
 def setting_pairs(first: BookLineage, second: BookLineage) -> tuple[SettingPair, ...]:

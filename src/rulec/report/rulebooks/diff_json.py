@@ -52,7 +52,8 @@ class TraceData(JsonPart, frozen=True, kw_only=True):
 class RulePairData(JsonPart, frozen=True, kw_only=True):
     """A rule of both rulebooks; the relation is that of the first to the second.
 
-    If they refer to different types of objects, they are compared on the common ones.
+    If they refer to different types of objects, they are compared on the common ones; with an empty
+    list of them no object is of the types of both.
     """
 
     rule: str
@@ -120,7 +121,7 @@ def _pair(pair: RulePair) -> RulePairData:
         undecided=comparison.undecided or None,
         first=filled(RuleSide, pair.first, **_exactly(pair.first)),
         second=filled(RuleSide, pair.second, **_exactly(pair.second)),
-        common_types=comparison.common or None,
+        common_types=comparison.common,
         on_common_types=comparison.on_common,
         first_forbids=list(map(_trace, comparison.first_forbids)),
         second_forbids=list(map(_trace, comparison.second_forbids)),

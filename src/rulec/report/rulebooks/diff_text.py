@@ -103,16 +103,26 @@ def verdict(pair: RulePair, rulebook_diff: RulebookDiff) -> str:
 
 
 def about_types(pair: RulePair, rulebook_diff: RulebookDiff) -> str:
-    """The object types compared, if one of the rules has more."""
-    if not pair.comparison.common:
+    """The object types compared, if they differ: which the two share, and which one lacks."""
+    common = pair.comparison.common
+    if common is None:
         return ""
-    heads = [
+    sides = ((rulebook_diff.first, pair.first), (rulebook_diff.second, pair.second))
+    heads = ", ".join(
         f"{book.name} speaks of "
         f"({', '.join(f'{variable.name}: {variable.type}' for variable in rule.variables)})"
-        for book, rule in ((rulebook_diff.first, pair.first), (rulebook_diff.second, pair.second))
+        for book, rule in sides
+    )
+    lacks = [
+        f"{book.name} has no type {kind}"
+        for (book, _), (_, rule) in (sides, sides[::-1])
+        for kind in dict.fromkeys(variable.type for variable in rule.variables)
+        if kind not in book.vocabulary.types
     ]
-    kinds = ", ".join(pair.comparison.common)
-    return f"{', '.join(heads)}; of ({kinds}), which both speak of: {pair.comparison.on_common}"
+    shared = "no objects are of both kinds"
+    if common:
+        shared = f"of ({', '.join(common)}), which both speak of: {pair.comparison.on_common}"
+    return "; ".join([heads, shared, *([", ".join(lacks)] if lacks else [])])
 
 
 def _pair(pair: RulePair, rulebook_diff: RulebookDiff) -> Iterator[str]:
