@@ -245,7 +245,7 @@ class TestComparisonMatrix:
             comparison_matrix(BOOKS)
         (one,) = caught.value.diagnostics
         assert (one.code, one.place.line) == ("R0718", 3)
-        assert "3 rulebooks: 4 pairs" in one.message
+        assert "3 rulebooks, 3 of which have `r`: 4 pairs" in one.message
         assert "--limit comparisons=" in one.help
 
     def test_more_laws_than_letters(self):

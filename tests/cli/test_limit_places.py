@@ -82,3 +82,14 @@ def test_the_place_is_told(limit, tmp_path, monkeypatch, capsys):
     assert code in first, told
     assert any(one.startswith(place) for one in at), told
     assert f"--limit {limit}=" in told
+
+
+def test_too_many_comparisons_are_told_at_a_rule_of_the_author(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    words = "use road\nhard rule bus_leaving (b: bus) { require never leaving_stop(b) }\n"
+    (tmp_path / "own.rules").write_text(f"rulebook own\n{words}")
+    # More of the others have other rules, whose places are in files that ship with rulec.
+    main(["--limit", "comparisons=1", "diff", "--all", "de", "nl", "fr", "./own.rules"])
+    said = capsys.readouterr().err
+    assert "--> own.rules:3:1" in said
+    assert "4 rulebooks, 4 of which have `bus_leaving`: " in said

@@ -7,14 +7,17 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import permutations
+from pathlib import Path
 from string import ascii_uppercase
 
 from rulec.analysis.diff.distinct_names import with_distinct_names
 from rulec.analysis.diff.rule_comparison import RuleRelation, rule_relation
 from rulec.analysis.diff.rulebook_comparison import rules_matching
 from rulec.analysis.shared_compilation import AnalyzedRule, at_one_step, compile_shared
+from rulec.diagnostics import SourceLocation
 from rulec.diagnostics.diagnostic import at
 from rulec.resource_limits import COMPARISONS
+from rulec.resources import rulebooks_folder
 from rulec.rulebook.rulebook_model import Remark, Rule, Rulebook
 
 CONVERSE: Mapping[RuleRelation, RuleRelation] = {
@@ -143,12 +146,28 @@ def comparison_matrix(
 def _refuse_too_many(
     ours: Sequence[Mapping[str, Rule]], having: Mapping[str, Sequence[int]]
 ) -> None:
-    """Raise RulecError R0718 if there are too many pairs, at the rule that most rulebooks have."""
-    if having:
-        name, numbers = max(having.items(), key=lambda item: len(item[1]))
-        place = at(ours[numbers[0]][name].span)
-        amount = sum(len(numbers) * (len(numbers) - 1) // 2 for numbers in having.values())
-        COMPARISONS.within(amount, place, f"{len(ours)} rulebooks")
+    """Raise RulecError R0718 if there are too many pairs.
+
+    It is at the rule that most rulebooks have, in the first of them that does not ship with rulec,
+    since its author can do something about it.
+    """
+    amount = sum(len(numbers) * (len(numbers) - 1) // 2 for numbers in having.values())
+    if amount <= COMPARISONS.value():
+        return
+    places = {
+        name: [at(ours[number][name].span) for number in numbers]
+        for name, numbers in having.items()
+        if len(numbers) > 1
+    }
+    own = {name: written for name in places if (written := [*filter(_is_own, places[name])])}
+    name = max(own or places, key=lambda name: len(places[name]))
+    whose = f"{len(ours)} rulebooks, {len(places[name])} of which have `{name}`"
+    COMPARISONS.within(amount, (own or places)[name][0], whose)
+
+
+def _is_own(place: SourceLocation | None) -> bool:
+    """Whether a place is in a file that does not ship with rulec."""
+    return place is not None and rulebooks_folder() not in Path(place.file).parents
 
 
 def steps(books: Sequence[Rulebook], patterns: Sequence[str] = ()) -> int:
