@@ -17,7 +17,8 @@ from rulec.recordings.opendrive import lane_lines, opendrive_map
 from rulec.report.findings.code_registry import all_codes
 from rulec.resource_limits import LIMITS, MOST_DIGITS
 from rulec.rulebook.arithmetic import size_limits
-from rulec.rulebook.files import source_walk
+from rulec.rulebook.files import referenced_files, source_walk
+from rulec.rulebook.overlay import priorities
 from rulec.scenario import scenario_files, time_grid
 from rulec.scenario.toml import schema
 from rulec.syntax import parser, scanner
@@ -37,6 +38,8 @@ FIXED = {
     "states of an example": parser.MOST_EXAMPLE_STATES,
     "operators, atoms and comparisons of a rule, definitions put in": size_limits.MOST_PARTS,
     "operators inside one another, definitions put in": size_limits.DEEPEST,
+    "rulebooks that one builds upon, one upon another": referenced_files.MOST_BASES,
+    "levels of priority": priorities.MOST_LEVELS,
     "digits of a number in compiled files and saved monitors": MOST_DIGITS,
     "seconds of processor time for a rule's automaton": compiler.CPU_LIMIT_S,
     "bytes of memory for it": compiler_worker.MEMORY_LIMIT_BYTES,

@@ -1,5 +1,7 @@
 """Rulebooks that no one would write are answered soon, with a message or two, and no traceback."""
 
+from pathlib import Path
+
 import pytest
 
 from rulec.diagnostics import RulecError
@@ -128,19 +130,25 @@ def write_chain(folder, number):
 
 
 def test_a_long_chain_of_rulebooks(tmp_path):
-    (rule,) = load_rulebook(write_chain(tmp_path, MOST_BASES)).rules
-    assert rule.says == str(MOST_BASES - 1)
+    (rule,) = load_rulebook(write_chain(tmp_path, MOST_BASES + 1)).rules
+    assert rule.says == str(MOST_BASES)
 
 
 def test_too_long_a_chain_of_rulebooks(tmp_path):
+    with pytest.raises(RulecError, match="R0327"):
+        load_rulebook(write_chain(tmp_path, MOST_BASES + 2))
     path = write_chain(tmp_path, 200)
     with pytest.raises(RulecError) as caught:
         load_rulebook(path)
     (one,) = caught.value.diagnostics
-    assert (one.code, f"{MOST_BASES} rulebooks" in one.message) == ("R0323", True)
+    assert (one.code, f"{MOST_BASES} rulebooks" in one.message) == ("R0327", True)
+    # Where its author can do something about it, and where the fifty are used up.
+    assert Path(one.place.file).name == "b199.rules"
+    (last,) = one.labels
+    assert Path(last.place.file).name == f"b{199 - MOST_BASES}.rules"
 
 
 def test_too_many_levels():
     levels = " > ".join(f"l{at}" for at in range(5000))
     (one,) = errors_of(f"rulebook r priority {levels} signal p {rule('p')}")
-    assert one.code == "R0323"
+    assert one.code == "R0327"

@@ -69,5 +69,5 @@ def test_a_contradiction_is_left_out_and_said():
 def test_more_levels_than_anyone_can_keep_in_mind():
     chain = [(f"level{number}", ">") for number in range(MOST_LEVELS + 1)]
     _, _, (mistake,) = pre_order([line_of(chain)])
-    assert mistake.code == "R0323"
+    assert mistake.code == "R0327"
     assert pre_order([line_of(chain[:-1])])[2] == []

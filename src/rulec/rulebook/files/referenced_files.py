@@ -9,8 +9,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Literal
 
-from rulec.diagnostics import Diagnostic, RulecError, Source
-from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
+from rulec.diagnostics import Diagnostic, Label, RulecError, Source
+from rulec.rulebook.arithmetic.size_messages import TOO_LONG
 from rulec.rulebook.files import reference_messages as say
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.rulebook_model import SourceFile
@@ -18,7 +18,7 @@ from rulec.syntax import decode, tree
 from rulec.syntax.caching.tree_cache import parsed
 
 MOST_BASES = 50
-"""The longest chain of rulebooks, far longer than any family of laws has."""
+"""The most rulebooks that one builds upon, far more than any family of laws has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +40,20 @@ def source_file(name: str, data: bytes) -> SourceFile:
     # A file's name may be no text at all; what goes into a compiled rulebook has to be.
     text = Path(name).name.encode("utf-8", "backslashreplace").decode()
     return SourceFile(text, sha256(data).hexdigest())
+
+
+def _too_long_a_chain(line: tree.ExtendsLine, chain: Sequence[tree.File]) -> RulecError:
+    """The error of the first rulebook of a chain; the last one's ``line`` is one too many."""
+    first = chain[0].extends
+    assert first is not None, "a chain has links"
+    return TOO_LONG.error(
+        first.span,
+        f"this rulebook builds upon more than {MOST_BASES} rulebooks, one upon another",
+        expected=f"expected no more than {MOST_BASES}",
+        help="let it, or one between, extend a more general one directly, and state itself what "
+        "those that it leaves out change",
+        labels=(Label(line.span.place, f"this would be number {len(chain)}"),),
+    )
 
 
 @dataclass(slots=True)
@@ -73,11 +87,7 @@ class ReferencedFiles:
             if book.path is not None and search.is_same_file(book.path, path):
                 raise RulecError(say.extends_circle(line, [link.file for link in chain[place:]]))
         if len(chain) > MOST_BASES:
-            raise FORMULA_TOO_LARGE.error(
-                line.span,
-                f"more than {MOST_BASES} rulebooks build upon one another",
-                help="let a rulebook extend a more general one directly",
-            )
+            raise _too_long_a_chain(line, [link.file for link in chain])
         data = self._read("base", name, user, path)
         file, mistakes = _parsed(decode(str(path), data))
         if file.kind == "vocabulary" and file.name is not None:

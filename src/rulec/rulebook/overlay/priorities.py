@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise, product
 
 from rulec.diagnostics import Diagnostic
-from rulec.rulebook.arithmetic.size_messages import FORMULA_TOO_LARGE
+from rulec.rulebook.arithmetic.size_messages import TOO_LONG
 from rulec.rulebook.overlay.overlay_messages import priority_circle
 from rulec.syntax import tree
 
@@ -28,7 +28,7 @@ def pre_order(
     mistakes: list[Diagnostic] = []
     for line in lines:
         if len({*levels, *(name.text for name in line.levels)}) > MOST_LEVELS:
-            wrong = FORMULA_TOO_LARGE.at(
+            wrong = TOO_LONG.at(
                 line.span,
                 f"there are more than {MOST_LEVELS} levels of priority",
                 help="use fewer levels, and weights among the rules of one level",
