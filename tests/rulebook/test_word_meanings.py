@@ -117,6 +117,14 @@ def test_words_in_the_languages_of_neighbours(name, word):
         ("{ require always time_to_stop_line >= 2 Sekunden }", "did you mean `s`?"),
         ("{ require always time_to_stop_line >= 2 secondes }", "did you mean `s`?"),
         ("{ require always limit >= 2 km/t }", "did you mean `km/h`?"),
+        ("{ require always limit >= 2 км/ч }", "did you mean `km/h`?"),
+        ("{ require always limit >= 2 км/час }", "did you mean `km/h`?"),
+        ("{ require always limit >= 2 公里/小时 }", "did you mean `km/h`?"),
+        ("{ require always limit >= 2 м/сек }", "did you mean `m/s`?"),
+        ("{ require always acceleration >= 2 m/sek² }", "did you mean `m/s²`?"),
+        ("{ require always limit >= 50 Std }", "did you mean `h`, or `km/h` for a speed?"),
+        # The half of a unit that is known does not make one of the other half.
+        ("{ require always limit >= 50 km/quux }", "units are such as `m`, `km/h`"),
         ("{ require always night exept wet }", "an exception is written `unless formula`"),
     ],
 )

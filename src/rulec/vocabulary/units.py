@@ -42,7 +42,7 @@ def known_unit_names() -> tuple[str, ...]:
     return (*COMPOSITE, *UNITS)
 
 
-_KM_AN_HOUR = re.compile("km/?(t|tim|u|st|std|ч|год)", re.IGNORECASE)
+_KM_AN_HOUR = re.compile("(km|км)/?(t|tim|u|st|std|ч|год)", re.IGNORECASE)
 """km/h where an hour is `time`, `uur` or `Stunde`; `t` and `u` alone are units of mass."""
 
 
@@ -53,16 +53,19 @@ def hour_in_another_language(text: str) -> str:
 
 _IN_OTHER_LANGUAGES = {
     "s": "sek sekunde sekund sekunder sekunden sekunnin sekuntia secondes seconde seconden secondi "
-    "secondo segundo segundos sekunda sekundy sekund vteřina vteřiny vteřin sec secs",
+    "secondo segundo segundos sekunda sekundy sekund vteřina vteřiny vteřin sec secs "
+    "с сек секунда секунды секунд δευτερόλεπτα 秒 초",
     "min": "minutt minutter minuter minuut minuten minuti minuto minutos minuta minuty minut "
-    "minuutti minuuttia",
-    "h": "time timer timme timmar stunde stunden heure heures uur uren ora ore hora horas godzina "
-    "godziny godzin hodina hodiny hodin tunti tuntia",
-    "m": "metri metro metros metr metry metrů metrów metriä mètre mètres",
+    "minuutti minuuttia мин минута минуты минут λεπτά 分钟 分 분",
+    "h": "time timer timme timmar std stunde stunden heure heures uur uren ora ore hora horas "
+    "godz godzina godziny godzin hodina hodiny hodin tunti tuntia ч час часа часов ώρα ώρες "
+    "小时 時間 시간",
+    "m": "metri metro metros metr metry metrů metrów metriä mètre mètres м метр метра метров "
+    "μέτρα 米 メートル 미터",
     "km": "kilometri kilometro kilometros kilometr kilometry kilometrů kilometrów kilometriä "
-    "kilomètre kilomètres",
+    "kilomètre kilomètres км километр километра километров χιλιόμετρα 公里 キロメートル 킬로미터",
     "t": "tonn tonnes tonne tonnen toneladas tonelada tonnellate tona tony ton tuna tuny tun "
-    "tonnia",
+    "tonnia т тонна тонны тонн τόνοι 吨 トン 톤",
     "%": "prosent procent prozent pourcent pct percento procento procenta prosenttia",
 }
 _UNIT_MEANT = {word: unit for unit, words in _IN_OTHER_LANGUAGES.items() for word in words.split()}
@@ -70,9 +73,26 @@ _UNIT_MEANT = {word: unit for unit, words in _IN_OTHER_LANGUAGES.items() for wor
 
 def unit_in_another_language(text: str) -> tuple[str, str]:
     """The unit that is written out, in any language: `sekunder`, `km/t`; and help, else empty."""
-    unit = _UNIT_MEANT.get(text.casefold(), "")
-    hour = hour_in_another_language(text)
-    return (unit, f"did you mean `{unit}`?") if unit else ("km/h" if hour else "", hour)
+    if hour := hour_in_another_language(text):
+        return "km/h", hour
+    unit = _parts_meant(text)
+    speed = ", or `km/h` for a speed" if unit == "h" else ""
+    return unit, f"did you mean `{unit}`{speed}?" if unit else ""
+
+
+def _parts_meant(text: str) -> str:
+    """The unit with each part that is in another language in this one; empty if there is none."""
+    if text.casefold() in _UNIT_MEANT:
+        return _UNIT_MEANT[text.casefold()]
+    matches = [_FACTOR.fullmatch(part) for part in text.split("/")] if len(text) <= _LONGEST else []
+    parts = [
+        _UNIT_MEANT.get(match[1].casefold(), match[1]) + match[0][len(match[1]) :]
+        for match in matches
+        if match is not None
+    ]
+    meant = "/".join(parts)
+    is_whole = len(parts) == len(matches) and meant != text
+    return meant if is_whole and parse_unit(meant) is not None else ""
 
 
 def _read(text: str) -> Unit | Refusal | None:
