@@ -201,6 +201,26 @@ def test_what_only_an_author_can_mend_has_none(code, folder):
             "hard rule r { require always every c: car (not near(c)) }\n",
         ),
         (
+            HEAD + "hard rule r { require never (p unless q) }\n",
+            ["Write `and not`"],
+            HEAD + "hard rule r { require never (p and not q) }\n",
+        ),
+        (
+            HEAD + "hard rule r { require always (not p unless q) }\n",
+            ["Write `or`"],
+            HEAD + "hard rule r { require always (not p or q) }\n",
+        ),
+        (
+            HEAD + "hard rule r { require never (p when q) }\n",
+            ["Write `and`"],
+            HEAD + "hard rule r { require never (p and q) }\n",
+        ),
+        (
+            "rulebook sample\nquantity a in km/h\nhard rule r { require never a > ५० km/h }\n",
+            ["Write `50`"],
+            "rulebook sample\nquantity a in km/h\nhard rule r { require never a > 50 km/h }\n",
+        ),
+        (
             # Which of the two is law, only the author knows.
             HEAD + "hard rule r { require always (p until q or\n  p) }\n",
             ["Write `(p until q) or p`", "Write `p until (q or p)`"],
@@ -271,3 +291,10 @@ def test_of_words_that_may_mean_it_each_is_offered(folder):
     wrong = ON_ROADS.format("require always beside(v) unless wlkng_pace_flw")
     _, fixes = found(wrong, folder)
     assert "walking_pace_flow" in [fix.changes[0].text for fix in fixes]
+
+
+@pytest.mark.parametrize("formula", ["never (p unless q and p)", "never (p unless not q)"])
+def test_an_exception_of_several_operands_is_not_rewritten(formula, folder):
+    """`and not q and p` would be another formula."""
+    _, fixes = found(HEAD + f"hard rule r {{ require {formula} }}\n", folder)
+    assert "Write `and not`" not in {fix.title for fix in fixes}

@@ -19,7 +19,7 @@ from rulec.diagnostics.ways_out import (
     write,
 )
 from rulec.rulebook.names.symbol_table import SymbolTable
-from rulec.rulebook.names.word_meanings import described, offer
+from rulec.rulebook.names.word_meanings import described, in_other_letters, offer
 from rulec.syntax import tree
 from rulec.syntax.keywords import INFIX_LETTERS, PREFIX_LETTERS, UNARY_OPERATORS
 from rulec.vocabulary import Enumeration, Quantity, Signal
@@ -192,6 +192,7 @@ def _unknown(
     else:
         way_out = (
             ("" if use.arguments else _short_form(name, symbols, list(variables)))
+            or in_other_letters(name, spelt)
             or meant(name, spelt, _ALIKE, longer=False)
             or _by_meaning(name, [*atoms, *quantities], symbols)
             or meant(name, spelt, _ALIKE)

@@ -78,6 +78,19 @@ def described(names: Iterable[str], vocabularies: Iterable[str]) -> tuple[Descri
     )
 
 
+def in_other_letters(name: str, known: Iterable[str]) -> Help:
+    """Help that names the known word that looks like a name; empty if there is none."""
+    if name.isascii():
+        return ""
+    # Late import: these are the parser's messages, which no file without mistakes loads.
+    from rulec.syntax.messages.lookalikes import skeleton_of
+
+    skeleton = skeleton_of(name)
+    alike = next((word for word in known if skeleton_of(word) == skeleton), "")
+    text = f"did you mean `{alike}`? Some letters of `{name}` are of another script"
+    return offering(text, alike) if alike else ""
+
+
 def offer(name: str, words: tuple[DescribedWord, ...]) -> Help:
     """Help that names the words which mean what ``name`` says; empty if none certainly does."""
     stems = set(_stems(name))

@@ -26,6 +26,7 @@ from rulec.syntax.messages.in_formulas import (
     PAST,
     advise_on_aggregate,
     advise_on_formula,
+    advise_on_parentheses,
 )
 from rulec.syntax.messages.in_items import (
     FORMS,
@@ -35,6 +36,7 @@ from rulec.syntax.messages.in_items import (
     advise_on_state,
 )
 from rulec.syntax.messages.in_sentences import advise_on_pair, of_owner
+from rulec.syntax.messages.other_scripts import advise_on_script
 from rulec.syntax.messages.parse_context import (
     COMMENT,
     DELETE_IT,
@@ -339,37 +341,6 @@ def _ending(ctx: ParseContext) -> Help:
     return offering(f"delete the `{ctx.text}`", ctx.leave_out(ctx.at)) if is_end else ""
 
 
-def _parentheses(ctx: ParseContext) -> Help:
-    if ctx.unexpected is None and ctx.operator and ctx.opened("(", ")") is not None:
-        return _closed_before_a_clause(ctx)
-    if ctx.text != ")" or ctx.operand or ctx.quantity or ctx.accepted == {"NAME"}:
-        return ""
-    if ctx.opened("(", ")") is not None:
-        return ""
-    if ctx.first in ("unless", "when") and _left_open(ctx.source.text[: ctx.tokens[0].start]):
-        return f"it closes what is open before `{ctx.first}`: see there"
-    return offering("delete the `)`, or open it before", ctx.leave_out(ctx.at))
-
-
-def _left_open(before: str) -> bool:
-    """Whether the clause at the end of a text has an unclosed parenthesis."""
-    clause = before[before.rfind("require") :]
-    return clause.count("(") > clause.count(")")
-
-
-def _closed_before_a_clause(ctx: ParseContext) -> Help:
-    """Help where a clause begins inside an open formula: its keyword may be part of the formula."""
-    behind = ctx.source.text[ctx.tokens[-1].end :]
-    word, *_ = (*behind.split(maxsplit=1), "")
-    line = behind.lstrip().partition("\n")[0]
-    # On a line of its own, and with no `)` more than it opens, it is a clause as it should be.
-    is_clause = "\n" in behind[: behind.find(word)] and line.count(")") <= line.count("(")
-    if word in ("unless", "when") and not is_clause:
-        instead = "p or q` for `p unless q" if word == "unless" else "q implies p` for `p when q"
-        return f"`{word}` is a clause after the whole formula; inside one write `{instead}`"
-    return offering("close it with `)`", ctx.put_before(")"))
-
-
 def _form(ctx: ParseContext) -> Help:
     """The form of the whole line, if there is no better advice."""
     unfinished = ctx.unexpected is None and ctx.text_before == "="
@@ -383,6 +354,7 @@ def _invisible(ctx: ParseContext) -> Help:
 
 _IN_ORDER: tuple[Callable[[ParseContext], Help], ...] = (
     _invisible,
+    advise_on_script,
     advise_on_point,
     _quotes,
     _comment,
@@ -401,6 +373,6 @@ _IN_ORDER: tuple[Callable[[ParseContext], Help], ...] = (
     advise_on_state,
     advise_on_formula,
     _punctuation,
-    _parentheses,
+    advise_on_parentheses,
     _form,
 )

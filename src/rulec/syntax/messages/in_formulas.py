@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from typing import Final
 
-from rulec.diagnostics.ways_out import Help, meant, offering
+from rulec.diagnostics import Span
+from rulec.diagnostics.ways_out import Help, meant, offering, write
 from rulec.syntax import keywords
 from rulec.syntax.messages.in_comparisons import (
     ABSOLUTE,
@@ -15,6 +18,7 @@ from rulec.syntax.messages.in_comparisons import (
 )
 from rulec.syntax.messages.in_sentences import advise_on_sentence, of_owner
 from rulec.syntax.messages.parse_context import ParseContext
+from rulec.syntax.scanner import Token
 
 _OTHER_SPELLINGS: Final = {
     "implies": ("=>", "==>", "-->", "→", "⇒", "⟹", "⟶"),
@@ -257,3 +261,65 @@ def _joined(ctx: ParseContext) -> Help:
             return f"{joined}; what is of an object is written `{of_object}`"
         return f"{joined}, `or` or `implies`; a name is one word"
     return ""
+
+
+_CLAUSES: Final = ("unless", "when")
+_NEGATIONS: Final = ("never", "not", "!")
+_ONE_OPERAND: Final = re.compile(r"\s+[^\W\d]\w*(?:\([^()]*\))?\s*\)")
+"""A name, perhaps with arguments, and the parenthesis that closes the formula behind it."""
+
+
+def advise_on_parentheses(ctx: ParseContext) -> Help:
+    """Advice on a parenthesis that is not closed, or not opened; empty if there is none."""
+    if ctx.unexpected is None and ctx.operator and ctx.opened("(", ")") is not None:
+        return _closed_before_a_clause(ctx)
+    if ctx.text != ")" or ctx.operand or ctx.quantity or ctx.accepted == {"NAME"}:
+        return ""
+    if ctx.opened("(", ")") is not None:
+        return ""
+    return offering("delete the `)`, or open it before", ctx.leave_out(ctx.at))
+
+
+def opened_earlier(tokens: Sequence[Token], first: int, text: str) -> Token | None:
+    """What a `)` in an exception or a condition, from its ``first`` token on, closes before it.
+
+    The clause before it has a mistake then, of which this is a consequence.
+    """
+    if text != ")" or tokens[first].text not in _CLAUSES:
+        return None
+    closed = 0
+    for token in reversed(tokens[:first]):
+        if token.kind == "word" and token.text in keywords.CLAUSE_WORDS:
+            return None
+        if token.kind == "symbol" and token.text in ("(", ")"):
+            closed += 1 if token.text == ")" else -1
+            if closed < 0:
+                return token
+    return None
+
+
+def _closed_before_a_clause(ctx: ParseContext) -> Help:
+    """Help where a clause begins inside an open formula: its keyword may be part of the formula."""
+    end = ctx.tokens[-1].end
+    behind = ctx.source.text[end:]
+    word, *_ = (*behind.split(maxsplit=1), "")
+    line = behind.lstrip().partition("\n")[0]
+    # On a line of its own, and with no `)` more than it opens, it is a clause as it should be.
+    is_clause = "\n" in behind[: behind.find(word)] and line.count(")") <= line.count("(")
+    if word not in _CLAUSES or is_clause:
+        return offering("close it with `)`", ctx.put_before(")"))
+    opened = ctx.opened("(", ")")
+    if opened and ctx.tokens[opened - 1].text in _NEGATIONS:
+        sign, instead = ("and not", "p and not q") if word == "unless" else ("and", "p and q")
+    elif word == "unless":
+        sign, instead = "or", "p or q"
+    else:
+        sign, instead = "", "q implies p"
+    start = end + behind.find(word)
+    is_one = _ONE_OPERAND.match(ctx.source.text, start + len(word)) is not None
+    edit = [write(sign, Span(ctx.source, start, start + len(word)))] if sign and is_one else []
+    return offering(
+        f"`{word}` is a clause after the whole formula; inside one write `{instead}` for "
+        f"`p {word} q`",
+        *edit,
+    )

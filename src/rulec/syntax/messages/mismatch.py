@@ -11,8 +11,9 @@ from rulec.syntax import keywords
 from rulec.syntax.file_pieces import Piece, span_of
 from rulec.syntax.messages.advice import advise
 from rulec.syntax.messages.decimal_points import point_fix
-from rulec.syntax.messages.in_formulas import no_operator
+from rulec.syntax.messages.in_formulas import no_operator, opened_earlier
 from rulec.syntax.messages.in_items import other_clause, other_word
+from rulec.syntax.messages.other_scripts import advise_on_mark
 from rulec.syntax.messages.parse_context import (
     COMMENT,
     DELETE_IT,
@@ -126,6 +127,13 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
         message = f"{subject} cannot begin with `{_short(token.text)}`"
     else:
         message = f"{subject} cannot go on with `{_short(token.text)}`"
+    if token is not None and (opened := opened_earlier(tokens, piece.first, token.text)):
+        return UNEXPECTED_WORD.at(
+            span,
+            message,
+            help=f"it follows from the mistake before `{first}`, and goes when that is mended",
+            labels=(Label(_span(source, opened).place, "it closes this"),),
+        )
     return UNEXPECTED_WORD.at(
         span,
         message,
@@ -181,6 +189,8 @@ def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
             way_out = way_out or f"write `param {token.text} = …` or `define {token.text} = …`"
         if not (way_out or named or token.text in keywords.RESERVED):
             way_out = f"an enumeration is declared by `{token.text} is one of a, b`"
+        if others and others[0].start == token.end:
+            way_out = advise_on_mark(source, others[0]) or way_out
     if is_comment(inside, 0):
         way_out = COMMENT
     if is_invisible(token.text):
