@@ -120,7 +120,13 @@ def test_the_page_is_up_to_date(capsys):
         (["fußgängerzone"], "did you mean `pedestrian_zone` (ego is in a pedestrian zone)?"),
         (["spead"], "did you mean the word `speed`?"),
         (["R9"], "there is no code and no word `R9`; `rulec list codes` shows all codes"),
-        (["verify"], "`rulec list codes` shows all codes, and `rulec list vocabularies`"),
+        (["speling"], "`rulec list codes` shows all codes, and `rulec list vocabularies`"),
+        (["verify"], "it is a command, which `rulec help verify` explains"),
+        (["analyse"], "did you mean the command `analyze`, which `rulec help analyze` explains?"),
+        (["lights"], "it is a topic of rules such as `lights_at_night` or `fog_lamps`: docs/"),
+        (["lihgts"], "did you mean the topic `lights`?"),
+        # Nearer than the word `bus_lane`.
+        (["bus_leavin"], "did you mean the rule `bus_leaving`?"),
         ([], "give a code, or --all"),
         (["R0101", "--all"], "give a code, or --all"),
     ],
@@ -230,3 +236,14 @@ def test_words_beside_the_file_are_found_without_settings(tmp_path, monkeypatch,
     assert "horn: a word of the vocabulary `yard`\n" in out
     assert "    define loud = horn\n\nLoud.\n\nIt stands in own.rules, line 4.\n" in out
     assert "quiet: a parameter of the rulebook `own`\n" in out
+
+
+def test_a_topic_of_ones_own(tmp_path, monkeypatch, capsys):
+    (tmp_path / "rulec.toml").write_text('search_path = ["."]\n')
+    (tmp_path / "yard.rules").write_text(
+        'rulebook yard\nsignal p\ntopics {\n  forklifts "Forklifts" of horn, brake;\n'
+        '  ramps "Ramps"\n}\nhard rule horn { require never p }\n'
+    )
+    monkeypatch.chdir(tmp_path)
+    assert "it is a topic of rules such as `horn` or `brake`: " in explain(capsys, "forklifts")[2]
+    assert "it is a topic: docs/coverage.md" in explain(capsys, "ramps")[2]

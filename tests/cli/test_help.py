@@ -43,6 +43,9 @@ def test_a_group_alone_shows_its_help(capsys):
         (["chekc"], "did you mean `check`?"),
         (["draw", "drvie"], "did you mean `drive`?"),
         (["qqqq"], "`rulec help` lists them"),
+        (["r0207"], "`rulec explain r0207` explains it"),
+        (["zebra"], "`rulec explain zebra` explains it"),
+        (["schemas_of_all"], "`rulec help` lists them"),
     ],
 )
 def test_help_of_what_is_not_there(words, way_out, capsys):

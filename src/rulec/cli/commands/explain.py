@@ -13,7 +13,8 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_codes
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import put_answer
-from rulec.diagnostics import first_of, nearest_name
+from rulec.cli.verb_table import VERBS
+from rulec.diagnostics import any_of, first_of, nearest_name
 from rulec.diagnostics.code import Code
 from rulec.report.findings import code_registry
 from rulec.report.text.console import print_remark
@@ -116,10 +117,17 @@ def _way_out(name: str) -> str:
     # Late import, only for unknown names: file search and their rules (60 ms).
     from rulec.rulebook.files.catalogue import rulebooks_with_rule
     from rulec.rulebook.files.search_path import available_rulebooks
-    from rulec.rulebook.files.words_in_files import definitions_of_rulebooks, words_of_vocabularies
+    from rulec.rulebook.files.words_in_files import (
+        definitions_of_rulebooks,
+        rules_of_rulebooks,
+        topics_of_rulebooks,
+        words_of_vocabularies,
+    )
     from rulec.rulebook.names.word_meanings import described, offer
 
     places = _places()
+    if name in VERBS:
+        return f"it is a command, which `rulec help {name}` explains"
     if near := nearest_name(name.upper(), code_registry.all_codes()):
         return f"did you mean `{near}`?"
     if name in available_rulebooks(places):
@@ -127,14 +135,29 @@ def _way_out(name: str) -> str:
     if books := rulebooks_with_rule(name, places):
         more = f" (also of {first_of(books[1:], 3)})" if books[1:] else ""
         return f"it is a rule, which `rulec show {books[0]} {name}` explains{more}"
+    topics = topics_of_rulebooks(places)
+    if name in topics:
+        of = f" of rules such as {any_of([f'`{rule}`' for rule in topics[name]])}"
+        return f"it is a topic{of if topics[name] else ''}: docs/coverage.md shows who has any"
     words = words_of_vocabularies(places)
     known = sorted(frozenset[str]().union(*words.values()))
-    if near := nearest_name(name, known, _ALIKE):
-        return f"did you mean the word `{near}`?"
     defined = frozenset[str]().union(*definitions_of_rulebooks(places).values())
     as_long = sorted(one for one in defined if abs(len(one) - len(name)) <= _SLIP)
-    if near := nearest_name(name, as_long, _ALIKE):
-        return f"did you mean `{near}`, which a rulebook defines?"
+    kinds = {
+        "did you mean the word `{}`?": known,
+        "did you mean the rule `{}`?": sorted(rules_of_rulebooks(places)),
+        "did you mean the topic `{}`?": topics,
+        "did you mean `{}`, which a rulebook defines?": as_long,
+        "did you mean the command `{0}`, which `rulec help {0}` explains?": VERBS,
+    }
+    meant = {
+        near: text
+        for text, names in reversed(kinds.items())
+        if (near := nearest_name(name, names, _ALIKE))
+    }
+    if meant:
+        near = nearest_name(name, meant, _ALIKE) or next(reversed(meant))
+        return meant[near].format(near)
     return str(offer(name, described(known, words))) or (
         "`rulec list codes` shows all codes, and `rulec list vocabularies` the files with words"
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 from click.shell_completion import CompletionItem
 
@@ -31,7 +33,23 @@ def command(context: click.Context, words: tuple[str, ...]) -> None:
             subcommand = here.command.get_command(here, word)
         if subcommand is None:
             near = nearest_name(word, known)
-            way_out = f"did you mean `{near}`?" if near else "`rulec help` lists them"
+            way_out = f"did you mean `{near}`?" if near else _way_out(word)
             raise click.UsageError(f"there is no command `{word}`; {way_out}")
         here = click.Context(subcommand, here, word)
     click.echo(here.get_help())
+
+
+def _way_out(word: str) -> str:
+    """Where something else of this name is explained, or where commands are listed."""
+    # Late import, only for what is no command: codes and file search (60 ms).
+    from rulec.report.findings.code_registry import code_named
+    from rulec.rulebook.files.catalogue import rulebooks_with_rule
+    from rulec.rulebook.word_search import find_word
+    from rulec.settings import search_path
+
+    places = (*search_path(), Path())
+    if code_named(word.upper()) or find_word(word, places):
+        return f"`rulec explain {word}` explains it"
+    if books := rulebooks_with_rule(word, places):
+        return f"it is a rule, which `rulec show {books[0]} {word}` explains"
+    return "`rulec help` lists them"

@@ -1,9 +1,9 @@
-"""Words in the texts of vocabularies, found by searching without parsing."""
+"""Words in the texts of vocabularies and rulebooks, found by searching without parsing."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -15,6 +15,11 @@ _NO_WORDS = re.compile(r"#[^\n]*|\([^()]*\)|\bin\s+\S+|\bdefault\s+\S+|\bvocabul
 """Comments, parameters, units, defaults, and the vocabulary's own name."""
 
 _DEFINED = re.compile(r"^[ \t]*(?:define|param|option)[ \t]+([^\W\d]\w*)", re.MULTILINE)
+
+_RULE = re.compile(r"^[ \t]*(?:hard|soft|override)[ \t]+rule[ \t]+([^\W\d]\w*)", re.MULTILINE)
+
+_TOPICS = re.compile(r"^[ \t]*topics\s*\{(.*?)\}", re.MULTILINE | re.DOTALL)
+_TOPIC = re.compile(r'([^\W\d]\w*)\s+"[^"\n]*"(?:\s+of\s+([^;}]*))?')
 
 _NAME = re.compile(r"\b[^\W\d]\w*")
 
@@ -36,10 +41,26 @@ def vocabularies_with(name: str, search_path: Sequence[Path] = ()) -> list[str]:
 
 def definitions_of_rulebooks(search_path: Sequence[Path] = ()) -> dict[Path, frozenset[str]]:
     """The definitions, parameters and options that the text of each rulebook itself has."""
-    defined = {}
+    return {path: frozenset(_DEFINED.findall(text)) for path, text in _texts(search_path)}
+
+
+def rules_of_rulebooks(search_path: Sequence[Path] = ()) -> frozenset[str]:
+    """The names of the rules that the texts of rulebooks have."""
+    return frozenset(name for _, text in _texts(search_path) for name in _RULE.findall(text))
+
+
+def topics_of_rulebooks(search_path: Sequence[Path] = ()) -> dict[str, tuple[str, ...]]:
+    """The topics that rulebooks declare, each with the rules that it lists."""
+    return {
+        name: tuple(_NAME.findall(rules))
+        for _, text in _texts(search_path)
+        for block in _TOPICS.findall(text)
+        for name, rules in _TOPIC.findall(block)
+    }
+
+
+def _texts(search_path: Sequence[Path]) -> Iterator[tuple[Path, str]]:
     for name in search.available_rulebooks(search_path):
         path = search.find_rulebook(name, search_path)
         with suppress(RulecError):
-            text = search.read_bytes(path).decode(errors="replace")
-            defined[path] = frozenset(_DEFINED.findall(text))
-    return defined
+            yield path, search.read_bytes(path).decode(errors="replace")
