@@ -8,6 +8,8 @@ import pytest
 from rulec.automata.compiler import compile_rulebook
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.rulebook.loader import load_rulebook, parse_rulebook
+from rulec.rulebook.names.referenced_names import parts_of
+from rulec.syntax import decode, parse, tree
 from support.builders.national_books import FOLDER, NATIONAL, read, rules_on
 
 # Books of what vehicles must do to be approved are no traffic law, and not asked what that says.
@@ -66,3 +68,59 @@ def test_the_sample_is_a_rulebook():
     assert outcomes
     assert all(one.passed for one in outcomes)
     assert rulebook.levels == load_rulebook("schemas").levels
+
+
+def patterns_of(kind):
+    """The patterns that the table of kinds lists as ``kind``."""
+    (row,) = re.findall(rf"^\| {kind}[^|]*\|.*\| ([^|]*) \|$", PAGE, re.MULTILINE)
+    return re.findall(r"`(\w+)`", row)
+
+
+WRONG, RIGHT, SITUATIONS = map(patterns_of, ("what is wrong", "what is right", "a situation"))
+
+
+def signs(formula, sign=1):
+    """The names in a formula, each with 1 if more of it keeps the rule, -1 if more violates it."""
+    match formula:
+        case tree.AtomUse(name=name):
+            yield name.text, sign
+        case tree.Prefix(operator="not", operand=operand):
+            yield from signs(operand, -sign)
+        case tree.Prefix(operator="never", operand=operand):
+            yield from signs(operand, -sign)
+        case tree.Infix(operator="implies", left=left, right=right):
+            yield from signs(left, -sign)
+            yield from signs(right, sign)
+        case _:
+            for part in parts_of(formula):
+                yield from signs(part, sign)
+
+
+def uses():
+    """How the rules of all books use each pattern: the set of its signs."""
+    found = {}
+    for path in sorted(FOLDER.glob("*/*.rules")):
+        file, mistakes = parse(decode(path.name, path.read_bytes()))
+        assert not mistakes
+        for item in file.items:
+            if isinstance(item, tree.RuleItem) and item.require is not None:
+                for name, sign in signs(item.require):
+                    found.setdefault(name, set()).add(sign)
+    return found
+
+
+def test_patterns_are_used_as_the_page_says():
+    found = uses()
+    assert {name: found.get(name) for name in RIGHT} == {name: {1} for name in RIGHT}
+    others = [*WRONG, *SITUATIONS]
+    assert {name: found.get(name) for name in others} == {name: {-1} for name in others}
+
+
+def test_each_pattern_of_the_tables_of_rules_has_a_kind():
+    written = (FOLDER / "schemas" / "schemas.rules").read_text(encoding="utf-8")
+    patterns = set(re.findall(r"^define (\w+)", written, re.MULTILINE))
+    rows = re.findall(r"^\| `\w+` \| ([^|]*) \| [^|]* \| \w+ \|$", PAGE, re.MULTILINE)
+    alone = [re.sub(r"\([^()]*\)", "", row) for row in rows]
+    named = {name for row in alone for name in re.findall(r"\w+", row)} & patterns
+    assert len(named) > 20
+    assert sorted(named - {*WRONG, *RIGHT, *SITUATIONS}) == []
