@@ -76,3 +76,32 @@ def test_an_option_behind_two_definitions_and_one_in_a_bound(tmp_path):
         "hard rule a (c: car) { require always (d(c) implies eventually[<= most] p) }\n"
     )
     assert lines_named(tmp_path, base, "set opt = on\nset most = 3 s\n") == [3, 4]
+
+
+def help_on_needless(tmp_path, own):
+    """The help about the rule that the base has twice, in a rulebook with lines of its own."""
+    (tmp_path / "base.rules").write_text(
+        "rulebook base\nsignal p, q default false\noption opt = on\n"
+        "hard rule wide { require never p }\n"
+        "hard rule narrow { require never (p and q and opt) }\n"
+    )
+    path = tmp_path / "own.rules"
+    path.write_text(f"rulebook own\nextends base\n{own}")
+    (found,) = [one for one in analyze(path) if one.code == "R0803" and "`narrow`" in one.message]
+    return found.help
+
+
+@pytest.mark.parametrize(
+    ("own", "of_base"),
+    [
+        ("", True),
+        # One's own rule implies it, too, or alone.
+        ("hard rule other { require never q }\n", True),
+        ("soften rule wide\nhard rule other { require never q }\n", False),
+        ('override rule wide { says "Not p." require never p }\n', False),
+        ("fact p implies q\n", False),
+    ],
+)
+def test_what_a_base_has_twice_is_not_for_its_heir_to_mend(tmp_path, own, of_base):
+    said = "it is so in `base`: there is nothing to change in this rulebook"
+    assert (help_on_needless(tmp_path, own) == said) is of_base

@@ -87,9 +87,15 @@ def rulebook_findings(
     hard = [name for name in good if by_name[name].strength == "hard"]
     conflicting = [*conflicts(hard, own, by_name, answers, related)]
     conflict_places = [{one.place, *_labelled(one)} for one in conflicting if one.place is not None]
-    for name, finding in _needless(good, by_name, answers, related, conflict_places):
-        is_own = by_name[name].book == book.name
-        diagnostics.append(finding if is_own else _to_drop(name, finding, extends))
+    for name, finding, premises in _needless(good, by_name, answers, related, conflict_places):
+        origins = {by_name[rule].book for rule in (name, *premises)}
+        is_changed = not (changes or {}).keys().isdisjoint((name, *premises))
+        if by_name[name].book == book.name:
+            diagnostics.append(finding)
+        elif is_changed or book.name in origins or not _have_the_same_facts(book, bases):
+            diagnostics.append(_to_drop(name, finding, extends))
+        else:
+            diagnostics.append(_of_base(finding, extends, bases))
     diagnostics += conflicting
     diagnostics += contradictions(hard, own, by_name, occurring, answers=answers, related=related)
     for number, (base, sides) in enumerate(zip(bases, of_bases, strict=True)):
@@ -198,13 +204,14 @@ def _needless(
     answers: RuleAnswers,
     related: RelatedRules,
     conflict_places: Sequence[Set[SourceLocation]],
-) -> Iterator[tuple[str, Diagnostic]]:
+) -> Iterator[tuple[str, Diagnostic, Sequence[str]]]:
     """Rules that can all be left out together without changing what is forbidden, by name.
 
-    ``conflict_places`` has the places of rules that cannot be kept together.
+    Each comes with the rules that imply it. ``conflict_places`` has the places of rules that cannot
+    be kept together.
     """
     left = set(names)
-    diagnostics: list[tuple[str, Diagnostic]] = []
+    diagnostics: list[tuple[str, Diagnostic, Sequence[str]]] = []
     for name in reversed(names):
         try:
             premises = answers.implied_by(name, _others(name, left, rules, related))
@@ -212,14 +219,14 @@ def _needless(
             undecided = finding_messages.undecided_diagnostic(
                 rules[name], "others imply it", problem
             )
-            diagnostics.append((name, undecided))
+            diagnostics.append((name, undecided, ()))
             continue
         if not premises:
             continue
         finding = _implied(rules[name], [rules[premise] for premise in premises])
         # Rules that contradict each other imply everything, so the rule still counts.
         if not any(contradicting <= _labelled(finding) for contradicting in conflict_places):
-            diagnostics.append((name, finding))
+            diagnostics.append((name, finding, premises))
             left.remove(name)
     yield from reversed(diagnostics)
 
@@ -253,6 +260,19 @@ def _to_drop(name: str, diagnostic: Diagnostic, extends: Span | None) -> Diagnos
         "unless its provision deserves a rule of its own"
     )
     return replace(_inherited(diagnostic, extends), help=way_out)
+
+
+def _have_the_same_facts(book: Rulebook, bases: Sequence[Rulebook]) -> bool:
+    return bool(bases) and book.axioms == bases[-1].axioms
+
+
+def _of_base(diagnostic: Diagnostic, extends: Span | None, bases: Sequence[Rulebook]) -> Diagnostic:
+    """The finding for rules that are all inherited unchanged, which is a matter of the base."""
+    inherited = _inherited(diagnostic, extends)
+    if diagnostic.code != finding_messages.ADDS_NOTHING.code:
+        return inherited
+    way_out = f"it is so in `{bases[-1].name}`: there is nothing to change in this rulebook"
+    return replace(inherited, help=way_out)
 
 
 def _inherited(diagnostic: Diagnostic, extends: Span | None) -> Diagnostic:

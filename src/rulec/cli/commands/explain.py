@@ -138,7 +138,9 @@ def _way_out(name: str) -> str:
     topics = topics_of_rulebooks(places)
     if name in topics:
         of = f" of rules such as {any_of([f'`{rule}`' for rule in topics[name]])}"
-        return f"it is a topic{of if topics[name] else ''}: docs/coverage.md shows who has rules on it"
+        return (
+            f"it is a topic{of if topics[name] else ''}: docs/coverage.md shows who has rules on it"
+        )
     words = words_of_vocabularies(places)
     known = sorted(frozenset[str]().union(*words.values()))
     defined = frozenset[str]().union(*definitions_of_rulebooks(places).values())
