@@ -111,18 +111,21 @@ def left_open(
     else:
         ways = [f"{term}", f"not {term}"]
         said = ways[::-1]
+    declared = symbols.spans[term.name]
+    # A vocabulary is not for the author of an example to change.
+    is_own = declared.source == state.span.source
     return INCOMPLETE_STATE.at(
         state.span,
         f"this state leaves open `{_subject(term)}`, which the formula needs",
         expected=f"expected {any_of([f'`{way}`' for way in ways])}",
         help=offering(
-            "say it in this state, or give its declaration a default",
+            f"say it in this state{', or give its declaration a default' if is_own else ''}",
             *(
                 put(f"Say `{fact}` in this state", f" and {fact}", state.span, state.span.end)
                 for fact in said
             ),
         ),
-        labels=(Label(symbols.spans[term.name].place, f"`{term.name}` has no default"),),
+        labels=(Label(declared.place, f"`{term.name}` has no default"),),
     )
 
 

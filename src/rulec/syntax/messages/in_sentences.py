@@ -35,6 +35,7 @@ _IN_PAIRS: Final = {
     "either": ("or", "delete `either`: `or` says it; if only one of them may be so, write `xor`"),
     "both": ("and", "delete `both`: `and` says it"),
 }
+_CONDITIONS: Final = ("whenever", "while", "where", "wherever")
 _SMALL_WORDS: Final = ("is", "at", "in", "on", "the", "a", "an", "not")
 
 
@@ -73,7 +74,9 @@ def _in_every_state(ctx: ParseContext) -> bool:
 
 
 def advise_on_pair(ctx: ParseContext) -> Help:
-    """Help at what follows `neither`, `either` or `both`, which read as names."""
+    """Help at what follows `neither`, `either`, `both` or `whenever`, which read as names."""
+    if ctx.operator and ctx.text_before in _CONDITIONS:
+        return f"write `p implies q` for `{ctx.text_before} p then q`"
     second, way_out = _IN_PAIRS.get(ctx.text_before, ("", ""))
     behind = (token.text for token in ctx.tokens[ctx.at :])
     if not (ctx.operator and second in behind):

@@ -156,6 +156,10 @@ def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnos
     symbols = any(token.kind == "symbol" for token in (token, *others))
     formula: Help = "a formula follows `require`" if symbols else ""
     words = frozenset(token.text for token in others)
+    if token.kind == "word" and "{" in words:
+        formula = 'an example is written `accept "…" { … }` or `reject "…" { … }`'
+    if token.text in keywords.ITEM_WORDS:
+        formula = f"`{token.text}` stands outside of rules, on a line of its own"
     if token.text == "{":
         formula = "the states of an example go between one `{` and `}`, with `;` between them"
     if is_comment((token, *others), 0):

@@ -11,7 +11,7 @@ from rulec.diagnostics.code import Code
 from rulec.diagnostics.source_text import SourceLocation
 from rulec.diagnostics.ways_out import Help, WayOut, left_out, line_above, offering, put_before
 from rulec.files.source_detection import first_word_at
-from rulec.syntax.keywords import ITEM_WORDS
+from rulec.syntax.keywords import CHANGE_WORDS, CLAUSE_WORDS, ITEM_WORDS, RULE_WORDS
 from rulec.syntax.messages.larger_edits import (
     MOST_MOVED,
     brace_closed,
@@ -224,9 +224,20 @@ class StructureMessages:
             self.place(index),
             f"the file ends before {block} does" if at_end else f"{block} does not end before this",
             expected="expected `}`" if at_end else "expected `}` before this",
-            help=offering(f"end {block} with `}}`", brace_closed(sign)),
+            help=offering(f"end {block} with `}}`{self._or_moved_out(index)}", brace_closed(sign)),
             labels=(Label(self.place(opened), f"{block} begins here"),),
         )
+
+    def _or_moved_out(self, index: int) -> str:
+        """Another way out for a declaration, if a clause or a `}` comes after its line."""
+        declaring = ITEM_WORDS - {*RULE_WORDS, *CHANGE_WORDS, "rule"}
+        if index >= len(self.tokens) or self.tokens[index].text not in declaring:
+            return ""
+        lines = (token for token in self.tokens[index + 1 :] if token.first)
+        after = next(lines, None)
+        if after is None or after.text not in (*CLAUSE_WORDS, "}"):
+            return ""
+        return f", or put `{self.tokens[index].text}` above it, if it goes on below"
 
     def no_open(self, before: int, content: str, *, confirms: bool = False) -> Diagnostic:
         """A ``{`` is missing after token ``before``, perhaps in a confirmation."""
