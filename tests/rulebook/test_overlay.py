@@ -328,3 +328,40 @@ def test_an_override_about_objects_of_another_type_is_told_both(change, now, was
     assert not warnings('override rule r (v: vehicle, w: vehicle) { cite "s. 1" }')
     assert not warnings('override rule r (v: car, w: car) { says "Anew." }')
     assert not warnings("override rule r (v: car, w: car) { require never near(v) }")
+
+
+@pytest.mark.parametrize(
+    ("line", "message", "way_out"),
+    [
+        (
+            "override rule x { require never p }",
+            "there is no rule `x` to override: `base` is silent on it",
+            "write a rule of this rulebook's own: `hard rule x`",
+        ),
+        (
+            'confirm rule y { cite "s. 1" }',
+            "there is no rule `y` to confirm: `base` dropped it",
+            "write a rule of this rulebook's own: `hard rule y`",
+        ),
+        (
+            'drop rule y because "not here"',
+            "there is no rule `y` to drop: `base` dropped it",
+            "leave the line out: it is so already",
+        ),
+    ],
+)
+def test_a_change_to_what_a_base_has_left_out(tmp_path, line, message, way_out):
+    (tmp_path / "first.rules").write_text(
+        "rulebook first\nsignal p default false\nhard rule y { require never p }\n"
+    )
+    (tmp_path / "base.rules").write_text(
+        'rulebook base\nextends first\nsilent on x because "no law"\ndrop rule y because "old"\n'
+    )
+    path = tmp_path / "own.rules"
+    path.write_text(f"rulebook own\nextends base\n{line}\n")
+    with pytest.raises(RulecError) as problem:
+        load_rulebook(path)
+    (found,) = problem.value.diagnostics
+    assert (found.code, found.message, found.help) == ("R0212", message, way_out)
+    (where,) = found.labels
+    assert Path(where.place.file).name == "base.rules"

@@ -123,6 +123,7 @@ def test_words_in_the_languages_of_neighbours(name, word):
         ("{ require always limit >= 2 м/сек }", "did you mean `m/s`?"),
         ("{ require always acceleration >= 2 m/sek² }", "did you mean `m/s²`?"),
         ("{ require always limit >= 50 Std }", "did you mean `h`, or `km/h` for a speed?"),
+        ("(v: vehicle) { require always gap(v) >= 150 cms }", "did you mean `cm`?"),
         # The half of a unit that is known does not make one of the other half.
         ("{ require always limit >= 50 km/quux }", "units are such as `m`, `km/h`"),
         ("{ require always night exept wet }", "an exception is written `unless formula`"),

@@ -286,7 +286,8 @@ def _unit_meant(unit: str, span: Span) -> Help:
     """Help with a unit at the end of a span, if it is one in another language, or misspelt."""
     known, text = unit_in_another_language(unit)
     if not known:
-        known = nearest_name(unit, known_unit_names()) or ""
+        single, units = unit.removesuffix("s"), known_unit_names()
+        known = single if single in units else nearest_name(unit, units) or ""
         text = f"did you mean `{known}`?"
     place = Span(span.source, span.end - len(unit), span.end)
     return offering(text, write(known, place)) if known and place.text == unit else ""

@@ -19,6 +19,7 @@ from rulec.diagnostics.ways_out import (
 )
 from rulec.rulebook.names.atom_messages import NUMBER_OR_FORMULA, UNKNOWN_VARIABLE, WRONG_ARITY
 from rulec.rulebook.names.declaration_messages import DECLARED_TWICE
+from rulec.rulebook.rulebook_model import Remark
 from rulec.syntax import tree
 from rulec.syntax.messages.larger_edits import (
     clause_left_out,
@@ -224,6 +225,21 @@ def nothing_to(
         f"there is no {kind} `{name.text}` to {verb}",
         expected=f"expected an inherited {kind}",
         help=way_out,
+    )
+
+
+def gone_before(name: tree.Name, verb: str, remark: Remark, before: tree.Name) -> Diagnostic:
+    """``override``, ``drop``, … of a rule that a base has dropped or is silent on."""
+    has = "is silent on it" if remark.kind == "silent" else "dropped it"
+    way_out: Help = "leave the line out: it is so already"
+    if verb in ("override", "confirm"):
+        way_out = f"write a rule of this rulebook's own: `hard rule {name.text}`"
+    return NOT_INHERITED.at(
+        name.span,
+        f"there is no rule `{name.text}` to {verb}: `{remark.book}` {has}",
+        expected="expected an inherited rule",
+        help=way_out,
+        labels=(Label(before.span.place, "here"),),
     )
 
 

@@ -288,6 +288,9 @@ class Overlay:
         before = self.gone.get(name.text) if known is None else known.changed
         if before is not None and before.span.source is name.span.source:
             self.mistakes.append(say.changed_twice(name, "rule", before))
+        elif known is None and before is not None:
+            remark = next(one for one in reversed(self.remarks) if one.name == name.text)
+            self.mistakes.append(say.gone_before(name, verb, remark, before))
         elif known is None:
             entries = self.rules.items()
             inherited = [value for value, by in entries if by.changed or by.book is not file]
