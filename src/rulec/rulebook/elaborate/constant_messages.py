@@ -87,7 +87,11 @@ def wrong_number_of_arguments(use: tree.AtomUse, item: tree.DefineItem) -> Diagn
         use.span,
         f"`{item.name.text}` takes {things}, and {has} given",
         expected=f"expected `{item.name.text}{f'({names})' if names else ''}`",
-        help="give it as many as its definition has",
+        help=(
+            "give it as many as its definition has"
+            if needed
+            else f"write `{item.name.text}` alone: it is about ego or the world, and no object"
+        ),
         labels=(Label(item.name.span.place, f"`{item.name.text}` is defined here"),),
     )
 

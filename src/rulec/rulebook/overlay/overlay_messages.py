@@ -174,13 +174,17 @@ def inherited_rule(item: tree.RuleItem, known: tree.RuleItem) -> Diagnostic:
     )
 
 
-def no_topic(name: tree.Name, known: Sequence[str]) -> Diagnostic:
+def no_topic(name: tree.Name, known: Sequence[str], of_rule: Sequence[str]) -> Diagnostic:
+    """A topic that is not declared; ``of_rule`` are those of a rule of that name."""
+    rules: Help = ""
+    if of_rule:
+        rules = offering(f"a rule of that name is about the topic `{of_rule[0]}`", of_rule[0])
     has = f"the topics are {named(known)}" if known else 'declare it: `topics { NAME "title" }`'
     return UNKNOWN_TOPIC.at(
         name.span,
         f"there is no topic `{name.text}`",
         expected="expected a topic",
-        help=meant(name.text, known) or has,
+        help=rules or meant(name.text, known) or has,
     )
 
 

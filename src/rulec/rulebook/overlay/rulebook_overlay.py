@@ -212,7 +212,8 @@ class Overlay:
         known = self.topics.keys() | self.suspects
         for name in () if self.unsure else rule.topics:
             if name.text not in known:
-                yield say.no_topic(name, list(self.topics))
+                of_rule = self.topics_of(replace(rule, name=name, topics=()))
+                yield say.no_topic(name, list(self.topics), of_rule)
 
     def _set(self, item: tree.SetItem, file: tree.File, level: int) -> None:
         name, known = item.name, [*self.options, *self.parameters]
