@@ -115,14 +115,9 @@ def _as_json(codes: Sequence[Code], words: Sequence[FoundWord]) -> str:
 def _way_out(name: str) -> str:
     """Where another thing of this name is explained, or a code or word that may be meant."""
     # Late import, only for unknown names: file search and their rules (60 ms).
+    from rulec.rulebook.files import words_in_files as texts
     from rulec.rulebook.files.catalogue import rulebooks_with_rule
     from rulec.rulebook.files.search_path import available_rulebooks
-    from rulec.rulebook.files.words_in_files import (
-        definitions_of_rulebooks,
-        rules_of_rulebooks,
-        topics_of_rulebooks,
-        words_of_vocabularies,
-    )
     from rulec.rulebook.names.word_meanings import described, offer
 
     places = _places()
@@ -135,19 +130,19 @@ def _way_out(name: str) -> str:
     if books := rulebooks_with_rule(name, places):
         more = f" (also of {first_of(books[1:], 3)})" if books[1:] else ""
         return f"it is a rule, which `rulec show {books[0]} {name}` explains{more}"
-    topics = topics_of_rulebooks(places)
+    topics = texts.topics_of_rulebooks(places)
     if name in topics:
         of = f" of rules such as {any_of([f'`{rule}`' for rule in topics[name]])}"
         return (
             f"it is a topic{of if topics[name] else ''}: docs/coverage.md shows who has rules on it"
         )
-    words = words_of_vocabularies(places)
+    words = texts.words_of_vocabularies(places)
     known = sorted(frozenset[str]().union(*words.values()))
-    defined = frozenset[str]().union(*definitions_of_rulebooks(places).values())
+    defined = frozenset[str]().union(*texts.definitions_of_rulebooks(places).values())
     as_long = sorted(one for one in defined if abs(len(one) - len(name)) <= _SLIP)
     kinds = {
         "did you mean the word `{}`?": known,
-        "did you mean the rule `{}`?": sorted(rules_of_rulebooks(places)),
+        "did you mean the rule `{}`?": sorted(texts.rules_of_rulebooks(places)),
         "did you mean the topic `{}`?": topics,
         "did you mean `{}`, which a rulebook defines?": as_long,
         "did you mean the command `{0}`, which `rulec help {0}` explains?": VERBS,
