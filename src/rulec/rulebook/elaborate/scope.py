@@ -12,7 +12,7 @@ from rulec.logic.formula import Atom, QuantityTerm
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.arithmetic.size_limits import OverLimitError
 from rulec.rulebook.elaborate.rule_messages import over_limit, unused_variable
-from rulec.rulebook.names import atom_messages
+from rulec.rulebook.names import atom_messages, side_messages
 from rulec.rulebook.names.declaration_messages import twice
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
@@ -129,12 +129,12 @@ class Scope:
             return name
         traffic = self.constants.traffic
         if not traffic:
-            self.report(atom_messages.no_traffic(use, name))
+            self.report(side_messages.no_traffic(use, name))
             return None
         side = SIDES[name][traffic]
         if self.behind(side) is None:
             if not self.symbols.may_know(side):
-                self.report(atom_messages.no_sides(use, name, side))
+                self.report(side_messages.no_sides(use, name, side))
             return None
         return side
 

@@ -12,7 +12,6 @@ from rulec.diagnostics.code import Code
 from rulec.diagnostics.ways_out import (
     Help,
     declared,
-    in_header,
     meant,
     offering,
     text_before,
@@ -44,17 +43,6 @@ UNKNOWN_VARIABLE = Code(
     "hard rule r (v: vehicle) { require never (r(v) and next b(v)) }\n",
 )
 
-UNKNOWN_SIDE = Code(
-    "R0211",
-    title="the near or the far side is undefined",
-    why="The near side is the side of the kerb: the right one where traffic drives on the right. "
-    "`near_side_of` and `far_side_of` need a `traffic` line in the rulebook or in one that it "
-    "extends, and a vocabulary with `left_of` and `right_of`.",
-    bad="rulebook example\nuse road\n"
-    "hard rule r (v: vehicle) { require never (beside(v) and near_side_of(v)) }\n",
-    good="rulebook example\ntraffic right\nuse road\n"
-    "hard rule r (v: vehicle) { require never (beside(v) and near_side_of(v)) }\n",
-)
 
 WRONG_ARITY = Code(
     "R0301",
@@ -234,29 +222,6 @@ def _as_used(use: tree.AtomUse, variables: Mapping[str, str | None]) -> str:
         return use.name.text
     parameters = ", ".join(f"{name}: {variables[name]}" for name in names)
     return f"{use.name.text}({parameters})"
-
-
-def no_traffic(use: tree.AtomUse, name: str) -> Diagnostic:
-    """The mistake of ``near_side_of`` without a declared side of traffic."""
-    return UNKNOWN_SIDE.at(
-        use.name.span,
-        f"`{name}` depends on the side on which traffic drives, and the rulebook does not say it",
-        expected="left or right?",
-        help=offering(
-            "write `traffic right` or `traffic left` in the rulebook's header",
-            *(in_header(f"traffic {side}", use.span.source.name) for side in ("right", "left")),
-        ),
-    )
-
-
-def no_sides(use: tree.AtomUse, name: str, side: str) -> Diagnostic:
-    """``near_side_of`` with a vocabulary that has no sides."""
-    return UNKNOWN_SIDE.at(
-        use.name.span,
-        f"`{name}` means `{side}` here, which the vocabulary does not have",
-        expected=_ATOM,
-        help="`use` a vocabulary that has `left_of` and `right_of`, such as `road`",
-    )
 
 
 def _short_form(name: str, symbols: SymbolTable, variables: Sequence[str]) -> Help:

@@ -22,7 +22,6 @@ from rulec.rulebook.names.declaration_messages import DECLARED_TWICE
 from rulec.rulebook.rulebook_model import Remark
 from rulec.syntax import tree
 from rulec.syntax.messages.larger_edits import (
-    clause_left_out,
     declaration_left_out,
     exchanged,
     member_left_out,
@@ -97,15 +96,6 @@ INHERITED_ALREADY = Code(
     "  accept { l_p and R_cw }\n  reject { l_p and R_pc }\n}\n",
 )
 
-PRIORITY_CIRCLE = Code(
-    "R0321",
-    title="levels of priority form a circle",
-    why="With `a > b`, level a is above level b. Equal levels are written `a = b`.",
-    bad="rulebook example\npriority safety > legal\npriority legal > safety\nsignal wet\n"
-    "hard rule r in legal { require never wet }\n",
-    good="rulebook example\npriority safety > legal\nsignal wet\n"
-    "hard rule r in legal { require never wet }\n",
-)
 
 NEVER_IN_FORCE = Code(
     "R0324",
@@ -118,17 +108,6 @@ NEVER_IN_FORCE = Code(
     good="rulebook example\nsignal wet\nhard rule r {\n"
     "  in force from 2020-07-01 until 2024-06-30\n"
     "  require never wet\n}\n",
-)
-
-UNKNOWN_TOPIC = Code(
-    "R0217",
-    title="a topic is declared nowhere",
-    why="Rules name their topics, from which tables of coverage are made. Topics are declared in "
-    'the rulebook or in one that it extends, by `topics { NAME "title" }`.',
-    bad='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\n'
-    "hard rule r {\n  topic zebras\n  require always p\n}\n",
-    good='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\n'
-    "hard rule r {\n  topic zebra\n  require always p\n}\n",
 )
 
 
@@ -171,30 +150,6 @@ def inherited_rule(item: tree.RuleItem, known: tree.RuleItem) -> Diagnostic:
             another_name(name),
         ),
         labels=(Label(known.name.span.place, "inherited from here"),),
-    )
-
-
-def no_topic(name: tree.Name, known: Sequence[str], of_rule: Sequence[str]) -> Diagnostic:
-    """A topic that is not declared; ``of_rule`` are those of a rule of that name."""
-    rules: Help = ""
-    if of_rule:
-        rules = offering(f"a rule of that name is about the topic `{of_rule[0]}`", of_rule[0])
-    has = f"the topics are {named(known)}" if known else 'declare it: `topics { NAME "title" }`'
-    return UNKNOWN_TOPIC.at(
-        name.span,
-        f"there is no topic `{name.text}`",
-        expected="expected a topic",
-        help=rules or meant(name.text, known) or has,
-    )
-
-
-def article_twice(again: tree.Text, first: tree.Text) -> Diagnostic:
-    return DECLARED_TWICE.at(
-        again.span,
-        f"article `{again.value}` is listed twice in this rulebook",
-        expected="listed again here",
-        help=offering("keep one of them", clause_left_out(again.span)),
-        labels=(Label(first.span.place, "first listed here"),),
     )
 
 
@@ -335,26 +290,6 @@ def soft_already(item: tree.SoftenItem, known: tree.RuleItem) -> Diagnostic:
         expected="nothing changes",
         help=offering("leave the line out", *declaration_left_out(item.name.span)),
         labels=(Label(known.name.span.place, "inherited from here"),),
-    )
-
-
-def priority_circle(
-    higher: tree.Name, lower: tree.Name, sign: str, levels: dict[str, tree.Name]
-) -> Diagnostic:
-    placed = dict.fromkeys(name.text for name in (higher, lower) if name.text in levels)
-    same = higher.text == lower.text
-    against = "itself" if same else "the order so far"
-    return PRIORITY_CIRCLE.at(
-        lower.span,
-        f"`{higher.text} {sign} {lower.text}` contradicts {against}",
-        expected="a level compared with itself" if same else "this closes a circle",
-        help=offering(
-            "leave one of the lines out; levels of one rank are written `a = b`",
-            *line_left_out(lower.span, "priority"),
-        ),
-        labels=tuple(
-            Label(levels[name].span.place, f"`{name}` was placed here") for name in placed
-        ),
     )
 
 

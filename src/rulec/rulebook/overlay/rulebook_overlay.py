@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from rulec.diagnostics import Diagnostic, Span
 from rulec.rulebook.names.declaration_messages import twice
 from rulec.rulebook.overlay import overlay_messages as say
+from rulec.rulebook.overlay import topic_messages as topics
 from rulec.rulebook.overlay.rule_override import (
     changed_types,
     lost_exceptions,
@@ -188,7 +189,7 @@ class Overlay:
         for entry in item.entries:
             known = first.setdefault(entry.number.value, entry.number)
             if known is not entry.number:
-                self.mistakes.append(say.article_twice(entry.number, known))
+                self.mistakes.append(topics.article_twice(entry.number, known))
         self.provisions.append((file, item))
 
     def topics_of(self, rule: tree.RuleItem) -> tuple[str, ...]:
@@ -213,7 +214,7 @@ class Overlay:
         for name in () if self.unsure else rule.topics:
             if name.text not in known:
                 of_rule = self.topics_of(replace(rule, name=name, topics=()))
-                yield say.no_topic(name, list(self.topics), of_rule)
+                yield topics.no_topic(name, list(self.topics), of_rule)
 
     def _set(self, item: tree.SetItem, file: tree.File, level: int) -> None:
         name, known = item.name, [*self.options, *self.parameters]

@@ -1,0 +1,47 @@
+"""Messages about topics and listed articles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rulec.diagnostics import Diagnostic, Label, named
+from rulec.diagnostics.code import Code
+from rulec.diagnostics.ways_out import Help, meant, offering
+from rulec.rulebook.names.declaration_messages import DECLARED_TWICE
+from rulec.syntax import tree
+from rulec.syntax.messages.larger_edits import clause_left_out
+
+UNKNOWN_TOPIC = Code(
+    "R0217",
+    title="a topic is declared nowhere",
+    why="Rules name their topics, from which tables of coverage are made. Topics are declared in "
+    'the rulebook or in one that it extends, by `topics { NAME "title" }`.',
+    bad='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\n'
+    "hard rule r {\n  topic zebras\n  require always p\n}\n",
+    good='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\n'
+    "hard rule r {\n  topic zebra\n  require always p\n}\n",
+)
+
+
+def no_topic(name: tree.Name, known: Sequence[str], of_rule: Sequence[str]) -> Diagnostic:
+    """A topic that is not declared; ``of_rule`` are those of a rule of that name."""
+    rules: Help = ""
+    if of_rule:
+        rules = offering(f"a rule of that name is about the topic `{of_rule[0]}`", of_rule[0])
+    has = f"the topics are {named(known)}" if known else 'declare it: `topics { NAME "title" }`'
+    return UNKNOWN_TOPIC.at(
+        name.span,
+        f"there is no topic `{name.text}`",
+        expected="expected a topic",
+        help=rules or meant(name.text, known) or has,
+    )
+
+
+def article_twice(again: tree.Text, first: tree.Text) -> Diagnostic:
+    return DECLARED_TWICE.at(
+        again.span,
+        f"article `{again.value}` is listed twice in this rulebook",
+        expected="listed again here",
+        help=offering("keep one of them", clause_left_out(again.span)),
+        labels=(Label(first.span.place, "first listed here"),),
+    )
