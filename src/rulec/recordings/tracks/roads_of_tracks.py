@@ -19,7 +19,8 @@ from rulec.recordings.map_files import read_map
 from rulec.recordings.recording import Lanelet, Recording
 from rulec.recordings.recording_messages import NET_MISSING
 from rulec.recordings.road_map import RoadMap
-from rulec.recordings.tracks.track_rows import HeadingAt, TrackRows, read_tracks
+from rulec.recordings.tracks.participants_of_rows import HeadingAt, read_tracks
+from rulec.recordings.tracks.track_rows import TrackRows
 
 _LANES = (".csv", ".parquet")
 
