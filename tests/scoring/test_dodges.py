@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rulec.api.rulebook_compilation import machines
-from rulec.recordings.building import build_lanelet, build_recording
+from rulec.recordings.building import build_lanelet, build_participant, build_recording
 from rulec.recordings.recording import Light
 from rulec.scoring.score import score
 from rulec.scoring.traffic_world import TrafficWorld
@@ -51,6 +51,28 @@ def test_at_a_red_light_waiting_is_best():
     assert found.reward().argmax() == 0
     assert found.reward().argmin() == 3
     assert [found.nearest_allowed(number) for number in range(4)] == [0, 0, 0, 0]
+
+
+@pytest.mark.parametrize(("after_s", "blocks"), [(np.inf, "open"), (10.5, "violated")])
+def test_before_a_junction_without_room_behind_it_waiting_is_best(after_s, blocks):
+    """The light is green; the rear of a queue is at 81.75, 1.75 m behind the junction.
+
+    It stands for as long as is predicted, so that ego may yet drive round it, or sets off when ego
+    has come. Ego, 4.5 m long, stops with its front 0.75 m before the line, or on the road across.
+    """
+    t = STEP_S * np.arange(30)
+    x = 84 + 2 * np.clip(t - after_s, 0, None)
+    queue = [
+        build_participant(f"q{k}", "car", t, x + 6 * k, 0 * t, heading=0 * t, step_s=STEP_S)
+        for k in range(3)
+    ]
+    world = lit_junction(colour="green", others=queue)
+    found = scored(world, on_axis(braking_to(68.0)), on_axis(braking_to(57.0)))
+    assert found.outcomes("no_blocking") == [blocks, "kept"]
+    assert found.outcomes("no_stopping")[1] == "kept"
+    assert found.places.tolist() == [2, 1]
+    assert found.allowed.tolist() == [False, True]
+    assert found.reward().argmax() == 1
 
 
 @pytest.mark.parametrize(

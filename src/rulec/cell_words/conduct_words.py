@@ -17,7 +17,7 @@ from rulec.cell_words.ego_boxes import EgoBoxes, column
 from rulec.cell_words.relation_words import BEHIND, BESIDE, IN_FRONT, LEFT, RIGHT, Relations
 from rulec.cell_words.road_frame import OthersNow, RoadFrame
 from rulec.extraction.signals.conduct.reason_signals import FOLLOWS_S, reach_at
-from rulec.extraction.signals.map.zone_signals import ROOM_M
+from rulec.extraction.signals.map.exit_room import ROOM_M
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.vocabulary.partial_values import UNKNOWN

@@ -680,6 +680,29 @@ def test_who_waits_in_a_side_road_is_not_on_the_shoulder():
     assert set(found) == {"F"}
 
 
+@pytest.mark.parametrize(
+    ("ego_x", "queue_x", "expected"),
+    [
+        # The junction is from 100 to 120, fronts are 2 m ahead, ego is 4 m long and keeps 1 m
+        (90, 126.5, "T"),
+        # 5.5 m of room behind it; 16 m before it; in it, where the one ahead is 14 m off
+        (90, 127.5, "?"),
+        (82, 126.5, "?"),
+        (108, 126.5, "?"),
+    ],
+    ids=["no room", "room", "far", "in it"],
+)
+def test_who_stands_before_a_junction_without_room_behind_it_has_a_cause(ego_x, queue_x, expected):
+    lanes = [
+        straight(1, 0, 100, successors=(2,)),
+        straight(2, 100, 120, predecessors=(1,), successors=(3,), **INSIDE),
+        straight(3, 120, 900, predecessors=(2,)),
+    ]
+    ego, queue = car(*[(ego_x, 0)] * 20), steady(8, queue_x, 0, 0, 20)
+    found = told(reason_signals, "cause_to_brake", lanes, ego, queue, route=("1", "2", "3"))
+    assert set(found) == {expected}
+
+
 def test_the_nearest_to_the_crossing():
     zebra = lanelet(9, [(150, -5), (150, 5)], types=frozenset({"crosswalk"}))
     road, ego = [*two_way(), zebra], steady(7, 80, 0)

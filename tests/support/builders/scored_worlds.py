@@ -39,16 +39,21 @@ def street(others=(), speed=10.0, past=4, beside=(), **more):
     return _world(lanes, others, speed, past)
 
 
-def lit_junction(speed=10.0, past=4, beside=None):
-    """A street with a light, always red, at x = 60, and a junction behind it up to x = 80.
+def lit_junction(speed=10.0, past=4, beside=None, colour="red", others=()):
+    """A street with a light, always of one ``colour``, at x = 60, and a junction up to x = 80.
 
     With a lane ``beside`` it, at its left, whose light is always of that colour.
     """
-    red, town = Light(0, (("red", 1000),)), {"types": ["urban"], "limit_mps": 50 / 3.6}
+    light, town = Light(0, ((colour, 1000),)), {"types": ["urban"], "limit_mps": 50 / 3.6}
     line = [(60, -1.75), (60, 1.75)]
     lanes = [
         build_lanelet(
-            "in", [(-100, 0), (60, 0)], successors=["across"], lights=[red], stop_line=line, **town
+            "in",
+            [(-100, 0), (60, 0)],
+            successors=["across"],
+            lights=[light],
+            stop_line=line,
+            **town,
         ),
         build_lanelet("across", [(60, 0), (80, 0)], successors=["out"], junction="j", **town),
         build_lanelet("out", [(80, 0), (400, 0)], **town),
@@ -58,7 +63,7 @@ def lit_junction(speed=10.0, past=4, beside=None):
     ]
     if beside is not None:
         lanes = [*_with_left(lanes[:3], Light(0, ((beside, 1000),))), *lanes[3:]]
-    return _world(lanes, (), speed, past, complete={"light"})
+    return _world(lanes, others, speed, past, complete={"light"})
 
 
 def stop_junction(speed=8.0, past=3):

@@ -35,6 +35,7 @@ from rulec.extraction.signals.conduct.braking_causes.traffic_causes import (
     met,
 )
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
+from rulec.extraction.signals.map.exit_room import waits_for_room
 from rulec.extraction.signals.measured_numbers import moves
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
@@ -87,7 +88,7 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     reach, spans, stands = _reach(context), context.spans, ~moves(context)
     brakes, asked = _asked(context)
     on_map = map_reasons(context, asked, reach)
-    caused = on_map.does | led(context, brakes, reach)
+    caused = on_map.does | led(context, brakes, reach) | waits_for_room(context)
     perhaps = on_map.may.copy()
     others = others_in(context, (~perhaps | (asked & ~caused)).nonzero()[0])
     in_way, kept_back = may_be_others(context, others, reach)

@@ -10,21 +10,19 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
-from rulec.extraction.signals import relations
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
+from rulec.extraction.signals.map.exit_room import exit_clear
 from rulec.extraction.signals.map.junction_signals import turn_at
-from rulec.extraction.signals.map.level_crossing_signals import Stretches, level_crossings
+from rulec.extraction.signals.map.level_crossing_signals import Stretches
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.map.stop_lines import drawn_lines
-from rulec.extraction.signals.measured_numbers import corner_ahead
-from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
+from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import (
     SignalPasses,
     once_a_map,
     once_a_road,
 )
-from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import Recording, is_lane, is_there
 from rulec.scenario.recorded.lane_coordinates import crossings_along
 from rulec.scenario.recorded.route import lanelet_area
@@ -34,8 +32,6 @@ _LIGHTS_AT_CROSSING_M = 30.0
 
 _BEFORE_LINE_M = 10.0
 """On maps without stop lines, crossings are up to this far before ends of lanelets with lights."""
-
-ROOM_M = 1.0
 
 
 def _crossing_kind(context: DriveContext) -> SignalColumns:
@@ -241,139 +237,10 @@ def _directed_stretches(context: DriveContext, there: bool) -> Stretches:
     return stretches
 
 
-def _exit_clear(context: DriveContext) -> SignalColumns:
-    """Whether ego has room behind the place that it enters; and where that is unknown.
-
-    There is none if a vehicle ahead, at walking pace at most while ego stands, leaves too little
-    room behind the place, so that ego has to stand on it where others cross or join its way.
-    Unknown where the recording ends before ego is through, where tolerances decide whether ego
-    stands there, and for a vehicle ahead that always stands: ego may wait to drive round it. The
-    place is the last one that ego has reached, and before any the next one.
-    """
-    places = [*context.road.junctions, *context.road.crossings, *level_crossings(context)]
-    clear, unknown = np.ones(context.states, dtype=bool), np.zeros(context.states, dtype=bool)
-    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
-    stands = context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh
-    entered = _entered(front, rear, places, context.thresholds.approach_m)
-    if not any((entered == number).any() for number in range(len(places))):
-        nobody = np.zeros(context.relevant.shape, dtype=bool)
-        return _room_beyond(context, clear, unknown, nobody)
-    error = context.tolerances.place_m
-    beyond = corner_ahead(context) + error
-    ahead = _ahead_on_lane(context)
-    still, nearest = _standing_rows(context, ahead), np.zeros_like(ahead)
-    holds_up = context.tracks.speed * KMH_PER_MPS < context.thresholds.walking_pace_kmh
-    for number, (start, end) in enumerate(places):
-        nears, passed = entered == number, context.spans.any(rear >= end)
-        place = _shared(context, start, end)
-        stuck = (front - beyond > place) & (rear + beyond < end) & stands
-        perhaps = (front + error > place) & (rear - error < end) & stands
-        if not (nears & (~passed | context.spans.any(perhaps))).any():
-            continue
-        short, may_be_short, stops, may_stop = (
-            _free_beyond(context, those, (start, end)) < front - rear + ROOM_M
-            for those in (ahead & ~still, ahead, ahead & ~still & holds_up, ahead & holds_up)
-        )
-        # One that leaves too little room when ego comes leaves too little when ego stands
-        takes = ahead & ~still & (context.extents.s_min - end < front - rear + ROOM_M)
-        same = takes & _until(context, takes & (stuck & stops))
-        blocked = nears & short & same.any(axis=0)
-        clear &= ~blocked
-        nearest |= blocked & (ahead & ~still)
-        may_be = _until(context, perhaps & may_stop) | ~passed
-        unknown |= nears & may_be_short & ~blocked & may_be
-    where = np.where(nearest, context.extents.s_min, np.inf)
-    nearest &= where == where.min(axis=0, initial=np.inf)
-    return _room_beyond(context, clear, unknown, nearest)
-
-
-def _room_beyond(
-    context: DriveContext, clear: Flags, unknown: Flags, nearest: Flags
-) -> SignalColumns:
-    return SignalColumns(
-        {"exit_clear": clear},
-        unknown={"exit_clear": unknown & clear},
-        whom={"exit_clear": ids_by_state(nearest, context.ids)},
-    )
-
-
-def _until(context: DriveContext, flags: Flags) -> Flags:
-    """Mask of states at or before a state of the drive in which ``flags`` hold."""
-    held: Flags = context.spans.next_state(flags) < context.spans.end
-    return held
-
-
-def _standing_rows(context: DriveContext, ahead: Flags) -> Flags:
-    """Mask, one per row, of those ever ahead that stand for as long as they are recorded."""
-    still, rows = np.zeros((len(ahead), 1), dtype=bool), ahead.any(axis=1).nonzero()[0]
-    still[rows, 0] = context.stays[rows]
-    return still
-
-
-def _free_beyond(context: DriveContext, ahead: Flags, place: tuple[float, float]) -> Floats:
-    """How much room (m) those ahead in ego's lane leave behind a place, by state."""
-    others, (start, end) = context.extents, place
-    room = np.where(ahead & (others.s_max > end), others.s_min - end, np.inf)
-    inside = ahead & (others.s_max <= end) & (others.s_max > start)
-    taken = np.where(inside, others.s_max - others.s_min + ROOM_M, 0.0)
-    free: Floats = room.min(axis=0, initial=np.inf) - taken.sum(axis=0)
-    return free
-
-
-@once
-def _ahead_on_lane(context: DriveContext) -> Flags:
-    """Mask of vehicles that go ego's way ahead of it and reach into its lane."""
-    ahead: Flags = (
-        context.in_ego_lane & context.going_along & (relations.station(context) == relations.BEHIND)
-    )
-    return ahead & ~_left_aside(context, ahead)
-
-
-def _left_aside(context: DriveContext, ahead: Flags) -> Flags:
-    """Mask of those ahead that always stand and leave ego room to pass in its lane."""
-    aside, still = np.zeros(ahead.shape, dtype=bool), _standing_rows(context, ahead).nonzero()[0]
-    if len(still):
-        others, own = context.extents.part(still, slice(None)), context.ego_extents
-        left, _ = others.from_bound(context.ego_lane)
-        _, right = others.from_bound(context.ego_lane + 1)
-        room = own.d_max[0] - own.d_min[0] + 2 * context.thresholds.touching_m
-        aside[still] = np.maximum(left, -right) >= room
-    return aside
-
-
-def _shared(context: DriveContext, start: float, end: float) -> float:
-    """Where others first cross or join ego's way in a junction; for other places, their beginning.
-
-    A map's junction often begins at its lanelets' ends, some metres before the other road.
-    """
-    road, passages = context.road, context.surroundings.passages
-    if (start, end) not in road.junctions:
-        return start
-    for piece in ((road.borders[:-1] >= start) & (road.borders[:-1] < end)).nonzero()[0].tolist():
-        edge = passages.first_meeting(road.lanelet(piece, road.own_lanes[piece]).id)
-        if edge is not None:
-            return float(road.borders[piece]) + edge
-    return start
-
-
-def _entered(front: Floats, rear: Floats, places: Stretches, reach: float) -> NDArray[intp]:
-    """The number of the place that ego enters or is on, by state; -1 for none."""
-    entered = np.full(len(front), -1)
-    nearest = np.full(len(front), np.inf)
-    for number, (start, _) in enumerate(places):
-        ahead = (front <= start) & (front > start - reach) & (start < nearest)
-        entered, nearest = np.where(ahead, number, entered), np.where(ahead, start, nearest)
-    latest = np.full(len(front), -np.inf)
-    for number, (start, end) in enumerate(places):
-        on = (front > start) & (rear < end) & (start > latest)
-        entered, latest = np.where(on, number, entered), np.where(on, start, latest)
-    return entered
-
-
 zone_signals = SignalPasses(
     {
         ("crossing_kind",): _crossing_kind,
-        ("exit_clear",): _exit_clear,
+        ("exit_clear",): exit_clear,
     }
 )
 """The signals of crossings and of the room behind what ego enters."""
