@@ -193,10 +193,29 @@ def test_what_nobody_can_drive_is_gone():
     assert whole.bounds is None
 
 
-def test_a_goal_behind_cannot_be_reached():
-    goal = Scenario("g", EMPTY.road, EMPTY.ego, goal=Box(-40.0, -20.0, -2.0, 2.0))
-    # On an empty road the goal's cell is ego's own, so everything stays.
-    assert navigation_graph(goal, bounds="car").leads_to_a_goal
+@pytest.mark.parametrize(
+    ("goal_s", "reached"),
+    [
+        # From 10 m/s ego comes to a stand 50 / 11.5 = 4.3 m on, or by 8 m/s² 40 + 64 m within 4 s
+        ((-40.0, -20.0), False),
+        ((-40.0, 4.0), False),
+        ((-40.0, 5.0), True),
+        ((103.0, 120.0), True),
+        ((105.0, 120.0), False),
+    ],
+)
+def test_a_goal_is_reached_if_ego_can_be_in_it_at_the_end(goal_s, reached):
+    """On an empty road the goal's cell is ego's own, wherever the goal is."""
+    scene = Scenario("g", EMPTY.road, EMPTY.ego, goal=Box(*goal_s, -2.0, 2.0))
+    assert navigation_graph(scene).leads_to_a_goal
+    graph = navigation_graph(scene, bounds="car")
+    assert graph.leads_to_a_goal == reached
+    if reached:
+        low, high = graph.reach[-1][0].s
+        assert (max(low, goal_s[0]), min(high, goal_s[1])) == pytest.approx((low, high), abs=1e-4)
+
+
+def test_a_goal_behind_one_that_stands_cannot_be_reached():
     stopped = Ego(0.0, 0.0, speed=0.0)
     car, goal = (standing("car", -10.0),), Box(-40, -20, -2, 2)
     beyond = Scenario("g", EMPTY.road, stopped, car, goal=goal)

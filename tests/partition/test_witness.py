@@ -105,6 +105,29 @@ def test_who_goes_on_at_its_speed_costs_nothing():
     assert first.trajectory.states[-1][:3] == pytest.approx((4.0, 40.0, 10.0), abs=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("goal", "end"),
+    [
+        # At 10 m/s it is at 40 m after 4 s
+        (Box(45.0, 60.0, -1.75, 5.25), (45.0, 0.0)),
+        (Box(20.0, 35.0, -1.75, 5.25), (35.0, 0.0)),
+        (Box(0.0, 100.0, 2.0, 5.25), (40.0, 3.5)),
+    ],
+)
+def test_a_trajectory_ends_in_the_goal(goal, end):
+    """Behind one that passes on the left, so that ego's cells have several rectangles."""
+    road = Road((-20.0, 200.0), (-1.75, 1.75, 5.25))
+    ego = Ego(0.0, 0.0, length=4.5, width=1.8, speed=10.0, bounds=MotionBounds())
+    scene = Scenario("g", road, ego, (car("c", 60.0, 10.0, 3.5),), goal=goal, step_s=0.5)
+    found = find_maneuvers(scene, PAPER)
+    (first,) = found.cheapest(1)
+    _, s, _, d, _ = first.trajectory.states[-1]
+    assert (s, d) == pytest.approx(end, abs=0.8)
+    assert goal.s_min - 1e-3 <= s <= goal.s_max + 1e-3
+    assert goal.d_min - 1e-3 <= d <= goal.d_max + 1e-3
+    check_driven(found.graph, first)
+
+
 def test_who_cannot_quite_reach_its_lanes_middle_is_not_drawn_to_another_lane():
     """One beside ego reaches to 0.1 m from it: its lane's middle, at 3.5 m, is not free."""
     road = Road((-20.0, 200.0), (-1.75, 1.75, 5.25))

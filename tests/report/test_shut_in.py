@@ -149,6 +149,25 @@ def test_no_way_within_bounds_leads_to_the_goal(tmp_path, capsys):
     assert "maneuvers   0 " in text
 
 
+@pytest.mark.parametrize(
+    ("goal", "opened"),
+    [
+        # From 30 m on at 10 m/s, by 8 m/s²: 66 m within 2 s, 134 m within 4 s; backwards never
+        ("[70, 80]", "`--horizon 4`"),
+        ("[0, 20]", "no longer horizon, shorter step, narrower extent or other adjacency"),
+    ],
+)
+def test_a_goal_out_of_reach_is_said(goal, opened, tmp_path, capsys):
+    """In one cell with ego, on an empty road."""
+    file = tmp_path / "goal.toml"
+    ego = ROAD.replace("d = 0", 'd = 0\nspeed = 10\nbounds = "car"').replace("60", "120")
+    file.write_text(ego.replace("horizon_s = 4", "horizon_s = 2") + f"[goal]\ns = {goal}\n")
+    assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "1"]) == 1
+    text = capsys.readouterr().out
+    assert "no way leads to the goal by the end within the bounds of ego's motion" in text
+    assert f"opened by   {opened}\n" in text
+
+
 def test_a_rule_is_named_that_closes_every_way(tmp_path, capsys):
     file = tmp_path / "narrow.toml"
     file.write_text(ROAD + CAR.format(name="c", s=50, speed=0))

@@ -13,6 +13,9 @@ from rulec.scenario import Box, Scenario
 from rulec.scenario.motion import swept
 from rulec.scenario.time_grid import MAX_LAYERS
 
+MOST_TIMES_LONGER = 4
+"""The horizon is multiplied by this at most, by doubling, to find one that leads to the goal."""
+
 MOST_TIMES_FINER = 4
 """The step is divided by this at most, by halving, to find one that opens a way."""
 
@@ -42,7 +45,7 @@ def dead_end(graph: NavigationGraph) -> DeadEnd | None:
     layer = graph.last_layer
     is_last = layer == len(graph.layers) - 1
     closed = () if is_last else _closing(graph, layer, tuple(_in_the_way(graph, layer)))
-    return DeadEnd(layer, closed, tuple(_openings(graph)))
+    return DeadEnd(layer, closed, tuple(_openings(graph, short_of_goal=is_last)))
 
 
 def _closing(graph: NavigationGraph, layer: int, in_the_way: Sequence[str]) -> tuple[str, ...]:
@@ -99,8 +102,19 @@ def _onward(graph: NavigationGraph, layer: int, cell: int) -> Iterable[Box]:
     return [Box(own.s[0], own.s[1] + ahead, own.d[0] - aside, own.d[1] + aside)]
 
 
-def _openings(graph: NavigationGraph) -> Iterator[str]:
-    """Options each of which alone opens a way, the smallest change first."""
+def _openings(graph: NavigationGraph, *, short_of_goal: bool) -> Iterator[str]:
+    """Options each of which alone opens a way, the smallest change first.
+
+    ``short_of_goal``: there are ways, but none to the goal. Then bounds are not lifted: without
+    them any cell that overlaps the goal is one.
+    """
+    longer = 2
+    while short_of_goal and longer <= MOST_TIMES_LONGER:
+        horizon = float(graph.step * (len(graph.layers) - 1) * longer)
+        if _opens(graph, {"horizon_s": horizon}):
+            yield f"--horizon {horizon:g}"
+            break
+        longer *= 2
     finer = 2
     while finer <= MOST_TIMES_FINER and (len(graph.layers) - 1) * finer < MAX_LAYERS:
         step = float(graph.step / finer)
@@ -112,7 +126,7 @@ def _openings(graph: NavigationGraph) -> Iterator[str]:
         yield "--extent body"
     if graph.adjacency != "touch" and _opens(graph, {"adjacency": "touch"}):
         yield "--adjacency touch"
-    if graph.bounds is not None and _opens(graph, {"bounds": "none"}):
+    if graph.bounds is not None and not short_of_goal and _opens(graph, {"bounds": "none"}):
         yield "--bounds none"
 
 

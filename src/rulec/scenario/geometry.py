@@ -37,6 +37,15 @@ class Box:
             (box.d_min + box.d_max - self.d_min - self.d_max) / 2,
         )
 
+    def common(self, box: Box) -> Box:
+        """The intersection with a box that it meets."""
+        return Box(
+            max(self.s_min, box.s_min),
+            min(self.s_max, box.s_max),
+            max(self.d_min, box.d_min),
+            min(self.d_max, box.d_max),
+        )
+
     def covers(self, s: float, d: float) -> bool:
         """Whether the closed rectangle contains the point."""
         return self.s_min <= s <= self.s_max and self.d_min <= d <= self.d_max

@@ -70,13 +70,19 @@ def cells_of(layer, s, d):
 
 
 def paths_of(graph, states):
-    """Cells, layer by layer, on paths of the graph on which a motion is when layers begin."""
+    """Cells, layer by layer, on paths of the graph on which a motion is when layers begin.
+
+    None if it leaves them, or does not end in the scenario's goal.
+    """
     here = [{graph.start}]
     for p, (s, _, d, _) in enumerate(states[1:], 1):
         there = cells_of(graph.layers[p], s, d)
         here.append({j for i in here[-1] for j in graph.successors[p - 1][i] if j in there})
         if not here[-1]:
             return None
+    (s, _, d, _), goal = states[-1], graph.scenario.goal
+    if goal is not None and not goal.covers(s, d):
+        return None
     here[-1] &= set(graph.goals)
     for p, (before, after) in reversed(list(enumerate(pairwise(here)))):
         before &= {i for i in before if after & set(graph.successors[p][i])}

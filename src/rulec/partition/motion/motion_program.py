@@ -186,7 +186,7 @@ class MotionProgram:
         return Bounded(rows.reshape(-1, self.size), low, high)
 
     def cell_bounds(self, cells: Sequence[Cell]) -> tuple[Row, Row]:
-        """The bounds of these rows; layers without a cell are unbounded."""
+        """The bounds of these rows; layers without a cell are unbounded, except for the goal."""
         ego = self.graph.scenario.ego
         low = np.full((len(self.graph.layers) - 1, 4), -np.inf)
         high = -low
@@ -196,6 +196,11 @@ class MotionProgram:
             low[k, :2] = box.s_min - s[0], box.d_min - s[1]
             high[k, :2] = box.s_max - s[0], box.d_max - s[1]
             high[k, 2] = low[k, 3] = middle - s[1]
+        goal = self.graph.scenario.goal
+        if goal is not None:
+            end = np.array([ego.s, ego.d + ego.lateral_speed * self.layers_s[-1]])
+            low[-1, :2] = np.maximum(low[-1, :2], (goal.s_min, goal.d_min) - end)
+            high[-1, :2] = np.minimum(high[-1, :2], (goal.s_max, goal.d_max) - end)
         return low.ravel(), high.ravel()
 
     def _at_most(

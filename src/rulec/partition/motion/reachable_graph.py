@@ -1,8 +1,8 @@
 """The part of a navigation graph that ego can drive.
 
 For every cell the set of positions and speeds that ego may have there at the beginning of its layer
-is computed: forward from ego's start, backward from the goals, and forward again within the
-remaining sets. An edge is removed if no motion leads from one set to the other, a cell if it has no
+is computed: forward from ego's start, backward from the goals (the scenario's goal area, if it has
+one), and forward again within the remaining sets. An edge is removed if no motion leads from one set to the other, a cell if it has no
 edge left. Motion along and across the road is treated separately, joined only by ego's steering
 limit, and a cell is replaced by its bounding rectangle: more may be kept than can be driven, never
 less.
@@ -22,7 +22,7 @@ from rulec.partition.cells.cell_model import Cell, Layer, Reach
 from rulec.partition.motion import reachable_sets as sets
 from rulec.partition.motion.least_costs import least_costs
 from rulec.partition.motion.reachable_sets import ROUNDING, AxisMotion, Sets
-from rulec.scenario import MotionBounds
+from rulec.scenario import Box, MotionBounds
 from rulec.scenario.scenario_model import Ego
 
 MOST_MOMENTS = 40
@@ -69,7 +69,8 @@ def ego_motion(ego: Ego, bounds: MotionBounds, step: float, layers: int) -> EgoM
 def reachable(graph: NavigationGraph, bounds: MotionBounds) -> NavigationGraph:
     """The graph without what ego, within bounds, cannot reach, or cannot leave towards a goal.
 
-    If ego cannot reach a goal, only what it cannot reach is removed.
+    If ego cannot be in the scenario's goal area at the end, only what it cannot reach is removed,
+    and the graph has no goals.
     """
     ego, step = graph.scenario.ego, float(graph.step)
     motion = ego_motion(ego, bounds, step, len(graph.layers))
@@ -89,11 +90,12 @@ def reachable(graph: NavigationGraph, bounds: MotionBounds) -> NavigationGraph:
     first = _alone(own, graph.start, len(graph.layers[0].cells))
     course = _Course(edges, areas, times, motion)
     forward = _forward(course, first, None)
-    within = _backward(course, forward, graph.goals)
+    within = _backward(course, forward, graph.goals, graph.scenario.goal)
     final = _forward(course, first, within)
     keep = _kept(graph, edges, final)
     if not all(used.any() for used in keep):
-        final, keep = forward, _short_of_goals(graph, edges, forward)
+        # Cells of goals may be reached, but not the goal area within them
+        final, keep, graph = forward, forward.driven, replace(graph, goals=())
     return _without(graph, bounds, keep, final)
 
 
@@ -128,7 +130,11 @@ _Nodes = tuple[_Pair, NDArray[np.bool_]]
 
 def _areas(cells: Sequence[Cell]) -> NDArray[np.float64]:
     """Rows of s_min, s_max, d_min, d_max of the cells' bounding rectangles, slightly widened."""
-    rows = [(box.s_min, box.s_max, box.d_min, box.d_max) for box in (c.bounds for c in cells)]
+    return _widened([cell.bounds for cell in cells])
+
+
+def _widened(boxes: Sequence[Box]) -> NDArray[np.float64]:
+    rows = [(box.s_min, box.s_max, box.d_min, box.d_max) for box in boxes]
     around = np.array(rows).reshape(-1, 4)
     return np.asarray(around + np.array([-1, 1, -1, 1]) * ROUNDING)
 
@@ -221,13 +227,26 @@ def _forward(course: _Course, first: _Nodes, within: Sequence[_Nodes] | None) ->
     return _Way(nodes, driven)
 
 
-def _backward(course: _Course, forward: _Way, goals: Sequence[int]) -> list[_Nodes]:
-    """The subsets from which a goal can be reached."""
+def _backward(
+    course: _Course, forward: _Way, goals: Sequence[int], within: Box | None
+) -> list[_Nodes]:
+    """The subsets from which a goal can be reached, ``within`` an area if there is one."""
     edges, times, motion = course.edges, course.times, course.motion
     pair, there = forward.nodes[-1]
     goal = np.zeros(len(there), dtype=bool)
     goal[list(goals)] = True
-    result = [(pair, there & goal)]
+    goal &= there
+    if within is not None:
+        cells = np.flatnonzero(goal)
+        clipped = _clipped(_rows(pair, cells), _widened([within]), motion, times[-1])
+        some = _something(clipped)
+        cells, clipped = cells[some], _rows(clipped, some)
+        united = (
+            sets.together(clipped[0], cells, len(goal)),
+            sets.together(clipped[1], cells, len(goal)),
+        )
+        pair, goal = united, np.bincount(cells, minlength=len(goal)) > 0
+    result = [(pair, goal)]
     for p in reversed(range(len(edges))):
         row, (ahead, alive) = edges[p], result[-1]
         chosen = np.flatnonzero(forward.driven[p] & alive[row.targets])
@@ -259,14 +278,6 @@ def _kept(graph: NavigationGraph, edges: Sequence[_Edges], final: _Way) -> list[
         kept.append(edge)
         alive = there & (np.bincount(row.origins[edge], minlength=len(there)) > 0)
     return kept[::-1]
-
-
-def _short_of_goals(
-    graph: NavigationGraph, edges: Sequence[_Edges], forward: _Way
-) -> list[NDArray[np.bool_]]:
-    """Masks, layer by layer, of the edges that some motion takes, except those to a goal."""
-    *before, last = forward.driven
-    return [*before, last & ~np.isin(edges[-1].targets, list(graph.goals))]
 
 
 def _without(

@@ -248,9 +248,12 @@ class WitnessSearch:
         """Rows that keep ego in the nearest rectangle of cells that have several."""
         times = self._motion.layers_s
         along, across = self._motion.along(times), self._motion.across(times)
+        goal, last = self._graph.scenario.goal, len(cells) - 1
         for p, (s, d) in enumerate(zip(along.of(solution), across.of(solution), strict=True)):
             boxes = cells[p].boxes
-            if len(boxes) > 1 and not any(_away(box, s, d) <= 1e-6 for box in boxes):
+            if goal is not None and p == last and len(boxes) > 1:
+                boxes = tuple([box.common(goal) for box in boxes if box.overlaps(goal)]) or boxes
+            if len(cells[p].boxes) > 1 and not any(_away(box, s, d) <= 1e-6 for box in boxes):
                 box = min(boxes, key=lambda box: _away(box, s, d))
                 for axis, places, low, high in (
                     ("s", along, box.s_min, box.s_max),

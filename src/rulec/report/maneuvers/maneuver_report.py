@@ -227,7 +227,8 @@ def _shut_in(maneuvers: Maneuvers) -> Iterator[str]:
             sweep = "it sweeps" if len(end.closed_by) == 1 else "they sweep"
             yield visible(f"closed by   {names}: in steps of {graph.step_s:g} s {sweep} its lanes")
     ways = " or ".join(f"`{option}`" for option in end.opened_by)
-    yield f"opened by   {ways or 'no shorter step, narrower extent or other adjacency'}"
+    longer = "longer horizon, " if end.layer == len(graph.layers) - 1 else ""
+    yield f"opened by   {ways or f'no {longer}shorter step, narrower extent or other adjacency'}"
 
 
 def _without_rules(maneuvers: Maneuvers) -> Iterator[str]:
