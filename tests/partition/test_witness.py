@@ -1,7 +1,7 @@
 """Trajectories of listed maneuvers: within bounds, in their cells, and overlapping nobody."""
 
 from itertools import pairwise
-from math import ceil
+from math import ceil, inf
 
 import pytest
 from hypothesis import assume, given
@@ -75,7 +75,27 @@ def test_random_scenarios(scenario, speed):
     least = found.least_braking or 0.0
     for maneuver in found.cheapest(1):
         check_driven(found.graph, maneuver)
-        assert least <= maneuver.trajectory.greatest_braking + 1e-3
+        braked = maneuver.trajectory.greatest_braking
+        assert least <= braked + 1e-3
+        later = max(braked, braking_after(found.graph, maneuver.trajectory.states[-1]))
+        assert (found.least_braking_later or 0.0) <= later + 1e-3
+
+
+def braking_after(graph, end):
+    """What is needed (m/s²) to become as slow as everything that is then ahead in ego's way."""
+    time, s, v, d, _ = end
+    ego, bounds, most = graph.scenario.ego, graph.bounds, 0.0
+    length, width = ego.length or bounds.length, ego.width or bounds.width
+    for obstacle in graph.scenario.obstacles:
+        before, box = swept(obstacle, time - 0.01, time - 0.01), swept(obstacle, time, time)
+        if box is None or before is None:
+            continue
+        u = max((box.s_min - before.s_min) / 0.01, 0.0)
+        beside = d + width / 2 <= box.d_min or d - width / 2 >= box.d_max
+        if not beside and s < box.s_max and v > u:
+            gap = box.s_min - s - length / 2
+            most = max(most, (v - u) ** 2 / 2 / gap if gap > 0 else inf)
+    return most
 
 
 FILES = sorted(RECORDINGS.glob("*.xml"))
@@ -201,6 +221,45 @@ def test_an_emergency_is_called_one():
     assert first.trajectory.greatest_braking >= 6.0
     eased = find_maneuvers(Scenario("e", road, ego, (car("c", 40.0, 0.0),), step_s=0.5), PAPER)
     assert eased.least_braking is None
+
+
+def test_who_has_to_go_on_braking_hard_brakes_evenly():
+    """At 30 m/s, 60 m behind one at 10 m/s: 20² / 2 / 60 = 3.33 m/s², at 45 m 4.44.
+
+    After 2 s they are not level yet, so that ego could leave what is hard to later.
+    """
+    road, ego = Road((-50.0, 500.0), (-1.7, 1.7)), Ego(0.0, 0.0, 4.0, 1.8, speed=30.0)
+    for gap, least in ((60.0, None), (45.0, 20**2 / 2 / 45)):
+        scene = Scenario("h", road, ego, (car("c", 4.0 + gap, 10.0),), step_s=0.5, horizon_s=2.0)
+        found = find_maneuvers(scene, PAPER, bounds="car")
+        (first,) = found.cheapest(1)
+        braked = first.trajectory.greatest_braking
+        after = braking_after(found.graph, first.trajectory.states[-1])
+        assert found.least_braking is None
+        if least is None:
+            assert found.least_braking_later is None
+            assert max(braked, after) <= 4.01
+        else:
+            assert least - 0.15 < found.least_braking_later <= least
+            assert least - 0.01 <= max(braked, after) <= least + 0.2
+        check_driven(found.graph, first)
+
+
+def test_who_swerves_first_brakes_less():
+    """One comes over from the left, with its rear 2 m before ego's middle and 4 m/s slower.
+
+    For a moment ego's front is beside it: ego has to keep right until then, and be behind it after.
+    A motion made by hand, sideways by 2 m/s² for some time and back, brakes by 8.5 m/s².
+    """
+    motion = ConstantAcceleration(4.6, 4.0, 10.9, lateral_speed=-3.0, until_d=0.0)
+    comes = Obstacle("c", "vehicle", 5.0, 2.2, motion)
+    road = Road((-80.0, 200.0), (-1.75, 1.75, 5.25))
+    ego = Ego(0.0, 0.0, 4.5, 1.6, speed=15.0, bounds=MotionBounds())
+    scene = Scenario("z", road, ego, (comes,), step_s=0.5)
+    found = find_maneuvers(scene, PAPER, extent="clearance")
+    (first,) = found.cheapest(1)
+    assert first.trajectory.greatest_braking < 8.6
+    check_driven(found.graph, first)
 
 
 def test_who_moves_out_just_in_time_need_not_brake_hard():

@@ -209,3 +209,19 @@ def test_an_emergency_is_said(tmp_path, capsys, speed, least, shown):
     assert said in capsys.readouterr().out
     assert main([*command, "--json"]) == 0
     assert "least_braking" not in json.loads(capsys.readouterr().out)
+
+
+def test_an_emergency_after_the_end_is_said(tmp_path, capsys):
+    # From 30 to 10 m/s within 50 m less half of a car's 4.508 m: 20² / 2 / 47.746 = 4.189 m/s²
+    file = tmp_path / "later.toml"
+    long = ROAD.replace("[-2, 2]", "[-1.6, 1.6]").replace("60", "260")
+    ego = long.replace("d = 0", 'd = 0\nspeed = 30\nbounds = "car"')
+    file.write_text(ego + CAR.format(name="c", s=82, speed=10))
+    command = ["maneuvers", str(file), "-r", "esterle2019", "--step", "0.5", "--horizon", "2"]
+    assert main([*command, "--list", "1", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert "least_braking" not in told
+    assert 4.08 < told["least_braking_later"] < 4.19
+    assert main([*command, "--list", "1"]) == 0
+    said = "brakes by more than 4.1 m/s², or has to after 2 s for what is ahead then\n"
+    assert f"emergency   every maneuver {said}" in capsys.readouterr().out

@@ -252,6 +252,17 @@ class Maneuvers(Rows):
         every = explore(node_transformers(self.paths, []))
         return least_promised(every, self.graph, self._search.braking_bounds) or least
 
+    @cached_property
+    def least_braking_later(self) -> float | None:
+        """The least braking (m/s²) that every maneuver needs, or leaves to be done after its end.
+
+        None if that is at most 4. After its end ego becomes as slow as what is ahead of it then.
+        """
+        from rulec.partition.emergencies import least_braking_later  # imported late: rarely needed
+
+        search = self._search
+        return None if search is None else least_braking_later(self.graph, search.others)
+
     def without_each_rule(self) -> dict[str, int]:
         """For each hard rule, most first, how many maneuvers violate it and no other hard rule."""
         alone = violating_alone(self.perhaps)

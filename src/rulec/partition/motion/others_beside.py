@@ -116,6 +116,15 @@ class OthersBeside:
                 result[obstacle.id] = there, np.array(rows)
         return result
 
+    def speed_at_end(self, name: str) -> float:
+        """An obstacle's speed (m/s) along the road at the end; 0 if it comes towards ego.
+
+        Before one that does, ego has to be able to stop, at least.
+        """
+        _, boxes = self.boxes[name]
+        driven = float(boxes[-1, 0] - boxes[-2, 0]) / float(self.times[-1] - self.times[-2])
+        return max(driven, 0.0)
+
     @cached_property
     def _closed(self) -> dict[str | int, _Closed]:
         """Obstacles by id, for ego's body, and missing lanes by number, for its middle."""

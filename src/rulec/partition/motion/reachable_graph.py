@@ -1,11 +1,11 @@
 """The part of a navigation graph that ego can drive.
 
 For every cell the set of positions and speeds that ego may have there at the beginning of its layer
-is computed: forward from ego's start, backward from the goals (the scenario's goal area, if it has
-one), and forward again within the remaining sets. An edge is removed if no motion leads from one set to the other, a cell if it has no
-edge left. Motion along and across the road is treated separately, joined only by ego's steering
-limit, and a cell is replaced by its bounding rectangle: more may be kept than can be driven, never
-less.
+is computed: forward from ego's start, backward from the goals (within the scenario's goal area, if
+it has one), and forward again within the remaining sets. An edge is removed if no motion leads from
+one set to the other, a cell if it has no edge left. Motion along and across the road is treated
+separately, joined only by ego's steering limit, and a cell is replaced by its bounding rectangle:
+more may be kept than can be driven, never less.
 """
 
 from __future__ import annotations

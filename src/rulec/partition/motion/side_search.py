@@ -7,7 +7,7 @@ beside it to behind or in front of it, or back. What costs least is branched fir
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from heapq import heappop, heappush
 from itertools import count, product
 
@@ -22,11 +22,11 @@ from rulec.partition.motion.others_beside import (
     Side,
 )
 
-MOST_PROGRAMS = 120
+MOST_PROGRAMS = 200
 """The most linear programs solved for a path."""
 
-_SPLITS = (1 / 3, 2 / 3)
-"""Parts of the time of an overlap after which ego changes its side."""
+_SPLITS = (0.0, 1 / 3, 2 / 3, 1.0)
+"""Parts of the time of an overlap in which ego can change its side, after which it does."""
 
 
 def least_by_sides(
@@ -70,13 +70,25 @@ def _plans(
     others: OthersBeside, path: Sequence[int], name: str | int, times: Sequence[int]
 ) -> Iterator[list[Cut]]:
     """The ways to keep beside an obstacle at these numbers of times, as rows."""
-    plans: list[list[Side]] = [[side] * len(times) for side in (*ALONG, *ACROSS)]
-    if len(times) > 1:
-        for split, along, across in product(_SPLITS, ALONG, ACROSS):
-            first = max(1, round(split * len(times)))
-            for before, after in ((along, across), (across, along)):
-                plans.append([before] * first + [after] * (len(times) - first))
+    count = len(times)
     possible = [others.possible_sides(name, k, path) for k in times]
+    plans: list[list[Side]] = [[side] * count for side in (*ALONG, *ACROSS)]
+    for along, across in product(ALONG, ACROSS):
+        for before, after in ((along, across), (across, along)):
+            splits = _splits(possible, before, after)
+            plans += [[before] * first + [after] * (count - first) for first in splits]
     for plan in plans:
         if all(side in own for side, own in zip(plan, possible, strict=True)):
             yield [others.cut(name, side, k) for side, k in zip(plan, times, strict=True)]
+
+
+def _splits(possible: Sequence[Collection[Side]], before: Side, after: Side) -> list[int]:
+    """After how many of some times ego changes its side, spread over those when it can."""
+    count = len(possible)
+    latest = next((k for k, own in enumerate(possible) if before not in own), count)
+    missing = [k for k, own in enumerate(possible) if after not in own]
+    earliest = missing[-1] + 1 if missing else 0
+    low, high = max(earliest, 1), min(latest, count - 1)
+    if low > high:
+        return []
+    return sorted({round(low + part * (high - low)) for part in _SPLITS})

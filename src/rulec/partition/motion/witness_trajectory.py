@@ -45,6 +45,9 @@ _PREFERRED: Sequence[Collection[Side]] = ((), ("right", "left"), ("behind", "in_
 EASED, _EASED_ENOUGH = 4.0, 0.5
 """Braking (m/s²) that ego may need after the end, and the tolerance (m²/s²) of that check."""
 
+_EVEN, _HAIR = 0.1, 1e-6
+"""Precision (m/s²) of the braking that is the same before the end and after, and rounding."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrivingCost:
@@ -132,7 +135,7 @@ class WitnessSearch:
         """
         best: WitnessTrajectory | None = None
         tries: list[Collection[Side]] = [*_PREFERRED]
-        for eased in (True, False):
+        for eased in (EASED, inf):
             again = []
             for preferred in tries:
                 attempt = self._attempt(path, preferred, eased=eased)
@@ -147,6 +150,26 @@ class WitnessSearch:
                 return best
             tries = again
         return None
+
+    def evened(self, path: Sequence[int], known: WitnessTrajectory) -> WitnessTrajectory:
+        """A trajectory of a path that brakes as hard as it has to after its end, if possible.
+
+        ``known`` brakes harder than ``EASED``. Here what an obstacle ahead drives on while ego
+        becomes as slow counts as room.
+        """
+        best, low, high, level = known, EASED, known.greatest_braking, EASED
+        while high - low > _EVEN:
+            tries = [
+                self._attempt(path, sides, eased=level, meanwhile=True) for sides in _PREFERRED
+            ]
+            found = [one.trajectory for one in tries if one.trajectory is not None]
+            fit = [one for one in found if one.greatest_braking <= level + _HAIR]
+            if fit:
+                best, high = min(fit, key=lambda one: one.cost.total), level
+            else:
+                low = level
+            level = (low + high) / 2
+        return best
 
     def by_sides(self, path: Sequence[int], below: float = inf) -> WitnessTrajectory | None:
         """A trajectory by a search over the sides of obstacles, which takes longer.
@@ -163,21 +186,32 @@ class WitnessSearch:
         solution = least_by_sides(program, self._others, path, further, below)
         return None if solution is None else self._trajectory(solution, cells, path)
 
+    @property
+    def others(self) -> OthersBeside:
+        """The obstacles during the layers, and ego's body among them."""
+        return self._others
+
     def in_way(self, path: Sequence[int]) -> tuple[str, ...]:
         """The obstacles in ego's way along a path without a trajectory, the earliest first.
 
         Empty if ego's bounds alone prevent it from passing through the cells.
         """
         hits: list[tuple[int, str]] = []
-        for cut in self._attempt(path, (), eased=False).cuts:
+        for cut in self._attempt(path, (), eased=inf).cuts:
             match cut.name:
                 case (str(name), _, int(moment)):
                     hits.append((moment, name))
         return tuple(dict.fromkeys([name for _, name in sorted(hits)]))
 
     def _attempt(
-        self, path: Sequence[int], preferred: Collection[Side], *, eased: bool
+        self,
+        path: Sequence[int],
+        preferred: Collection[Side],
+        *,
+        eased: float,
+        meanwhile: bool = False,
     ) -> _Attempt:
+        """A trajectory after which ego need not brake harder than ``eased`` (m/s²)."""
         cells = [layer.cells[i] for layer, i in zip(self._graph.layers, path, strict=True)]
         program, own = self._motion.program(), self._motion.in_cells(cells)
         program.add(own.rows, own.low, own.high)
@@ -193,8 +227,8 @@ class WitnessSearch:
                 for cut in self._broken(solution, cells, path, preferred)
                 if cut.name not in known
             ]
-            if eased and not cuts:
-                cuts = list(self._too_fast(solution, path))
+            if eased < inf and not cuts:
+                cuts = list(self._too_fast(solution, path, eased, meanwhile=meanwhile))
                 was_eased |= bool(cuts)
             if not cuts:
                 return _Attempt(self._trajectory(solution, cells, path), was_eased, ())
@@ -206,11 +240,19 @@ class WitnessSearch:
             )
         return _Attempt(None, was_eased, cuts)
 
-    def _too_fast(self, solution: Solution, path: Sequence[int]) -> Iterator[Cut]:
+    def _too_fast(
+        self,
+        solution: Solution,
+        path: Sequence[int],
+        eased: float = EASED,
+        *,
+        meanwhile: bool = False,
+    ) -> Iterator[Cut]:
         """Rows that keep ego from being too fast at the end for an obstacle ahead of it.
 
-        A speed v is not too fast at a distance ``way`` behind an obstacle of speed u if v² <= u² +
-        2 EASED way; the row is a tangent of that.
+        A speed v is not too fast at a distance ``way`` behind an obstacle of speed u if v² - u² <=
+        2 eased way, so that ego is as slow where the obstacle is now; with ``meanwhile`` the
+        obstacle's own way counts, too: (v - u)² <= 2 eased way. The row is a tangent of that.
         """
         others, times = self._others, self._others.times
         ends = times[-1:]
@@ -222,15 +264,17 @@ class WitnessSearch:
             if not there[-2:].all() or "behind" not in others.sides(name, float(ends[0]), path):
                 continue
             rear, _, right, left = boxes[-1].tolist()
-            # For an oncoming obstacle ego has to be able to stop before it, at least
-            driven = float(boxes[-1, 0] - boxes[-2, 0]) / float(times[-1] - times[-2])
-            speed = max(driven, 0.0)
+            speed = others.speed_at_end(name)
             in_way = right - width < d < left + width
-            most = speed**2 + 2 * EASED * (rear - length)
-            if in_way and v > speed and v**2 + 2 * EASED * s > most + _EASED_ENOUGH:
-                row = 2 * v * speeds.rows[-1] + 2 * EASED * along.rows[0]
-                fixed = float(2 * v * speeds.fixed[-1] + 2 * EASED * along.fixed[0])
-                yield Cut((name, "end", round(v, 2)), row, -np.inf, most + v**2 - fixed)
+            # Of v² for one that is where it is, of (v - u)² for one that drives on
+            moved = speed if meanwhile else 0.0
+            most = speed**2 - moved**2 + 2 * eased * (rear - length)
+            over = v - moved
+            if in_way and v > speed and over**2 + 2 * eased * s > most + _EASED_ENOUGH:
+                row = 2 * over * speeds.rows[-1] + 2 * eased * along.rows[0]
+                fixed = float(2 * over * speeds.fixed[-1] + 2 * eased * along.fixed[0])
+                high = most - over**2 + 2 * over * v - fixed
+                yield Cut((name, "end", round(v, 2)), row, -np.inf, high)
 
     def _broken(
         self,

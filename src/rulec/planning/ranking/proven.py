@@ -12,6 +12,7 @@ from itertools import islice, pairwise
 from math import inf
 from typing import TYPE_CHECKING
 
+from rulec.partition.navigation_graph import COMFORTABLE
 from rulec.planning.product.graph_product import Memory, Product
 from rulec.planning.ranking.cheapest import Maneuver, cheapest
 from rulec.planning.ranking.guided_ways import ALIKE, beam_ways, change_cost, guided_ways
@@ -72,7 +73,7 @@ def proven(
         driven_ones = (_driven(one, way, graph) for one, way in found if way is not None)
         return [*islice(driven_ones, 1)]
     cheaper = [_cheaper(one, graph, search, promised.get(one.nodes, 0.0)) for one in maneuvers[:n]]
-    return sorted(cheaper, key=_by_cost)
+    return sorted([_evened(one, graph, search) for one in cheaper], key=_by_cost)
 
 
 def _by_cost(maneuver: Maneuver) -> tuple[float, tuple[int, ...]]:
@@ -91,6 +92,15 @@ def _cheaper(
     if found is None or found.cost.total >= known.cost.total:
         return driven
     return _driven(driven, found, graph)
+
+
+def _evened(driven: Maneuver, graph: NavigationGraph, search: WitnessSearch) -> Maneuver:
+    """The maneuver with a trajectory that brakes no harder than it has to after its end."""
+    known = driven.trajectory
+    if known is None or known.greatest_braking <= COMFORTABLE:
+        return driven
+    found = search.evened(driven.nodes, known)
+    return driven if found is known else _driven(driven, found, graph)
 
 
 def with_trajectory(

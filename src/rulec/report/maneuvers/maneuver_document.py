@@ -218,7 +218,8 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     after all. ``judged`` are the rules kept or violated for certain by at least half of the
     maneuvers, null unless cells have words. With ``bounds`` of ego's motion (m, s) maneuvers are
     paths through reachable cells, else all. ``least_braking`` (m/s²) is set if a maneuver shown
-    brakes hard, and none brakes less; ``in_way``, the obstacles in the way, if no trajectory was
+    brakes hard, and none brakes less; ``least_braking_later`` if some do, but have to brake harder
+    after their end; ``in_way``, the obstacles in the way, if no trajectory was
     found along any to be listed.
     """
 
@@ -253,4 +254,5 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     rules: Sequence[PruningData] | UnsetType = UNSET
     classes: ClassesData | UnsetType = UNSET
     least_braking: float | UnsetType = UNSET
+    least_braking_later: float | UnsetType = UNSET
     in_way: Sequence[str] | UnsetType = UNSET

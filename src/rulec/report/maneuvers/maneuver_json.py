@@ -58,7 +58,9 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
     graph, scenario = maneuvers.graph, maneuvers.graph.scenario
     several = any(obstacle.alternatives for obstacle in scenario.obstacles)
     several = several or answers.worlds is not None
-    least = maneuver_report.least_braking(maneuvers, answers)
+    hard = maneuver_report.hard_braking(maneuvers, answers)
+    # Rounded up, it would be more than what is proved
+    least = UNSET if hard is None else floor(1000 * hard.least) / 1000
     return as_line(
         filled(
             ManeuversDocument,
@@ -96,7 +98,8 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             worlds=_each(answers.worlds, _world),
             rules=_each(answers.prunings, partial(_pruning, maneuvers)),
             classes=UNSET if answers.classes is None else _classes(maneuvers, *answers.classes),
-            least_braking=UNSET if least is None else floor(1000 * least) / 1000,
+            least_braking=UNSET if hard is None or hard.later else least,
+            least_braking_later=least if hard is not None and hard.later else UNSET,
             in_way=maneuvers.in_way if maneuver_report.lists_none(maneuvers, answers) else UNSET,
         )
     )

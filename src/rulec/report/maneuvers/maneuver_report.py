@@ -74,14 +74,25 @@ def derived_signals(maneuvers: Maneuvers, account: Account) -> dict[str, tuple[A
     }
 
 
-def least_braking(maneuvers: Maneuvers, answers: ManeuverAnswers) -> float | None:
-    """The least braking (m/s²) of every maneuver, if one shown brakes hard and all have to."""
+@dataclass(frozen=True, slots=True)
+class HardBraking:
+    """The least braking (m/s²) of every maneuver; ``later``: or of what it leaves to be done."""
+
+    least: float
+    later: bool
+
+
+def hard_braking(maneuvers: Maneuvers, answers: ManeuverAnswers) -> HardBraking | None:
+    """How hard every maneuver brakes, if one shown brakes hard and all have to, or have later."""
     shown = [*(answers.listed or ())]
     shown += [maneuver.maneuver for maneuver in (*(answers.best or ()), *(answers.ranked or ()))]
     driven = [maneuver.trajectory for maneuver in shown if maneuver.trajectory is not None]
     if all(trajectory.greatest_braking <= COMFORTABLE for trajectory in driven):
         return None
-    return maneuvers.least_braking
+    if (least := maneuvers.least_braking) is not None:
+        return HardBraking(least, later=False)
+    later = maneuvers.least_braking_later
+    return None if later is None else HardBraking(later, later=True)
 
 
 def lists_none(maneuvers: Maneuvers, answers: ManeuverAnswers) -> bool:
@@ -94,8 +105,8 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
     """Write the counts, and a block for each maneuver requested."""
     graph, rules = maneuvers.graph, maneuvers.rules
     dark = {rule.rule for rule in maneuvers.not_judged}
-    hard = [rule.name for rule in rules.rules if rule.strength == "hard"]
-    names = ", ".join(name for name in hard if name not in dark)
+    hard_rules = [rule.name for rule in rules.rules if rule.strength == "hard"]
+    names = ", ".join(name for name in hard_rules if name not in dark)
     by = f"{rules.name} ({names or 'no hard rules'})" if len(names) <= 60 else rules.name
     satisfying = f"{styled(shown_count(maneuvers.satisfying), 'bold')} by {by}"
     if not maneuvers.judges:
@@ -122,11 +133,15 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
     ]
     if answers.classes is not None:
         lines += _class_counts(maneuvers, answers.classes[0])
-    least = least_braking(maneuvers, answers)
-    if least is not None:
+    hard = hard_braking(maneuvers, answers)
+    if hard is not None:
         # Rounded up, it would be more than what is proved
-        least = floor(10 * least) / 10
-        lines.append(f"emergency   every maneuver brakes by more than {least:.1f} m/s²")
+        shown = floor(10 * hard.least) / 10
+        later = f", or has to after {horizon_s(graph):g} s for what is ahead then"
+        lines.append(
+            f"emergency   every maneuver brakes by more than {shown:.1f} m/s²"
+            + (later if hard.later else "")
+        )
     lines += maneuver_blocks.driven_counts(answers.driven)
     lines.append(f"computed in {seconds:.3f} s")
     if lists_none(maneuvers, answers):
