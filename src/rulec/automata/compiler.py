@@ -35,10 +35,11 @@ from rulec.cache.keeping import is_keeping
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import NotAMultipleError, fitting_step, has_seconds, in_steps
+from rulec.logic.fitting_steps import steps_near
 from rulec.logic.formula import Formula
 from rulec.logic.printing import time_in_words
 from rulec.resource_limits import COMPILING
-from rulec.rulebook.elaborate.rule_messages import no_multiple
+from rulec.rulebook.elaborate.rule_messages import no_multiple, with_steps
 from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, parts_of
 from rulec.rulebook.rules.axiom_instances import axiom_instances
 from rulec.rulebook.rules.exemptions import rule_trigger
@@ -87,7 +88,8 @@ def lower(
 
     ``step_s`` is the number of seconds between two states of the traces to be judged; None for the
     step of each rule's own examples, and with ``any_step``, for a rule without examples, for a step
-    that fits. A bound that is not a multiple of the step is a problem (R0407).
+    that fits. A bound that is not a multiple of the step is a problem (R0407); the last one names
+    steps of which all bounds are.
     """
     formulas: list[RuleFormula] = []
     problems: list[Diagnostic] = []
@@ -102,6 +104,9 @@ def lower(
             formulas.append(RuleFormula(rule, formula, step))
         except NotAMultipleError as error:
             problems.append(no_multiple(rule, error))
+    if problems and step_s is not None:
+        fit = steps_near([rule.formula for rule in rulebook.rules], step_s)
+        problems[-1] = with_steps(problems[-1], fit)
     return RulebookFormulas(tuple(formulas), step_s, tuple(problems))
 
 

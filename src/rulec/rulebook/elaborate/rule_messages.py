@@ -317,6 +317,14 @@ def no_multiple(rule: Rule, error: NotAMultipleError) -> Diagnostic:
     )
 
 
+def with_steps(problem: Diagnostic, steps: Sequence[Fraction]) -> Diagnostic:
+    """R0407 with the nearest steps (s) of which all bounds of the rulebook are multiples."""
+    fit = " or ".join([time_in_words(step, "s") for step in steps])
+    return replace(
+        problem, notes=(*problem.notes, f"steps of {fit} fit all bounds of the rulebook")
+    )
+
+
 def _is_close(time: Fraction, wanted: Fraction) -> bool:
     return abs(time - wanted) * 20 <= wanted
 
