@@ -12,7 +12,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from rulec import Maneuver, RulecError, compile_rulebook, find_maneuvers, verify_many
+from rulec import RulecError, compile_rulebook, find_maneuvers
 from rulec.cell_words.place_words import PlaceWords, SceneWords
 from rulec.cell_words.probe_drives import LaneProbe, probe_drives
 from rulec.cell_words.road_frame import RoadFrame
@@ -23,26 +23,12 @@ from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 from support.builders.recorded_data import RECORDINGS
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.driven_motions import paths_of
-from support.generators.motion_kinds import KINDS, of_a_kind
-from support.oracles.witness_drives import (
-    contradicting,
-    disagreeing,
-    drives_of,
-    in_layers,
-    on_an_edge,
-    sampled,
-    states_of,
-    witnesses,
-)
+from support.oracles.compared_maneuvers import check, check_sampled, compared
+from support.oracles.witness_drives import states_of
 
 MOTIONS = int(os.environ.get("RULEC_TEST_MOTIONS", "5000"))
 """So many random motions in each recording, or fewer where most leave its cells; each takes 16 ms
 when nothing else runs."""
-
-AT_ONCE = 50
-
-TRIED = 5
-"""So many times as many motions are tried at most."""
 
 NARROW = {"BEL_Putte-10_2_T-1"}
 """No random motion keeps to the cells beside one that reaches into ego's lane."""
@@ -54,63 +40,6 @@ LANES = (straight(1, 0, 300, left_of=2), straight(2, 0, 300, y=4, right_of=1))
 @pytest.fixture(scope="module")
 def german():
     return compile_rulebook("de")
-
-
-def check(found, most):
-    """Compare some maneuvers with the drives of their trajectories."""
-    pairs = witnesses(found, most) if found.traces else []
-    step_s, count = states_of(found)
-    return compared(
-        found,
-        [(nodes, sampled(trajectory.states, step_s, count)) for nodes, trajectory in pairs],
-    )
-
-
-def compared(found, pairs, *, words=True):
-    """Compare maneuvers with drives through them, their verdicts and words: how many were drives.
-
-    Of random motions in recordings only verdicts are: where maps are beside their tracks, sides are
-    in doubt, and settled by how a drive goes on.
-    """
-    drives = drives_of(found, [motion for _, motion in pairs]) if pairs else ()
-    traced = [
-        (nodes, trace)
-        for (nodes, motion), drive in zip(pairs, drives, strict=True)
-        if drive is not None
-        and (trace := in_layers(found, drive)) is not None
-        and not on_an_edge(found, nodes, motion)
-    ]
-    # Many motions take the same maneuver
-    verdicts = {nodes: found.verdict(Maneuver(nodes, 0.0, None)) for nodes, _ in traced}
-    of_drives = verify_many([trace for _, trace in traced], found.rules)
-    for (nodes, trace), of_drive in zip(traced, of_drives, strict=True):
-        assert not words or list(contradicting(found, nodes, trace)) == []
-        assert list(disagreeing(of_drive, verdicts[nodes])) == []
-    return len(traced)
-
-
-def check_sampled(found, number, chance, *, words=False):
-    """Compare so many random motions with the maneuvers that they are: how many were.
-
-    Fewer if too many of them leave the cells, or keep to where cells meet.
-    """
-    graph, (step_s, count) = found.graph, states_of(found)
-    if graph.step_s < step_s:
-        return 0  # No drive has states in layers between the recording's own
-    every = round(graph.step_s / step_s)
-    pairs, compared_so_far = [], 0
-    for left in reversed(range(TRIED * number)):
-        kind = chance.choice(KINDS)
-        motion = np.array(of_a_kind(kind, graph.scenario, graph.bounds, step_s, count, chance))
-        path = paths_of(graph, motion[::every].tolist())
-        if path is not None and all(len(cells) == 1 for cells in path):
-            pairs.append((tuple(next(iter(cells)) for cells in path), motion))
-        if len(pairs) == AT_ONCE or not left:
-            compared_so_far += compared(found, pairs, words=words)
-            pairs = []
-        if compared_so_far >= number:
-            break
-    return compared_so_far
 
 
 OVERTAKEN = vehicle(10, {k: (75.0 + k, 0.0) for k in range(41)}, speed=10.0)

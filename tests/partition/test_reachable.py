@@ -12,7 +12,7 @@ from rulec import RulecError, load_scenario, navigation_graph
 from rulec.partition.motion import reachable_graph
 from rulec.scenario import Box, ConstantAcceleration, Ego, MotionBounds, Obstacle, Road, Scenario
 from support.builders.recorded_data import RECORDINGS
-from support.generators.driven_motions import cells_of, driven, paths_of
+from support.generators.driven_motions import driven, is_free, paths_of
 from support.generators.random_scenarios import scenarios
 
 EMPTY = Scenario("empty", Road((-50.0, 500.0), (-2.0, 2.0, 6.0)), Ego(0.0, 0.0, speed=10.0))
@@ -156,14 +156,8 @@ def test_motions_that_are_never_in_anybodys_way_are_kept(scenario, speed, seed):
     for _ in range(5):
         step = graph.step_s / pieces
         states = driven(start.ego, bounds, step, pieces * (layers - 1) + 1, chance, pieces=1)
-        if all(_is_free(graph, k, pieces, s, d) for k, (s, _, d, _) in enumerate(states)):
+        if all(is_free(graph, k, pieces, s, d) for k, (s, _, d, _) in enumerate(states)):
             assert paths_of(graph, states[::pieces]) is not None
-
-
-def _is_free(graph, k, pieces, s, d):
-    """Whether a place is in a cell, at the end of a layer also in one of that layer."""
-    ends = (k // pieces, (k - 1) // pieces) if k else (0,)
-    return all(cells_of(graph.layers[p], s, d) for p in {*ends})
 
 
 def test_a_motion_on_an_empty_road_is_bounded_by_hand():

@@ -134,6 +134,22 @@ def test_who_stands_in_another_lane_is_passed_at_speed():
     assert {round(v, 2) for _, _, v, _, _ in first.trajectory.states} == {10.0}
 
 
+def test_fast_vehicles_beside_are_no_reason_to_change_speed():
+    """One on either side is faster, and gets past ego or level with it; ego's lane is empty.
+
+    What one sweeps in a step is longer than itself: ego gets across its borders and is beside it
+    again when the step ends, which costs nothing.
+    """
+    others = (car("right", -13.0, 26.1, d=-3.5), car("left", -8.2, 22.7, d=3.5))
+    ego = Ego(0.0, 0.0, 4.5, 1.8, speed=20.8, bounds=MotionBounds())
+    road = Road((-200.0, 500.0), (-5.25, -1.75, 1.75, 5.25))
+    made = Scenario("f", road, ego, others, step_s=0.5)
+    book = parse_rulebook("rulebook free signal p default false hard rule r { require true }")
+    (first,) = find_maneuvers(made, book, partition="fine", extent="clearance").cheapest(1)
+    assert first.cost == pytest.approx(0.0, abs=ALIKE)
+    assert first.trajectory.states[-1][1] == pytest.approx(4 * 20.8, abs=0.1)
+
+
 def test_who_stands_in_egos_lane_is_not_passed_for_nothing():
     book = parse_rulebook("rulebook free signal p default false hard rule r { require true }")
     found = find_maneuvers(scene(car("c", 20.0, 0.0)), book, partition="fine", step_s=0.5)

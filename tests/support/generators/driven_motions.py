@@ -69,6 +69,15 @@ def cells_of(layer, s, d):
     }
 
 
+def is_free(graph, k, pieces, s, d):
+    """Whether a place is in a cell after ``k`` pieces, of which a layer has ``pieces``.
+
+    At the end of a layer it has to be in a cell of that one, too.
+    """
+    ends = (k // pieces, (k - 1) // pieces) if k else (0,)
+    return all(cells_of(graph.layers[p], s, d) for p in {*ends})
+
+
 def paths_of(graph, states):
     """Cells, layer by layer, on paths of the graph on which a motion is when layers begin.
 

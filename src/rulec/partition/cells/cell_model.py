@@ -67,7 +67,8 @@ class Cell:
 def passes_only(here: Cell, there: Cell) -> bool:
     """Whether ego, going from one cell to the other, changes only the surface, or passes others.
 
-    These stay in other lanes on the same side; only ego's station relative to them differs.
+    These stay in other lanes on the same side; only ego's station relative to them differs. Among
+    fast vehicles it may differ during the step alone: the cells are the same pieces of road, moved.
     """
     if here.objects == there.objects:
         size = len(here.objects)
@@ -79,8 +80,6 @@ def passes_only(here: Cell, there: Cell) -> bool:
     changed = [(before, after) for before, after in pairs if before != after]
     if here.partition == "paper":
         return here.surface != there.surface and not changed
-    if here.surface == there.surface and not changed:
-        return False
     return all(LATERAL_OF[x] == LATERAL_OF[y] != "same_lane" for x, y in changed)
 
 
