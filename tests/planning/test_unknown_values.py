@@ -236,16 +236,50 @@ def test_what_nothing_depends_on_is_kept():
     assert (found.traces, found.satisfying, found.open, found.exact) == (2, 2, 0, True)
 
 
-def test_ranks_suppose_the_worst_and_say_what_is_sure():
+def two_rules(strength):
+    """The maneuvers of two layers by two rules, of which one is open in a third of the states.
+
+    Costs are the numbers of the states in the second layer: of p and q false and false, false and
+    true, open and false, open and true, true and false, true and true.
+    """
     states = [{"p": p, "q": q} for p, q in product((False, UNKNOWN, True), (False, True))]
-    rules = book(rule("p", always(P), strength="soft"), rule("q", always(Q), strength="soft"))
+    rules = book(rule("p", always(P), strength=strength), rule("q", always(Q), strength=strength))
     graph = ladder(({"p": True, "q": True},), tuple(states))
-    found = evaluate(Given(graph), compile_rulebook(rules))
+    return evaluate(Given(graph), compile_rulebook(rules))
+
+
+def test_ranks_are_of_what_is_sure_and_say_the_worst():
+    found = two_rules("soft")
     ranked = found.ranked(10)
     sums = [(sum(one.at_least.values()), sum(one.penalty.values())) for one in ranked]
-    assert sums == [(0, 0), (1, 1), (0, 1), (1, 1), (2, 2), (1, 2)]
+    # By what is surely violated, then by cost: 3 and 5; 1, 2 and 4; 0
+    assert [one.maneuver.nodes[1] for one in ranked] == [3, 5, 1, 2, 4, 0]
+    assert sums == [(0, 1), (0, 0), (1, 1), (1, 2), (1, 1), (2, 2)]
+    assert [one.place for one in ranked] == [1, 1, 2, 2, 2, 3]
+    assert [one.members for one in ranked] == [2, 2, 3, 3, 3, 1]
     prunings = {one.rule.name: (one.violating, one.open) for one in found.prunings()}
     assert prunings == {"p": (2, 2), "q": (3, 0)}
+
+
+def test_what_keeps_every_hard_rule_comes_before_what_may_violate_one():
+    ranked = two_rules("hard").ranked(10)
+    # 5 satisfies; 3 is open; 1, 2 and 4 violate one rule, of which 2 may violate another; 0 two
+    assert [one.maneuver.nodes[1] for one in ranked] == [5, 3, 1, 2, 4, 0]
+    assert [one.place for one in ranked] == [1, 2, 3, 3, 3, 4]
+    assert [one.members for one in ranked] == [1, 1, 3, 3, 3, 1]
+    (best,) = two_rules("hard").best()
+    assert best.maneuver.nodes[1] == 5
+
+
+def test_how_many_hard_rules_are_open_does_not_count():
+    """The cheaper of two maneuvers is open by both rules, the other by one; a third satisfies."""
+    dark, half, sure = ({"p": p, "q": q} for p, q in ((UNKNOWN,) * 2, (UNKNOWN, True), (True,) * 2))
+    rules = compile_rulebook(book(rule("p", always(P)), rule("q", always(Q))))
+    for states, nodes in (((dark, half), [0, 1]), ((dark, half, sure), [2, 0, 1])):
+        found = evaluate(Given(ladder(({"p": True, "q": True},), states)), rules)
+        assert [one.maneuver.nodes[1] for one in found.ranked(5)] == nodes
+        places = [one.place for one in found.ranked(5)]
+        assert places == ([1, 1] if len(nodes) == 2 else [1, 2, 2])
 
 
 PASSING = (

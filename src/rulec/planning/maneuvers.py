@@ -28,7 +28,7 @@ from rulec.planning.ranking.cell_tracks import CellTracks, cell_tracks
 from rulec.planning.ranking.cheapest import Maneuver, cheapest
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant, count_classes, variants
 from rulec.planning.ranking.least_violating import RankedManeuver, front, ranked, with_penalty
-from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, ranks_of
+from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, ranks_of, with_doubt
 from rulec.planning.ranking.proven import MOST_TRIED, least_promised, proven, with_trajectory
 from rulec.planning.ranking.pruning import (
     Blaming,
@@ -215,19 +215,21 @@ class Maneuvers(Rows):
 
         There are several if levels are not comparable, but at most ``n``. If there are satisfying
         maneuvers, the result are satisfying ones that violate soft rules least. If not everything
-        is known, the worst case counts. Raises RulecError as ``evaluate`` does, for soft rules too.
+        is known, what is surely violated counts. Raises RulecError as ``evaluate`` does, for soft
+        rules too.
         """
-        best = _first(n, front(self._every, self._ranks))
+        best = _first(n, front(*self._ranking))
         return [maneuver for penalty in best for maneuver in self._of_penalty(1, penalty, 1)]
 
     @checked_kinds
     def ranked(self, n: int) -> list[RankedManeuver]:
         """The ``n`` best maneuvers, least violating first, or all if there are fewer.
 
-        Each comes after all that violate less; those with equal penalties are ordered by cost.
-        Raises RulecError as ``best`` does.
+        Each comes after all that violate less; those with equal penalties are ordered by cost. If
+        not everything is known, what is surely violated counts, and of hard rules whether all are
+        sure to be kept. Raises RulecError as ``best`` does.
         """
-        penalties = ranked(self._every, self._ranks)
+        penalties = ranked(*self._ranking)
         return _first(
             n, chain.from_iterable(self._of_penalty(*penalty, n) for penalty in penalties)
         )
@@ -337,16 +339,25 @@ class Maneuvers(Rows):
             return self._every
         return node_transformers(self.paths, every, perhaps=True)
 
+    @cached_property
+    def _ranking(self) -> tuple[NodeTransformers, PenaltyOrder, int]:
+        """The instances that decide ranks, their order, and how many are there for doubt."""
+        sure = self._every_perhaps
+        if sure is self._every or not self.satisfying:
+            return sure, self._ranks, 0
+        return sure.beside(self.hard), with_doubt(self._ranks), len(self.hard.instances)
+
     def _of_penalty(self, place: int, penalty: Penalty, n: int) -> Iterator[RankedManeuver]:
         """The ``n`` cheapest maneuvers with a penalty."""
-        product = with_penalty(self._every, self._ranks, penalty)
-        ranks = self._ranks
+        transformers, order, doubts = self._ranking
+        product, ranks = with_penalty(transformers, order, penalty, doubts), self._ranks
         for maneuver in self._drivable(product, n):
             verdict = self.verdict(maneuver)
             least = ranks.of_violations(verdict.violations, self.rules)
+            most = ranks.of_violations((*verdict.violations, *verdict.open), self.rules)
             yield RankedManeuver(
                 place,
-                ranks.by_rank(penalty),
+                ranks.by_rank(most),
                 product.accepted,
                 maneuver,
                 verdict.violations,

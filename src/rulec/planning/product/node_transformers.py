@@ -66,6 +66,17 @@ class NodeTransformers:
             nodes=tuple([rows[Interned(layer)] for layer in self.nodes]),
         )
 
+    def beside(self, others: NodeTransformers) -> NodeTransformers:
+        """These instances, and after them those of others on the same graph."""
+        known: dict[object, tuple[tuple[Effect, ...], ...]] = {}
+        nodes = []
+        for own, more in zip(self.nodes, others.nodes, strict=True):
+            key = Interned(own), Interned(more)
+            if key not in known:
+                known[key] = tuple([(*a, *b) for a, b in zip(own, more, strict=True)])
+            nodes.append(known[key])
+        return replace(self, instances=(*self.instances, *others.instances), nodes=tuple(nodes))
+
 
 def node_transformers(
     graph: TraceGraph, instances: Sequence[GraphInstance], *, perhaps: bool = False

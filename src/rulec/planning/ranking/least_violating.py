@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from heapq import heappop, heappush
 from itertools import count
-from operator import add, getitem, gt
+from operator import getitem, gt
 
 from rulec.monitoring.verdict import OpenVerdict, Violation
 from rulec.planning.product import graph_product
@@ -35,8 +35,8 @@ class RankedManeuver:
 
     ``place`` is 1 if no maneuver violates less, else 1 more than the last place of those that do.
     ``penalty`` is the sum of the weights of what it violates, by rank, without ranks of sum 0.
-    ``members`` is the number of maneuvers with this penalty; this is one of the cheapest. If not
-    everything is known, ``open`` rules count as violated; ``at_least`` is the penalty without them.
+    ``members`` is the number of maneuvers of this rank; this is one of the cheapest. If not
+    everything is known, ``penalty`` includes ``open`` rules; ``at_least``, without them, decides.
     """
 
     __repr__ = short_repr
@@ -50,8 +50,13 @@ class RankedManeuver:
     at_least: Mapping[PenaltyRank, Fraction] = field(default_factory=dict)
 
 
-def front(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[Penalty]:
-    """The Pareto front of the paths' penalties, in order, lazily."""
+def front(
+    transformers: NodeTransformers, ranks: PenaltyOrder, doubts: int = 0
+) -> Iterator[Penalty]:
+    """The Pareto front of the paths' penalties, in order, lazily.
+
+    The last ``doubts`` instances are those of hard rules which, lost, are in doubt.
+    """
     penalties: list[Penalty] = []
     passed: dict[Place, list[Penalty]] = {}
 
@@ -63,15 +68,18 @@ def front(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[Penal
         others.append(penalty)
         return True
 
-    for penalty in _ascending(transformers, ranks, worth):
+    for penalty in _ascending(transformers, ranks, worth, doubts):
         penalties.append(penalty)
         yield penalty
 
 
-def ranked(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tuple[int, Penalty]]:
+def ranked(
+    transformers: NodeTransformers, ranks: PenaltyOrder, doubts: int = 0
+) -> Iterator[tuple[int, Penalty]]:
     """Every penalty of some path, each after all that are lower.
 
     With each comes its place: 1 in the front, else 1 more than the last place of lower penalties.
+    ``doubts`` as in ``front``.
     """
     passed: set[tuple[Place, Penalty]] = set()
 
@@ -81,7 +89,7 @@ def ranked(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tupl
         return new
 
     places: dict[Penalty, int] = {}
-    for penalty in _ascending(transformers, ranks, worth):
+    for penalty in _ascending(transformers, ranks, worth, doubts):
         if penalty not in places:
             lower = [place for other, place in places.items() if ranks.at_most(other, penalty)]
             places[penalty] = 1 + max(lower, default=0)
@@ -89,15 +97,18 @@ def ranked(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tupl
 
 
 def with_penalty(
-    transformers: NodeTransformers, ranks: PenaltyOrder, penalty: Penalty
+    transformers: NodeTransformers, ranks: PenaltyOrder, penalty: Penalty, doubts: int = 0
 ) -> graph_product.Product[Paying]:
-    """The product in which only the paths with one penalty are accepted."""
-    fee = _fees(transformers, ranks)
+    """The product in which only the paths with one penalty are accepted.
+
+    ``doubts`` as in ``front``.
+    """
+    fee = _fees(transformers, ranks, doubts)
 
     def enter(row: Sequence[Effect], memory: Paying) -> Paying | None:
         joint, paid = memory
         after, due = fee(row, joint)
-        total = tuple(map(add, paid, due)) if due else paid
+        total = ranks.total(paid, due)
         return None if any(map(gt, total, penalty)) else (after, total)
 
     product = graph_product.explore_with(
@@ -108,7 +119,10 @@ def with_penalty(
 
 
 def _ascending(
-    transformers: NodeTransformers, ranks: PenaltyOrder, worth: Callable[[Place, Penalty], bool]
+    transformers: NodeTransformers,
+    ranks: PenaltyOrder,
+    worth: Callable[[Place, Penalty], bool],
+    doubts: int,
 ) -> Iterator[Penalty]:
     """Penalties of paths in order; only those that are ``worth`` it are extended.
 
@@ -116,7 +130,7 @@ def _ascending(
     R0616 if too many are worth it.
     """
     remaining = graph_product.largest_product(transformers.graph)
-    fee = _fees(transformers, ranks)
+    fee = _fees(transformers, ranks, doubts)
     of_layer: dict[
         object, dict[tuple[int, graph_product.Joint], tuple[graph_product.Joint, Penalty]]
     ] = {}
@@ -128,7 +142,7 @@ def _ascending(
         if (node, joint) not in fees[layer]:
             fees[layer][node, joint] = fee(transformers.nodes[layer][node], joint)
         after, due = fees[layer][node, joint]
-        total = tuple(map(add, paid, due)) if due else paid
+        total = ranks.total(paid, due)
         heappush(queue, (total, -layer, next(numbers), node, after))
 
     if transformers.starts:
@@ -148,13 +162,15 @@ def _ascending(
 
 
 def _fees(
-    transformers: NodeTransformers, ranks: PenaltyOrder
+    transformers: NodeTransformers, ranks: PenaltyOrder, doubts: int
 ) -> Callable[[Sequence[Effect], graph_product.Joint], tuple[graph_product.Joint, Penalty]]:
     """A function that gives the next states of the monitors at a node, and the penalty added."""
+    surely = len(transformers.instances) - doubts
     prices = [
         (ranks.of(instance.rule), ranks.weight(instance.rule) * len(instance.bindings))
-        for instance in transformers.instances
+        for instance in transformers.instances[:surely]
     ]
+    in_doubt = ranks.doubt
 
     def fee(
         row: Sequence[Effect], joint: graph_product.Joint
@@ -163,9 +179,13 @@ def _fees(
         if LOST not in after:
             return after, ()
         due = [0] * len(ranks.ranks)
-        for state, (rank, price) in zip(after, prices, strict=True):
+        for state, (rank, price) in zip(after[:surely], prices, strict=True):
             if state == LOST:
                 due[rank] += price
+        if in_doubt is not None and LOST in after[surely:]:
+            due[in_doubt] = 1
+            # Nothing more comes of what else is in doubt
+            after = (*after[:surely], *(SAFE,) * doubts)
         return tuple([SAFE if state == LOST else state for state in after]), tuple(due)
 
     return fee

@@ -10,9 +10,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
+from operator import add
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.monitoring.verdict import Violation
+from rulec.monitoring.verdict import OpenVerdict, Violation
 from rulec.rulebook.rulebook_model import Strength
 
 Penalty = tuple[int, ...]
@@ -21,7 +22,10 @@ Penalty = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class PenaltyRank:
-    """Levels of equal priority for rules of one strength; "" for rules without one."""
+    """Levels of equal priority for rules of one strength; "" for rules without one.
+
+    No levels: the rank of doubt about hard rules, see ``with_doubt``.
+    """
 
     strength: Strength
     levels: tuple[str, ...]
@@ -38,6 +42,20 @@ class PenaltyOrder:
     ranks: tuple[PenaltyRank, ...]
     above: tuple[frozenset[int], ...]
     unit: Fraction
+
+    @property
+    def doubt(self) -> int | None:
+        """The index of the rank of doubt, which has a penalty of at most 1; None without one."""
+        return next((index for index, rank in enumerate(self.ranks) if not rank.levels), None)
+
+    def total(self, paid: Penalty, due: Penalty) -> Penalty:
+        """The sum of two penalties; nothing is due if there is an empty one."""
+        if not due:
+            return paid
+        total, doubt = tuple(map(add, paid, due)), self.doubt
+        if doubt is None or total[doubt] <= 1:
+            return total
+        return (*total[:doubt], 1, *total[doubt + 1 :])
 
     def of(self, rule: CompiledRule) -> int:
         """The index of a rule's rank."""
@@ -64,12 +82,14 @@ class PenaltyOrder:
         )
 
     def by_rank(self, penalty: Penalty) -> dict[PenaltyRank, Fraction]:
-        """The penalty as sums of weights; ranks with sum 0 are left out."""
+        """The penalty as sums of weights; ranks with sum 0 are left out, and that of doubt."""
         parts = zip(self.ranks, penalty, strict=True)
-        return {rank: part * self.unit for rank, part in parts if part}
+        return {rank: part * self.unit for rank, part in parts if part and rank.levels}
 
-    def of_violations(self, violations: Iterable[Violation], rules: CompiledRulebook) -> Penalty:
-        """The penalty of the violations of one maneuver."""
+    def of_violations(
+        self, violations: Iterable[Violation | OpenVerdict], rules: CompiledRulebook
+    ) -> Penalty:
+        """The penalty of the violations of one maneuver; open rules count as violated."""
         by_name = {rule.name: rule for rule in rules.rules}
         due = [0] * len(self.ranks)
         for rule in (by_name[violation.rule] for violation in violations):
@@ -115,3 +135,22 @@ def ranks_of(rulebook: CompiledRulebook) -> PenaltyOrder:
     )
     weights = [rule.weight.denominator for rule in rulebook.rules]
     return PenaltyOrder(tuple(ranks), above, Fraction(1, lcm(*weights)))
+
+
+def with_doubt(order: PenaltyOrder) -> PenaltyOrder:
+    """The order with one more rank, below all of hard rules and above all of soft ones.
+
+    Its penalty is 1 if some hard rule is not sure to be kept. So what satisfies them all comes
+    before what may violate one, and how many are in doubt does not count.
+    """
+    place = sum(rank.strength == "hard" for rank in order.ranks)
+    hard = frozenset(range(place))
+    above = tuple(
+        frozenset([index + (index >= place) for index in own]) | ({place} if n >= place else set())
+        for n, own in enumerate(order.above)
+    )
+    return PenaltyOrder(
+        (*order.ranks[:place], PenaltyRank("hard", ()), *order.ranks[place:]),
+        (*above[:place], hard, *above[place:]),
+        order.unit,
+    )
