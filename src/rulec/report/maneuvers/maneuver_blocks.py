@@ -149,7 +149,8 @@ def ranked_block(
     maneuvers: Maneuvers, ranked: RankedManeuver, driven: TrajectoryScores | None = None
 ) -> list[str]:
     """A ranked maneuver with the verdict on its trajectory, and its own violations."""
-    same = f"; {shown_count(ranked.members)} violate the same" if ranked.members > 1 else ""
+    surely = "surely " if ranked.open else ""
+    same = f"; {shown_count(ranked.members)} {surely}violate the same" if ranked.members > 1 else ""
     penalty = _penalty(ranked.penalty)
     if ranked.open:
         penalty = f"at most {penalty}, at least {_penalty(ranked.at_least)}"
