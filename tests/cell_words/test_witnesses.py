@@ -24,7 +24,7 @@ from support.builders.recorded_data import RECORDINGS
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.driven_motions import paths_of
 from support.oracles.compared_maneuvers import check, check_sampled, compared
-from support.oracles.witness_drives import states_of
+from support.oracles.witness_drives import begins_on_an_edge, states_of
 
 MOTIONS = int(os.environ.get("RULEC_TEST_MOTIONS", "5000"))
 """So many random motions in each recording, or fewer where most leave its cells; each takes 16 ms
@@ -504,7 +504,9 @@ def test_random_motions_in_recordings(german, file):
         every = next(k for k in range(floor(of_layer), 0, -1) if round(1 / step_s) % k == 0)
         found = find_maneuvers(file, german, step_s=step_s * every)
     number = check_sampled(found, MOTIONS, random.Random(file.stem))
-    assert number > 0 or found.traces == 1 or file.stem in NARROW
+    # US101-11_4: ego begins 3 cm from where it would be clear of one in the next lane
+    has_none = found.traces == 1 or file.stem in NARROW or begins_on_an_edge(found)
+    assert number > 0 or has_none
 
 
 @pytest.mark.parametrize(

@@ -116,14 +116,24 @@ def on_an_edge(found, nodes, motion):
     Or is so near to it that it gets beyond and back before that is more than noise.
     """
     graph, step_s = found.graph, states_of(found)[0]
-    least = fewest_states(LEAST_S["lateral"], step_s)
-    beyond = graph.bounds.lateral_acceleration * (least * step_s) ** 2 / 8 if least > 1 else 0.0
     places = motion[:: round(graph.step_s / step_s), 2]
-    return any(
-        min(abs(d - edge) for box in layer.cells[node].boxes for edge in (box.d_min, box.d_max))
-        < _EDGE_M + beyond
-        for layer, node, d in zip(graph.layers, nodes, places, strict=True)
-    )
+    rows = zip(graph.layers, nodes, places, strict=True)
+    return any(_is_near_an_edge(found, layer.cells[node], d) for layer, node, d in rows)
+
+
+def begins_on_an_edge(found):
+    """Whether ego begins on the border of a cell, so that all its motions are on one."""
+    graph = found.graph
+    return _is_near_an_edge(found, graph.layers[0].cells[graph.start], graph.scenario.ego.d)
+
+
+def _is_near_an_edge(found, cell, d):
+    step_s = states_of(found)[0]
+    least = fewest_states(LEAST_S["lateral"], step_s)
+    most = found.graph.bounds.lateral_acceleration
+    beyond = most * (least * step_s) ** 2 / 8 if least > 1 else 0.0
+    edges = [edge for box in cell.boxes for edge in (box.d_min, box.d_max)]
+    return min(abs(d - edge) for edge in edges) < _EDGE_M + beyond
 
 
 def disagreeing(of_drive, mine):
