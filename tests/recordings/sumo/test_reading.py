@@ -1,5 +1,6 @@
 """SUMO's floating-car data become recordings: places, sizes, times, and who they are."""
 
+import random
 from math import pi
 
 import numpy as np
@@ -170,6 +171,23 @@ def test_who_turns_round_in_parts_does_so_along_its_way(tmp_path):
     # The middle goes all of its way: nowhere farther than the front does
     x, y = np.array([(state.x, state.y) for state in one.states.values()]).T
     assert np.hypot(np.diff(x), np.diff(y)).max() < 0.16
+
+
+def test_noise_does_not_turn_a_standing_tram(tmp_path):
+    """Its front is off by up to 0.2 m each time, for 20 s: no way is driven, and it stays put.
+
+    Over its 22 m, twice that is an angle of 0.4 / 22 = 0.018. The steps of the noise alone would
+    add up to a way of more than the tram's length, and the whole body would lie within it.
+    """
+    pick = random.Random(7)
+    rows = [body(x=2 * k, y=0, speed=20, kind="tram") for k in range(20)]
+    for _ in range(200):
+        x, y = 40 + pick.uniform(-0.2, 0.2), pick.uniform(-0.2, 0.2)
+        rows.append(body(x=x, y=y, speed=0, kind="tram"))
+    one = only(read(tmp_path, *(moment(k / 10, row) for k, row in enumerate(rows))))
+    states = list(one.states.values())[20:]
+    assert max(abs(state.heading) for state in states) < 0.02
+    assert max(np.hypot(state.x - (40 - 11), state.y) for state in states) < 0.6
 
 
 def test_time_begins_with_the_simulation(tmp_path):

@@ -323,7 +323,9 @@ def _centres_along_way(
     front was half a length and a length earlier on its way, and the heading points from the rear to
     the front. A straight way leads to the first position. A movement more across the heading than
     along it that is longer than the speed permits is a lane change by a jump, or sliding: it moves
-    all parts. ``times`` (s) lead from each row to the next.
+    all parts. So does any movement while it stands, and no movement is longer on the way than the
+    speed permits: noise of positions would add up to a way that was never driven. ``times`` (s)
+    lead from each row to the next.
     """
     centred: NDArray[float64] = rows.copy()
     for start, end in zip(starts, [*starts[1:], len(rows)], strict=True):
@@ -334,10 +336,12 @@ def _centres_along_way(
         cos, sin = np.cos(heading[1:]), np.sin(heading[1:])
         along, across = ways[:, 0] * cos + ways[:, 1] * sin, ways[:, 1] * cos - ways[:, 0] * sin
         # The first part turns late where the vehicle turns round at the end of a road
-        ways[(np.abs(across) > np.abs(along)) & (np.hypot(along, across) > drives)] = 0.0
+        shifts = (np.abs(across) > np.abs(along)) & (np.hypot(along, across) > drives)
+        ways[shifts | (drives == 0.0)] = 0.0
         behind = 2 * length * np.array([[np.cos(heading[0]), np.sin(heading[0])]])
+        lengths = np.append(2 * length, np.minimum(np.hypot(*ways.T), drives))
         ways = np.concatenate((behind, ways))
-        driven = np.append(0.0, np.hypot(*ways.T).cumsum())
+        driven = np.append(0.0, lengths.cumsum())
         places = np.concatenate((np.zeros((1, 2)), ways.cumsum(axis=0)))
         middle, rear = (
             places[1:]
