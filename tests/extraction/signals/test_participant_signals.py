@@ -292,7 +292,7 @@ def test_one_that_swerves_as_it_gets_beside_ego_still_comes():
     assert not participant_signals(never).about["oncoming"][0].any()
 
 
-@pytest.mark.parametrize("kind", ["car", "bicycle"])
+@pytest.mark.parametrize("kind", ["car", "bicycle", "train"])
 def test_one_that_has_come_on_another_road_waits_for_its_turn(kind):
     """It stands in a junction, facing ego: nobody follows it."""
     elsewhere = np.array([[False] * 4, [True] * 4])

@@ -52,6 +52,19 @@ def test_in_a_single_moment_the_stated_speed_counts():
     assert found.acceleration[0, 0] == 0
 
 
+@pytest.mark.parametrize(
+    ("kind", "speed"), [("car", 0.0), ("bicycle", 0.0), ("train", 0.0), ("pedestrian", 2.0)]
+)
+def test_what_steers_has_no_speed_across_its_heading(kind, speed):
+    """It drives east and then stands, but noise moves it to and fro across that by 1 m each 0.5 s.
+
+    Only who walks may have walked so, at 2 m/s.
+    """
+    places = {k: (min(10.0 * k, 40.0), 0.0 if k < 5 else float(k % 2)) for k in range(9)}
+    found = tracks(vehicle(8, places, kind, heading=0.0, speed=0.0), smoothing_s=0.5)
+    assert found.speed[0, -1] == pytest.approx(speed)
+
+
 def test_a_standing_participant_is_there_all_the_time():
     found = tracks(vehicle(7, {0: (0, 0), 3: (9, 0)}), vehicle(8, {0: (5, 2)}, standing=True))
     assert found.present[1].all()

@@ -308,7 +308,7 @@ def _outlines_of(
     return columns, [body.outlines[first + column] for column in columns.tolist()]
 
 
-_STEERED = frozenset({"vehicle", "light_rider"})
+_STEERED = frozenset({"vehicle", "light_rider", "rail_vehicle"})
 
 
 def tracks_of(

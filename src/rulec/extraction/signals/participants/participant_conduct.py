@@ -76,7 +76,8 @@ def _waits_elsewhere(context: DriveContext, cells: Cells) -> Flags:
     rows = distinct(cells.rows)
     slow = np.abs(context.extents.along[rows]) * KMH_PER_MPS < context.thresholds.standing_kmh
     still = context.spans.all(slow)[rows.searchsorted(cells.rows), cells.columns]
-    drivers = context.tracks.of_type("vehicle") | context.tracks.of_type("light_rider")
+    of_type = context.tracks.of_type
+    drivers = of_type("vehicle") | of_type("light_rider") | of_type("rail_vehicle")
     moves_elsewhere = cells.of(context.elsewhere) & ~still
     waits: Flags = drivers[cells.rows] & (moves_elsewhere | ~cells.of(context.on_lanes))
     return waits
