@@ -39,6 +39,9 @@ _AT_KERB_M = 1.0
 
 _HAIR_MPS = 1e-3
 
+_AROUND_S = 1.0
+"""Who walks gets away from a place in this time, before and after."""
+
 _WALKS_MPS = 1.4
 """The walking speed of pedestrians who do not wait."""
 
@@ -175,12 +178,13 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     waited &= (steps_on <= soon) & (steps_on < spans.end)
     taken = reached & ~let_go & (in_way | waited)
     stood = round(_STOOD_S / step_s)
-    moves = spans.next_state(~stands & seen)
+    stays_put = stands | ~_gets_away(context, rows)
+    moves = spans.next_state(~stays_put & seen)
     moves = np.take_along_axis(moves, np.maximum(at - stood, spans.first), axis=1)
     # For a pedestrian standing at a lane's bound, errors of places alone may show a step over it
     stays = (~waited | (moves > steps_on)) & (moves > np.minimum(goes + stood, last))
     # One that stops at the kerb as ego comes, and stays, may wait for something else, as for green
-    leaves = spans.next_state(seen & ~(stands & _at_kerb(context, rows, on_lanes)))
+    leaves = spans.next_state(seen & ~(stays_put & _at_kerb(context, rows, on_lanes)))
     stays |= np.take_along_axis(leaves, by_then, axis=1) > np.minimum(goes + stood, last)
     lost = spans.next_state(~seen) <= np.minimum(soon, last)
     unseen = (steps_on >= spans.end) & (lost | (soon >= spans.end))
@@ -188,6 +192,21 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     far = np.take_along_axis(_comes_s(context, rows) > limits.held_up_s, goes, axis=1)
     unsure = waits_yet | (taken & (stays | (far & ~in_way))) | (~let_go & ~taken & unseen)
     return taken, ~reached | unsure, goes
+
+
+def _gets_away(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Mask, for ``rows``, of those whose places around a state are farther apart than they may err.
+
+    Noise moves one that stands to and fro, at the speed of one that walks.
+    """
+    spans, tracks = context.spans, context.tracks
+    reach = max(round(_AROUND_S / context.recording.step_s), 1)
+    begin = np.maximum(spans.columns - reach, spans.first)
+    end = np.minimum(spans.columns + reach, spans.end - 1)
+    x, y = (at[rows][:, end] - at[rows][:, begin] for at in (tracks.x, tracks.y))
+    # Where it is not seen around a state, its speed has to do
+    away: Flags = ~(np.hypot(x, y) <= context.tolerances.place_m)
+    return away
 
 
 def _at_kerb(context: DriveContext, rows: NDArray[intp], on_lanes: Flags) -> Flags:
