@@ -51,6 +51,9 @@ def turned(points, angle):
     )
 
 
+WAVERS = (200 - 20 / 3, 0.01), (200 - 10 / 3, -0.01), (200, 0.0)
+"""Angles at which the ring has points, and how far (m) outside it the entry is there."""
+
 ENTRY = joining((-30, -4), 0, around(200, 200, 1)[0], 290)
 EXIT = joining(around(160, 160, 1)[0], 250 - 360 + 360, (-30, 4), 180)
 
@@ -145,6 +148,25 @@ def block(side_m, corner_m=6.0):
 def test_streets_around_a_block_are_no_roundabout():
     assert ring_lanelets(recording(block(60)), "right") == frozenset()
     assert ring_lanelets(recording(block(70)), "right") == frozenset()
+
+
+def test_an_entry_may_touch_the_ring_twice_but_a_street_leads_through():
+    """Its centre comes inside that of the ring by 1 cm before it ends on it."""
+    lanes = list(roundabout("arms"))
+    (entry,) = (k for k, lane in enumerate(lanes) if lane.id == "b0")
+    onto = np.concatenate([around(angle, angle, 1, RADIUS_M + aside) for angle, aside in WAVERS])
+    lanes[entry] = lanelet(
+        "b0",
+        np.concatenate((ENTRY[:-2], onto)),
+        predecessors=("a0",),
+        successors=("e0",),
+        types=INSIDE,
+        junction="arm 0",
+    )
+    assert ring_lanelets(recording(lanes), "right") == RING
+    for y in (0, 10):
+        through = lanelet("through", [(-40, y), (40, y)])
+        assert not ring_lanelets(recording([*lanes, through]), "right")
 
 
 def test_a_map_without_lanes_has_none():

@@ -20,6 +20,9 @@ _FULL_TURN = 2 * np.pi
 _UNEVEN = 0.5
 
 _EVERY_M = 2.0
+_INSIDE_M = 1.0
+"""A lane that leads through a ring is farther inside it than this."""
+
 _STRAIGHT_M, _LEAST_TURN = 30.0, 0.2
 """A roundabout turns by more than ``_LEAST_TURN`` (rad) on each stretch of ``_STRAIGHT_M``."""
 
@@ -104,11 +107,16 @@ def _is_round(ring: tuple[str, ...], lanes: Mapping[str, Lanelet]) -> bool:
 
 
 def _crossed(ring: tuple[str, ...], lanes: Mapping[str, Lanelet]) -> bool:
-    """Whether a lane outside the ring leads through it from side to side."""
+    """Whether a lane outside the ring leads through it from side to side.
+
+    One that joins it may touch it more than once as it gets onto it, but does not go inside.
+    """
     line = shapely.LinearRing(np.concatenate([lanes[name].centre for name in ring]))
     others = [shapely.LineString(x.centre) for name, x in lanes.items() if name not in ring]
     met = shapely.intersection(line, others)
-    return bool((shapely.get_num_geometries(met[~shapely.is_empty(met)]) > 1).any())
+    inside = shapely.intersects(shapely.Polygon(line).buffer(-_INSIDE_M), others)
+    often = ~shapely.is_empty(met) & (shapely.get_num_geometries(met) > 1)
+    return bool((often & inside).any())
 
 
 def _is_joined(ring: tuple[str, ...], lanes: Mapping[str, Lanelet]) -> bool:
