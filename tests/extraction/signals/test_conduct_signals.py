@@ -142,6 +142,20 @@ def test_who_goes_over_the_middle_is_in_two_lanes(ys, expected, side):
     assert told(ego_signals, "straddling", two_way(), ego, side=side) == expected
 
 
+@pytest.mark.parametrize("side", ["right", "left"])
+def test_who_goes_over_the_middle_by_places_known_badly_is_in_two_lanes(side):
+    """With its middle 0.9 m beyond that of the road, half its width less 0.1 m, it is on one half.
+
+    But with places known to 1.2 m it is certainly on the other one only from there on.
+    """
+    ys = (0, 1.6, 2.4, 2.9, 3.6, 3.6, 0, 0)
+    ego = car(*((50.0 + 10 * k, y) for k, y in enumerate(ys)), heading=0.0)
+    sides = told(manoeuvre_signals, "driving_side", two_way(), ego, side=side, place_error_m=0.6)
+    assert sides[4:6] == "TT"
+    found = told(ego_signals, "straddling", two_way(), ego, side=side, place_error_m=0.6)
+    assert found == "FTTFTFTF"
+
+
 def test_sides_that_are_nobody_s():
     # One way, not told, and where ego crosses the other half to somewhere
     ego = steady(7, 50, 2.4)

@@ -10,7 +10,7 @@ from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.conduct.manoeuvre_signals import on_both_halves, oncoming_side
+from rulec.extraction.signals.conduct.manoeuvre_signals import about_the_middle, oncoming_side
 from rulec.extraction.signals.ego_lanelets import own_lanelets, travel_lanes
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
@@ -105,7 +105,7 @@ def _may_brake_for_ego(context: DriveContext, cells: Cells) -> Flags:
     if not hard.any():
         return braked
     there, _ = oncoming_side(context)
-    away = there | on_both_halves(context)
+    away = about_the_middle(context)
     back, since = spans.next_state(~away), spans.latest(~away)
     until_s = (back - np.arange(context.states)) * context.recording.step_s + limits.yielding_s
     cells = cells.part((hard & (spans.latest(there) > since)[cells.columns]).nonzero()[0])
@@ -127,7 +127,7 @@ def _meets_beyond_middle(context: DriveContext, meets: Flags) -> Flags:
     if not meets.any():
         return meets
     there, _ = oncoming_side(context)
-    away, spans = there | on_both_halves(context), context.spans
+    away, spans = about_the_middle(context), context.spans
     meets = meets & away & (spans.latest(there) > spans.latest(~away))
     flags: Flags = away & (spans.next_state(meets) < spans.next_state(~away))
     return flags

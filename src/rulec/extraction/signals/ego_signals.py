@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rulec.array_types import Flags
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
+    about_the_middle,
     on_both_halves,
     oncoming_side,
     sides_beyond_far_edge,
@@ -215,7 +216,7 @@ def _goes_over_the_middle(context: DriveContext) -> Flags:
         return np.zeros(context.states, dtype=bool)
     spans, on_both = context.spans, on_both_halves(context)
     within = round(context.thresholds.passed_s / context.recording.step_s)
-    stays, at = on_both | there, spans.columns
+    stays, at = about_the_middle(context), spans.columns
     before, after = spans.latest(there), spans.next_state(there)
     goes = (after < spans.next_state(~stays)) & (after - at <= within)
     comes = (before > spans.latest(~stays)) & (at - before <= within)

@@ -212,6 +212,16 @@ def on_both_halves(context: DriveContext) -> Flags:
     return on_both
 
 
+def about_the_middle(context: DriveContext) -> Flags:
+    """Mask of states in which ego is on the other half, or on both, or may be on the other one.
+
+    Where places are known so badly that a body which is certainly on one half may be wholly on it,
+    no state on both halves need lead to those on the other.
+    """
+    there, perhaps = oncoming_side(context)
+    return there | perhaps | on_both_halves(context)
+
+
 def sides_beyond_far_edge(context: DriveContext, bodies: RoadExtents) -> tuple[Floats, Floats]:
     """How far (m) the nearer and the farther side of bodies, by row, are beyond ego's far edge."""
     lanes = context.existing_lanes
