@@ -366,6 +366,17 @@ def test_who_overtakes_beyond_the_middle_does_so_from_going_there_until_it_is_ba
     assert "".join("?" if dark else "FT"[int(value)] for value, dark in told) == past
 
 
+@pytest.mark.parametrize(("before", "told"), [(0, "????????????FFFF"), (3, "FFFFFFFFFFFFFFFF")])
+def test_whose_drive_begins_beyond_the_middle_may_have_overtaken(before, told):
+    """Nobody else is there. 6 s, as long as overtaking takes, are 12 states."""
+    ys = [*[0] * before, *[3.5] * (14 - before), 0, 0]
+    ego = vehicle(7, {k: (7.0 * k, y) for k, y in enumerate(ys)}, speed=14)
+    found = recording([straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])], [ego])
+    signals = overtaking_signals(context_of(found), frozenset({"overtaking"}))
+    words = zip(signals.world["overtaking"], signals.unknown["overtaking"], strict=True)
+    assert "".join("?" if dark else "FT"[int(value)] for value, dark in words) == told
+
+
 def test_who_overtakes_and_is_back_for_half_a_second_overtakes_meanwhile():
     """`driving_side` takes so short a time for noise, and would say that ego drives on the left."""
     ys = [0, 0, 1, *[3.5] * 5, 0, *[3.5] * 6, 0]

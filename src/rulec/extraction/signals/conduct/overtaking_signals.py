@@ -31,8 +31,8 @@ _DRIFT_MPS = 0.2
 def _overtaking(context: DriveContext) -> SignalColumns:
     """Whether ego overtakes; beyond the road's middle, from its way there until it is back.
 
-    Unknown if ego goes there behind a vehicle and back: it may have given up. For a standing
-    vehicle, ego is there only as long as it takes to go round it.
+    Unknown if ego goes there behind a vehicle and back: it may have given up; and where its drive
+    begins there. For a standing vehicle, ego is there only as long as it takes to go round it.
     """
     there, perhaps = oncoming_side(context)
     # Back for so short a time that `driving_side` takes it for noise does not count as back
@@ -45,7 +45,7 @@ def _overtaking(context: DriveContext) -> SignalColumns:
         goes_round, may_go_round = _overtakes(context, stands & _near_enough_to_go_round(context))
         overtakes = overtakes | goes_round | _meanwhile(context, overtakes, side)
         perhaps = _meanwhile(context, unsure | _close_behind(context), side)
-        unsure = unsure | may_go_round | perhaps
+        unsure = unsure | may_go_round | perhaps | _may_come_from_passing(context, side)
     return SignalColumns({"overtaking": overtakes}, unknown={"overtaking": unsure & ~overtakes})
 
 
@@ -55,6 +55,17 @@ def _with_all_that_joins(context: DriveContext, flags: Flags, more: Flags) -> Fl
     outside = spans.latest(~either), spans.next_state(~either)
     joins: Flags = (spans.latest(flags) > outside[0]) | (spans.next_state(flags) < outside[1])
     return either & joins
+
+
+def _may_come_from_passing(context: DriveContext, side: Flags) -> Flags:
+    """Mask of states beyond the middle where ego's drive begins there: it may have passed somebody.
+
+    For as long as overtaking takes.
+    """
+    spans = context.spans
+    lasts = round(context.thresholds.overtaking_s / context.recording.step_s)
+    begins_there = side & (spans.latest(~side) < spans.first)
+    return begins_there & (spans.columns - spans.first < lasts)
 
 
 def _near_enough_to_go_round(context: DriveContext) -> Flags:
