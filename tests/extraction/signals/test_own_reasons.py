@@ -134,3 +134,34 @@ def test_one_that_brakes_before_ego_decides_does_so_for_ego_only_if_straight_on(
     places = -37 + 16 * np.minimum(TIMES, 1) + 6 * np.maximum(TIMES - 1, 0)
     path = [TO_NORTH[0], *aside, TO_NORTH[1]]
     assert told(NORTH, places, path) == (conflict, False)
+
+
+@pytest.mark.parametrize(
+    ("mps", "sure"),
+    # At 5 m/s it is 1.4 s behind ego all along; at 10 m/s it catches up with it after the bend
+    [(5.0, False), (10.0, True)],
+)
+def test_one_that_joins_ahead_of_a_slow_one_does_not_disturb_it(mps, sure):
+    """Ego turns right at 6 m/s, into a road on which another one comes from its left.
+
+    The place where their ways join is 8 m long. As ego leaves it, at 6 s, the other one is just
+    before it, and goes on as fast as ever: its body comes where ego's was only later.
+    """
+    turns = np.linspace(0, np.pi / 2, 19)
+    bend = np.stack([8 - 8 * np.cos(turns), 8 * np.sin(turns) - 8], axis=1)
+    roads = [
+        lanelet(1, [(0, -60), (0, -8)], successors=(2,)),
+        lanelet(2, bend, predecessors=(1,), successors=(3,), **INSIDE),
+        lanelet(3, [(8, 0), (90, 0)], predecessors=(2, 5)),
+        lanelet(4, [(-90, 0), (-8, 0)], successors=(5,)),
+        lanelet(5, [(-8, 0), (8, 0)], predecessors=(4,), successors=(3,), **INSIDE),
+    ]
+    leaves_at_m = 52 + 8 * np.pi / 2 + 2
+    ego = along(7, np.array([(0, -60), *bend, (90, 0)]), leaves_at_m + 6 * (TIMES - 6))
+    # Its front is at x = 0.5, before the bend comes into its lane, a quarter of a second later
+    other = along(8, np.array([(-90, 0), (90, 0)]), 90 - 1.5 + mps * (TIMES - 6.25))
+    found = replace(recording(roads, [ego, other]), complete=frozenset({"YIELD"}))
+    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    side = "conflict_from_left"
+    assert bool(signals.world[side].any()) == sure
+    assert bool(signals.unknown[side].any()) != sure

@@ -102,14 +102,21 @@ def _held_up_until(
         moved_in = min(max(passages.front_enters(own), first), last)
         late = (at - enters) * step_s > _LATE_S and _stood(context, own, enters, until)
         late |= _catches_up(context, (own, enters, until), other, at, left_m)
-        # The meeting place is wider than the bodies. One that slows down for itself, and whose body
-        # does not come that soon, is not disturbed
-        own_reason = (
-            not (train or late_s < _NEAR * limits.yielding_s)
-            and _slows_for_itself(context, ego, other, first + decides, comes)
+        # The meeting place is wider than the bodies, and where ways join it is longer. One that
+        # drives on, or slows down for itself, and whose body does not come that soon, is not
+        # disturbed
+        undisturbed = (
+            not train
+            and (
+                _keeps_driving(context, other, first + decides, comes)
+                or (
+                    late_s >= _NEAR * limits.yielding_s
+                    and _slows_for_itself(context, ego, other, first + decides, comes)
+                )
+            )
             and gap_s(context, (own.row, other.row), (enters, comes)) >= limits.yielding_s
         )
-        waits = _stands(context, other, moved_in) or own_reason
+        waits = _stands(context, other, moved_in) or undisturbed
         return first, drove_on and not late and not waits
     travelled = passages.travelled[other.row]
     place = float(np.interp(at, np.arange(len(travelled)), travelled)) + left_m
@@ -290,6 +297,13 @@ def slows_down(context: DriveContext, other: Passage, first: int, last: int) -> 
     steps = min(steps, len(travelled) - 1)
     slowest = float((travelled[steps:] - travelled[:-steps]).min()) / steps / step_s
     return slowest < _SLOWED * float(passages.tracks.speed[other.row, first])
+
+
+def _keeps_driving(context: DriveContext, other: Passage, first: int, last: int) -> bool:
+    """Whether a vehicle drives between two columns, and does not get slower meanwhile."""
+    speed = context.surroundings.passages.tracks.speed[other.row, first : last + 1]
+    drives = bool(np.fmin.reduce(speed) > DRIVES_MPS)
+    return drives and not slows_down(context, other, first, last)
 
 
 def drives_in(context: DriveContext, own: Passage, last: int) -> int:
