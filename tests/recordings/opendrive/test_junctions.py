@@ -326,3 +326,41 @@ def test_no_limit_holds_within_a_junction_alone(tmp_path, within, after, holds):
     found = read_map(written(tmp_path, text), 0.1)
     assert found.lanelets["4.0.-1"].limit_mps == holds
     assert any("turning speeds" in remark for remark in found.remarks) == (within != holds)
+
+
+@pytest.mark.parametrize("narrows", [True, False])
+def test_a_lane_of_a_way_ends_where_the_one_begins_that_it_leads_to(tmp_path, narrows):
+    """Two lanes become one, but are drawn side by side to the end, as by SUMO's netconvert."""
+    widths = {"mark": "solid", "width": 3.5}
+    to = -1 if narrows else -2
+    ahead = [lane(number, **widths) for number in ((-1,) if narrows else (-1, -2))]
+    whole = document(
+        road(1, section(lane(-1, **widths), lane(-2, **widths)), links="successor=junction:9"),
+        road(3, section(*ahead), plan=geometry(x=120), links="predecessor=junction:9"),
+        road(
+            4,
+            section(
+                lane(-1, links="predecessor=-1 successor=-1", **widths),
+                lane(-2, links=f"predecessor=-2 successor={to}", **widths),
+            ),
+            plan=geometry(x=100, length=20),
+            length=20,
+            junction=9,
+            links="predecessor=road:1:end successor=road:3:start",
+        ),
+        """<junction id="9" name="">
+          <connection id="0" incomingRoad="1" connectingRoad="4" contactPoint="start">
+            <laneLink from="-1" to="-1"/><laneLink from="-2" to="-2"/></connection></junction>""",
+    )
+    found = read_map(written(tmp_path, whole), 0.1)
+    kept, other = (found.lanelets[name] for name in ("4.0.-1", "4.0.-2"))
+    assert kept.right[[0, -1]] == pytest.approx(np.array([(100, -3.5), (120, -3.5)]))
+    assert other.successors == (f"3.0.{to}",)
+    ends = 0.0 if narrows else -3.5
+    assert other.left[[0, -1]] == pytest.approx(np.array([(100, -3.5), (120, ends)]))
+    assert other.right[[0, -1]] == pytest.approx(np.array([(100, -7), (120, ends - 3.5)]))
+    assert other.centre[-1] == pytest.approx((120, ends - 1.75))
+    marks = {None} if narrows else {"solid"}
+    assert {other.left_mark, other.right_mark} == marks
+    assert (kept.right_of, other.left_of) == ((None, None) if narrows else ("4.0.-2", "4.0.-1"))
+    assert any("drawn anew" in remark for remark in found.remarks) == narrows

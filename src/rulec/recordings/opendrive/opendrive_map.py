@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -37,6 +37,7 @@ from rulec.recordings.opendrive.pieces import RoadPiece, directions, neighbour, 
 from rulec.recordings.opendrive.posted_signs import posted_on, sign_remarks
 from rulec.recordings.opendrive.signal_catalogues import country_of
 from rulec.recordings.opendrive.turning_speeds import without_turning_speeds
+from rulec.recordings.polylines import shares_along
 from rulec.recordings.recording import (
     LONGEST_M,
     REGULATING,
@@ -56,6 +57,12 @@ NARROWEST_M = 0.05
 
 _SAME_M = 0.3
 """Ends of borders at most this far apart count as the same."""
+
+_MEETS_M, _LEADS_M = 1.0, 8.0
+"""A lane meets one that begins up to the first from its end; farther than the second it is a jump.
+
+Two lanes lie between.
+"""
 
 UNSEEN = ObservedLight({})
 """A traffic light whose states the map does not contain."""
@@ -121,7 +128,8 @@ def read_opendrive_map(path: Path) -> RoadMap:
         ),
     )
     within = {whole.id_of(key) for key in whole.lane_keys() if content.roads[key.road].junction}
-    lanelets, slow_turns = without_turning_speeds({x.id: x for x in _lanelets(whole)}, within)
+    drawn, led = _led_to_what_follows({x.id: x for x in _lanelets(whole)}, within)
+    lanelets, slow_turns = without_turning_speeds(drawn, within)
     for road in content.roads.values():
         for crossing in crosswalks(road, pieces[road.id], posted[road.id]):
             lanelets.setdefault(crossing.id, crossing)
@@ -133,7 +141,7 @@ def read_opendrive_map(path: Path) -> RoadMap:
         lanelets=lanelets,
         side=side,
         country=_country(content),
-        remarks=(*_remarks(content, side, slow_turns), *sign_remarks(content, posted)),
+        remarks=(*_remarks(content, side, slow_turns, led), *sign_remarks(content, posted)),
     )
 
 
@@ -312,7 +320,59 @@ def _country(content: OpenDrive) -> str:
     return codes.pop() if len(codes) == 1 else ""
 
 
-def _remarks(content: OpenDrive, side: Side | None, slow_turns: int) -> Iterator[str]:
+def _led_to_what_follows(
+    lanelets: Mapping[str, Lanelet], inside: Set[str]
+) -> tuple[dict[str, Lanelet], int]:
+    """The lanelets, and how many of them ``inside`` junctions are drawn anew.
+
+    SUMO's netconvert draws all lanes of a way through a junction side by side, also where they
+    lead into one: a link tells where such a lane leads, and its bounds go there. What is marked
+    beside it is not known then.
+    """
+    changed = dict(lanelets)
+    anew: set[str] = set()
+    for name in sorted(inside):
+        own = lanelets[name]
+        begin, end = (
+            _misses(own, [lanelets[x] for x in names if x in lanelets], at)
+            for names, at in ((own.predecessors, 0), (own.successors, -1))
+        )
+        if begin is None and end is None:
+            continue
+        begin, end = (np.zeros((2, 2)) if away is None else away for away in (begin, end))
+        left, right = (
+            points + (1 - share) * first + share * last
+            for points, first, last in zip((own.left, own.right), begin, end, strict=True)
+            for share in (shares_along(points)[:, None],)
+        )
+        centre = (left + right) / 2
+        changed[name] = replace(
+            own, left=left, right=right, centre=centre, left_mark=None, right_mark=None
+        )
+        anew.add(name)
+    for name, own in changed.items():
+        # They are no longer side by side with others
+        left_of, right_of = (
+            None if name in anew or x in anew else x for x in (own.left_of, own.right_of)
+        )
+        changed[name] = replace(own, left_of=left_of, right_of=right_of)
+    return changed, len(anew)
+
+
+def _misses(own: Lanelet, others: Sequence[Lanelet], at: int) -> Points | None:
+    """How far the left and the right bound of the one lanelet after or before another one are off.
+
+    None if the two meet, or there is no single one.
+    """
+    if len(others) != 1:
+        return None
+    (other,) = others
+    offsets = np.array([other.left[-1 - at] - own.left[at], other.right[-1 - at] - own.right[at]])
+    away = float(np.hypot(*offsets.mean(axis=0)))
+    return offsets if _MEETS_M < away < _LEADS_M else None
+
+
+def _remarks(content: OpenDrive, side: Side | None, slow_turns: int, led: int) -> Iterator[str]:
     strange: dict[str, None] = {}
     for road in content.roads.values():
         for section in road.sections:
@@ -328,6 +388,11 @@ def _remarks(content: OpenDrive, side: Side | None, slow_turns: int) -> Iterator
         yield "the map does not give the side of traffic"
     if side == "left" and not any(road.has_rule for road in content.roads.values()):
         yield "traffic keeps to the left, as its lanes show: no road has a `rule`"
+    if led:
+        yield (
+            f"lanes within junctions that end or begin beside those that they lead to ({led}) are "
+            "drawn anew, and what is marked beside them is taken as unknown"
+        )
     if slow_turns:
         yield (
             f"limits of {slow_turns} lanes within junctions are below those before and after: they "
