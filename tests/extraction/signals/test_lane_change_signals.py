@@ -119,6 +119,22 @@ def test_who_follows_a_way_to_where_two_become_one_may_have_changed_to_none(x, k
     assert found.unknown["lane_change"][change] == (not known)
 
 
+def test_who_goes_straight_on_into_the_only_lane_may_have_changed_to_none():
+    """The road comes over to ego's lane from 100 to 110 m; 20 m farther ego is in the only one."""
+    road = [
+        straight(1, 0, 100, left_of=2, successors=(4,)),
+        straight(2, 0, 100, 4, right_of=1, successors=(5,)),
+        lanelet(4, [(100, 0), (110, 4)], left_of=5, predecessors=(1,), successors=(3,)),
+        straight(5, 100, 110, 4, right_of=4, predecessors=(2,), successors=(3,)),
+        straight(3, 110, 300, 4, predecessors=(4, 5)),
+    ]
+    ego = vehicle(7, {k: (45 + 20.0 * k, 4) for k in range(6)})
+    found = lane_change_signals(context_of(recording(road, [ego]), ("1", "4", "3")))
+    (change,) = np.flatnonzero(found.world["lane_change"])
+    assert ego.states[change].x == 125
+    assert found.unknown["lane_change"][change]
+
+
 @pytest.mark.parametrize(("y", "known"), [(0.0, False), (-2.5, True)])
 def test_who_follows_a_way_that_parts_slowly_may_have_changed_to_none(y, known):
     """The ways are 4 m apart 60 m behind the fork, where the road goes on straight.

@@ -68,9 +68,10 @@ def _lane_change(context: DriveContext) -> SignalColumns:
         unknown |= _within_tolerance(context, changes) | _there_and_back(context, changes)
         unknown |= changes & (swings | stands)
         states = (changes & ~unknown).nonzero()[0]
-        pieces = context.road.piece(context.ego_extents.s[0, states])
-        for change, piece in zip(states.tolist(), pieces.tolist(), strict=True):
-            unknown[change] = _at_fork(context, change, piece) or _at_merge(context, change, piece)
+        own = context.ego_extents.s[0]
+        places = (context.road.piece(own[at]).tolist() for at in (states, states - 1))
+        for change, piece, before in zip(states.tolist(), *places, strict=True):
+            unknown[change] = _at_fork(context, change, piece) or _at_merge(context, change, before)
     unknown |= np.logical_or.reduce(crossed_on_ring(context))
     return SignalColumns({"lane_change": changes}, unknown={"lane_change": unknown})
 
@@ -114,7 +115,7 @@ def _at_fork(context: DriveContext, change: int, last: int) -> bool:
 def _at_merge(context: DriveContext, change: int, first: int) -> bool:
     """Whether the lanes that ego changes between become one less than ``_FORK_M`` ahead.
 
-    ``first`` is the piece of the road that ego is in.
+    Or have done so since the state before, in which ego was in the piece ``first`` of the road.
     """
     road, s = context.road, context.ego_extents.s[0]
     before, after = context.steady_lane[change - 1 : change + 1].tolist()
