@@ -327,10 +327,9 @@ def _led_to_what_follows(
 
     SUMO's netconvert draws all lanes of a way through a junction side by side, also where they
     lead into one: a link tells where such a lane leads, and its bounds go there. What is marked
-    beside it is not known then.
+    beside it is not known then. Neighbours remain, since traffic merges between such lanes.
     """
-    changed = dict(lanelets)
-    anew: set[str] = set()
+    changed, led = dict(lanelets), 0
     for name in sorted(inside):
         own = lanelets[name]
         begin, end = (
@@ -349,14 +348,8 @@ def _led_to_what_follows(
         changed[name] = replace(
             own, left=left, right=right, centre=centre, left_mark=None, right_mark=None
         )
-        anew.add(name)
-    for name, own in changed.items():
-        # They are no longer side by side with others
-        left_of, right_of = (
-            None if name in anew or x in anew else x for x in (own.left_of, own.right_of)
-        )
-        changed[name] = replace(own, left_of=left_of, right_of=right_of)
-    return changed, len(anew)
+        led += 1
+    return changed, led
 
 
 def _misses(own: Lanelet, others: Sequence[Lanelet], at: int) -> Points | None:
