@@ -365,3 +365,27 @@ def test_a_lane_of_a_way_ends_where_the_one_begins_that_it_leads_to(tmp_path, na
     # Who merges changes from one to the other, so they stay neighbours
     assert (kept.right_of, other.left_of) == ("4.0.-2", "4.0.-1")
     assert any("drawn anew" in remark for remark in found.remarks) == narrows
+
+
+def test_a_wider_lane_begins_where_the_map_has_it(tmp_path):
+    """Its other bound goes on, so nothing is drawn beside what it leads to."""
+    whole = document(
+        road(1, section(lane(-1, width=2.5)), links="successor=junction:9"),
+        road(3, section(lane(-1, width=6)), plan=geometry(x=120), links="predecessor=junction:9"),
+        road(
+            4,
+            section(lane(-1, links="predecessor=-1 successor=-1", width=2.5, mark="solid")),
+            plan=geometry(x=100, length=20),
+            length=20,
+            junction=9,
+            links="predecessor=road:1:end successor=road:3:start",
+        ),
+        """<junction id="9" name="">
+          <connection id="0" incomingRoad="1" connectingRoad="4" contactPoint="start">
+            <laneLink from="-1" to="-1"/></connection></junction>""",
+    )
+    found = read_map(written(tmp_path, whole), 0.1)
+    assert found.lanelets["4.0.-1"].successors == ("3.0.-1",)
+    assert found.lanelets["4.0.-1"].right[:, 1] == pytest.approx(-2.5)
+    assert found.lanelets["4.0.-1"].right_mark == "solid"
+    assert not any("drawn anew" in remark for remark in found.remarks)

@@ -59,7 +59,7 @@ _SAME_M = 0.3
 """Ends of borders at most this far apart count as the same."""
 
 _MEETS_M, _LEADS_M = 1.0, 8.0
-"""A lane meets one that begins up to the first from its end; farther than the second it is a jump.
+"""A bound meets one that begins up to the first from its end; farther than the second it is a jump.
 
 Two lanes lie between.
 """
@@ -355,14 +355,14 @@ def _led_to_what_follows(
 def _misses(own: Lanelet, others: Sequence[Lanelet], at: int) -> Points | None:
     """How far the left and the right bound of the one lanelet after or before another one are off.
 
-    None if the two meet, or there is no single one.
+    None if a bound of the two meets, as where one is wider, or there is no single one.
     """
     if len(others) != 1:
         return None
     (other,) = others
     offsets = np.array([other.left[-1 - at] - own.left[at], other.right[-1 - at] - own.right[at]])
-    away = float(np.hypot(*offsets.mean(axis=0)))
-    return offsets if _MEETS_M < away < _LEADS_M else None
+    away = np.hypot(*offsets.T)
+    return offsets if away.min() > _MEETS_M and away.max() < _LEADS_M else None
 
 
 def _remarks(content: OpenDrive, side: Side | None, slow_turns: int, led: int) -> Iterator[str]:
