@@ -432,3 +432,35 @@ def test_a_long_condition_is_shown_in_part(capsys, tmp_path, monkeypatch):
     (line,) = [line for line in out.splitlines() if "is never true" in line]
     assert len(line) < 230
     assert " …` is never true" in line
+
+
+def test_two_editions_of_one_rulebook_are_told_apart(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for folder in ("old", "new"):
+        Path(folder).mkdir()
+        edition = ODD if folder == "old" else ODD.replace("reject { b(v); l(v) }\n", "")
+        edition += "hard rule later { require true\n in force from 2100-01-01 }\n"
+        Path(folder, "odd.rules").write_text(edition)
+    files = "old/odd.rules", "new/odd.rules"
+    _, out, err = run(capsys, *files, "--coverage")
+    old, new = "odd (old/odd.rules)", "odd (new/odd.rules)"
+    assert [line for line in out.splitlines() if line.startswith(("pass", "FAIL"))] == [
+        f"pass  {old} A/1",
+        f"FAIL  {old} A/to <&> right",
+        f"FAIL  {old} A/3",
+        f"FAIL  {old} B/never",
+        f"pass  {new} A/1",
+        f"FAIL  {new} A/to <&> right",
+        f"FAIL  {new} B/never",
+    ]
+    for name in (old, new):
+        assert f"\n{name} B: " in out
+        assert f"rule `later` of {name} is not in force on " in err
+    _, out, _ = run(capsys, *files, "--coverage", "--json")
+    data = json.loads(out)
+    assert [example["rulebook"] for example in data["examples"]] == [old] * 4 + [new] * 3
+    assert {rule["rulebook"] for rule in data["coverage"]["rules"]} == {old, new}
+    _, out, _ = run(capsys, *files, "--output-format", "junit")
+    suites = ElementTree.fromstring(out).findall("testsuite")
+    assert [suite.get("name") for suite in suites] == [old, new]
+    assert [suite.find("testcase").get("classname") for suite in suites] == [f"{old}.A", f"{new}.A"]

@@ -71,21 +71,22 @@ def unexercised(rule: Rule, missing: set[bool], *, any_examples: bool) -> Diagno
     )
 
 
-def untested(book: Rulebook, patterns: Sequence[str]) -> str:
+def untested(book: Rulebook, name: str, patterns: Sequence[str]) -> str:
     """A sentence on the rules that are not tested, since they are not in force; empty for none.
 
-    With ``patterns`` it is about the rules that one of them names, or whose examples.
+    ``name`` is the book's in reports. With ``patterns`` the sentence is about the rules that one of
+    them names, or whose examples.
     """
     names = [
-        name
-        for name in book.not_in_force
-        if not patterns or any(fnmatchcase(name, pattern.partition("/")[0]) for pattern in patterns)
+        rule
+        for rule in book.not_in_force
+        if not patterns or any(fnmatchcase(rule, pattern.partition("/")[0]) for pattern in patterns)
     ]
     if not names:
         return ""
     rules, verb, their = ("rule", "is", "its") if len(names) == 1 else ("rules", "are", "their")
     return (
-        f"{rules} {named(names)} of {book.name} {verb} not in force on {book.at}, so {their} "
+        f"{rules} {named(names)} of {name} {verb} not in force on {book.at}, so {their} "
         "examples are not run"
     )
 

@@ -14,6 +14,7 @@ from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import has_seconds
 from rulec.monitoring.axiom_violations import ImpossibleStateError, check_counting_axioms
 from rulec.monitoring.verify import letter_reader_of, run
+from rulec.rulebook.files.edition_names import edition_names
 from rulec.rulebook.rulebook_model import Example, Rule, Rulebook
 from rulec.rulebook.rules.example_messages import CONTRADICTORY_STATE
 from rulec.trace import Trace
@@ -55,7 +56,8 @@ class ExampleOutcome:
 class ExampleRun(Rows):
     """A compiled rulebook with its warnings and the outcomes of its examples.
 
-    ``patterns`` are those that chose the examples; empty if all were run.
+    ``patterns`` are those that chose the examples; empty if all were run. ``edition`` is the name
+    for reports if another rulebook of the same report has this one's; empty if none has.
     """
 
     __repr__ = short_repr
@@ -65,6 +67,12 @@ class ExampleRun(Rows):
     outcomes: tuple[ExampleOutcome, ...]
     warnings: tuple[Diagnostic, ...] = ()
     patterns: Sequence[str] = ()
+    edition: str = ""
+
+    @property
+    def name(self) -> str:
+        """The rulebook's name in reports."""
+        return self.edition or self.rulebook.name
 
     def names(self, rule: Rule) -> bool:
         """Whether the rule itself was requested, rather than some of its examples."""
@@ -94,6 +102,12 @@ class ExampleRun(Rows):
             }
             for outcome in self.outcomes
         ]
+
+
+def with_distinct_names(runs: Sequence[ExampleRun], references: Sequence[str]) -> list[ExampleRun]:
+    """The runs, those of rulebooks of one name with their ``references`` (names or paths)."""
+    names = edition_names([run.rulebook.name for run in runs], references)
+    return [replace(run, edition=name) for run, name in zip(runs, names, strict=True)]
 
 
 def run_rulebook_examples(

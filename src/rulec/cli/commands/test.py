@@ -107,6 +107,7 @@ def _tested(
     from rulec.batch.example_batch import ExampleRequest, measured_runs
     from rulec.book_tests.book_test_messages import nothing_to_run, untested
     from rulec.book_tests.example_coverage import uncovered_verdicts
+    from rulec.book_tests.example_runs import with_distinct_names
     from rulec.report.tests.example_formats import render
     from rulec.report.tests.example_text import Besides, shortcomings
     from rulec.rulebook.allowances import without_allowed
@@ -114,6 +115,7 @@ def _tested(
     rulebooks = sources_of_rulebooks(references, "has no examples")
     runs: list[ExampleRun] = []
     coverages: list[tuple[RuleCoverage, ...]] = []
+    tested: list[str] = []
     unread: dict[str, Sequence[Diagnostic]] = {}
     request = ExampleRequest(search_path(), wanted.at, wanted.patterns, wanted.measured)
     answers = measured_runs(request, rulebooks, jobs, partial(print_lost, "tested"))
@@ -125,9 +127,11 @@ def _tested(
         run, covers = answer
         print_diagnostics(without_allowed([*run.warnings, *uncovered_verdicts(run)]))
         runs.append(run)
+        tested.append(name)
         coverages.append(covers)
+    runs = with_distinct_names(runs, tested)
     answered = not unread
-    left_out = [*filter(None, (untested(run.rulebook, wanted.patterns) for run in runs))]
+    left_out = [*filter(None, (untested(run.rulebook, run.name, wanted.patterns) for run in runs))]
     if (
         wanted.patterns
         and answered

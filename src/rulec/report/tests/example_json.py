@@ -12,7 +12,6 @@ from rulec.logic.printing import formula_text
 from rulec.report.findings.diagnostics_json import PlaceData, place_data
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 from rulec.report.tests.example_text import asked_rules, missing_example
-from rulec.rulebook.rulebook_model import Rulebook
 
 ExampleVerdict = Literal["accept", "reject"]
 
@@ -104,7 +103,7 @@ def _outcome(run: ExampleRun, outcome: ExampleOutcome) -> OutcomeData:
     return filled(
         OutcomeData,
         outcome,
-        rulebook=run.rulebook.name,
+        rulebook=run.name,
         rule=outcome.rule.name,
         label=outcome.example.label,
         says="accept" if outcome.example.accepts else "reject",
@@ -120,18 +119,17 @@ def _coverage(
         percent=round(percent(asked_rules(runs, covered)), 3),
         percent_with_inherited=round(percent(rule for rules in covered for rule in rules), 3),
         rules=[
-            _rule(run.rulebook, rule)
-            for run, rules in zip(runs, covered, strict=True)
-            for rule in rules
+            _rule(run, rule) for run, rules in zip(runs, covered, strict=True) for rule in rules
         ],
     )
 
 
-def _rule(rulebook: Rulebook, rule: RuleCoverage) -> RuleCoverageData:
+def _rule(run: ExampleRun, rule: RuleCoverage) -> RuleCoverageData:
+    vocabulary = run.rulebook.vocabulary
     edges, values = rule.missing_edges, rule.missing_values
-    examples = [missing_example(edge, rulebook.vocabulary) for edge in edges]
+    examples = [missing_example(edge, vocabulary) for edge in edges]
     return RuleCoverageData(
-        rulebook=rulebook.name,
+        rulebook=run.name,
         rule=rule.rule,
         inherited=rule.inherited,
         percent=round(percent([rule]), 3),
@@ -149,7 +147,7 @@ def _rule(rulebook: Rulebook, rule: RuleCoverage) -> RuleCoverageData:
             MissingLimitData(
                 limit=formula_text(limit.comparison),
                 value=limit.value,
-                example=missing_example(limit.example, rulebook.vocabulary),
+                example=missing_example(limit.example, vocabulary),
             )
             for limit in rule.missing_limits
         ],

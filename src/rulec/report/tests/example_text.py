@@ -46,8 +46,7 @@ def as_text(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]
     """A line for each example, details of failures, and the totals."""
     verdicts = {True: styled("pass", "green"), False: styled("FAIL", "bold red")}
     lines = [
-        f"{verdicts[outcome.passed]}  "
-        + visible(f"{run.rulebook.name} {outcome.rule.name}/{outcome.name}")
+        f"{verdicts[outcome.passed]}  " + visible(f"{run.name} {outcome.rule.name}/{outcome.name}")
         for run in runs
         for outcome in run.outcomes
     ]
@@ -61,12 +60,11 @@ def as_text(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]
         for run, rules in zip(runs, covered, strict=True):
             asked = asked_of(rules, run.patterns)
             lines += [
-                f"{run.rulebook.name} {line}"
-                for line in coverage_lines(asked, run.rulebook.vocabulary)
+                f"{run.name} {line}" for line in coverage_lines(asked, run.rulebook.vocabulary)
             ]
             if len(asked) < len(rules):
                 left_out = counted(len(rules) - len(asked), "inherited rule")
-                lines.append(f"{run.rulebook.name}: without {left_out}; --rule '*' shows them, too")
+                lines.append(f"{run.name}: without {left_out}; --rule '*' shows them, too")
         lines.append(coverage_in_words(runs, covered))
     outcomes = [outcome for run in runs for outcome in run.outcomes]
     passed = sum(outcome.passed for outcome in outcomes)

@@ -28,13 +28,13 @@ def as_junit(
     counts = _counts(runs, errors=len(besides.unread), short=len(besides.short))
     root = element(None, "testsuites", name="rulec", **counts)
     for number, run in enumerate(runs):
-        suite = element(root, "testsuite", name=run.rulebook.name, **_counts([run]))
+        suite = element(root, "testsuite", name=run.name, **_counts([run]))
         if covered is not None:
             part = f"{percent(asked_of(covered[number], run.patterns)):.3f}"
             element(element(suite, "properties"), "property", name="coverage", value=part)
         failing = failures(run)
         for index, outcome in enumerate(run.outcomes):
-            _case(suite, run.rulebook.name, outcome, failing.get(index))
+            _case(suite, run.name, outcome, failing.get(index))
         if covered is not None:
             lines = coverage_lines(covered[number], run.rulebook.vocabulary)
             element(suite, "system-out").text = xml_text("\n".join(lines))
