@@ -78,6 +78,31 @@ def test_check_offers_them(formula, way_out):
 
 
 @pytest.mark.parametrize(
+    ("name", "known"),
+    [
+        *(("autobahn", "motorway"), ("freeway", "motorway"), ("abstand(v) < 5 m", "gap")),
+        *(
+            ("kreisverkehr_closed", "roundabout_closed"),
+            ("lowest_geschwindigkeit > 3 m/s", "lowest_speed"),
+        ),
+    ],
+)
+def test_check_offers_words_of_the_rulebook_itself(name, known):
+    text = (
+        "rulebook a\ntype vehicle\nsignal motorway, roundabout default false\n"
+        "quantity gap(v: vehicle) in m default 100\n"
+        "define roundabout_closed = roundabout\nparam lowest_speed = 30 m/s\n"
+        f"hard rule r (v: vehicle) {{ require never (roundabout and {name}) }}\n"
+    )
+    (mistake,) = (
+        finding
+        for finding in diagnose("a.rules", text.encode()).findings
+        if finding.code == "R0202"
+    )
+    assert mistake.help == f"did you mean `{known}`?"
+
+
+@pytest.mark.parametrize(
     ("said", "known"),
     [("lorry", "truck"), ("sporvogn", "tram"), ("gående", "pedestrian"), ("peatón", "pedestrian")],
 )

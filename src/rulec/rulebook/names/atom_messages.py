@@ -182,7 +182,7 @@ def _unknown(
             ("" if use.arguments else _short_form(name, symbols, list(variables)))
             or in_other_letters(name, spelt)
             or meant(name, spelt, _ALIKE, longer=False)
-            or _by_meaning(name, [*atoms, *quantities], symbols)
+            or _by_meaning(name, [*atoms, *quantities, *others], symbols)
             or meant(name, spelt, _ALIKE)
             or _of_no_object(use, quantities)
             or _to_be_declared(use, variables)
@@ -204,9 +204,9 @@ def _to_be_declared(use: tree.AtomUse, variables: Mapping[str, str | None]) -> H
 
 
 def _by_meaning(name: str, known: Sequence[str], symbols: SymbolTable) -> Help:
-    """Words of the shipped vocabularies that mean what a name seems to mean."""
+    """Words that mean what a name seems to mean: those without phrases by their names alone."""
     vocabularies = {Path(file.name).stem for file in symbols.of_vocabularies}
-    return offer(name, tuple(word for word in described(known, vocabularies) if word.phrase))
+    return offer(name, described(known, vocabularies))
 
 
 def _of_no_object(use: tree.AtomUse, quantities: Collection[str]) -> str:
