@@ -275,3 +275,39 @@ def test_a_mistake_is_said_once_where_it_was_made(definitions, use, code, said, 
     mistakes = [one for one in caught.value.diagnostics if one.severity == "error"]
     assert [one.code for one in mistakes] == [code] * number
     assert all(said in one.message for one in mistakes)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("wet", "`wet` is about no object, and one is given"),
+        ("strict", "`strict` is an option and about no object"),
+        ("two", "`two` takes 2 things, and one is given"),
+    ],
+)
+def test_what_does_not_fit_a_definition_is_said_where_it_was_given(given, said):
+    """To mend the definition would change it for others: there is no edit of it."""
+    text = (
+        f"{BOOK}define two(a: car, b: car) = near(a) and near(b)\n"
+        "define inner(r, v: car) = r(v)\ndefine outer(q, v: car) = inner(q, v)\n"
+        f"hard rule r (x: car) {{ require outer({given}, x) }}\n"
+    )
+    with pytest.raises(RulecError) as caught:
+        parse_rulebook(text)
+    (mistake,) = (one for one in caught.value.diagnostics if one.severity == "error")
+    assert (mistake.code, mistake.message) == ("R0301", said)
+    line = text.splitlines()[mistake.place.line - 1]
+    assert line[mistake.place.column - 1 :].startswith(f"{given}, x)")
+    assert mistake.expected == "expected something about one object"
+    assert "it is used here as `r(v)`" in [label.message for label in mistake.labels]
+    assert mistake.fix is None
+    assert mistake.offers == ()
+
+
+def test_too_few_arguments_are_completed_as_the_user_wrote_them():
+    book = f"{BOOK}define two(a: car, b: car) = near(a) and near(b)\n"
+    with pytest.raises(RulecError) as caught:
+        parse_rulebook(f"{book}hard rule r (x: car) {{ require two(x) }}\n")
+    (mistake,) = caught.value.diagnostics
+    assert mistake.expected == "expected `two(x, …)`"
+    assert mistake.labels[0].message == "defined here as `two(a: car, b: car)`"

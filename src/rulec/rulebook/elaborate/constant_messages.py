@@ -13,6 +13,7 @@ from rulec.rulebook.elaborate.elaboration_messages import hour_meant, kind_of, o
 from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, WRONG_ARITY
 from rulec.rulebook.overlay.rulebook_overlay import Value
 from rulec.syntax import tree
+from rulec.syntax.tree_printer import print_parameters
 from rulec.vocabulary.dimensions import (
     ACCELERATION,
     ANGLE,
@@ -79,20 +80,28 @@ def object_as_relation(use: tree.AtomUse, scope: Scope) -> Diagnostic:
 
 
 def wrong_number_of_arguments(use: tree.AtomUse, item: tree.DefineItem) -> Diagnostic:
-    names = ", ".join(parameter.name.text for parameter in item.parameters)
+    """A definition used with too few or too many arguments.
+
+    What is expected has the arguments that the user wrote, not the names of the parameters, which
+    mean nothing where the definition is used.
+    """
     needed, given = len(item.parameters), len(use.arguments)
     things = {0: "nothing", 1: "one thing"}.get(needed, f"{needed} things")
     has = {0: "none is", 1: "one is"}.get(given, f"{given} are")
+    written = [argument.text for argument in use.arguments] if given < needed else []
+    arguments = ", ".join([*written, *["…"] * needed][:needed])
+    head = f"{item.name.text}{print_parameters(item.parameters)}"
+    origin = f"defined here as `{head}`" if needed else f"`{item.name.text}` is defined here"
     return WRONG_ARITY.at(
         use.span,
         f"`{item.name.text}` takes {things}, and {has} given",
-        expected=f"expected `{item.name.text}{f'({names})' if names else ''}`",
+        expected=f"expected `{item.name.text}{f'({arguments})' if needed else ''}`",
         help=(
             "give it as many as its definition has"
             if needed
             else f"write `{item.name.text}` alone: it is about ego or the world, and no object"
         ),
-        labels=(Label(item.name.span.place, f"`{item.name.text}` is defined here"),),
+        labels=(Label(item.name.span.place, origin),),
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeVar
 
+from rulec.diagnostics import Span
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.elaborate import constant_messages as say
 from rulec.rulebook.elaborate.scope import SIDES, AnyArgument, BoundVariable, Call, Evaluate, Scope
@@ -26,15 +27,17 @@ def expand_macro(
         return None
     if len(use.arguments) != len(item.parameters):
         scope.used |= {argument.text for argument in use.arguments}
-        scope.report(say.wrong_number_of_arguments(use, item))
+        scope.report_misfit(use, say.wrong_number_of_arguments(use, item))
         return None
     variables: dict[str, BoundVariable] = {}
     relations: dict[str, str | AnyArgument] = {}
+    given: dict[str, Span] = {}
     for parameter, argument in zip(item.parameters, use.arguments, strict=True):
         local, type_ = parameter.name.text, parameter.type
         relation = _relation(argument, scope)
         if type_ is None and relation is not None:
             relations[local] = relation
+            given[local] = scope.given.get(argument.text, argument.span)
             continue
         wanted = type_.text if type_ is not None and type_.text in scope.symbols.types else None
         others = scope.relation_names() if type_ is None else []
@@ -50,6 +53,7 @@ def expand_macro(
         scope,
         variables=variables,
         relations=relations,
+        given=given,
         calls=(*scope.calls, Call(name, use.span)),
         used=set(),
         owner="definition",

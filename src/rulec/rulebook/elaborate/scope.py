@@ -53,9 +53,10 @@ class Call:
 class Scope:
     """What one rule or definition can refer to: the declarations, constants and its variables.
 
-    ``relations`` are the parameters of a definition that stand for relations. ``calls`` are the
-    definitions being expanded, outermost first. ``in_moment``: the formula is about a single state,
-    as in a count and in a parameter. ``counted`` are the variables (actual names) of the
+    ``relations`` are the parameters of a definition that stand for relations, and ``given`` is
+    where the rule has written what they stand for. ``calls`` are the definitions being expanded,
+    outermost first. ``in_moment``: the formula is about a single state, as in a count and in a
+    parameter. ``counted`` are the variables (actual names) of the
     surrounding counts, ``taken`` all actual names in use.
     """
 
@@ -65,6 +66,7 @@ class Scope:
     mistakes: list[Diagnostic]
     used: set[str] = field(default_factory=set)
     relations: dict[str, str | AnyArgument] = field(default_factory=dict)
+    given: dict[str, Span] = field(default_factory=dict)
     calls: tuple[Call, ...] = ()
     counted: frozenset[str] = frozenset()
     taken: frozenset[str] = frozenset()
@@ -93,6 +95,18 @@ class Scope:
             mistake = replace(mistake, labels=(*mistake.labels, *labels))
         if mistake not in self.mistakes:
             self.mistakes.append(mistake)
+
+    def report_misfit(self, use: tree.AtomUse, mistake: Diagnostic) -> None:
+        """Record that a relation is about another number of objects than ``use`` gives it.
+
+        If it was given to the definition that uses it, that is where to mend it, and not in the
+        definition, which may be right for others.
+        """
+        span = use.name.span
+        given = self.given.get(span.source.text[span.start : span.end])
+        if given is not None:
+            mistake = atom_messages.given_misfit(mistake, use, given)
+        self.report(mistake)
 
     @contextmanager
     def within_limits(self, part: str, name: tree.Name) -> Iterator[None]:
@@ -183,7 +197,8 @@ class Scope:
         if len(arguments) != len(item.parameters):
             self.used |= {argument.text for argument in arguments}
             variables = list(self.variables)
-            self.report(atom_messages.wrong_number(use, name, item, self.symbols, variables))
+            mistake = atom_messages.wrong_number(use, name, item, self.symbols, variables)
+            self.report_misfit(use, mistake)
             return None
         actual = [
             self.object(argument, type_, (item.name, index))

@@ -278,6 +278,20 @@ def wrong_number(
     )
 
 
+def given_misfit(mistake: Diagnostic, use: tree.AtomUse, given: Span) -> Diagnostic:
+    """WRONG_ARITY of a relation that was given to a definition, at the place where it was given."""
+    text = use.span.text
+    number = len(use.arguments)
+    objects = {0: "no object", 1: "one object"}.get(number, f"{number} objects")
+    return WRONG_ARITY.at(
+        given,
+        mistake.message,
+        expected=f"expected something about {objects}",
+        help=f"the definition uses it as `{text}`: give it what is about {objects}",
+        labels=(*mistake.labels, Label(use.span.place, f"it is used here as `{text}`")),
+    )
+
+
 def _declared(name: str, item: Signal | Enumeration | Quantity) -> str:
     """Help where there is no variable yet."""
     letters = "xyz"[: len(item.parameters)]
