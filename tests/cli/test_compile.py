@@ -75,6 +75,32 @@ def test_automata_of_another_rulebook_that_are_replaced_are_named(tmp_path, caps
 
 
 @pytest.mark.parametrize(
+    ("emit", "replaced"),
+    [
+        ("automata", "automata of another rulebook or from before: `r1.hoa`"),
+        ("automata", "files of another rulebook (`one.rules`) were replaced: `same.json`; "),
+        ("c", "files of another rulebook (`one.rules`) were replaced: `same.c`; "),
+        ("rust", "files of another rulebook (`one.rules`) were replaced: `src/lib.rs`; "),
+        ("ros2", "files of another rulebook (`one.rules`) were replaced: `src/same.c`; "),
+        ("ltl", "files of another rulebook (`one.rules`) were replaced: `same.propositions.json`"),
+    ],
+)
+def test_files_of_another_rulebook_of_the_same_name_are_not_replaced_silently(
+    emit, replaced, tmp_path, capsys
+):
+    for number, name in enumerate(("one", "two"), 1):
+        (tmp_path / f"{name}.rules").write_text(
+            f"rulebook same\nsignal p default false\nhard rule r{number} {{ require never p }}\n"
+        )
+    command = "compile", "--emit", emit, "-o", str(tmp_path / "build")
+    for name in ("one", "one"):
+        assert main([*command, str(tmp_path / f"{name}.rules")]) == 0
+        assert capsys.readouterr().err == ""
+    assert main([*command, str(tmp_path / "two.rules")]) == 0
+    assert replaced in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
     ("emit", "file"), [("c", "Makefile"), ("c", "CMakeLists.txt"), ("rust", "src/lib.rs")]
 )
 def test_build_files_of_others_stay(emit, file, tmp_path, capsys):

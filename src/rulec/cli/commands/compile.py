@@ -23,11 +23,17 @@ from rulec.report.text.console import print_line, print_remark
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 
-_HEAD_CHARACTERS = 1000
-_SOURCE = re.compile(r"/\* sha256 [0-9a-f]+ (.+?) \*/")
-"""An automaton's first line about a source, which is the rulebook's own."""
+_HEAD_CHARACTERS = 4000
+_SOURCE = re.compile(
+    r"/\* sha256 [0-9a-f]+ (.+?) \*/"
+    r"|\bsource: (.+), SHA-256 "
+    r'|"sources": \[\s*\{\s*"name": "(.+)"'
+)
+"""The first source that a written file names, which is the rulebook's own: of an automaton, of a
+monitor in C or Rust, or of a compiled rulebook and the propositions of formulas."""
 
 _WRITTEN = (".hoa", ".json")
+_NAMING_SOURCES = (*_WRITTEN, ".c", ".rs")
 _FILES = (*_WRITTEN, ".c", ".h", ".hpp", ".rs", ".csv", ".props", ".smv")
 
 
@@ -128,6 +134,7 @@ def command(
         refuse_overwriting(compiled_files, books)
     written = 0
     for book, folder in folders.items():
+        before = _sources_of_files(folder)
         with errors_told():
             if emit == "ltl":
                 paths = session.write_ltl(book, folder, step_s)
@@ -135,11 +142,9 @@ def command(
                 compiled = session.compile_rulebook(book, step_s=steps_s or None)
                 several = len({rule.step_s for rule in compiled.rules} - {None}) > 1
                 compiled = compiled.at_one_step()
-                before = _sources_of_automata(folder)
                 paths = session.write_compiled(compiled, folder, certificate=not no_certificate)
                 if several:
                     _tell_step(compiled)
-                _tell_replaced(folder, before)
                 _tell_others(folder, paths)
             else:
                 compiled = session.compile_rulebook(book, step_s=steps_s or None)
@@ -149,6 +154,7 @@ def command(
                     )
                 if step_s is None:
                     _tell_step(compiled)
+            _tell_replaced(folder, before)
             for path in paths:
                 print_line(f"wrote {path}")
             written += 1
@@ -174,26 +180,31 @@ def _tell_others(folder: Path, written: Sequence[Path]) -> None:
         )
 
 
-def _sources_of_automata(folder: Path) -> dict[str, str]:
-    """For each automaton in a folder, the source of its rulebook, as its head says."""
+def _sources_of_files(folder: Path) -> dict[str, str]:
+    """For each written file in a folder, the source of its rulebook, as its head says."""
     found = {}
-    for path in folder.glob("*.hoa"):
+    for path in (*folder.glob("*.*"), *folder.glob("src/*.*")):
+        if path.suffix not in _NAMING_SOURCES or not path.is_file():
+            continue
         # What cannot be read is told when it is written.
         with suppress(OSError):
-            head = path.read_text(encoding="utf-8", errors="replace")[:_HEAD_CHARACTERS]
-            source = _SOURCE.search(head)
-            found[path.name] = source[1] if source else ""
+            with path.open(encoding="utf-8", errors="replace") as file:
+                source = _SOURCE.search(file.read(_HEAD_CHARACTERS))
+            if source or path.suffix == ".hoa":
+                name = path.relative_to(folder).as_posix()
+                found[name] = source[source.lastindex or 0] if source else ""
     return found
 
 
 def _tell_replaced(folder: Path, before: Mapping[str, str]) -> None:
-    """Warn about automata of other rulebooks that were replaced because rules have their names."""
-    now = _sources_of_automata(folder)
+    """Warn about files of other rulebooks that were replaced: rules or rulebooks have one name."""
+    now = _sources_of_files(folder)
     replaced = sorted(name for name, source in before.items() if now.get(name, source) != source)
     if replaced:
         sources = named(sorted({before[name] for name in replaced} - {""}))
+        kind = "automata" if all(name.endswith(".hoa") for name in replaced) else "files"
         print_remark(
-            f"in {folder} automata of another rulebook{f' ({sources})' if sources else ''} were "
+            f"in {folder} {kind} of another rulebook{f' ({sources})' if sources else ''} were "
             f"replaced: {named(replaced)}; give each rulebook a folder of its own"
         )
 
