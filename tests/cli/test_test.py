@@ -464,3 +464,28 @@ def test_two_editions_of_one_rulebook_are_told_apart(capsys, tmp_path, monkeypat
     suites = ElementTree.fromstring(out).findall("testsuite")
     assert [suite.get("name") for suite in suites] == [old, new]
     assert [suite.find("testcase").get("classname") for suite in suites] == [f"{old}.A", f"{new}.A"]
+
+
+@pytest.mark.parametrize("others", [["A"], ["B/never", "A/1"]])
+def test_every_pattern_has_to_match(odd, capsys, others):
+    """A misspelt one beside others would test less than was asked for, and say nothing."""
+    patterns = [argument for pattern in (*others, "C*") for argument in ("--rule", pattern)]
+    status, out, err = run(capsys, odd, *patterns)
+    assert (status, out) == (2, "")
+    assert "error[R0460]: no rule and no example matches `C*`\n" in err
+    assert "rules are `A`, `B`" in err
+
+
+def test_a_pattern_may_match_in_one_of_several_rulebooks(odd, capsys):
+    Path("other.rules").write_text(ODD.replace("rule A", "rule C").replace("odd", "other"))
+    status, out, err = run(capsys, odd, "other.rules", "--rule", "A/1", "--rule", "C/1")
+    assert (status, err) == (0, "")
+    assert out.splitlines()[:2] == ["pass  odd A/1", "pass  other C/1"]
+
+
+def test_a_pattern_beside_others_may_match_what_is_not_in_force(odd, capsys):
+    later = "hard rule later { require true\n in force from 2100-01-01 }\n"
+    Path(odd).write_text(ODD + later)
+    status, _, err = run(capsys, odd, "--rule", "A/1", "--rule", "later")
+    assert status == 0
+    assert "rule `later` of odd is not in force on " in err

@@ -39,7 +39,8 @@ def run_examples(request: ExampleRequest, rulebook: str | Path) -> ExampleRun:
     rules = tuple(rule for rule in book.rules if is_chosen(rule, request.patterns))
     chosen = replace(book, rules=rules) if rules else book
     compiled = StepCompiler(book).at_own_steps(chosen.rules)
-    return run_rulebook_examples(chosen, compiled, loaded.warnings, request.patterns)
+    run = run_rulebook_examples(chosen, compiled, loaded.warnings, request.patterns)
+    return replace(run, rule_names=tuple(rule.name for rule in book.rules))
 
 
 MeasuredRun = tuple[ExampleRun, tuple[RuleCoverage, ...]]

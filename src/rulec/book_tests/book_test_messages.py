@@ -27,7 +27,7 @@ NOTHING_TO_RUN = Code(
     title="no rule and no example matches `--rule`",
     why="With `--rule PATTERN`, `rulec test` runs the examples whose `RULE` or `RULE/LABEL` "
     "matches the pattern. If none matches, or those that match are not in force, nothing is tested "
-    "and nothing is covered.",
+    "and nothing is covered. Each of several patterns has to match something.",
     bad="rulec test esterle2019 --rule R7",
     good="rulec test esterle2019 --rule R1",
     kind="command",

@@ -58,6 +58,7 @@ class ExampleRun(Rows):
 
     ``patterns`` are those that chose the examples; empty if all were run. ``edition`` is the name
     for reports if another rulebook of the same report has this one's; empty if none has.
+    ``rule_names`` are all rules of the rulebook, of which patterns may have chosen some.
     """
 
     __repr__ = short_repr
@@ -68,6 +69,7 @@ class ExampleRun(Rows):
     warnings: tuple[Diagnostic, ...] = ()
     patterns: Sequence[str] = ()
     edition: str = ""
+    rule_names: Sequence[str] = ()
 
     @property
     def name(self) -> str:

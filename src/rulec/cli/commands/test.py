@@ -105,7 +105,7 @@ def _tested(
 ) -> int:
     # Late import, not for --help: rulebooks and their automata (130 ms).
     from rulec.batch.example_batch import ExampleRequest, measured_runs
-    from rulec.book_tests.book_test_messages import nothing_to_run, untested
+    from rulec.book_tests.book_test_messages import untested
     from rulec.book_tests.example_coverage import uncovered_verdicts
     from rulec.book_tests.example_runs import with_distinct_names
     from rulec.report.tests.example_formats import render
@@ -132,13 +132,8 @@ def _tested(
     runs = with_distinct_names(runs, tested)
     answered = not unread
     left_out = [*filter(None, (untested(run.rulebook, run.name, wanted.patterns) for run in runs))]
-    if (
-        wanted.patterns
-        and answered
-        and not any(run.outcomes or any(map(run.names, run.rulebook.rules)) for run in runs)
-    ):
-        names = dict.fromkeys(rule.name for run in runs for rule in run.rulebook.rules)
-        raise RulecError([nothing_to_run(wanted.patterns, list(names), left_out)])
+    if answered:
+        _refuse_unmatched(runs, wanted.patterns, left_out)
     for sentence in left_out:
         print_remark(f"rulec: {sentence}")
     covered = coverages if wanted.measured else None
@@ -149,3 +144,30 @@ def _tested(
         print_remark(f"rulec: {sentence}")
     failed = any(not outcome.passed for run in runs for outcome in run.outcomes)
     return ExitStatus.after(answered=answered, failed=failed or bool(short))
+
+
+def _refuse_unmatched(
+    runs: Sequence[ExampleRun], patterns: Sequence[str], left_out: Sequence[str]
+) -> None:
+    """Refuse a pattern that matches no rule and no example: it may be misspelt.
+
+    Rules that are not in force count as matched if anything else is; ``left_out`` tells of them.
+    """
+    # Late import, not for --help: rulebooks and their automata (130 ms).
+    from rulec.book_tests.book_test_messages import nothing_to_run, untested
+    from rulec.book_tests.example_runs import is_chosen
+
+    missing = [
+        pattern
+        for pattern in patterns
+        if not any(is_chosen(rule, [pattern]) for run in runs for rule in run.rulebook.rules)
+    ]
+    unknown = [
+        pattern
+        for pattern in missing
+        if not any(untested(run.rulebook, run.name, [pattern]) for run in runs)
+    ]
+    if unknown or (missing and len(missing) == len(patterns)):
+        names = dict.fromkeys(name for run in runs for name in run.rule_names)
+        told = () if unknown else left_out
+        raise RulecError([nothing_to_run(unknown or missing, list(names), told)])
