@@ -71,7 +71,7 @@ def test_findings_by_kind(folder, capsys):
     [
         ([], 0),
         (["--fail-on", "dropped"], 1),
-        (["--fail-on", "failing"], 0),
+        (["--fail-on", "failing"], 2),
         (["--fail-on", "failing", "--examples"], 1),
         (["--fail-on", "uncited", "--fail-on", "silent"], 1),
         (["--fail-on", "uncited"], 0),
@@ -100,7 +100,7 @@ def test_a_law_s_text_that_has_changed_since(folder, capsys):
     assert "\n  cites found in old.md            2 of 2\n" in out
     assert "\n  articles dealt with              50 % ██████████░░░░░░░░░░ 1 of 2: " in out
     assert "\n  § 10a  Slowness: covered by changed\n  § 12   Fees: to do\n" in out
-    assert run(capsys, "island.rules", "--law", "old.md", *laws[4:])[0] == 0
+    assert run(capsys, "island.rules", "--law", "old.md", *laws[4:])[0] == 2
     data = json.loads(run(capsys, "island.rules", *laws, "--output-format", "json")[1])["audits"][0]
     assert (data["law_text"], data["counts"]["cites_found"]) == ("old.md", 2)
     assert [article["state"] for article in data["provisions"]] == ["covered", "to do"]
@@ -242,3 +242,23 @@ def test_a_narrow_page():
 """
         in text
     )
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--fail-on", "failing"], "--fail-on failing needs --examples: without, none is found"),
+        (["--fail-on", "uncited", "--fail-on", "failing"], "failing needs --examples"),
+        (["--fail-on", "not-found"], "--fail-on not-found needs --law: "),
+        (["--fail-on", "unread"], "--fail-on unread needs --law: "),
+        (["--fail-on", "law-changed"], "--fail-on law-changed needs --law-now: "),
+        (["--map", "m.xml"], "are about a recording: name it by --source"),
+        (["--scenario", "s"], "are about a recording: name it by --source"),
+        (["--input-format", "commonroad"], "are about a recording: name it by --source"),
+    ],
+)
+def test_an_option_that_would_have_no_effect_is_refused(options, words, capsys):
+    assert main(["audit", "esterle2019", *options]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert words in err

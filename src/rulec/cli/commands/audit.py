@@ -22,6 +22,15 @@ if TYPE_CHECKING:
     from rulec.analysis.audit.source_audit import SourceAudit
 
 
+_FOUND_WITH = {
+    "failing": "--examples",
+    "not-found": "--law",
+    "unread": "--law",
+    "law-changed": "--law-now",
+}
+"""The kinds of findings that are found only with an option."""
+
+
 @click.command(cls=Verb)
 @shared.rulebooks_argument()
 @output_options(endings_of("text", "markdown", "json"), "the audit")
@@ -93,6 +102,15 @@ def command(
         raise click.UsageError("--law-now needs --law, the text that it is compared with")
     if law is not None and len(rulebooks) > 1:
         raise click.UsageError("--law is the law of one rulebook; audit the others by themselves")
+    # Nothing would ever be found, and the audit always succeed.
+    given = {"--examples": run, "--law": law is not None, "--law-now": law_now is not None}
+    for kind, option in _FOUND_WITH.items():
+        if kind in fatal and not given[option]:
+            raise click.UsageError(f"--fail-on {kind} needs {option}: without, none is found")
+    if source is None and any(value is not None for value in options.values()):
+        raise click.UsageError(
+            "--map, --scenario and --input-format are about a recording: name it by --source"
+        )
     where = recording_source(source or "", options)
     older = None
     if compare is not None:
