@@ -69,6 +69,19 @@ II. Not at
 Article 4 crossings.
 """
 
+PORTUGUESE = """\
+Artigo 18.º
+Distância
+
+1 — Keep a distance.
+
+2 — Leave room.
+
+Artigo 18.º-A
+
+Cycles.
+"""
+
 
 @pytest.mark.parametrize(
     ("cite", "expected", "unread"),
@@ -101,6 +114,12 @@ Article 4 crossings.
         ("art. 17 ust. 1 pkt 2 lit. a", ["art. 17(1) no. 2a"], ()),
         ("§ 17 odst. 1 písm. a) a § 18", ["§ 17(1)a", "§ 18"], ()),
         ("art. 22bis para. 2", ["art. 22bis(2)"], ()),
+        ("Artigo 18.º, n.º 2", ["Artigo 18 no. 2"], ()),
+        ("art. 18.º n.os 1 e 2", ["art. 18 no. 1", "art. 18 no. 2"], ()),
+        ("Artigo 27.º n.º 1 alínea a)", ["Artigo 27 no. 1a"], ()),
+        ("Artigos 41.º e 42.º", ["Artigos 41", "Artigos 42"], ()),
+        ("artigo 18.º-A", ["artigo 18-A"], ()),
+        ("artículo 7º apartado 2", ["artículo 7(2)"], ()),
         ("vtrl. § 6(1)", [], ("vtrl. § 6(1)",)),
         ("Convention Art. 10(3); § 7(3a)", ["§ 7(3a)"], ("Convention Art. 10(3)",)),
     ],
@@ -124,6 +143,13 @@ def test_what_a_cite_names(cite, expected, unread):
         (PLAIN, "Art. 4 no. 1", "Keep a distance."),
         ("163 Overtake\n\n(a) Left.\n\n164 Lorries\n", "Rule 163(a)", "Left."),
         (PLAIN, "Art. 5 II", "Not at Article 4 crossings."),
+        (PORTUGUESE, "artigo 18.º, n.º 2", "Leave room."),
+        (PORTUGUESE, "artigo 18.º-A", "Cycles."),
+        ("Artykuł 24\n\nOvertake.\n", "art. 24", "Overtake."),
+        ("ARTÍCULO 27\n\nOvertake.\n", "art. 27", "Overtake."),
+        ("Čl. 5\n\nOvertake.\n", "čl. 5", "Overtake."),
+        # `s.` begins sentences, too: these articles have only numbers.
+        ("1 Roads\n\ns. 4 says more.\n\n2 Zones\n\nEnd.\n", "Art. 1", "s. 4 says more."),
     ],
 )
 def test_a_place_is_found(text, cite, expected):

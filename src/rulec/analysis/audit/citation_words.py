@@ -31,12 +31,12 @@ SENTENCE: Final = (
     r"(?:ss?\.|S\.|(?i:sentences?|satz|sätze|meningen|punktum|volzin|phrase|periodo|zdanie|věta))"
 )
 NUMBER: Final = (
-    r"(?i:nos?\b\.?|n\.\s?[º°]|n[º°]|nrn?\b\.?|numm?ern?\b|num\b\.?|núm\b\.?|número|numéro|numero"
+    r"(?i:nos?\b\.?|n\.\s?(?:[º°]|os\b)|n[º°]|nrn?\b\.?|numm?ern?\b|num\b\.?|núm\b\.?|número|numéro|numero"
     r"|items?\b|points?\b|punto\b|punten\b|punkte?r?\b|punkten\b|punt\b|p\.|pkt\b\.?|pts?\.|bod\b"
     r"|ziff(?:er)?\b\.?|c\.|commas?\b|onderdeel\b|z\b\.?)"
 )
 LETTER: Final = (
-    r"(?i:lit\b\.?|litt?er?as?\b|litra\b|letters?\b|lett\b\.?|lettera\b|letra\b|lettre\b"
+    r"(?i:lit\b\.?|litt?er?as?\b|litra\b|letters?\b|lett\b\.?|lettera\b|letra\b|lettre\b|alíneas?\b"
     r"|buchst\b\.?|buchstaben?\b|bokstav(?:en)?\b|bogstav\b|písm\b\.?|písmeno\b|onder\b|sub\b)"
 )
 COUNTED: Final = {

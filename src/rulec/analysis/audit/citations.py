@@ -57,8 +57,9 @@ _SPACED: Final = r"(?:[ ](?P<spaced>[a-z])(?![\w.)°])(?!\s+\d))"
 _NUMBER: Final = (
     r"(?P<number>(?:[LRDA]\.\s?(?=\d)|[A-Z]{0,3}[-.]?)\d+"
     rf"(?:[A-Z]{{0,2}}(?![A-Za-z])|{_SUFFIX}?(?![a-z]))"
-    rf"(?:[-.:]\d+{_SUFFIX}?(?![a-z]))*){_SPACED}?"
+    rf"(?:[-.:]\d+{_SUFFIX}?(?![a-z]))*)(?:\.[º°]|º)?(?:-(?P<added>[A-Z])(?!\w))?{_SPACED}?"
 )
+"""Portuguese and Spanish articles may be ordinals: `18.º`, `5º`; what is added is `18.º-A`."""
 _HEAD: Final = re.compile(rf"(?:(?:{_LABEL})\s*)?{_NUMBER}")
 _BEFORE_SIGN: Final = re.compile(
     rf"(?:(?P<chapter>\d+)\s*{words.CHAPTER}\s*)?(?P<section>\d+)(?:\s?(?P<letter>[a-z]))?"
@@ -78,7 +79,7 @@ _PART: Final = re.compile(
 )
 _FURTHER: Final = re.compile(r"\d+|[a-z]|[IVX]+")
 _BETWEEN: Final = re.compile(
-    rf"\s*(?:,|;|\b{words.AND}\b|&|(?<=[\d)])\s+{words.AND_IN_A_LETTER}\s+"
+    rf"\s*(?:,|;|\b{words.AND}\b|&|(?<=[\d)º])\s+{words.AND_IN_A_LETTER}\s+"
     r"(?=[\d(]|(?i:art|čl)))\s*"
 )
 _CZECH_AND: Final = re.compile(r"(§[^§,]*[\d)])\s+a\s+(?=§)")
@@ -146,6 +147,7 @@ def _head(text: str) -> _Head | None:
         return None
     kind = next((name for name in _LABELS if match[name]), None)
     number = re.sub(r"^([A-Z])\.\s?", r"\1", match["number"]) + (match["spaced"] or "")
+    number += f"-{match['added']}" if match["added"] else ""
     return _Head(kind, f"{match[kind]} " if kind else "", number, match.end())
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, TypeAlias
 
+from rulec.analysis.audit import citation_words as words
 from rulec.analysis.audit.audit_messages import NO_ARTICLES
 from rulec.analysis.audit.citations import PartKind, Reference, references_in
 from rulec.diagnostics import Source, SourceLocation
@@ -70,12 +71,15 @@ _ANY_SIGN: Final = re.compile(r"^[^\w\n]*(?:[Zz]eichen|[Ss]ign)\s*\d+", re.MULTI
 _BETWEEN_CELLS: Final = " \t\r\n\f\v\xa0*|"
 _MARKDOWN: Final = re.compile(r"^#{1,6}\s+(?P<head>.*)$", re.MULTILINE)
 _LABELLED: Final = re.compile(
-    r"^[ \t*_]*(?P<head>(?:§|[Aa]rt(?:ic(?:le|olo|ulo)|ikel|ículo)?\b\.?|[Ss]ection\b|[Ss]ec\.|"
-    r"[Rr](?:ule|egel)\b|[Rr]eg(?:ulation)?\b\.?|[Aa]nnexe?\b|[Aa]nlage\b|[Aa]ppendix\b|"
-    r"[Ss]chedule\b)[^\n]{0,200})$",
+    rf"^[ \t*_]*(?P<head>(?!(?i:ss?|rr?)\.|[Rr]\b)(?:{words.ARTICLE}|{words.ANNEX})"
+    r"[^\n]{0,200})$",
     re.MULTILINE,
 )
-"""A line that begins like an article's heading, in a text without heading marks."""
+"""A line that begins like an article's heading, in a text without heading marks.
+
+It begins with any word by which articles are cited, except for abbreviations that no law prints as
+a heading: `s.` of sections and `R` of rules also begin sentences.
+"""
 _NUMBERED: Final = re.compile(
     r"^[ \t*_]*(?P<head>[A-Z]?\d+[\d.:-]*[a-z]?[.:]?[ \t]+[A-ZÄÖÜ][^\n]{0,200})$", re.MULTILINE
 )
@@ -143,7 +147,9 @@ def _named(head: str) -> tuple[str, str] | None:
     """The article or annex named at the start of a heading."""
     plain = head.strip().strip("*_ ")
     begins = re.match(
-        r"\S*?[§.]?\s*[A-Z]{0,3}\.?\d+[a-z]?(?:[-.:]\d+[a-z]?)*|\w+\.?\s+[A-Z]?\d+[a-z]?", plain
+        r"(?:\S*?[§.]?\s*[A-Z]{0,3}\.?\d+[a-z]?(?:[-.:]\d+[a-z]?)*|\w+\.?\s+[A-Z]?\d+[a-z]?)"
+        r"(?:(?:\.[º°]|º)?-[A-Z]\b)?",
+        plain,
     )
     if begins is None or _CONTINUED.match(plain[begins.end() :]):
         return None
