@@ -127,8 +127,8 @@ def test_the_page_is_up_to_date(capsys):
         (["lihgts"], "did you mean the topic `lights`?"),
         # Nearer than the word `bus_lane`.
         (["bus_leavin"], "did you mean the rule `bus_leaving`?"),
-        ([], "give a code, or --all"),
-        (["R0101", "--all"], "give a code, or --all"),
+        ([], "give a code or a word, such as `R0104` or `gap`, or --all"),
+        (["R0101", "--all"], "give a code or a word, such as `R0104` or `gap`, or --all"),
     ],
 )
 def test_what_cannot_be_answered(arguments, words, capsys):

@@ -99,6 +99,15 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         (["show", "de", "--at", "2026"], "error: --at: `2026` is no date: a date is written"),
         (["maneuvers", "x.xml", "--at", "40"], "for a moment in seconds there is `--at-time 40`"),
         (["verify", "--watch"], "no option `--watch` here; `rulec check` and `rulec test` have it"),
+        (
+            ["monitor", "de", "--rule", "R1"],
+            "no option `--rule` here; `rulec verify`, `rulec test`",
+        ),
+        # An argument's name is nothing to type.
+        (["compile", "de", "--rulebok", "x"], "error: there is no option `--rulebok`\n"),
+        # A device is not to be removed.
+        (["check", "/dev/null"], "  = help: leave it out, or give `-` to read standard input\n"),
+        (["explain"], "error: give a code or a word, such as `R0104` or `gap`, or --all\n"),
         (["verify"], "error: `FILE...` is missing\n"),
         (["verify", "x"], "error: `-r` or `--rulebook` is missing\n"),
         (["test", "-r", "de"], "the rulebook is given without `-r`, as in `rulec test de`"),

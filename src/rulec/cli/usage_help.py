@@ -56,6 +56,7 @@ _OF_OTHER_VERBS = {
     "--coverage": "`rulec test` has it",
     "--fix": "`rulec check` has it",
     "--lock": "`rulec check` has it",
+    "--rule": "`rulec verify`, `rulec test`, `rulec show` and `rulec diff` have it",
     "--watch": "`rulec check` and `rulec test` have it",
 }
 """Options that users may look for at the wrong verb."""
@@ -71,7 +72,12 @@ def reworded(problem: click.ClickException) -> str:
     """The message, in the words used for sources, with a suggestion."""
     message = problem.format_message()
     if isinstance(problem, click.NoSuchOption) and problem.ctx is not None:
-        known = [option for parameter in problem.ctx.command.params for option in parameter.opts]
+        known = [
+            option
+            for parameter in problem.ctx.command.params
+            if isinstance(parameter, click.Option)  # an argument's name is nothing to type
+            for option in parameter.opts
+        ]
         if others := _OF_OTHER_VERBS.get(problem.option_name):
             return f"there is no option `{problem.option_name}` here; {others}"
         general = [option for own in problem.ctx.find_root().command.params for option in own.opts]

@@ -80,6 +80,6 @@ def refuse_no_file(path: Path, labels: tuple[Label, ...] = ()) -> None:
         raise NO_ORDINARY_FILE.error(
             SourceLocation(str(path)),
             "it is a pipe, a socket or a device, not a regular file",
-            help="remove it, or give `-` to read standard input",
+            help="leave it out, or give `-` to read standard input",
             labels=labels,
         )

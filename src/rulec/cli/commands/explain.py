@@ -45,7 +45,7 @@ def command(names: tuple[str, ...], every: bool, to: Output) -> int:
     Vocabularies and rulebooks in the working folder are searched, too.
     """
     if every == bool(names):
-        raise click.UsageError("give a code, or --all")
+        raise click.UsageError("give a code or a word, such as `R0104` or `gap`, or --all")
     by_name = {name: code_registry.code_named(name.upper()) for name in names}
     words = {name: _words(name) for name, code in by_name.items() if code is None}
     unknown = [name for name, found in words.items() if not found]
