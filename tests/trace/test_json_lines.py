@@ -122,6 +122,8 @@ def test_what_is_refused(data, code, words):
         (b"version https://git-lfs.github.com/spec/v1\noid sha256:1\n", "a Git LFS pointer"),
         (b"ARROW1" + line(), "Arrow (Feather)"),
         (b"\xd0\xcf\x11\xe0" + line(), "an Excel or Word file"),
+        (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "a picture (PNG)"),
+        (b"%PDF-1.4\n%\xac\xdc\n1 0 obj\n", "a PDF document"),
         (line().decode().encode("utf-16"), "text in UTF-16"),
         (line().decode().encode("utf-16-le"), "text in UTF-16"),
         (line().decode().encode("utf-16-be"), "text in UTF-16"),

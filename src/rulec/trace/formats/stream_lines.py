@@ -80,6 +80,8 @@ class Foreign(NamedTuple):
     help: str
 
 
+_TEXTS = "traces are JSON Lines, CSV or Parquet, and tables of recorded traffic CSV or Parquet"
+
 _UTF16_MARKS = {b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
 _UTF16 = Foreign("text in UTF-16", "save it in UTF-8")
 _BEGINNINGS = {
@@ -95,11 +97,12 @@ _BEGINNINGS = {
     ),
     b"\xd0\xcf\x11\xe0": Foreign("an Excel or Word file", "save its sheet as CSV"),
     b"ARROW1": Foreign("Arrow (Feather)", "write it as Parquet, as `to_parquet` of pandas does"),
+    # Their first lines have no control characters, by which other binary data are known.
+    b"\x89PNG": Foreign("a picture (PNG)", _TEXTS),
+    b"%PDF-": Foreign("a PDF document", _TEXTS),
     b"PAR1": Foreign("Parquet", "add `--input-format parquet`"),
     **dict.fromkeys(_UTF16_MARKS, _UTF16),
 }
-
-_TEXTS = "traces are JSON Lines, CSV or Parquet, and tables of recorded traffic CSV or Parquet"
 
 _TEXT = frozenset(b"\t\n\r\f")
 
