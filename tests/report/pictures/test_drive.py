@@ -25,6 +25,7 @@ from rulec.report.pictures.drives.drive_picture import chosen_moment, drive_pict
 from rulec.report.pictures.drives.nearest_points import nearest_points
 from rulec.report.pictures.drives.scene_json import scene_data
 from rulec.report.pictures.drives.scene_of_drive import SIGHT_M, drive_scene
+from rulec.vocabulary.partial_values import Interval
 from support.builders.recordings import recording, straight, vehicle
 
 HOSTILE = "</script><script>alert('x')</script>&<b>"
@@ -128,6 +129,16 @@ def test_a_violation_is_measured(scene):
     assert violation.against == ("9",)
     assert violation.short == "hard, § 4(1), for 9"
     assert violation.gap_text(3) == "20.0 m"
+    # 3 m to the side, 4 m along the road: the line is 5 m long, whatever the gap.
+    aside = violation.links.copy()
+    aside[3] = (0, 0, 4, 3)
+    for gap, shown in (
+        (4.0, "5.0 m"),
+        (Interval(3.5, 4.25), "5.0 m"),
+        (Interval(4, 5), "4.5±0.5 m"),
+    ):
+        drawn = replace(violation, links=aside, gaps=(None, None, None, gap))
+        assert drawn.gap_text(3) == shown
     # From the middle of ego's front to that of the other's rear.
     assert world(scene, violation.links[3].reshape(2, 2)) == pytest.approx(
         np.array([(22.5 + 2, 0.0), (30 + 16.5 - 2, 0.5)])

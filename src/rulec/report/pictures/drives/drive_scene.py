@@ -100,6 +100,10 @@ class Body:
         return outline
 
 
+_ASIDE_M = 0.5
+"""A line that is longer than the gap along the road by more (m) leads to the side."""
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SceneViolation:
     """A violation at the ``state`` that decides it; the last state if only the end decides.
@@ -135,10 +139,15 @@ class SceneViolation:
         gap = self.gaps[state]
         if np.isnan(ax):
             return ""
+        # Bodies beside each other have no gap along the road, and that of bodies on different
+        # lanes says little of what is drawn; then the distance drawn is shown.
+        drawn = float(np.hypot(bx - ax, by - ay))
+        longest = gap.high if isinstance(gap, Interval) else gap
+        if not longest or drawn > longest + _ASIDE_M:
+            return f"{drawn:.1f} m"
         if isinstance(gap, Interval):
             return f"{number_with_error(gap.middle, gap.error, 1)} m"
-        # Bodies beside each other have no gap along the road; then the distance drawn is shown.
-        return f"{gap or np.hypot(bx - ax, by - ay):.1f} m"
+        return f"{gap:.1f} m"
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
