@@ -291,7 +291,7 @@ def test_a_folder_of_another_fleet_is_refused(folder_of, tmp_path):
         run_fleet([str(folder_of)], fleet_rules(), out, some)
     with pytest.raises(RulecError, match=r"also has findings of `.*0.parquet` and 3 more"):
         run([sorted(folder_of.iterdir())[-1]], out)
-    with pytest.raises(RulecError, match="no _manifest"):
+    with pytest.raises(RulecError, match=r"are no findings of a fleet: .*no _manifest"):
         run([folder_of], folder_of)
     sound = (out / "_manifest.json").read_text()
     damaged = json.dumps({**json.loads(sound), "inputs": 5})

@@ -150,6 +150,14 @@ def other_fleet(folder: Path, why: str) -> RulecError:
     )
 
 
+def no_fleet(folder: Path) -> RulecError:
+    return OTHER_FLEET.error(
+        SourceLocation(str(folder)),
+        "the folder has files that are no findings of a fleet: among them is no _manifest.json",
+        help="give a new or an empty folder with -o",
+    )
+
+
 def folder_in_use(folder: Path) -> RulecError:
     return OTHER_FLEET.error(
         SourceLocation(str(folder)),

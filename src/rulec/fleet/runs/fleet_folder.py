@@ -15,7 +15,7 @@ from typing import Any
 from rulec.diagnostics import RulecError
 from rulec.files.read_files import file_state, opened
 from rulec.files.written_files import make_folder, refusals, written_whole
-from rulec.fleet.fleet_messages import folder_in_use, other_fleet
+from rulec.fleet.fleet_messages import folder_in_use, no_fleet, other_fleet
 from rulec.fleet.judged_by import JudgedBy
 from rulec.fleet.runs.fleet_tally import ROWS_AT_ONCE
 from rulec.fleet.runs.work_units import WorkUnit
@@ -110,7 +110,7 @@ class FleetFolder:
         if manifest.is_file():
             self._check(_read(manifest), settings, inputs)
         elif any(path.is_file() and path.name[0] != "." for path in self.path.rglob("*")):
-            raise other_fleet(self.path, "it has no _manifest.json, but other files")
+            raise no_fleet(self.path)
         make_folder(self.findings)
         for left in (*self.findings.glob(".*.part"), *self.path.glob(".*.part")):
             # Left by a killed process: no other process writes here.
