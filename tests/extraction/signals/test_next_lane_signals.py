@@ -71,8 +71,8 @@ def test_one_whose_track_ends_may_still_be_on_the_near_lane(x, unknown):
         ((15.0, 10.0), None, "?"),
         ((13.0, 10.0), None, False),
         ((15.0, 8.0), None, False),
-        # 12 m and (144 - 100) / 16 m for one behind at 12 m/s
-        (None, (-19.0, 12.0), True),
+        # 12 m and (144 - 100) / 16 m for one behind at 12 m/s, and its error 0.6 m
+        (None, (-19.5, 12.0), True),
         (None, (-18.0, 12.0), False),
         (None, (0.0, 10.0), False),
     ],
@@ -86,6 +86,19 @@ def test_a_place_in_the_near_lane(ahead, behind, free):
     assert signals(lanes, ego(100, y=4), *others)["near_lane_is_free"][0] == str(free)
     # At the kerb nothing keeps it away
     assert signals(lanes, ego(100), *others)["near_lane_is_free"][0] == "True"
+
+
+@pytest.mark.parametrize(
+    ("x", "free"), [(-15.0, "True"), (-14.04, "?"), (-13.96, "?"), (-13.0, "False")]
+)
+def test_a_place_that_only_errors_of_measurement_make_wide_enough(x, free):
+    """One behind at 10 m/s needs 10 m, from middle to middle 14 m; places are good to 5 cm."""
+    lanes = [straight(1, 0, 600, left_of=2), straight(2, 0, 600, 4, right_of=1)]
+    others = [steady(9, 100 + x, 0, 10.0), steady(6, 0, 4, 10.0)]
+    assert signals(lanes, ego(100, y=4), *others)["near_lane_is_free"][0] == free
+    # One that lies beside ego keeps it away all the same
+    beside = steady(8, 100, 0, 10.0)
+    assert signals(lanes, ego(100, y=4), beside, *others)["near_lane_is_free"][0] == "False"
 
 
 @pytest.mark.parametrize(

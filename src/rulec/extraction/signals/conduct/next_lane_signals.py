@@ -69,16 +69,15 @@ def _on_far_lane(context: DriveContext) -> SignalColumns:
 
 
 def _on_near_lane(context: DriveContext) -> SignalColumns:
-    free = _near_lane_is_free(context)
+    free, by_a_hair = _near_lane_is_free(context)
     doubtful = _goes_back(context)
     # Rarely needed: an ego in the lane next to the kerb mostly stays there
     if (free & _next_lane(context, context.side)[1]).any():
         doubtful |= _perhaps_on_near_lane(context) | _of_no_use(context)
     # Maps do not say for which buses a bus lane is, or when; and those that may use it need not
     doubtful |= _is_beside(context, _BUS_LANE)
-    return SignalColumns(
-        {"near_lane_is_free": free}, unknown={"near_lane_is_free": free & doubtful}
-    )
+    unknown = free & doubtful | by_a_hair
+    return SignalColumns({"near_lane_is_free": free}, unknown={"near_lane_is_free": unknown})
 
 
 def _next_lane(context: DriveContext, side: Side) -> tuple[NDArray[intp], Flags]:
@@ -103,22 +102,18 @@ def _far_lane_is_free(context: DriveContext) -> Flags:
     return free
 
 
-def _near_lane_is_free(context: DriveContext) -> Flags:
-    """Mask of states in which ego, in the next lane to the kerb, would be at safe distances.
+def _near_lane_is_free(context: DriveContext) -> tuple[Flags, Flags]:
+    """Masks: ego, in the next lane to the kerb, would be at safe distances; errors decide it.
 
     It cannot go there across a solid line, as beside lanes for turning off; nor to a bus lane, or
     across a cycle lane; nor, from a through lane, to a lane for joining or leaving; nor to one that
     leads elsewhere at a junction within ``preparing_s``. A bus stays on its own lane.
     """
-    limits, others, taken = (
-        context.thresholds,
-        context.extents,
-        np.zeros(context.states, dtype=bool),
-    )
+    taken, surely_taken, perhaps_taken = np.zeros((3, context.states), dtype=bool)
     lane, there = _next_lane(context, context.side)
     cycles_beside = _is_beside(context, _CYCLE_LANE) & ~context.ego_is("light_rider")
     if not there.any():
-        return ~cycles_beside
+        return ~cycles_beside, taken
     parted = own_lanelets(context).flags(lambda lanelet: _near_mark(lanelet, context) in _SOLID)
     turned, _ = _sorted_ahead(context)
     on_ramp = own_lanelets(context).flags(lambda lanelet: not RAMPS.isdisjoint(lanelet.types))
@@ -128,15 +123,37 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
     for_buses = own_lanelets(context).flags(lambda lanelet: not _BUS_LANE.isdisjoint(lanelet.types))
     kept = parted | ramp_beside | bus_lane_beside | (for_buses & buses) | turned
     cells = _on_lane(context, lane, (there & ~kept).nonzero()[0])
-    station, gap = relations.station(context)[cells], relations.gap(context)[cells]
-    own = np.maximum(context.ego_extents.along[0, cells[1]], 0.0)
-    other = np.maximum(others.along[cells], 0.0)
-    leads = station == relations.BEHIND
-    behind, ahead = np.where(leads, own, other), np.where(leads, other, own)
-    safe = limits.reaction_s * behind + (behind**2 - ahead**2) / (2 * limits.braking_mps2)
-    taken[cells[1][(station == relations.BESIDE) | (gap < safe)]] = True
+    beside = relations.station(context)[cells] == relations.BESIDE
+    short, error = _short_of_safe(context, cells)
+    taken[cells[1][beside | (short > 0)]] = True
+    surely_taken[cells[1][beside | (short >= error)]] = True
+    perhaps_taken[cells[1][short > -error]] = True
     free: Flags = np.where(there, ~(taken | kept), ~cycles_beside)
-    return free
+    return free, perhaps_taken & ~surely_taken
+
+
+def _short_of_safe(
+    context: DriveContext, cells: tuple[NDArray[intp], ...]
+) -> tuple[Floats, Floats]:
+    """By how much (m) ego and others would be too near each other in one lane, and its error.
+
+    Negative where they are farther apart than the one behind needs to stop.
+    """
+    limits, known = context.thresholds, context.tolerances
+    own = np.maximum(context.ego_extents.along[0, cells[1]], 0.0)
+    other = np.maximum(context.extents.along[cells], 0.0)
+    own_error, other_error = context.ego.speed_error[0, cells[1]], context.tracks.speed_error[cells]
+    leads = relations.station(context)[cells] == relations.BEHIND
+    behind, ahead = np.where(leads, own, other), np.where(leads, other, own)
+    behind_error, ahead_error = (
+        np.where(leads, *errors) for errors in ((own_error, other_error), (other_error, own_error))
+    )
+    gap, braking = relations.gap(context)[cells], limits.braking_mps2
+    safe = limits.reaction_s * behind + (behind**2 - ahead**2) / (2 * braking)
+    of_speeds = known.joint(
+        (limits.reaction_s + behind / braking) * behind_error, ahead / braking * ahead_error
+    )
+    return safe - gap, known.joint(of_speeds, known.place_m)
 
 
 def _goes_back(context: DriveContext) -> Flags:
