@@ -172,7 +172,9 @@ def test_who_is_abreast():
         ((60, 82, 83, 83), "T"),
         ((60, 82, 82, 82), "F"),
         ((60, 82), "?"),
-        ((60, 82, 100, 113), "T"),
+        ((60, 82, 92, 97), "T"),
+        ((60, 82, 98, 106), "T"),
+        ((60, 82, 100, 113), "?"),
         ((60, 82, 100, 115), "F"),
         ((81, 82, 83, 83), "?"),
     ],
@@ -180,6 +182,8 @@ def test_who_is_abreast():
 def test_who_is_abreast_comes_to_the_narrowing_with_ego(xs, told):
     """Beside ego in state 1; 15 or 16 m before the narrowing as ego gets there, gone, or ahead.
 
+    It may still be level with ego then, its front before the narrowing, or through behind ego's
+    or ahead of it, which is 112 m along the road.
     Ego drives at 17.5 m/s. Behind one at 1 m/s it would get by braking with 3 m/s² over 50 m.
     """
     other = vehicle(1, {k: (x, 4) for k, x in enumerate(xs)})

@@ -80,15 +80,19 @@ def _could_let_in(context: DriveContext) -> Flags:
 def _there_with_ego(context: DriveContext, place: float) -> tuple[Flags, Flags]:
     """Masks of those at a narrowing, not ahead, when ego gets there; and of those lost by then.
 
-    The latter are not recorded then, or ego does not get there. Those ahead go first anyway.
+    The latter are not recorded then, or ego does not get there. Those ahead go first anyway. Those
+    level with ego whose front is through and ahead of ego's are lost, too: of two that squeeze in
+    abreast, the later one does not surely take the other's turn.
     """
     arrives = context.spans.next_state(context.ego_extents.s_max[0] > place)
     never = arrives >= context.spans.end
     then = np.where(never, context.spans.columns, arrives)
     seen = context.relevant[:, then] & ~never
     ahead = relations.station(context)[:, then] == relations.BEHIND
-    there: Flags = seen & ~ahead & (context.extents.s_max[:, then] >= place - _JUST_BEFORE_M)
-    return there, ~seen
+    front = context.extents.s_max[:, then]
+    is_first = (front > place) & (front > context.ego_extents.s_max[0, then])
+    there: Flags = seen & ~ahead & ~is_first & (front >= place - _JUST_BEFORE_M)
+    return there, ~seen | (~ahead & is_first)
 
 
 def _beside_in(context: DriveContext, lane: NDArray[intp]) -> Flags:
