@@ -78,6 +78,20 @@ def test_who_is_back_within_half_a_second_has_changed_no_lanes(states, known):
     assert found.unknown["lane_change"][changed].tolist() == [not known] * 2
 
 
+@pytest.mark.parametrize(
+    ("y", "states", "unknown"),
+    # The mark is at 2 m, places are good to 5 cm, and a lane is left 0.3 m beyond
+    [(2.2, 12, [10, 22]), (2.2, 6, []), (2.04, 12, []), (1.8, 12, [])],
+    ids=["over it", "for a moment", "by an error", "short of it"],
+)
+def test_who_is_astride_for_a_second_and_comes_back_may_have_changed_lanes(y, states, unknown):
+    ys = [0.0] * 10 + [y] * states + [0.0] * 10
+    ego = vehicle(7, {k: (k, at) for k, at in enumerate(ys)})
+    found = lane_change_signals(context_of(recording(lanes(2), [ego], step_s=0.1)))
+    assert not found.world["lane_change"].any()
+    assert np.flatnonzero(found.unknown["lane_change"]).tolist() == unknown
+
+
 @pytest.mark.parametrize(("heading", "known"), [(0.0, False), (1.4, True)])
 def test_who_stands_changes_no_lanes(heading, known):
     """Its place drifts over the mark, as of who waits in a simulation of ways beside each other.

@@ -28,7 +28,7 @@ from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.scenario.recorded.route import lanelet_area
-from rulec.trace.plain_arrays import distinct
+from rulec.trace.plain_arrays import begin_runs, distinct
 
 _INDICATORS = frozenset({"left_indicator", "right_indicator"})
 
@@ -49,6 +49,9 @@ _JUST_STOOD_S = 1.0
 _FORK_M = 15.0
 """Up to this far behind a fork its lanes overlap, and likewise before two lanes become one."""
 
+_ASTRIDE_S = 1.0
+"""Who is across a mark for this long (s) with most of its body may count as having changed."""
+
 _HAIR_M = 0.01
 
 
@@ -58,10 +61,11 @@ def _lane_change(context: DriveContext) -> SignalColumns:
     Its body then swings over the lanes of the road that it enters. Unknown, too, where a lane has
     just forked or two become one, since ego may follow either; where ego stands, as its places
     drift; where it is back at once; where its drive begins so near a mark that it may be crossing;
-    and where it leaves a ring over a lane on which another one goes on.
+    where it drives astride a mark for a while, more beyond it, and comes back; and where it leaves
+    a ring over a lane on which another one goes on.
     """
     changes = _changes(context)
-    unknown = changes != _changes_from_beside(context)
+    unknown = (changes != _changes_from_beside(context)) | _astride(context)
     if changes.any():
         swings = swings_round(context) | lies_askew_in_turn(context)
         stands = np.abs(_speed_ahead(context)) * KMH_PER_MPS < context.thresholds.standing_kmh
@@ -92,6 +96,30 @@ def _there_and_back(context: DriveContext, changes: Flags) -> Flags:
         if returns and (then - first) * context.recording.step_s < _JUMP_S:
             back[[first, then]] = True
     return back
+
+
+def _astride(context: DriveContext) -> Flags:
+    """Mask of states in which ego comes a little over a mark, or back after ``_ASTRIDE_S`` there.
+
+    Its middle is beyond the mark by more than its error, yet by less than ``changed_m``.
+    """
+    lane, steady, spans = context.ego_lane, context.steady_lane, context.spans
+    found = np.zeros(context.states, dtype=bool)
+    over = (lane != steady).nonzero()[0]
+    if not len(over):
+        return found
+    firsts = (begin_runs(over) | spans.begins_here[over]).nonzero()[0]
+    beyond = np.abs(context.ego_extents.left_of[0, over, np.maximum(lane, steady)[over]])
+    error = context.tolerances.place_m + np.abs(context.map_offset_m)
+    surely = beyond > np.broadcast_to(error, found.shape)[over]
+    lasts = np.add.reduceat(surely.astype(intp), firsts) * context.recording.step_s >= _ASTRIDE_S
+    first, back = over[firsts], over[np.append(firsts[1:], len(over)) - 1] + 1
+    within = lasts & (back < spans.end[first])
+    first, back = first[within], back[within]
+    returns = (lane[back] == steady[back]) & (steady[back] == steady[back - 1])
+    found[back[returns]] = True
+    found[first[returns & ~spans.begins_here[first]]] = True
+    return found
 
 
 def _at_fork(context: DriveContext, change: int, last: int) -> bool:
