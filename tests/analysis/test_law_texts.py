@@ -82,6 +82,17 @@ Artigo 18.º-A
 Cycles.
 """
 
+SWEDISH = """2 kap. Signs and signals
+
+1 a § Signs.
+
+3 kap. Traffic with vehicles
+
+17 §   Keep a distance.
+
+18 §   Leave room. See 2 kap. 1 §.
+"""
+
 
 @pytest.mark.parametrize(
     ("cite", "expected", "unread"),
@@ -148,6 +159,10 @@ def test_what_a_cite_names(cite, expected, unread):
         ("Artykuł 24\n\nOvertake.\n", "art. 24", "Overtake."),
         ("ARTÍCULO 27\n\nOvertake.\n", "art. 27", "Overtake."),
         ("Čl. 5\n\nOvertake.\n", "čl. 5", "Overtake."),
+        (SWEDISH, "3 kap. 17 §", "Keep a distance."),
+        (SWEDISH, "3:18 s. 2", "See 2 kap. 1 §."),
+        (SWEDISH, "2 kap. 1 a §", "Signs."),
+        ("5 §\n\nLeave room.\n\n7 a §\n\n1 mom. Signal.\n", "§ 5", "Leave room."),
         # `s.` begins sentences, too: these articles have only numbers.
         ("1 Roads\n\ns. 4 says more.\n\n2 Zones\n\nEnd.\n", "Art. 1", "s. 4 says more."),
     ],

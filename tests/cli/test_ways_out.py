@@ -112,7 +112,8 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         (["verify", "x"], "error: `-r` or `--rulebook` is missing\n"),
         (["test", "-r", "de"], "the rulebook is given without `-r`, as in `rulec test de`"),
         (["monitor", "--rulebook", "de"], "without `--rulebook`, as in `rulec monitor de`"),
-        (["explain", "-r", "de"], "error: there is no option `-r`\n"),
+        (["explain", "-r", "de"], "no option `-r` here; the verbs that judge have it"),
+        (["rates", "f.csv", "-r", "de"], "the verbs that judge have it, such as `rulec verify`"),
         (
             ["maneuvers", "s2", "-r", "de", "--list", "-1"],
             "error: --list: `-1` is out of range: it is 0 or more\n",

@@ -94,6 +94,10 @@ def reworded(problem: click.ClickException) -> str:
             if names & {"rulebook", "rulebooks", "sources"}:
                 path = problem.ctx.command_path
                 return f"the rulebook is given without `{problem.option_name}`, as in `{path} de`"
+            return (
+                f"there is no option `{problem.option_name}` here; the verbs that judge have it, "
+                "such as `rulec verify`"
+            )
         fitting = [option for option in known if option.startswith(problem.option_name)]
         # Compared without dashes, which all options have.
         by_name = {option.lstrip("-"): option for option in known}

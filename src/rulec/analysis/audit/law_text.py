@@ -80,6 +80,12 @@ _LABELLED: Final = re.compile(
 It begins with any word by which articles are cited, except for abbreviations that no law prints as
 a heading: `s.` of sections and `R` of rules also begin sentences.
 """
+_SIGNED: Final = re.compile(
+    rf"^[ \t*_]*(?:(?P<chapter>\d+\s*{words.CHAPTER})[^\n§]*$"
+    rf"|(?P<own>\d+\s*{words.CHAPTER}\s*)?(?P<section>\d+\s?[a-z]?\s?§))",
+    re.MULTILINE,
+)
+"""Swedish and Finnish sections, `5 §`, whose text follows on the line; and Swedish chapters."""
 _NUMBERED: Final = re.compile(
     r"^[ \t*_]*(?P<head>[A-Z]?\d+[\d.:-]*[a-z]?[.:]?[ \t]+[A-ZÄÖÜ][^\n]{0,200})$", re.MULTILINE
 )
@@ -121,6 +127,7 @@ def _articles(text: str) -> Iterator[tuple[tuple[str, str], str]]:
     ]
     # Every marked heading ends the article before it, even if it starts none.
     heads = marked if any(named for _, _, named in marked) else []
+    heads = heads or _signed_heads(text)
     heads = heads or _plain_heads(text, _LABELLED) or _plain_heads(text, _NUMBERED)
     seen: set[tuple[str, str]] = set()
     for number, (_, end, named) in enumerate(heads):
@@ -143,6 +150,19 @@ def _plain_heads(text: str, shape: re.Pattern[str]) -> list[_Head]:
     ]
 
 
+def _signed_heads(text: str) -> list[_Head]:
+    """The sections of a Swedish or Finnish law, and the chapters in which they are numbered."""
+    chapter, heads = "", []
+    for match in _SIGNED.finditer(text):
+        start, end = match.span()
+        if start and not text.endswith("\n\n", 0, start):
+            continue
+        chapter = f"{match['chapter']} " if match["chapter"] else chapter
+        section = match["section"] and (match["own"] or chapter) + match["section"]
+        heads.append((start, end, _place_named(section) if section else None))
+    return heads if any(named for _, _, named in heads) else []
+
+
 def _named(head: str) -> tuple[str, str] | None:
     """The article or annex named at the start of a heading."""
     plain = head.strip().strip("*_ ")
@@ -153,7 +173,12 @@ def _named(head: str) -> tuple[str, str] | None:
     )
     if begins is None or _CONTINUED.match(plain[begins.end() :]):
         return None
-    references, _ = references_in(begins[0].rstrip(".:"))
+    return _place_named(begins[0].rstrip(".:"))
+
+
+def _place_named(text: str) -> tuple[str, str] | None:
+    """The one article or annex that a text names, without parts of it."""
+    references, _ = references_in(text)
     reference = references[0] if len(references) == 1 and not references[0].parts else None
     return (
         None
