@@ -77,10 +77,11 @@ def drive_drawing(
         way_out = f"choose a time from {first_s:g} s to {last_s:g} s"
         raise NOT_IN_RECORDING.error(SourceLocation(verdicts.recording.name), message, help=way_out)
     state, violation = chosen_moment(scene, at_s)
+    picture = drive_picture(scene, state, violation)
     return Drawing(
         scene.title,
-        [drive_picture(scene, state, violation)],
-        legend(drive_entries(scene, violation), []),
+        [picture],
+        legend(drive_entries(scene, violation, picture), []),
         page=partial(drive_page, scene, state, violation),
     )
 

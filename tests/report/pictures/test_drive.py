@@ -21,7 +21,11 @@ from rulec.report.pictures.drawing.canvas import Area, LabelText
 from rulec.report.pictures.drawing.clipping import clipped_lines, clipped_ring
 from rulec.report.pictures.drawing.picture_formats import as_bytes
 from rulec.report.pictures.drives import drive_page
-from rulec.report.pictures.drives.drive_picture import chosen_moment, drive_picture
+from rulec.report.pictures.drives.drive_picture import (
+    chosen_moment,
+    drive_entries,
+    drive_picture,
+)
 from rulec.report.pictures.drives.nearest_points import nearest_points
 from rulec.report.pictures.drives.scene_json import scene_data
 from rulec.report.pictures.drives.scene_of_drive import SIGHT_M, drive_scene
@@ -170,6 +174,43 @@ def test_a_picture_is_right_side_up(scene):
     for mark in picture.marks:
         if isinstance(mark, Area):
             assert all(14 <= x <= 886 for x, _ in mark.rings[0])
+
+
+@pytest.mark.parametrize(("x", "is_seen"), [(30, True), (900, False)])
+def test_the_legend_has_what_is_drawn(scene, x, is_seen):
+    """The other car is another's body, drawn or out of the picture; so is the crossing."""
+    away = np.array([x - 30, 0, 0])
+    there = replace(scene.bodies[1], poses=scene.bodies[1].poses + away)
+    areas = [
+        replace(area, ring=area.ring + away[:2]) if area.surface == "crossing" else area
+        for area in scene.areas
+    ]
+    found = replace(scene, bodies=(scene.bodies[0], there), areas=tuple(areas), violations=())
+    entries = dict(drive_entries(found, None, drive_picture(found, 3, None)))
+    assert ("vehicle" in entries, "zebra" in entries) == (is_seen, is_seen)
+    assert {"own", "trail"} <= entries.keys()
+
+
+def test_no_label_covers_that_of_the_scale(scene):
+    """Cars stand all over the lower right; each has its label elsewhere, or none."""
+    other, (x, y) = scene.bodies[1], scene.bodies[0].poses[3, :2]
+    parked = [
+        replace(other, id=f"{n}{k}", poses=other.poses * 0 + (x + 22 + 3 * n, y - 4 * k, 0))
+        for n in range(6)
+        for k in range(4)
+    ]
+    found = replace(scene, bodies=(scene.bodies[0], *parked), violations=())
+    texts = [mark for mark in drive_picture(found, 3, None).marks if isinstance(mark, LabelText)]
+    scale = next(text for text in texts if text.text in ("10 m", "20 m", "50 m"))
+    left, top, right, bottom = scale.bounds
+    covering = [
+        text.text
+        for text in texts
+        if text is not scale
+        and (left < text.bounds[2] and text.bounds[0] < right)
+        and (top < text.bounds[3] and text.bounds[1] < bottom)
+    ]
+    assert covering == []
 
 
 def test_a_mirrored_recording_is_drawn_as_it_was_recorded(rules, scene):

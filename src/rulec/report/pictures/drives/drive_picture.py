@@ -38,6 +38,8 @@ def drive_picture(scene: DriveScene, state: int, violation: SceneViolation | Non
         *_trail(scene, view),
     ]
     against = set(violation.against) if violation else set()
+    scale = list(_scale(view))
+    placing.taken += [mark.bounds for mark in scale if isinstance(mark, LabelText)]
     placing.taken += _boxes(scene, state, view, {scene.ego, *against})
     labels = []
     # Smaller bodies over larger ones, so that none is hidden.
@@ -53,13 +55,15 @@ def drive_picture(scene: DriveScene, state: int, violation: SceneViolation | Non
     order = ("own", "against", "vehicle")
     for style, body in sorted(labels, key=lambda pair: order.index(pair[0])):
         marks += _label(body, state, view, placing, speed=style != "vehicle")
-    marks += [*_signs(scene, view, placing), *_scale(view)]
+    marks += [*_signs(scene, view, placing), *scale]
     words, height = _words(scene, violation, view.box[3] + canvas.LINE_HEIGHT)
     return Picture(heading, canvas.WIDTH, height, (*marks, *words))
 
 
-def drive_entries(scene: DriveScene, violation: SceneViolation | None) -> list[tuple[str, str]]:
-    """The styles with their meanings, for the legend."""
+def drive_entries(
+    scene: DriveScene, violation: SceneViolation | None, picture: Picture
+) -> list[tuple[str, str]]:
+    """The styles that a picture has, with their meanings, for its legend."""
     entries = [("own", f"ego, {scene.ego}")]
     if violation is not None and violation.against:
         entries.append(("against", "whom the violation is against"))
@@ -69,7 +73,8 @@ def drive_entries(scene: DriveScene, violation: SceneViolation | None) -> list[t
     entries += [(kind, text) for kind, text in words.items() if kind in kinds]
     if any(area.surface == "crossing" for area in scene.areas):
         entries.append(("zebra", "pedestrian crossing"))
-    return entries
+    drawn = {mark.style for mark in picture.marks}
+    return [(style, text) for style, text in entries if style in drawn]
 
 
 @dataclass(frozen=True, slots=True)
