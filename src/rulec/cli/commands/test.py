@@ -169,5 +169,5 @@ def _refuse_unmatched(
     ]
     if unknown or (missing and len(missing) == len(patterns)):
         names = dict.fromkeys(name for run in runs for name in run.rule_names)
-        told = () if unknown else left_out
-        raise RulecError([nothing_to_run(unknown or missing, list(names), told)])
+        not_in_force = () if unknown else left_out
+        raise RulecError([nothing_to_run(unknown or missing, list(names), not_in_force)])

@@ -58,7 +58,7 @@ NARROWEST_M = 0.05
 _SAME_M = 0.3
 """Ends of borders at most this far apart count as the same."""
 
-_MEETS_M, _LEADS_M = 1.0, 8.0
+_MEETS_M, _JUMP_M = 1.0, 8.0
 """A bound meets one that begins up to the first from its end; farther than the second it is a jump.
 
 Two lanes lie between.
@@ -128,7 +128,7 @@ def read_opendrive_map(path: Path) -> RoadMap:
         ),
     )
     within = {whole.id_of(key) for key in whole.lane_keys() if content.roads[key.road].junction}
-    drawn, led = _led_to_what_follows({x.id: x for x in _lanelets(whole)}, within)
+    drawn, n_redrawn = _redrawn_to_linked_lanes({x.id: x for x in _lanelets(whole)}, within)
     lanelets, slow_turns = without_turning_speeds(drawn, within)
     for road in content.roads.values():
         for crossing in crosswalks(road, pieces[road.id], posted[road.id]):
@@ -141,7 +141,7 @@ def read_opendrive_map(path: Path) -> RoadMap:
         lanelets=lanelets,
         side=side,
         country=_country(content),
-        remarks=(*_remarks(content, side, slow_turns, led), *sign_remarks(content, posted)),
+        remarks=(*_remarks(content, side, slow_turns, n_redrawn), *sign_remarks(content, posted)),
     )
 
 
@@ -320,7 +320,7 @@ def _country(content: OpenDrive) -> str:
     return codes.pop() if len(codes) == 1 else ""
 
 
-def _led_to_what_follows(
+def _redrawn_to_linked_lanes(
     lanelets: Mapping[str, Lanelet], inside: Set[str]
 ) -> tuple[dict[str, Lanelet], int]:
     """The lanelets, and how many of them ``inside`` junctions are drawn anew.
@@ -329,7 +329,7 @@ def _led_to_what_follows(
     lead into one: a link tells where such a lane leads, and its bounds go there. What is marked
     beside it is not known then. Neighbours remain, since traffic merges between such lanes.
     """
-    changed, led = dict(lanelets), 0
+    changed, n_redrawn = dict(lanelets), 0
     for name in sorted(inside):
         own = lanelets[name]
         begin, end = (
@@ -348,8 +348,8 @@ def _led_to_what_follows(
         changed[name] = replace(
             own, left=left, right=right, centre=centre, left_mark=None, right_mark=None
         )
-        led += 1
-    return changed, led
+        n_redrawn += 1
+    return changed, n_redrawn
 
 
 def _misses(own: Lanelet, others: Sequence[Lanelet], at: int) -> Points | None:
@@ -362,10 +362,12 @@ def _misses(own: Lanelet, others: Sequence[Lanelet], at: int) -> Points | None:
     (other,) = others
     offsets = np.array([other.left[-1 - at] - own.left[at], other.right[-1 - at] - own.right[at]])
     away = np.hypot(*offsets.T)
-    return offsets if away.min() > _MEETS_M and away.max() < _LEADS_M else None
+    return offsets if away.min() > _MEETS_M and away.max() < _JUMP_M else None
 
 
-def _remarks(content: OpenDrive, side: Side | None, slow_turns: int, led: int) -> Iterator[str]:
+def _remarks(
+    content: OpenDrive, side: Side | None, slow_turns: int, n_redrawn: int
+) -> Iterator[str]:
     strange: dict[str, None] = {}
     for road in content.roads.values():
         for section in road.sections:
@@ -381,10 +383,10 @@ def _remarks(content: OpenDrive, side: Side | None, slow_turns: int, led: int) -
         yield "the map does not give the side of traffic"
     if side == "left" and not any(road.has_rule for road in content.roads.values()):
         yield "traffic keeps to the left, as its lanes show: no road has a `rule`"
-    if led:
+    if n_redrawn:
         yield (
-            f"lanes within junctions that end or begin beside those that they lead to ({led}) are "
-            "drawn anew, and what is marked beside them is taken as unknown"
+            "lanes within junctions that end or begin beside those that they lead to "
+            f"({n_redrawn}) are drawn anew, and what is marked beside them is taken as unknown"
         )
     if slow_turns:
         yield (

@@ -120,7 +120,7 @@ def _name(node: tree.AtomUse, scope: Scope) -> Meaning | None:
         return None
     kind = scope.constants.overlay.kind_of(name)
     if kind and node.arguments and kind != "definition":
-        scope.report_misfit(node, constant_messages.takes_no_object(node, kind, scope))
+        scope.report_wrong_arity(node, constant_messages.takes_no_object(node, kind, scope))
         return None
     if kind == "option":
         return ltl.Constant(scope.constants.overlay.options[name])

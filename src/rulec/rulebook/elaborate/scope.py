@@ -96,16 +96,16 @@ class Scope:
         if mistake not in self.mistakes:
             self.mistakes.append(mistake)
 
-    def report_misfit(self, use: tree.AtomUse, mistake: Diagnostic) -> None:
+    def report_wrong_arity(self, use: tree.AtomUse, mistake: Diagnostic) -> None:
         """Record that a relation is about another number of objects than ``use`` gives it.
 
         If it was given to the definition that uses it, that is where to mend it, and not in the
         definition, which may be right for others.
         """
-        span = use.name.span
-        given = self.given.get(span.source.text[span.start : span.end])
+        # As written: the name itself has been replaced by what the parameter stands for
+        given = self.given.get(use.name.span.text)
         if given is not None:
-            mistake = atom_messages.given_misfit(mistake, use, given)
+            mistake = atom_messages.wrong_arity_of_argument(mistake, use, given)
         self.report(mistake)
 
     @contextmanager
@@ -198,7 +198,7 @@ class Scope:
             self.used |= {argument.text for argument in arguments}
             variables = list(self.variables)
             mistake = atom_messages.wrong_number(use, name, item, self.symbols, variables)
-            self.report_misfit(use, mistake)
+            self.report_wrong_arity(use, mistake)
             return None
         actual = [
             self.object(argument, type_, (item.name, index))

@@ -278,7 +278,7 @@ def wrong_number(
     )
 
 
-def given_misfit(mistake: Diagnostic, use: tree.AtomUse, given: Span) -> Diagnostic:
+def wrong_arity_of_argument(mistake: Diagnostic, use: tree.AtomUse, given: Span) -> Diagnostic:
     """WRONG_ARITY of a relation that was given to a definition, at the place where it was given."""
     text = use.span.text
     number = len(use.arguments)

@@ -69,14 +69,14 @@ def _on_far_lane(context: DriveContext) -> SignalColumns:
 
 
 def _on_near_lane(context: DriveContext) -> SignalColumns:
-    free, by_a_hair = _near_lane_is_free(context)
+    free, within_error = _near_lane_is_free(context)
     doubtful = _goes_back(context)
     # Rarely needed: an ego in the lane next to the kerb mostly stays there
     if (free & _next_lane(context, context.side)[1]).any():
         doubtful |= _perhaps_on_near_lane(context) | _of_no_use(context)
     # Maps do not say for which buses a bus lane is, or when; and those that may use it need not
     doubtful |= _is_beside(context, _BUS_LANE)
-    unknown = free & doubtful | by_a_hair
+    unknown = free & doubtful | within_error
     return SignalColumns({"near_lane_is_free": free}, unknown={"near_lane_is_free": unknown})
 
 
@@ -123,11 +123,13 @@ def _near_lane_is_free(context: DriveContext) -> tuple[Flags, Flags]:
     for_buses = own_lanelets(context).flags(lambda lanelet: not _BUS_LANE.isdisjoint(lanelet.types))
     kept = parted | ramp_beside | bus_lane_beside | (for_buses & buses) | turned
     cells = _on_lane(context, lane, (there & ~kept).nonzero()[0])
-    beside = relations.station(context)[cells] == relations.BESIDE
     short, error = _short_of_safe(context, cells)
-    taken[cells[1][beside | (short > 0)]] = True
-    surely_taken[cells[1][beside | (short >= error)]] = True
-    perhaps_taken[cells[1][short > -error]] = True
+    for states, is_short in (
+        (taken, short > 0),
+        (surely_taken, short >= error),
+        (perhaps_taken, short > -error),
+    ):
+        states[cells[1][is_short]] = True
     free: Flags = np.where(there, ~(taken | kept), ~cycles_beside)
     return free, perhaps_taken & ~surely_taken
 
@@ -137,13 +139,15 @@ def _short_of_safe(
 ) -> tuple[Floats, Floats]:
     """By how much (m) ego and others would be too near each other in one lane, and its error.
 
-    Negative where they are farther apart than the one behind needs to stop.
+    Negative where they are farther apart than the one behind needs to stop, infinite beside each
+    other.
     """
     limits, known = context.thresholds, context.tolerances
     own = np.maximum(context.ego_extents.along[0, cells[1]], 0.0)
     other = np.maximum(context.extents.along[cells], 0.0)
     own_error, other_error = context.ego.speed_error[0, cells[1]], context.tracks.speed_error[cells]
-    leads = relations.station(context)[cells] == relations.BEHIND
+    station = relations.station(context)[cells]
+    leads = station == relations.BEHIND
     behind, ahead = np.where(leads, own, other), np.where(leads, other, own)
     behind_error, ahead_error = (
         np.where(leads, *errors) for errors in ((own_error, other_error), (other_error, own_error))
@@ -153,7 +157,8 @@ def _short_of_safe(
     of_speeds = known.joint(
         (limits.reaction_s + behind / braking) * behind_error, ahead / braking * ahead_error
     )
-    return safe - gap, known.joint(of_speeds, known.place_m)
+    short = np.where(station == relations.BESIDE, np.inf, safe - gap)
+    return short, known.joint(of_speeds, known.place_m)
 
 
 def _goes_back(context: DriveContext) -> Flags:

@@ -1,4 +1,4 @@
-"""Signals of ego's lane changes, and of its indicator."""
+"""Signals of ego's lane changes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
+from rulec.extraction.signals.conduct.lane_changes.indicator_signals import indicator
 from rulec.extraction.signals.conduct.lane_changes.lanes_from_behind import come_into_lane
 from rulec.extraction.signals.conduct.lane_changes.squeezing_in import WayIn, squeezed
 from rulec.extraction.signals.conduct.lane_changes.turning_round import has_to_brake_for_turn
@@ -30,18 +30,8 @@ from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.plain_arrays import begin_runs, distinct
 
-_INDICATORS = frozenset({"left_indicator", "right_indicator"})
-
-_INDICATIONS = ("no_indicator", "near_indicator", "far_indicator")
-
-_JUMP_MPS = 5.0
-"""No vehicle moves sideways faster: simulators change lanes in a step, with or without a signal."""
-
-_JUMP_S = 0.5
-"""Changes of lanes this long (s) before or after a jump are due to it."""
-
-_ABRUPT_MPS, _ABRUPT_S = 2.5, 2.0
-"""Who changes lanes faster than anybody drives began to at most this long (s) before."""
+_BACK_S = 0.5
+"""Who is back sooner than this (s) may not have changed lanes."""
 
 _JUST_STOOD_S = 1.0
 """A vehicle that stood this recently (s) has not driven over a mark since: it drifted there."""
@@ -93,7 +83,7 @@ def _there_and_back(context: DriveContext, changes: Flags) -> Flags:
     back, states = np.zeros_like(changes), changes.nonzero()[0]
     for first, then in pairwise(states.tolist()):
         returns = spans.number[first] == spans.number[then] and lane[first - 1] == lane[then]
-        if returns and (then - first) * context.recording.step_s < _JUMP_S:
+        if returns and (then - first) * context.recording.step_s < _BACK_S:
             back[[first, then]] = True
     return back
 
@@ -286,84 +276,6 @@ def _within_tolerance(context: DriveContext, changes: Flags) -> Flags:
     return unsure
 
 
-def _indicator(context: DriveContext) -> SignalColumns:
-    """Ego's indicator, if the recording contains its lamps.
-
-    Both sides at once are no indication, like hazard lights; if a file states that hazard lights
-    are off then, it contradicts itself, and both sides are unknown in the whole drive. A vehicle
-    that changes lanes has indicated it if it did up to the state before, or while it lay across the
-    mark; what it showed until then is as much later as the change is known later, since it may
-    switch off once its middle is over the mark. If it jumps at that time, or off the road's edge,
-    that is unknown. So is whether it did before a change that takes one step, as in simulators, in
-    which nobody can announce it.
-    """
-    egos = context.ego.participants
-    if not context.spans.agreed([ego.lamps and ego.shows >= _INDICATORS for ego in egos]):
-        return SignalColumns()
-    far = "left_indicator" if context.side == "right" else "right_indicator"
-    steps = ego_lamps(context)
-    lit = [(lamps or frozenset()) & _INDICATORS for lamps in steps]
-    codes = np.array([0 if len(lamps) != 1 else 2 if far in lamps else 1 for lamps in lit])
-    tells_hazards = context.spans.spread(["hazard_lights" in ego.shows for ego in egos]).tolist()
-    both = np.array([lamps is not None and lamps >= _INDICATORS for lamps in steps])
-    no_hazards = [
-        tells and "hazard_lights" not in (lamps or ())
-        for lamps, tells in zip(steps, tells_hazards, strict=True)
-    ]
-    unknown = both & context.spans.any(both & np.array(no_hazards))
-    unknown |= np.array([lamps is None for lamps in steps])
-    is_dark = np.array([lamps is not None and not lamps & _INDICATORS for lamps in steps])
-    spans, changed, across_mps = context.spans, _changes(context), _speed_across(context)
-    changes = (changed & is_dark).nonzero()[0]
-    shown, longest = codes.copy(), round(context.thresholds.signalling_s / context.recording.step_s)
-    for change in changes.tolist():
-        last = _lit_across(context, shown, change)
-        # What it showed until then is as much later as the change is known later
-        first = max(int(spans.first[change]), change - longest)
-        if last < change:
-            codes[first + change - last : change + 1] = shown[first : last + 1]
-    jumps = across_mps > _JUMP_MPS
-    # A jump may end short of the mark, or begin just behind it
-    about = spans.within(jumps, round(_JUMP_S / context.recording.step_s), around=True)
-    unknown[changes] |= (codes[changes] == 0) & about[changes]
-    off_the_edge = jumps & ~changed
-    unknown |= is_dark & (off_the_edge | spans.after(off_the_edge))
-    abrupt = changed & (across_mps > _ABRUPT_MPS)
-    abrupt = spans.within(abrupt, round(_ABRUPT_S / context.recording.step_s))
-    unknown |= is_dark & abrupt & ~changed
-    return SignalColumns(
-        {"indicator": codes},
-        unknown={"indicator": unknown},
-        texts={"indicator": _INDICATIONS},
-    )
-
-
-def _lit_across(context: DriveContext, codes: NDArray[intp], change: int) -> int:
-    """The last state before a change of lanes, since ego's body reached the mark, with a light.
-
-    The change itself if there is none.
-    """
-    lane, own = context.steady_lane, context.ego_extents
-    mark = max(lane[change - 1], lane[change])
-    longest = round(context.thresholds.signalling_s / context.recording.step_s)
-    first = max(int(context.spans.first[change]), change - longest)
-    low, high = (
-        left_of[first:change, mark] for left_of in (own.left_of_min[0], own.left_of_max[0])
-    )
-    clear = ((low > 0.0) | (high < 0.0)).nonzero()[0]
-    since = min(first + int(clear[-1]) + 1 if len(clear) else first, change - 1)
-    lit = codes[since:change].nonzero()[0]
-    return since + int(lit[-1]) if len(lit) else change
-
-
-def _speed_across(context: DriveContext) -> Floats:
-    """How fast (m/s) ego has moved sideways from the state before, by state."""
-    left_of = context.ego_extents.left_of[0]
-    moved = np.abs(left_of - context.spans.before(left_of.T).T).min(axis=1)
-    across: Floats = moved / context.recording.step_s
-    return across
-
-
 def _disturbed(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Flags]:
     """Masks of vehicles in ego's lane that must brake for ego in ``states``, and perhaps must.
 
@@ -440,7 +352,7 @@ lane_change_signals = SignalPasses(
     {
         ("lane_change",): _lane_change,
         ("lane_is_clear",): _lane_is_clear,
-        ("indicator",): _indicator,
+        ("indicator",): indicator,
     }
 )
-"""The signals of ego's lane changes."""
+"""The signals of ego's lane changes, and of the lamps that announce them."""
