@@ -279,6 +279,8 @@ MANY = 200_000
         ("### Annex 2\n\nSign 1 a" + " |" * MANY + "y\n", "sign 1", f"Sign 1 a{' |' * MANY}y"),
         ("### Annex 2\n\nSign 1 a |\n| 12 |\n| Sign 2\n", "sign 1", "Sign 1 a"),
         ("### § 5 A\n\n(4) Begin. " + "Nr. A " * MANY, "§ 5(4) s. 1", "Begin."),
+        ("1" * MANY + "\n\n7 A\n\nBegin.\n", "Art. 7", "Begin."),
+        ("1" * MANY + "\n\n7 §\n\nBegin.\n", "§ 7", "Begin."),
     ],
 )
 def test_long_texts_are_read_once(text, cite, expected):

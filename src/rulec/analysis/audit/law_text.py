@@ -87,7 +87,7 @@ _SIGNED: Final = re.compile(
 )
 """Swedish and Finnish sections, `5 §`, whose text follows on the line; and Swedish chapters."""
 _NUMBERED: Final = re.compile(
-    r"^[ \t*_]*(?P<head>[A-Z]?\d+[\d.:-]*[a-z]?[.:]?[ \t]+[A-ZÄÖÜ][^\n]{0,200})$", re.MULTILINE
+    r"^[ \t*_]*(?P<head>[A-Z]?\d[\d.:-]*[a-z]?[.:]?[ \t]+[A-ZÄÖÜ][^\n]{0,200})$", re.MULTILINE
 )
 """The same for articles that have only numbers."""
 _CONTINUED: Final = re.compile(
