@@ -54,6 +54,15 @@ def test_a_rule_is_shown(name, way_out, capsys):
     assert way_out in err.splitlines()[0]
 
 
+def test_a_rulebook_of_ones_own_is_shown(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("town.rules").write_text("rulebook town use road hard rule a { require always stopped }")
+    status, out, err = explain(capsys, "town.rules")
+    assert (status, out) == (2, "")
+    assert "it is a file, which `rulec show town.rules` explains" in err.splitlines()[0]
+    assert "it is a file" not in explain(capsys, "village.rules")[2]
+
+
 def test_a_code_without_an_example(capsys):
     status, out, _ = explain(capsys, "R0403")
     assert status == 0

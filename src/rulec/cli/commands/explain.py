@@ -118,9 +118,12 @@ def _way_out(name: str) -> str:
     from rulec.rulebook.files import words_in_files as texts
     from rulec.rulebook.files.catalogue import rulebooks_with_rule
     from rulec.rulebook.files.search_path import available_rulebooks
+    from rulec.rulebook.files.source_walk import SUFFIX
     from rulec.rulebook.names.word_meanings import described, offer
 
     places = _places()
+    if Path(name).suffix == SUFFIX and Path(name).is_file():
+        return f"it is a file, which `rulec show {name}` explains"
     if name in VERBS:
         return f"it is a command, which `rulec help {name}` explains"
     if near := nearest_name(name.upper(), code_registry.all_codes()):
