@@ -6,19 +6,26 @@ that fail it go to ``check_state``, which knows the rare types and reports what 
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
-from rulec.diagnostics import SourceLocation, did_you_mean, named
+from rulec.diagnostics import SourceLocation
 from rulec.monitoring.monitoring_messages import UNDECLARED_NAME, UNFITTING_VALUE
+from rulec.monitoring.unfitting_values import (
+    misfit,
+    shown,
+    similar_type,
+    suggested,
+    way_out_of,
+    way_out_of_name,
+)
 from rulec.resource_limits import OBJECTS
 from rulec.trace import State
 from rulec.trace.trace_messages import UNKNOWN_OBJECT
 from rulec.value_display import brief
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, OneOf, UnknownValue
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, OneOf, UnknownValue
 
 NUMBERS = frozenset({int, float})
 TRUTHS = frozenset({bool})
@@ -109,7 +116,7 @@ def check_objects(
             raise UNKNOWN_OBJECT.error(
                 place,
                 f"object `{name}` is of type `{said}`, which `{vocabulary.name}` does not know",
-                help=_similar_type(said, vocabulary.types) or _suggest(said, vocabulary.types),
+                help=similar_type(said, vocabulary.types) or suggested(said, vocabulary.types),
             )
 
 
@@ -123,7 +130,7 @@ def check_told(
             raise UNDECLARED_NAME.error(
                 place,
                 f"`told` has `{name}`, which `{vocabulary.name}` does not know",
-                help=_unknown_name(name, vocabulary, (*declarations, *values)),
+                help=way_out_of_name(name, vocabulary, (*declarations, *values)),
             )
 
 
@@ -171,26 +178,9 @@ def check_state(
             raise UNDECLARED_NAME.error(
                 place,
                 f"{where} speaks of `{name}`, which `{vocabulary.name}` does not know",
-                help=_unknown_name(name, vocabulary, vocabulary.declarations),
+                help=way_out_of_name(name, vocabulary, vocabulary.declarations),
             )
         _check_value(value, declaration, declaration.parameters, about)
-
-
-_TRUTHS_ELSEWHERE: Mapping[str | float, str] = {
-    **dict.fromkeys(("True", "TRUE", "true", "T", "yes", 1), "write `true`"),
-    **dict.fromkeys(("False", "FALSE", "false", "F", "no", 0), "write `false`"),
-}
-"""How other programs, such as pandas, write true and false."""
-
-
-_SIDES = {
-    "near_side_of": "write `right_of` where traffic keeps right, and `left_of` where it keeps left",
-    "far_side_of": "write `left_of` where traffic keeps right, and `right_of` where it keeps left",
-}
-"""Sides in the formulas of a rulebook that declares the side of traffic.
-
-Traces use left and right.
-"""
 
 
 class _About(NamedTuple):
@@ -208,18 +198,9 @@ def _check_value(
     objects, vocabulary, where, place = about
     name = declaration.name
     if not parameters:
-        if expected := _misfit(value, declaration):
-            way_out = _of_python(value)
-            if isinstance(declaration, Enumeration) and isinstance(value, str):
-                way_out = _SIDES.get(value) or _meant(value, declaration.values)
-            if isinstance(declaration, Signal) and isinstance(value, str | int | float):
-                way_out = _TRUTHS_ELSEWHERE.get(value, "")
-            if isinstance(declaration, Quantity) and isinstance(value, str):
-                if _is_number(value):
-                    way_out = "numbers are written without quotes"
-                elif _is_number(value.partition(" ")[0]):
-                    way_out = "write the number alone, in that unit"
-            message = f"{where} says `{name}` is {_shown(value)}; {expected}"
+        if expected := misfit(value, declaration):
+            way_out = way_out_of(value, declaration)
+            message = f"{where} says `{name}` is {shown(value)}; {expected}"
             if isinstance(value, Mapping):
                 message = f"{where} gives `{name}` by object; {expected}, and about no object"
                 way_out = f'write {{"{name}": VALUE}}'
@@ -236,7 +217,7 @@ def _check_value(
         if item not in objects:
             message = f"{where} gives `{name}` for `{item}`, which is not among the objects"
             way_out = f'objects have types: write "objects": {{"{item}": "{parameters[0]}"}}'
-            raise UNKNOWN_OBJECT.error(place, message, help=_suggest(item, objects) or way_out)
+            raise UNKNOWN_OBJECT.error(place, message, help=suggested(item, objects) or way_out)
         if not vocabulary.is_subtype(objects[item], parameters[0]):
             message = (
                 f"{where} gives `{name}` for `{item}`, which is of type `{objects[item]}`; "
@@ -244,15 +225,6 @@ def _check_value(
             )
             raise UNKNOWN_OBJECT.error(place, message)
         _check_value(inner, declaration, parameters[1:], about)
-
-
-def _of_python(value: Any) -> str:
-    """Advice about a value that only a program can give, not a file."""
-    if value is None:
-        return "what is not known is `rulec.UNKNOWN`; what has its default is left out"
-    if type(value).__module__ == "numpy":
-        return "`.item()` makes a value of Python's of one of numpy's"
-    return ""
 
 
 def _look(declaration: Declaration, fitting: list[frozenset[str]], *, partial: bool) -> _Look:
@@ -314,93 +286,3 @@ def _many_values(declaration: Declaration, *, partial: bool) -> _Look:
             return lambda values: (
                 NUMBERS.issuperset(map(type, values)) and all(map(math.isfinite, values))
             )
-
-
-def _misfit(value: Any, declaration: Declaration) -> str:
-    if value is UNKNOWN:
-        return ""
-    match declaration:
-        case Enumeration():
-            among = value.values if isinstance(value, OneOf) else (value,)
-            if not all(isinstance(item, str) and item in declaration.values for item in among):
-                return f"it is one of {named(declaration.values)}"
-        case Signal():
-            if not isinstance(value, bool):
-                return "it is true or false"
-        case Quantity() if not isinstance(value, Interval):
-            number = isinstance(value, int | float) and not isinstance(value, bool)
-            # Neither infinite nor nan; whole numbers may be larger than any float.
-            if not number or not -math.inf < value < math.inf:
-                return f"it is a finite number, in {declaration.unit}"
-    return ""
-
-
-def _shown(value: Any) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, Interval):
-        return f"from {value.low:g} to {value.high:g}"
-    if isinstance(value, str):
-        text = json.dumps(value, ensure_ascii=False)
-    elif isinstance(value, float):
-        text = f"{value:g}"
-    elif isinstance(value, int):
-        # Python refuses to write out whole numbers of many thousand digits.
-        text = str(value) if value.bit_length() < 200 else "a number of many digits"
-    else:
-        kind = type(value)
-        of = "" if kind.__module__ == "builtins" else f"{kind.__module__}."
-        text = f"{_written(value)} ({of}{kind.__name__})"
-    return f"`{text[:60]}…`" if len(text) > 60 else f"`{text}`"
-
-
-def _is_number(text: str) -> bool:
-    try:
-        return math.isfinite(float(text))
-    except ValueError:
-        return False
-
-
-def _written(value: object) -> str:
-    try:
-        return str(value)
-    except RecursionError:  # lists in lists in lists
-        return "…"
-
-
-def _suggest(name: str, known: Iterable[str]) -> str:
-    # A key that Python code has made may be no text: an object's number, say.
-    known = [str(name) for name in known]
-    return did_you_mean(str(name), known) or (f"known: {named(known)}" if known else "")
-
-
-def _similar_type(kind: str, types: Iterable[str]) -> str:
-    # Synonyms are read from a file: only for this message.
-    from rulec.rulebook.vocabulary_phrases import synonyms_of_the_field
-
-    others = synonyms_of_the_field()
-    plain = kind.casefold()
-    similar = (name for name in types if plain in others.get(name, ()))
-    return next((f"did you mean `{name}`?" for name in similar), "")
-
-
-def _unknown_name(name: str, vocabulary: Vocabulary, known: Iterable[str]) -> str:
-    enumeration = vocabulary.enumeration_of.get(name)
-    if name in _SIDES:
-        return f"it is a word of formulas; of `lateral` {_SIDES[name]}"
-    if enumeration is not None:
-        return f'`{name}` is a value: write {{"{enumeration.name}": … "{name}"}}'
-    # Where files are looked for, 3 ms: only for this message.
-    from rulec.rulebook.files.words_in_files import vocabularies_with
-
-    if others := vocabularies_with(str(name)):
-        return f"it is a word of the vocabulary `{others[0]}`: judge by a rulebook that uses that"
-    known = [str(word) for word in known]
-    return _meant(str(name), known) or _suggest(name, known)
-
-
-def _meant(name: str, known: Sequence[str]) -> str:
-    # Phrases and synonyms are read from files: only for this message.
-    from rulec.rulebook.names.word_meanings import suggestion
-
-    return suggestion(name, known)
