@@ -11,6 +11,7 @@ from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.decision_diagrams import diagram_compiler
 from rulec.automata.worker import compiler_choice
 from rulec.automata.worker.job_answers import answer_to
+from rulec.automata.worker.machine_cache import MachineCache
 
 Answers = tuple[list[Done | Failed | None], str]
 
@@ -21,9 +22,9 @@ def remembering(folder: Path) -> Callable[[Sequence[Job]], Answers]:
     """``compiler.answers_to``, but for what this process or one beside it has asked before.
 
     They keep machines in ``folder``; the second compiler needs no process, in which it would have
-    to be loaded each time, and Spot's waits for the next rulebook. Whatever fails is asked anew,
-    and so is everything while a test has put another worker in the place of Spot's, or is about how
-    it is confined.
+    to be loaded each time, and Spot's waits for the next rulebook. What ships is taken as commands
+    take it. Whatever fails is asked anew, and so is everything while a test has put another worker
+    in the place of Spot's, or is about how it is confined.
     """
 
     def kept(job: Job, choice: str | None) -> Path:
@@ -44,7 +45,10 @@ def remembering(folder: Path) -> Callable[[Sequence[Job]], Answers]:
         known = [file.read_bytes() if file.exists() else b"" for file in files]
         unknown = [job for job, found in zip(jobs, known, strict=True) if not found]
         if choice == compiler_choice.DIAGRAMS:
-            asked, spot = [answer_to(job, diagram_compiler.COMPILER) for job in unknown], ""
+            shipped, _ = MachineCache(choice).recalled(unknown)
+            pairs = zip(unknown, shipped, strict=True)
+            asked = [found or answer_to(job, diagram_compiler.COMPILER) for job, found in pairs]
+            spot = ""
         else:
             asked, spot = ASKED(unknown, more_will_come=True, time=time) if unknown else ([], "")
         for job, answer in zip(unknown, asked, strict=True):
