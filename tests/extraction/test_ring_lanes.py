@@ -10,7 +10,7 @@ from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_verdicts import violated
 from support.builders.recordings import lanelet, recording, vehicle
 
-OUTER_M, INNER_M, WIDTH_M, STEP_S = 22.0, 18.4, 3.6, 0.2
+OUTER_M, INNER_M, WIDTH_M, STEP_S = 22.0, 18.4, 3.6, 0.1
 KNOWN = frozenset({"arrivals", "lanes", "light", "roundabout", "STOP", "YIELD", "PRIORITY"})
 
 
@@ -30,7 +30,7 @@ def ring():
     return lanes
 
 
-def on_ring(number, radius, mps, ahead, steps=60):
+def on_ring(number, radius, mps, ahead, steps=120):
     """One that drives round, from so far (rad) on."""
     turns = ahead + mps * STEP_S * np.arange(steps) / radius
     places = np.stack([radius * np.cos(turns), radius * np.sin(turns)], axis=1)

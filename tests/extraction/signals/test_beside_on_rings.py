@@ -19,7 +19,7 @@ from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording
 
-LANE_M, OWN_M, EDGE_M, STEP_S = 20.0, 19.5, 22.0, 0.2
+LANE_M, OWN_M, EDGE_M, STEP_S = 20.0, 19.5, 22.0, 0.1
 TIMES = np.arange(0, 12, STEP_S)
 EXIT_S = 6.0
 ROUND = frozenset({"roundabout"})
