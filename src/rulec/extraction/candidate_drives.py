@@ -110,13 +110,15 @@ class _Batch:
             prepared=(among.map, self.matching, self.surroundings),
         )
         self.stretches = [self._drives.stretches(row) for row in range(len(candidates))]
+        self._roads = [[self._road(stretch) for stretch in own] for own in self.stretches]
         self._rows: dict[DrivenRoad, dict[int, int]] = defaultdict(dict)
-        for row, stretches in enumerate(self.stretches):
-            for road in {self._road(stretch) for stretch in stretches}:
+        for row, roads in enumerate(self._roads):
+            for road in dict.fromkeys(roads):
                 if road is not None:
                     own = self._rows[road]
                     own[row] = len(own)
         self._places: dict[DrivenRoad, RoadPlaces] = {}
+        self._n_off: dict[DrivenRoad, NDArray[intp]] = {}
 
     def _road(self, stretch: RouteStretch) -> DrivenRoad | None:
         found = self._among.map.road(stretch.route)
@@ -130,16 +132,22 @@ class _Batch:
             self._places[road] = self._drives.places_of(road, members)
         return self._places[road], rows[row]
 
+    def _off_road(self, road: DrivenRoad, row: int) -> NDArray[intp]:
+        """In how many columns before each a candidate has no place on the road."""
+        places, own = self.places(road, row)
+        if road not in self._n_off:
+            off = np.isnan(places.extents.s).cumsum(axis=1)
+            self._n_off[road] = np.pad(off, ((0, 0), (1, 0)))
+        n_off: NDArray[intp] = self._n_off[road][own]
+        return n_off
+
     def drives(self, *, bare: bool) -> Iterator[Block]:
         """The drives of each candidate, ordered by road, in blocks.
 
         With ``bare`` the drives are bare, unless one block holds all candidates.
         """
         known: dict[DrivenRoad | None, int] = {}
-        roads = [
-            known.setdefault(self._road(own[0]) if own else None, len(known))
-            for own in self.stretches
-        ]
+        roads = [known.setdefault(own[0] if own else None, len(known)) for own in self._roads]
         order = sorted(range(len(roads)), key=roads.__getitem__)
         n_others = max(len(self._among.surroundings.tracks.participants), 1)
         rows: list[int] = []
@@ -182,12 +190,12 @@ class _Batch:
         self, row: int, number: int, stretch: RouteStretch
     ) -> tuple[DrivenRoad, _Stretch] | None:
         """The road of a stretch that can be processed with others, and the stretch; or None."""
-        road = self._road(stretch)
+        road = self._roads[row][number]
         if road is None or road.meets_itself or stretch.against:
             return None
-        places, own = self.places(road, row)
         columns = slice(stretch.first, stretch.last + 1)
-        if np.isnan(places.extents.s[own, columns]).any():
+        n_off = self._off_road(road, row)
+        if n_off[columns.stop] > n_off[columns.start]:
             return None
         ego = self.surroundings.tracks.participants[row].id
         name = ego if number == 0 else f"{ego}#{number + 1}"

@@ -246,12 +246,11 @@ def signal_parts(
     only = {name: flags[present.rows] for name, flags in columns.only.items() if name in about}
     about_names = frozenset(name for name in names if name not in columns.world)
     nothing: dict[str, SignalColumn] = {}
+    is_one, states_of = spans.n_drives == 1, spans.slices
+    cells_of = list(map(slice, bounds[:-1], bounds[1:]))
 
     def part(values: Mapping[str, Any], k: int) -> Mapping[str, Any]:
-        if spans.n_drives == 1:
-            return values
-        cells_of = slice(bounds[k], bounds[k + 1])
-        return SharedColumns(values, about_names, spans.slices[k], cells_of)
+        return values if is_one else SharedColumns(values, about_names, states_of[k], cells_of[k])
 
     own_objects = list(map(slice, present.bounds[:-1], present.bounds[1:]))
     return [
@@ -263,7 +262,7 @@ def signal_parts(
             "unknown": nothing if defaults else part(unknown, k),
             "absent": part(unknown, k) if defaults else nothing,
             "bounds": {} if defaults else part(intervals, k),
-            "only": SharedColumns(only, about_names, own, own) if spans.n_drives > 1 else only,
+            "only": only if is_one else SharedColumns(only, about_names, own, own),
         }
         for k, own in enumerate(own_objects)
     ]

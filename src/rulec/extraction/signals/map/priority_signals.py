@@ -137,6 +137,8 @@ def _is_on_rails(context: DriveContext, row: int) -> bool:
 @once
 def own_passages(context: DriveContext) -> tuple[Passage, ...]:
     """Ego's passages of junctions during the drive; of several drives, the first that has any."""
+    if not context.own.passages.of_row:
+        return ()
     for number in range(context.spans.n_drives):
         if passages := passages_of(context, number):
             return passages

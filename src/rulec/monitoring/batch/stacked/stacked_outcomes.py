@@ -85,11 +85,10 @@ def outcomes(
         first_alike = np.where(by_itself, np.arange(len(is_odd)), first_alike)
         answers: dict[int, Answer | None] = dict.fromkeys(is_odd.nonzero()[0].tolist())
         is_told = is_odd.copy()
-        for place in distinct(first_alike[~is_odd]).tolist():
-            answer = _joined(
-                [rule.answer(rows[ends[place] : ends[place + 1]]) for rows, ends in alternatives]
-            )
-            answers[place] = answer
+        told = distinct(first_alike[~is_odd]).tolist()
+        of_each = [rule.answers(rows, ends, told) for rows, ends in alternatives]
+        for place, *of_word in zip(told, *of_each, strict=True):
+            answer = answers[place] = _joined(of_word)
             is_told[place] = answer.worst != KEPT
         places = is_told[first_alike].nonzero()[0]
         answers_at = [answers[first] for first in first_alike[places].tolist()]

@@ -276,6 +276,18 @@ class StackedRule:
             answer = self._answers[key] = Answer(*self.machine.monitor.run_stretches(word))
         return answer
 
+    def answers(
+        self, rows: NDArray[np.intp], ends: Sequence[int], places: Sequence[int]
+    ) -> list[Answer]:
+        """The answers for some of the words that lie in ``rows``, each between two ``ends``."""
+        # One text of all words, since cutting arrays into thousands of words takes longer
+        text, width = rows.tobytes(), rows.itemsize * rows.shape[1]
+        keys = [text[width * ends[place] : width * ends[place + 1]] for place in places]
+        return [
+            self._answers.get(key) or self.answer(rows[ends[place] : ends[place + 1]])
+            for key, place in zip(keys, places, strict=True)
+        ]
+
     def _make_room(self, n_bytes: int) -> None:
         self._bytes += n_bytes
         if self._bytes > MOST_BYTES:

@@ -139,6 +139,8 @@ def crossed(context: DriveContext, others: Others, reach: Floats) -> Flags:
 def met(context: DriveContext, asked: Flags, reach: Floats) -> tuple[Flags, Flags]:
     """Masks of states in which a vehicle makes ego wait where ways meet in a junction, or may."""
     waits, thinks = np.zeros((2, context.states), dtype=bool)
+    if not context.own.passages.of_row:
+        return waits, thinks
     for number, columns in context.spans.those(context.spans.any(asked)):
         if passages_of(context, number):
             waits[columns], thinks[columns] = _met_alone(context.one(number), reach[columns])
