@@ -15,6 +15,7 @@ from rulec.trace.plain_arrays import (
     medians_hold,
     quantile,
     ranges,
+    ranks,
     zero_if_nan,
 )
 
@@ -41,6 +42,17 @@ def test_quantiles_are_those_of_numpy(numbers, share):
 def test_runs_begin_where_no_number_is_one_more_than_the_one_before(numbers, runs):
     found = begin_runs(np.array(numbers, dtype=np.intp))
     assert found.tolist() == [run == "T" for run in runs]
+
+
+@given(st.lists(st.lists(st.integers(0, 5), max_size=7), min_size=1, max_size=9))
+def test_ranks_are_places_in_the_sorted_column(columns):
+    most = max(map(len, columns))
+    padded = np.array([[*own, *[np.nan] * (most - len(own))] for own in columns], dtype=float)
+    wanted = []
+    for own in columns:
+        in_order = sorted(range(len(own)), key=own.__getitem__)
+        wanted.append([*map(in_order.index, range(len(own))), *range(len(own), most)])
+    assert ranks(padded.T).T.tolist() == wanted
 
 
 @given(st.lists(st.floats(allow_infinity=False), max_size=9))

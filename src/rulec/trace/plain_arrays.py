@@ -121,6 +121,21 @@ def in_order(groups: NDArray[np.intp]) -> NDArray[np.intp]:
     return numbers.argsort(kind="stable")
 
 
+def ranks(columns: NDArray[np.float64]) -> NDArray[np.intp]:
+    """The place of each number among those of its column, ascending; equal ones keep their order.
+
+    NaN may only follow all numbers of its column, and keeps its place. All columns are compared at
+    once, row by row: of a few rows that takes a fifth of the time of NumPy's ``argsort``.
+    """
+    ranks = np.zeros(columns.shape, dtype=np.int16)
+    for row, later in enumerate(columns[1:], 1):
+        are_less = later < columns[:row]
+        ranks[:row] += are_less
+        ranks[row] += row
+        ranks[row] -= are_less.sum(axis=0, dtype=np.int16)
+    return ranks.astype(np.intp)
+
+
 def medians(
     groups: NDArray[np.intp], values: NDArray[np.float64], count: int
 ) -> tuple[NDArray[np.float64], NDArray[np.intp]]:

@@ -23,7 +23,7 @@ from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
-from rulec.trace.plain_arrays import medians_hold
+from rulec.trace.plain_arrays import medians_hold, ranks
 
 _BODY_M = 5.0
 """Roughly the length of a vehicle (m)."""
@@ -259,25 +259,23 @@ def _short_gaps(
 
     ``chosen`` entries of all vehicles are in these ``rows``, with ``counts`` entries each.
     """
-    around, longest = vehicles_around(context), int(counts.max())
-    # One row per lane and state, which ends in NaN
-    at = rows * longest + around.number.take(chosen)
-    s_min = np.full(len(counts) * longest, np.nan)
-    s_min[at] = around.s_min.take(chosen)
-    within = s_min.reshape(-1, longest).argsort(axis=1, kind="stable")
-    # Successive vehicles along the first axis, along which they are added faster
-    order = np.ascontiguousarray(within.T)
-    order += np.arange(len(counts)) * longest
-    entries = np.zeros(len(s_min), dtype=intp)
-    entries[at] = chosen
-    behind = entries.take(order[:-1])
-    gaps = s_min.take(order[1:]) - around.s_max.take(behind)
+    around, shape = vehicles_around(context), (int(counts.max()), len(counts))
+    # One column per lane and state, which ends in NaN
+    at = around.number.take(chosen) * len(counts) + rows
+    own = around.s_min.take(chosen)
+    rears, fronts = np.full((2, *shape), np.nan)
+    rears.ravel()[at] = own
+    at = ranks(rears).ravel().take(at) * len(counts) + rows
+    entries = np.zeros(shape, dtype=intp)
+    rears.ravel()[at], fronts.ravel()[at] = own, around.s_max.take(chosen)
+    entries.ravel()[at] = chosen
+    behind, gaps = entries[:-1], rears[1:] - fronts[:-1]
     # Gaps up to this are short at any speed
     most_wrong = np.fmax.reduce(around.speed_error, initial=0.0)
     near = longest_gaps(context, np.zeros(1), most_wrong)[STRICT]
     short = (gaps <= near)[None].repeat(len(READINGS), axis=0)
     rest = (gaps > near).ravel().nonzero()[0]
-    behind, gaps = behind.take(rest), gaps.take(rest)
+    behind, gaps = behind.ravel().take(rest), gaps.ravel().take(rest)
     longest_m = longest_gaps(context, around.speed.take(behind), around.speed_error.take(behind))
     for flags, limit in zip(short, longest_m, strict=True):
         flags.ravel()[rest] = gaps <= limit
