@@ -77,16 +77,36 @@ def wire():
         ),
         (message(id=7, method=COMMAND, params={"command": "nothing"}), 7, -32602),
         ("{abc}", None, -32700),
+        ("[" * 100_000, None, -32700),
+        (message(id=8, method="initialize", params=BEGINNING), 8, -32600),
         ("[]", None, -32600),
         ("3", None, -32600),
         (json.dumps({"id": 4, "method": HOVER, "params": SOMEWHERE}), 4, -32600),
     ],
 )
 def test_what_cannot_be_answered_is_refused_and_the_next_is_answered(wire, text, number, code):
-    server = wire()
+    server = wire(stderr=subprocess.PIPE)
     refused = server.reply(text)
     assert (refused["id"], refused["error"]["code"]) == (number, code)
     assert server.ask(9, HOVER, SOMEWHERE) == {"jsonrpc": "2.0", "id": 9, "result": None}
+    server.server.kill()
+    assert b"Traceback" not in server.server.communicate()[1]
+
+
+def test_a_second_beginning_leaves_open_what_was(wire, tmp_path):
+    server = wire()
+    document = {"uri": (tmp_path / "a.rules").as_uri()}
+    text = "rulebook a\nsignal p\nhard rule r { require always p }\n"
+    opened = {**document, "languageId": "rulec", "version": 1, "text": text}
+    server.say(message(method="textDocument/didOpen", params={"textDocument": opened}))
+    assert server.heard()["params"]["version"] == 1
+    assert server.ask(1, "initialize", BEGINNING)["error"]["code"] == -32600
+    changed = {
+        "textDocument": {**document, "version": 2},
+        "contentChanges": [{"text": text + "signal q\n"}],
+    }
+    server.say(message(method="textDocument/didChange", params=changed))
+    assert server.heard()["params"]["version"] == 2
 
 
 def test_requests_have_their_time(wire):

@@ -14,7 +14,7 @@ from pygls.lsp.server import LanguageServer
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.language_server.lenses.code_lenses import KnownAnswers
 from rulec.language_server.names.document_names import DocumentNames, names_in_document
-from rulec.language_server.strict_protocol import StrictProtocol
+from rulec.language_server.strict_protocol import UNREADABLE, StrictProtocol
 from rulec.language_server.workspace import published_diagnostics as published
 from rulec.language_server.workspace.editor_workspace import (
     CheckedDocument,
@@ -49,7 +49,7 @@ class EditorSession(LanguageServer):
 
     def report_server_error(self, error: Exception, source: Any) -> None:
         """Report an error in a message: to the client that sent it, or else to the log."""
-        if isinstance(error, ValueError) and isinstance(self.protocol, StrictProtocol):
+        if isinstance(error, UNREADABLE) and isinstance(self.protocol, StrictProtocol):
             self.protocol.refuse(None, JsonRpcParseError(str(error)))
         elif not isinstance(error, JsonRpcException):
             super().report_server_error(error, source)

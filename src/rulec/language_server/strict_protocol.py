@@ -14,14 +14,23 @@ from pygls.exceptions import (
 )
 from pygls.protocol import LanguageServerProtocol
 
+UNREADABLE = (ValueError, RecursionError)
+"""What reading a message raises that is not JSON, or is nested too deeply."""
+
 
 def _is_no_refusal(record: logging.LogRecord) -> bool:
-    """Whether a log record is about more than a refusal, which its reply explains already."""
-    return not (record.exc_info and isinstance(record.exc_info[1], JsonRpcException))
+    """Whether a log record is about more than a refusal, which its reply explains already.
+
+    Of a message whose parts do not fit its method, a line stays, and not the traceback below it.
+    """
+    record.msg, record.args = record.getMessage().partition("\n")[0], ()
+    kinds = (JsonRpcException, *(UNREADABLE if record.name == "pygls.server" else ()))
+    return not (record.exc_info and isinstance(record.exc_info[1], kinds))
 
 
 # Editors show each error logged by pygls as a crash of the server, even for an invalid new name.
-logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_no_refusal)
+for _logger in ("pygls.protocol.json_rpc", "pygls.server"):
+    logging.getLogger(_logger).addFilter(_is_no_refusal)
 
 
 _TAKEN = "a command takes two texts: a document's address and a rule's name"
@@ -52,6 +61,9 @@ class StrictProtocol(LanguageServerProtocol):
         if getattr(message, "jsonrpc", "") != self.VERSION:
             number = message.get("id") if isinstance(message, dict) else number
             self.refuse(number, JsonRpcInvalidRequest("this is no message of JSON-RPC 2.0"))
+        elif method == lsp.INITIALIZE and self._workspace is not None:
+            # pygls would begin anew, without the documents that are open.
+            self.refuse(number, JsonRpcInvalidRequest("the server has been initialized already"))
         elif is_begun and method == lsp.WORKSPACE_EXECUTE_COMMAND and not _names_a_rule(message):
             self.refuse(number, JsonRpcInvalidParams(_TAKEN))
         elif is_begun and not (self._shutdown and method and number is not None):
