@@ -1,8 +1,12 @@
 """Quick fixes, inlay hints, and lenses above rules."""
 
+import asyncio
+
 import pytest
 from lsprotocol import types as lsp
 
+from rulec.language_server import lens_commands
+from rulec.language_server.server import language_server
 from support.editor import edited, shown
 
 BOOK = """\
@@ -183,10 +187,48 @@ def test_lenses_run_examples_and_insert_what_is_missing(watched):
     assert watched.change("lenses.rules", mended, 2) == []
 
 
+@pytest.mark.parametrize(
+    ("typed", "inserted"),
+    [
+        (LENSES.replace("signal", "# above the rule\nsignal"), True),
+        (LENSES.replace("built_up implies", "congested implies"), False),
+        (LENSES.replace("slow_in_town", "slow"), False),
+    ],
+)
+def test_what_is_missing_is_inserted_where_the_rule_has_moved_to(monkeypatch, typed, inserted):
+    server, uri, edits = language_server(), "file:///lenses.rules", []
+    real = lens_commands.example_answer
+
+    def typing_meanwhile(book, rule):
+        server.editor.open(uri, typed, 2)
+        return real(book, rule)
+
+    async def taken(params):
+        edits.extend(params.edit.changes[uri])
+
+    monkeypatch.setattr(lens_commands, "example_answer", typing_meanwhile)
+    monkeypatch.setattr(lens_commands, "_takes_edits", lambda _: True)
+    for name in ("refresh_lenses", "window_show_message"):
+        monkeypatch.setattr(server, name, lambda *_: None)
+    monkeypatch.setattr(server, "workspace_apply_edit_async", taken)
+    server.editor.open(uri, LENSES, 1)
+    answer = asyncio.run(server.protocol.fm.commands["rulec.insertExample"](uri, "slow_in_town"))
+    end = '"slow" { built_up and speed = 20 km/h }\n'
+    assert bool(edits) == inserted
+    assert not inserted or edited(typed, edits) == typed.replace(end, f"{end}  {answer}\n")
+
+
 def test_a_lens_says_a_rule_in_plain_english(watched):
     english = lenses(watched)["slow_in_town"][1]
     assert "30 km/h" in execute(watched, english)
     assert watched.messages[-1].message
+
+
+def test_a_rule_without_examples_is_not_said_to_be_tested(editor):
+    text = "rulebook bare\nsignal p\nhard rule r { require always p }\n"
+    assert [one.code for one in editor.open("bare.rules", text)] == []
+    command = lsp.Command("", "rulec.insertExample", arguments=[editor.uri("bare.rules"), "r"])
+    assert "r has no example" in execute(editor, command)
 
 
 def test_a_rule_that_is_gone_is_said(watched):

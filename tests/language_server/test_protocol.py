@@ -109,6 +109,24 @@ def test_a_second_beginning_leaves_open_what_was(wire, tmp_path):
     assert server.heard()["params"]["version"] == 2
 
 
+def test_an_editor_is_asked_for_nothing_that_it_cannot_do(wire, tmp_path):
+    server = wire()
+    document = {"uri": (tmp_path / "a.rules").as_uri()}
+    text = "rulebook a\nsignal p\nhard rule r { require always p accept { p } }\n"
+    opened = {**document, "languageId": "rulec", "version": 1, "text": text}
+    server.say(message(method="textDocument/didOpen", params={"textDocument": opened}))
+    params = {"command": "rulec.insertExample", "arguments": [document["uri"], "r"]}
+    heard = [server.ask(1, COMMAND, params)]
+    while heard[-1].get("id") != 1:
+        heard.append(server.heard())
+    assert {one["method"] for one in heard[:-1]} <= {
+        "textDocument/publishDiagnostics",
+        "window/showMessage",
+    }
+    shown = [one["params"]["message"] for one in heard if one.get("method") == "window/showMessage"]
+    assert shown == [heard[-1]["result"]] == ["reject { not p }"]
+
+
 def test_requests_have_their_time(wire):
     server = wire(begun=False)
     assert server.ask(1, HOVER, SOMEWHERE)["error"]["code"] == -32002

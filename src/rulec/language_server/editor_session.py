@@ -89,11 +89,16 @@ class EditorSession(LanguageServer):
 
     def _ask_again(self) -> None:
         """Have the editor ask for what it got no answer to while a check was waited for."""
+        self.refresh_lenses()
+        workspace = self.client_capabilities.workspace
+        if workspace and workspace.inlay_hint and workspace.inlay_hint.refresh_support:
+            self.workspace_inlay_hint_refresh(None)
+
+    def refresh_lenses(self) -> None:
+        """Have the editor ask for lenses anew, if it can be told to."""
         workspace = self.client_capabilities.workspace
         if workspace and workspace.code_lens and workspace.code_lens.refresh_support:
             self.workspace_code_lens_refresh(None)
-        if workspace and workspace.inlay_hint and workspace.inlay_hint.refresh_support:
-            self.workspace_inlay_hint_refresh(None)
 
     def publish(self, uri: str) -> None:
         """Send everything that has been found in a file."""

@@ -60,7 +60,7 @@ def add_commands(server: EditorSession) -> None:
             return _shown(server, str(error))
         server.answers.keep_few()
         server.answers.parents[lenses.parent_key(of_rule, names)] = answer
-        server.workspace_code_lens_refresh(None)
+        server.refresh_lenses()
         return _shown(server, answer.text)
 
     @server.command(lenses.INSERT)
@@ -68,14 +68,25 @@ def add_commands(server: EditorSession) -> None:
         subject = _rule_asked_about(server, uri, rule)
         if isinstance(subject, str):
             return _shown(server, subject)
-        answer = await _examples(server, subject)
-        if isinstance(answer, str):
-            return _shown(server, answer)
-        names = subject[0]
+        found = await _examples(server, subject)
+        if isinstance(found, str):
+            return _shown(server, found)
+        # Typing goes on meanwhile: the place is that in the text of now.
+        subject = _rule_asked_about(server, uri, rule)
+        if isinstance(subject, str):
+            return _shown(server, subject)
+        names, _, of_rule = subject
+        answer = server.answers.of_examples(of_rule)
+        if answer is None:
+            return _shown(server, f"{rule} has been changed meanwhile: ask again")
         missing = answer.missing[0] if answer.missing else ""
         change = lenses.inserted_example(names, rule, missing) if missing else None
+        if not of_rule.examples:
+            return _shown(server, f"{rule} has no example: `rulec show` proposes the first ones")
         if change is None:
             return _shown(server, f"{rule}: every edge is tested")
+        if not _takes_edits(server):
+            return _shown(server, missing)
         edit = workspace_edit({uri: [change]}, server.editor)
         await server.workspace_apply_edit_async(lsp.ApplyWorkspaceEditParams(edit))
         return missing
@@ -109,8 +120,13 @@ async def _examples(server: EditorSession, subject: RuleInDocument) -> ExampleAn
         return str(error)
     server.answers.keep_few()
     server.answers.examples[rule.formula] = rule.examples, answer
-    server.workspace_code_lens_refresh(None)
+    server.refresh_lenses()
     return answer
+
+
+def _takes_edits(server: EditorSession) -> bool:
+    workspace = server.client_capabilities.workspace
+    return bool(workspace and workspace.apply_edit)
 
 
 def _shown(server: EditorSession, text: str) -> str:
