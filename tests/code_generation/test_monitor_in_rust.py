@@ -142,15 +142,43 @@ def test_a_hostile_rulebook_has_the_same_code(esterle):
 @needs_rust
 def test_the_page_leads_to_a_monitor_in_rust(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert main(["compile", "esterle2019", "--emit", "rust", "-o", "esterle2019"]) == 0
     page = PAGE.read_text(encoding="utf-8")
-    (program,) = re.findall(r"^```rust\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    ((program, shown),) = re.findall(
+        r"^```rust\n(.*?)^```\n\n```console\n(.*?)^```$", page, re.MULTILINE | re.DOTALL
+    )
     Path("watch.rs").write_text(program, encoding="utf-8")
-    crate = ["--crate-type", "rlib", "--crate-name", "esterle2019", "esterle2019/src/lib.rs"]
-    for arguments in (crate, ["watch.rs", "--extern", "esterle2019=libesterle2019.rlib"]):
-        subprocess.run(["rustc", "--edition", "2021", "-D", "warnings", *arguments], check=True)
-    done = subprocess.run(["./watch"], check=True, capture_output=True, text=True)
-    assert done.stdout.splitlines() == ["false", "false", "true"]
+    commands = re.findall(r"^\$ (.*)\n((?:[^$].*\n)*)", shown, re.MULTILINE)
+    assert len(commands) == 4
+    for command, printed in commands:
+        if command.startswith("rulec "):
+            assert main(command.split()[1:]) == 0
+        else:
+            strict = command.replace("rustc ", "rustc -D warnings ", 1).split()
+            done = subprocess.run(strict, check=True, capture_output=True, text=True)
+            assert done.stdout == printed
+    assert printed == "false\nfalse\ntrue\n"
+
+
+def test_fields_have_their_meaning():
+    source = """
+    rulebook units
+    type car
+    quantity gap(c: car) in m
+    quantity speed in km/h default 3.5
+    light is one of red, green default red
+    signal follows(c: car, d: car) default false
+    hard rule a (c: car, d: car) {
+      require always (follows(c, d) and gap(c) > 2 m and speed < 3 m/s implies red)
+    }
+    """
+    written = rust_source(layout_of(rulec.compile(rulec.parse_rulebook(source))))
+    for comment, field in (
+        ("`gap` of each car: in m", "gap: f64"),
+        ("`speed`: in km/h, default 3.5", "speed: f64"),
+        ("`light`: one of 2 values, default red", "light: u8"),
+        ("`follows` of each car: signal, default false", "follows: Option<&'a [u8]>"),
+    ):
+        assert f"    /// {comment}\n    pub {field},\n" in written
 
 
 @needs_cargo

@@ -198,6 +198,11 @@ def _kind(item: Declaration) -> str:
 
 
 def _about(item: Declaration) -> str:
+    return in_comment(f"{item.name}{meaning(item)}")
+
+
+def meaning(item: Declaration) -> str:
+    """What the values of a name are: about which objects, of which kind or unit, by default."""
     match item:
         case Signal():
             kind = "signal"
@@ -207,7 +212,7 @@ def _about(item: Declaration) -> str:
             kind = f"in {item.unit}"
     of = f" of each {item.parameters[0]}" if item.parameters else ""
     default = "" if default_of(item) is None else f", default {default_of(item)}".lower()
-    return in_comment(f"{item.name}{of}: {kind}{default}")
+    return f"{of}: {kind}{default}"
 
 
 def default_of(item: Declaration) -> bool | float | str | None:

@@ -7,7 +7,7 @@ from math import isfinite
 from pathlib import Path
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE
-from rulec.code_generation.c_files import default_of, head_lines
+from rulec.code_generation.c_files import default_of, head_lines, meaning
 from rulec.code_generation.input_fields import RULE, TYPE
 from rulec.code_generation.monitor_layout import MonitorLayout, RuleLayout
 from rulec.code_generation.reading_code import unread
@@ -224,7 +224,8 @@ def _input(layout: MonitorLayout) -> Iterator[str]:
 
 
 def _field(item: Declaration, layout: MonitorLayout, kind: str) -> Iterator[str]:
-    yield f"    /// `{in_comment(item.name).replace('`', ' ')}`"
+    name, about = (in_comment(text).replace("`", " ") for text in (item.name, meaning(item)))
+    yield f"    /// `{name}`{' ' if item.parameters else ''}{about}"
     yield f"    pub {layout.fields.identifiers[item.name]}: {kind},"
 
 
