@@ -175,3 +175,18 @@ def test_what_is_with_others_begins_where_they_are_there():
     book = compile_here(parse_rulebook(f"rulebook r {text}"), Fraction(1))
     states = ({"p": {"a": False}},) * 2
     assert verify(Trace("t", 1.0, {"a": "car"}, states, ends="cut"), book).satisfied
+
+
+@pytest.mark.parametrize(
+    ("rule", "why"),
+    [
+        ("eventually once p", "only Spot can make it, which is not what compiled the rulebook"),
+        ("eventually once p and always[<= 1 s] p", "it is smaller for larger time steps"),
+    ],
+)
+def test_a_rule_that_takes_spot_is_not_said_to_be_too_large_alone(monkeypatch, rule, why):
+    monkeypatch.setenv("RULEC_COMPILER", "diagrams")
+    book = parse_rulebook(f"rulebook b signal p hard rule r {{ require {rule} }}")
+    verdict = verify(Trace("", Fraction(1), {}, ({"p": False},), ends="cut"), compile_here(book))
+    (left_out,) = verdict.not_judged
+    assert left_out.why.endswith(why)

@@ -46,12 +46,17 @@ def judged_rules(
     return known[told, cut]
 
 
-_TOO_LARGE_IF_CUT = (
-    "of what is cut out of something longer, as recordings are, its automaton is too large; it is "
-    "smaller for larger time steps"
-)
 _MOST_KNOWN = 1 << 6
 """For how many kinds of sources the rules are kept before all are discarded."""
+
+
+def _why_not_if_cut(rule: CompiledRule, rulebook: CompiledRulebook) -> str:
+    """Why a rule has no machine for traces that are cut."""
+    why = "of what is cut out of something longer, as recordings are, its automaton is too large"
+    if not rulebook.spot:
+        why += ", or only Spot can make it, which is not what compiled the rulebook"
+    # Only bounds in seconds have fewer steps then.
+    return why if rule.step_s is None else f"{why}; it is smaller for larger time steps"
 
 
 def _judged_rules(
@@ -69,7 +74,8 @@ def _judged_rules(
     for rule in rulebook.rules:
         outcomes = None if prefixes is None else prefixes.get(rule.name)
         if prefixes is not None and outcomes is None:
-            not_judged.append(RuleNotJudged(rule.name, rule.strength, (), _TOO_LARGE_IF_CUT))
+            why = _why_not_if_cut(rule, rulebook)
+            not_judged.append(RuleNotJudged(rule.name, rule.strength, (), why))
             continue
         machine = uncertain_machine(rule, outcomes)
         untold = machine.untold(unknown)
