@@ -74,7 +74,7 @@ def unreadable_command(command: str, problem: str) -> RulecError:
     return NO_MONITOR_COMPILER.error(
         None,
         f"the environment variable `CC` is not a command: `{command}` ({problem})",
-        help="name a compiler in it as in a shell, such as `gcc -m32`, or unset it",
+        help="name a compiler in it as in a shell, such as `gcc -O1`, or unset it",
     )
 
 
