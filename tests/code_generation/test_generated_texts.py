@@ -240,6 +240,21 @@ def test_options_that_make_no_sense(options, tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
+    ("bounds", "said"),
+    [
+        (["vehicle=1.5"], "`vehicle=1.5` is not TYPE=N, such as `vehicle=16`"),
+        (["=3"], "`=3` is not TYPE=N"),
+        (["vehicle=3", "vehicle=4"], "`vehicle` has two bounds"),
+    ],
+)
+def test_bounds_that_make_no_sense(bounds, said, tmp_path, capsys):
+    options = [part for bound in bounds for part in ("--objects", bound)]
+    arguments = ["compile", "esterle2019", "--emit", "c", "-o", str(tmp_path / "out"), *options]
+    assert main(arguments) == 2
+    assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
     ("script", "code", "said"),
     [
         (None, "R0751", "`no-such-compiler` is not found"),

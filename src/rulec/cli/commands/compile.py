@@ -41,8 +41,10 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
     bounds: dict[str, int] = {}
     for value in values:
         kind, number = value.partition("=")[::2]
-        if not number.isdecimal() or len(number) > 9 or kind in bounds:
-            raise click.BadParameter(f"`{value}` is not once TYPE=N, such as `vehicle=16`")
+        if not kind or not number.isdecimal() or len(number) > 9:
+            raise click.BadParameter(f"`{value}` is not TYPE=N, such as `vehicle=16`")
+        if kind in bounds:
+            raise click.BadParameter(f"`{kind}` has two bounds: give it one")
         bounds[kind] = int(number)
     return bounds
 
