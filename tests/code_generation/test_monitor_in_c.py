@@ -16,6 +16,7 @@ from rulec.diagnostics import RulecError
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
+from support.builders.monitored_books import BLAMED, WHO_IS_BLAMED
 from support.builders.rulebooks import compile_here
 from support.generators.blurred_traces import blurred
 from support.generators.random_rulebooks import rulebook
@@ -203,6 +204,22 @@ def test_a_refused_state_forgets_nobody_without_a_seat(overtaken):
     assert monitor.take(given) == 2
     (answer,) = places(monitor, ({"two": "in_front"}, {}))
     assert answer.rules["passed"] == ("holds so far", "violated")
+
+
+@needs_a_compiler
+def test_a_rule_is_about_whoever_has_its_worst_verdict():
+    book = rulec.compile_rulebook(rulec.parse_rulebook(BLAMED), step_s=1)
+    library = CLibrary(monitor_layout(book, {"car": 2}))
+    about, monitor, blamed = library.call("about"), CMonitor(library), []
+    for p, cars, _ in WHO_IS_BLAMED:
+        given = library.input_type()
+        given.p, given.n_objects = p, len(cars)
+        given.objects = (library.object_type * 2)()
+        for place, (number, q) in enumerate(cars.items()):
+            given.objects[place].id, given.objects[place].q = number, q
+        assert monitor.take(given) == 0
+        blamed.append(about(monitor.state, 0, 0))
+    assert blamed == [number for *_, number in WHO_IS_BLAMED]
 
 
 @needs_a_compiler

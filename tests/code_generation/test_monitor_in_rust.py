@@ -21,7 +21,7 @@ from rulec.code_generation.rust_form import formed
 from rulec.code_generation.rust_reading_code import RustReadingCode
 from rulec.code_generation.written_names import rust_string
 from rulec.rulebook.rulebook_model import SourceFile
-from support.builders.monitored_books import SINCE
+from support.builders.monitored_books import BLAMED, SINCE, WHO_IS_BLAMED
 from support.builders.national_books import NATIONAL
 from support.builders.rulebooks import compile_here
 from support.generators.random_rulebooks import rulebook
@@ -109,6 +109,41 @@ def test_who_is_given_twice_without_a_seat_is_refused(one_seat, ids):
     given = one_seat.input_type()
     given.n_objects, given.objects = 3, objects
     assert CMonitor(one_seat).take(given) == 3
+
+
+@needs_rust
+def test_a_rule_is_about_whoever_has_its_worst_verdict(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    book = rulec.compile_rulebook(rulec.parse_rulebook(BLAMED), step_s=1)
+    rulec.write_monitor(book, tmp_path, {"car": 2}, language="rust")
+    states = "".join(
+        f"({p}, &[{', '.join(f'({car}, {q})' for car, q in cars.items())}]), "
+        for p, cars, _ in WHO_IS_BLAMED
+    )
+    Path("who.rs").write_text(
+        f"""
+use blamed::{{names, Input, Monitor, Object}};
+fn main() {{
+    let mut monitor = Monitor::new();
+    let states: [(u8, &[(u32, u8)]); {len(WHO_IS_BLAMED)}] = [{states}];
+    for (p, cars) in states {{
+        let mut objects = [Object::unknown(0, names::TYPE_CAR); 2];
+        for (object, (id, q)) in objects.iter_mut().zip(cars) {{
+            (object.id, object.q) = (*id, *q);
+        }}
+        let mut input = Input::unknown(&objects[..cars.len()]);
+        input.p = p;
+        monitor.step(&input).unwrap();
+        println!("{{:?}} {{:?}}", monitor.about(0, 0), monitor.about(0, 1));
+    }}
+}}
+"""
+    )
+    crate = ["--crate-type", "rlib", "--crate-name", "blamed", "src/lib.rs"]
+    for arguments in (crate, ["who.rs", "--extern", "blamed=libblamed.rlib"]):
+        subprocess.run(["rustc", "--edition", "2021", "-D", "warnings", *arguments], check=True)
+    done = subprocess.run(["./who"], check=True, capture_output=True, text=True)
+    assert done.stdout.splitlines() == [f"Some({number}) None" for *_, number in WHO_IS_BLAMED]
 
 
 @needs_rust

@@ -42,3 +42,24 @@ signal beside(c: car) default true
 hard rule begins_beside (c: car) { require always once beside(c) }
 """
 """A rule that the first state of each object decides."""
+
+BLAMED = """\
+rulebook blamed
+type car
+signal p, q(c: car)
+hard rule owed (c: car) { require always (p implies eventually q(c)) }
+"""
+NO, YES, UNKNOWN = 0, 1, 255
+WHO_IS_BLAMED = (
+    (YES, {7: NO}, 7),
+    (NO, {7: YES, 8: YES}, 7),
+    # Both have left, having kept the rule
+    (NO, {}, 0),
+    (UNKNOWN, {9: NO}, 9),
+    # It has left, and may have owed something; no other may
+    (NO, {5: YES}, 9),
+    (YES, {5: NO}, 9),
+    (NO, {}, 5),
+    (YES, {6: NO}, 5),
+)
+"""States of that rulebook: p, q of each car, and the car with the worst verdict from then on."""

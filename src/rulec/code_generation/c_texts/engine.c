@@ -14,6 +14,7 @@
 
 #define RULEC_LOST ((uint8_t)1u)    /* violated for good */
 #define RULEC_DOUBTED ((uint8_t)2u) /* perhaps violated by objects that have left */
+#define RULEC_GONE ((uint8_t)4u)    /* `about` has some that have left, and perhaps violated it */
 
 /* An instance's position: the entry that it took last, or RULEC_SEVERAL: then its states are a set,
  * and its verdict is stored separately. */
@@ -323,16 +324,38 @@ static void rulec_advance(rulec_state *state, const rulec_rule *rule, const rule
     }
 }
 
+/* Remember the objects of an instance as those with the worst verdict. */
+static void rulec_tell(rulec_state *state, uint16_t number, const rulec_instance *one,
+    const uint32_t *ids)
+{
+    uint16_t variable;
+    for (variable = 0u; variable < RULEC_VARIABLES; variable++) {
+        state->about[number][variable] = ids[one->seats[variable]];
+    }
+}
+
+/* Whether the objects with the worst verdict are those of an earlier step. */
+static bool rulec_is_told(const rulec_state *state, uint16_t number)
+{
+    return (state->flags[number] & (RULEC_LOST | RULEC_GONE)) != 0u;
+}
+
+/* Before a step: no objects have the worst verdict, unless some of an earlier step do. */
+static void rulec_tell_nobody(rulec_state *state, uint16_t number)
+{
+    uint16_t variable;
+    for (variable = 0u; (variable < RULEC_VARIABLES) && !rulec_is_told(state, number); variable++) {
+        state->about[number][variable] = 0u;
+    }
+}
+
 /* The rule is violated for good by the objects of an instance. */
 static void rulec_lose(rulec_state *state, uint16_t number, const rulec_instance *one,
     const uint32_t *ids)
 {
-    uint16_t variable;
     state->violations += 1u;
     state->flags[number] |= RULEC_LOST;
-    for (variable = 0u; variable < RULEC_VARIABLES; variable++) {
-        state->about[number][variable] = ids[one->seats[variable]];
-    }
+    rulec_tell(state, number, one, ids);
 }
 
 /* Objects leave: a pending verdict becomes violated, an open one stays open. */
@@ -344,6 +367,10 @@ static void rulec_part(rulec_state *state, uint16_t number, const rulec_instance
     if ((best != RULEC_VIOLATED) && (best >= RULEC_PENDING)) {
         rulec_lose(state, number, one, state->id);
     } else if ((best != RULEC_VIOLATED) && (worst >= RULEC_PENDING)) {
+        if (!rulec_is_told(state, number)) {
+            rulec_tell(state, number, one, state->id);
+            state->flags[number] |= RULEC_GONE;
+        }
         state->flags[number] |= RULEC_DOUBTED;
     } else {
         /* kept, or violated before */
@@ -478,7 +505,6 @@ static void rulec_begin(const rulec_state *state, const rulec_rule *rule, rulec_
 static void rulec_hear(rulec_state *state, uint16_t number, const rulec_instance *one,
     uint8_t before, rulec_tally *tally)
 {
-    const rulec_rule *const rule = &rulec_rules[number];
     const uint8_t now = rulec_said(state, one->number);
     if ((now == RULEC_EXACTLY(RULEC_VIOLATED)) && (before != now)) {
         rulec_lose(state, number, one, state->next_id);
@@ -487,11 +513,8 @@ static void rulec_hear(rulec_state *state, uint16_t number, const rulec_instance
     /* Compares the worst verdict first, then the best one, as a single number */
     if (now > tally->worst) {
         tally->worst = now;
-        if ((state->flags[number] & RULEC_LOST) == 0u) {
-            uint16_t variable;
-            for (variable = 0u; variable < rule->n_variables; variable++) {
-                state->about[number][variable] = state->next_id[one->seats[variable]];
-            }
+        if (!rulec_is_told(state, number)) {
+            rulec_tell(state, number, one, state->next_id);
         }
     }
 }
@@ -686,6 +709,7 @@ static void rulec_judge(rulec_state *state, const rulec_input *in, uint16_t numb
     const rulec_rule *const rule = &rulec_rules[number];
     rulec_tally tally = {0u, 0u};
     uint16_t kind;
+    rulec_tell_nobody(state, number);
     rulec_visit_all(state, in, number, &tally);
     said->best = tally.best;
     said->worst = (uint8_t)(tally.worst >> 2);

@@ -64,8 +64,8 @@ void rulec_init(rulec_state *state);
 rulec_status rulec_step(rulec_state *state, const rulec_input *input, rulec_verdict *verdict);
 
 /* The id of the object of a rule's variable (from 0) in the choice of objects with the worst
- * verdict. 0 if the rule has no such variable (a rule about ego alone has none) or if there is no
- * object. */
+ * verdict, also if they have left. 0 if the rule has no such variable (a rule about ego alone has
+ * none) or if there is no such choice. */
 uint32_t rulec_about(const rulec_state *state, uint32_t rule, uint32_t variable);
 
 #ifdef __cplusplus

@@ -86,6 +86,7 @@ const LEAF: u16 = 0x8000;
 const EXCLUDED: u16 = 0xffff;
 const LOST: u8 = 1;
 const DOUBTED: u8 = 2;
+const GONE: u8 = 4;
 
 fn fits(kind: usize, own: u8) -> bool {
     own < NOBODY && FITS[kind][usize::from(own)]
@@ -268,6 +269,11 @@ impl Kept {
         self.tell(number, one, ids);
     }
 
+    /// Whether the objects with the worst verdict are those of an earlier step.
+    fn is_told(&self, number: usize) -> bool {
+        self.flags[number] & (LOST | GONE) != 0
+    }
+
     fn tell(&mut self, number: usize, one: &Instance, ids: &[u32; SEATS]) {
         for variable in 0..RULE_TABLE[number].variables.len() {
             self.about[number][variable] = ids[one.seats[variable]];
@@ -282,6 +288,11 @@ impl Kept {
             let ids = self.id;
             self.lose(number, one, &ids);
         } else if best != 3 && worst >= 2 {
+            if !self.is_told(number) {
+                let ids = self.id;
+                self.tell(number, one, &ids);
+                self.flags[number] |= GONE;
+            }
             self.flags[number] |= DOUBTED;
         }
     }
@@ -368,7 +379,8 @@ impl Monitor {
     }
 
     /// The id of the object of a rule's variable (from 0) in the choice of objects with the worst
-    /// verdict; none if the rule has no such variable.
+    /// verdict, also if they have left; 0 if there is no such choice; none if the rule has no such
+    /// variable.
     #[must_use]
     pub fn about(&self, rule: usize, variable: usize) -> Option<u32> {
         let about = self.kept.about.get(rule)?;
@@ -581,6 +593,9 @@ impl Monitor {
     fn judge(&mut self, input: &Input, number: usize) -> Range {
         let rule = &RULE_TABLE[number];
         let (mut best, mut worst) = (0, 0);
+        if !self.kept.is_told(number) {
+            self.kept.about[number] = [0; VARIABLES];
+        }
         self.each(rule, |this, one, there| {
             if there.was && !there.stays {
                 this.kept.part(number, one);
@@ -604,7 +619,7 @@ impl Monitor {
             // Compares the worst verdict first, then the best one, as a single number
             if now > worst {
                 worst = now;
-                if this.kept.flags[number] & LOST == 0 {
+                if !this.kept.is_told(number) {
                     this.kept.tell(number, one, &this.work.next_id);
                 }
             }
