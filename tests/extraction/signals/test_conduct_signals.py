@@ -378,6 +378,19 @@ def test_who_has_just_braked_for_a_lower_limit_still_seems_to_brake_hard():
     assert found[:8] == "TTTT?FFF"
 
 
+@pytest.mark.parametrize(("last", "expected"), [(0, "????FF"), (2, "?????F"), (40, "??????")])
+def test_who_brakes_for_somebody_beside_a_crossing_brakes_on_for_a_moment(last, expected):
+    """One walks 8 m aside until state ``last``; the mean over a second is -4 m/s² for five states.
+
+    That one will not cross is seen after 1 s, and half a second more is part of the mean.
+    """
+    crossing = lanelet(9, [(160, -6), (160, 6)], types=frozenset({"crosswalk"}))
+    places = {k: (100.0 - k, 8.0) for k in range(last + 1)}
+    walker = vehicle(8, places, "pedestrian", length=0.5, width=0.5)
+    found = cause(walker, road=[*LONG, crossing])
+    assert found[:6] == expected
+
+
 def signed_junction(light=None, signs=(), first=frozenset()):
     """Ego's road, which leads straight on from 140 to 160 m, and one across that comes from -y."""
     lights = {} if light is None else {"lights": (light,), "lights_to": {"2": light}}

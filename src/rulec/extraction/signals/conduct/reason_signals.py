@@ -82,8 +82,8 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     and may come into it, if it is before or on a lane that joins others, where it looks for a gap,
     if it has stood for a reason, or since its drive began, up to ``MOVES_OFF_S`` ago, if it brakes
     hard with no vehicle near behind that would be surprised, and if it still seems to brake hard
-    when a reason is just gone. Where not all traffic is recorded, the road counts as known only as
-    far as a participant is recorded ahead.
+    when a reason, or somebody who may have been one, is just gone. Where not all traffic is
+    recorded, the road counts as known only as far as a participant is recorded ahead.
     """
     reach, spans, stands = _reach(context), context.spans, ~moves(context)
     brakes, asked = _asked(context)
@@ -92,12 +92,14 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     perhaps = on_map.may.copy()
     others = others_in(context, (~perhaps | (asked & ~caused)).nonzero()[0])
     in_way, kept_back = may_be_others(context, others, reach)
-    perhaps[others.states] |= in_way
+    comes = np.zeros(context.states, dtype=bool)
+    comes[others.states] = in_way
     caused[others.states] |= kept_back & ~stands[others.states]
     freely = on_map.freely[others.states].nonzero()[0]
     if len(freely):
         there = others.part(freely)
-        perhaps[there.states] |= may_come(context, there, reach)
+        comes[there.states] |= may_come(context, there, reach)
+    perhaps |= comes
     if asked.any():
         caused |= asked & crossed(context, others, reach)
         waits, thinks = met(context, asked, reach)
@@ -110,6 +112,9 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     # The mean still shows hard braking when its reason, such as a lower limit, is just gone
     shown = round(context.thresholds.smoothing_s / 2 / context.recording.step_s)
     perhaps |= brakes & spans.within_last(caused, shown)
+    # And it takes ego a moment to see that somebody will not come after all
+    seen = shown + round(context.thresholds.reaction_s / context.recording.step_s)
+    perhaps |= brakes & spans.within_last(comes, seen)
     if stands.any():
         caused |= stands & _since(context, caused & stands, _SETS_OFF_S)
     # The rest only adds to ``perhaps``: a drive has the same words alone and with others
