@@ -70,6 +70,30 @@ def test_trams_on_tracks_next_to_the_lanes_count(kind, y, heading, counts):
         assert ("8" in relevant(body)) is counts
 
 
+@pytest.mark.parametrize(
+    ("y", "heading", "lamp", "counts"),
+    [
+        (-3.6, 0.0, "left_indicator", True),
+        (7.6, 0.0, "right_indicator", True),
+        # It only arrives; it parks; it is far off the lanes; it faces ego
+        (-3.6, 0.0, "right_indicator", False),
+        (-3.6, 0.0, None, False),
+        (-5.6, 0.0, "left_indicator", False),
+        (-3.6, pi, "left_indicator", False),
+    ],
+)
+def test_a_bus_that_signals_to_come_in_from_its_bay_counts(y, heading, lamp, counts):
+    """The lanes reach from y = -2 to 6; the bus signals in its second state, and in no other."""
+    body = steady(8, 40, y, kind="bus", width=2.6, length=12.0, speed=0.0, heading=heading)
+    lit = {1: frozenset({lamp} if lamp else ())}
+    body = replace(body, lamps={**dict.fromkeys(range(4), frozenset()), **lit})
+    assert relevant(body).get("8") == ([False, True, True, True] if counts else None)
+    # Both are hazard lights; and one that drives there is on a way of its own
+    hazards = replace(body, lamps={1: frozenset({"left_indicator", "right_indicator"})})
+    assert "8" not in relevant(hazards)
+    assert "8" not in relevant(replace(steady(8, 40, y, kind="bus", width=2.6), lamps=body.lamps))
+
+
 def beside(*others, y=8.0):
     """Whether one counts that faces ego; the lane of the other direction has its middle at 8."""
     road = [*lanes(2), straight(9, 300, -100, 8.0)]

@@ -16,6 +16,7 @@ from rulec.extraction.tracks.lane_sets import LaneSets, lane_sets, lanes_touched
 from rulec.extraction.tracks.road_extents import RoadExtents, and_row
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 
 _ACROSS = np.pi / 4
@@ -31,9 +32,11 @@ _SOON_S = 2.0
 """Participants count this long (s), in addition to ``away_s``, before they come near a road."""
 
 _NEXT_TO_M = 2.0
-"""Bodies on tracks next to a lane are nearer to it than this (m)."""
+"""Bodies on tracks, or in a bus bay, next to a lane are nearer to it than this (m)."""
 
 _ALONG_COSINE = 0.9
+
+_INDICATORS = frozenset({"left_indicator", "right_indicator"})
 
 _ONCOMING_COSINE = -0.7
 """Cosine of the angle to the road beyond which a vehicle counts as oncoming."""
@@ -118,7 +121,8 @@ class RoadPlaces:
         """Mask of participants that count for an ego that is near.
 
         On the lanes everybody does; beside them only vulnerable road users, oncoming vehicles that
-        are not parked, and trams that run along the road on tracks next to the lanes.
+        are not parked, trams that run along the road on tracks next to the lanes, and buses that
+        signal to come in from a bay there.
         """
         beside = self.thresholds.beside_road_m
         close = (self.extents.left_of_max[..., 0] > -beside) & (
@@ -129,12 +133,44 @@ class RoadPlaces:
         flags.ravel()[others.places] = np.cos(others.of(self.extents.turned)) < _ONCOMING_COSINE
         rails = self.tracks.of_type("rail_vehicle").nonzero()[0]
         if len(rails):
-            next_to = (self.extents.left_of_max[rails, :, 0] > -_NEXT_TO_M) & (
-                self.extents.left_of_min[rails, :, -1] < _NEXT_TO_M
-            )
-            flags[rails] |= next_to & (np.cos(self.extents.turned[rails]) > _ALONG_COSINE)
+            flags[rails] |= self._next_to_lanes(rails)
+        buses = self.tracks.of_type("bus").nonzero()[0]
+        if len(buses):
+            flags[buses] |= self._next_to_lanes(buses) & self._signal_to_come_in(buses)
         flags |= self.on_lanes
         flags &= ~self.crosses
+        return flags
+
+    def _next_to_lanes(self, rows: NDArray[intp]) -> Flags:
+        """Mask of participants in ``rows`` that head along the road, on its lanes or next to them.
+
+        Who is on the lanes is next to them, too.
+        """
+        right = self.extents.left_of_max[rows, :, 0] > -_NEXT_TO_M
+        left = self.extents.left_of_min[rows, :, -1] < _NEXT_TO_M
+        along = np.cos(self.extents.turned[rows]) > _ALONG_COSINE
+        next_to: Flags = right & left & along
+        return next_to
+
+    def _signal_to_come_in(self, rows: NDArray[intp]) -> Flags:
+        """Mask of vehicles in ``rows`` that stand and have signalled towards the lanes since then.
+
+        From the first flash on: an indicator is dark in between.
+        """
+        tracks = self.tracks
+        columns = np.arange(tracks.present.shape[1])
+        stands = tracks.speed[rows] * KMH_PER_MPS < self.thresholds.standing_kmh
+        lit = np.zeros_like(stands)
+        at_right = self.extents.left_of_max[rows, :, 0] < 0
+        for number, row in enumerate(rows.tolist()):
+            lamps = tracks.participants[row].lamps
+            for column in stands[number].nonzero()[0].tolist() if lamps else ():
+                shown = lamps.get(tracks.first + column, frozenset()) & _INDICATORS
+                inwards = "left_indicator" if at_right[number, column] else "right_indicator"
+                lit[number, column] = shown == {inwards}
+        signalled = np.maximum.accumulate(np.where(lit, columns, -1), axis=1)
+        moved = np.maximum.accumulate(np.where(stands, -1, columns), axis=1)
+        flags: Flags = signalled > moved
         return flags
 
     @cached_property
