@@ -250,6 +250,18 @@ def test_a_bus_that_has_not_left_when_the_drive_ends():
     assert set(unlit) == {"False"}
 
 
+@pytest.mark.parametrize(
+    # It signals when its rear, at x = -6, is 14 or 12 m ahead of ego, who needs 5 + 25 / 4 m more
+    ("x", "expected"),
+    [(-82.0, "True"), (-79.0, "?"), (-66.0, "?")],
+    ids=["can wait", "too near", "beside"],
+)
+def test_who_is_too_near_to_wait_for_a_bus_in_comfort_may_go_on(x, expected):
+    ego = steady(7, x, 0, 5, STEPS)
+    leaves = told("leaving_stop", lanes(), ego, bus(lamps_of_a_stop()), route=("1",))
+    assert (set(leaves[:24]), set(leaves[24:30])) == ({"False"}, {expected})
+
+
 def test_a_bus_at_a_red_light_leaves_no_stop():
     ego = steady(7, -100, 0, 2, STEPS)
     lamps = {k: {"left_indicator"} for k in range(STEPS)}

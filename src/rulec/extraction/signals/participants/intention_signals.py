@@ -198,7 +198,21 @@ def _buses_leave(context: DriveContext, buses: NDArray[intp]) -> tuple[Flags, Fl
     known = told & doors_told
     # What a bus does after it is lost from sight is unknown
     lost = still & lit & at_stop & _ends_within(context, steps)[buses]
+    known &= _could_wait(context, buses, leaves & lit & at_stop)
     return leaves & lit & at_stop, (leaves & ~known) | (lost & ~leaves)
+
+
+def _could_wait(context: DriveContext, buses: NDArray[intp], signals: Flags) -> Flags:
+    """Mask of buses that ego could still stop behind, in comfort, when they began to signal.
+
+    Or when its drive began, if they signalled before. Whoever is nearer need not brake hard.
+    """
+    limits, speed, spans = context.thresholds, context.ego.speed[0], context.spans
+    needed = limits.reaction_s * speed + speed**2 / (2 * limits.disturbing_mps2)
+    begins = signals & (~spans.before(signals) | spans.begins_here)
+    too_near = begins & (relations.gap(context)[buses] < needed)
+    could: Flags = spans.latest(too_near) < spans.latest(begins)
+    return could | ~signals
 
 
 def _ends_within(context: DriveContext, steps: int) -> Flags:
