@@ -251,15 +251,17 @@ def test_a_bus_that_has_not_left_when_the_drive_ends():
 
 
 @pytest.mark.parametrize(
-    # It signals when its rear, at x = -6, is 14 or 12 m ahead of ego, who needs 5 + 25 / 4 m more
-    ("x", "expected"),
-    [(-82.0, "True"), (-79.0, "?"), (-66.0, "?")],
-    ids=["can wait", "too near", "beside"],
+    ("signals_from", "x", "expected"),
+    # When it begins to signal its rear, at x = -6, is 12, 10 or 0 m ahead of ego, who needs
+    # 5 + 25 / 4 m. The last one begins 15 s before it leaves, 34 m ahead; after 5 s it is 9 m
+    [(24, -80.0, "True"), (24, -78.0, "?"), (24, -66.0, "?"), (0, -42.0, "True")],
+    ids=["can wait", "too near", "beside", "could wait long ago"],
 )
-def test_who_is_too_near_to_wait_for_a_bus_in_comfort_may_go_on(x, expected):
+def test_who_is_too_near_to_wait_for_a_bus_in_comfort_may_go_on(signals_from, x, expected):
     ego = steady(7, x, 0, 5, STEPS)
-    leaves = told("leaving_stop", lanes(), ego, bus(lamps_of_a_stop()), route=("1",))
-    assert (set(leaves[:24]), set(leaves[24:30])) == ({"False"}, {expected})
+    lamps = lamps_of_a_stop(signals_from)
+    leaves = told("leaving_stop", lanes(), ego, bus(lamps), route=("1",))
+    assert (set(leaves[:10]), set(leaves[24:30])) == ({"False"}, {expected})
 
 
 def test_a_bus_at_a_red_light_leaves_no_stop():

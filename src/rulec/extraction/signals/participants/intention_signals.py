@@ -198,7 +198,7 @@ def _buses_leave(context: DriveContext, buses: NDArray[intp]) -> tuple[Flags, Fl
     known = told & doors_told
     # What a bus does after it is lost from sight is unknown
     lost = still & lit & at_stop & _ends_within(context, steps)[buses]
-    known &= _could_wait(context, buses, leaves & lit & at_stop)
+    known &= _could_wait(context, buses, still & lit & at_stop)
     return leaves & lit & at_stop, (leaves & ~known) | (lost & ~leaves)
 
 
