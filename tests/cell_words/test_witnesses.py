@@ -279,6 +279,18 @@ def test_a_side_for_a_moment_is_that_before_and_after(german):
     assert states[2]["lateral"]["10"] == OneOf(frozenset({"same_lane", "left_of"}))
 
 
+@pytest.mark.parametrize("gained", [8.0, -9.0])
+def test_speeds_are_means_over_two_steps_that_are_longer_than_half_a_second(german, gained):
+    """With a state every second they are from one second before to one after."""
+    speeds = [10.0, 10.0 + gained, 10.0 + gained]
+    motion = [(0.0, speeds[0], 0.0, 0.0), (10.0 + gained / 2, speeds[1], 0.0, 0.0)]
+    motion.append((motion[1][0] + speeds[2], speeds[2], 0.0, 0.0))
+    ahead = vehicle(10, {k: (160.0 + 20 * k, 4.0) for k in range(6)}, speed=20.0)
+    states = driven_among([ahead], german, motion, step_s=1.0)
+    # The first state has the mean over the second after it
+    assert states[0]["speed"].low <= 3.6 * (10.0 + gained / 2) <= states[0]["speed"].high
+
+
 def corner(metres):
     """Lanes round a corner that begins at x = 84, and places so far (m) outside its middle."""
     angles = np.array([0.0, np.pi / 4, np.pi / 2])

@@ -18,7 +18,8 @@ Bounds: TypeAlias = tuple[Floats, Floats]
 
 _FASTEST_MPS = 100.0
 _WINDOW_S = 0.5
-"""Extracted speeds are means from this long (s) before to this long after."""
+"""Extracted speeds are means from this long (s) before to this long after, or from the state before
+to the one after if these are farther apart."""
 
 _HAIR_S = 1e-6
 
@@ -63,11 +64,12 @@ def ego_boxes(graph: NavigationGraph, state_s: float) -> Iterator[EgoBoxes]:
     size = body_size(graph)
     last = len(graph.layers) - 1
     came_s = max(graph.step_s, state_s)
+    window_s = max(_WINDOW_S, state_s)
     fronts = None
     for number, layer in enumerate(graph.layers):
         reach = graph.reach[number] if graph.reach else (None,) * len(layer.cells)
-        before = min(number * graph.step_s, _WINDOW_S)
-        after = min((last - number) * graph.step_s, _WINDOW_S)
+        before = min(number * graph.step_s, window_s)
+        after = min((last - number) * graph.step_s, window_s)
         margins = _mean_margins(motion, before, after)
         boxes = _boxes(layer, reach, size, margins, (came_s, motion))
         if fronts is not None and came_s <= graph.step_s + _HAIR_S:
