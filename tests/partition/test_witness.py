@@ -192,6 +192,21 @@ def test_costs_come_nearer_than_the_least_that_was_known():
         assert one.cost == pytest.approx(one.changes + one.trajectory.cost.total)
 
 
+@pytest.mark.parametrize("side", [-1, 1])
+def test_it_stays_on_the_road_between_layers(side):
+    """Ego drifts to the edge, 0.25 m away: by 1.3 m/s² it would be back on the road after 1 s.
+
+    It has to be slower by 0.9 m/s within 0.25 m: with 0.9² / 2 / 0.25 = 1.62 m/s² at least.
+    """
+    road = Road((-20.0, 200.0), (-1.75, 1.75))
+    ego = Ego(0.0, 1.5 * side, 4.5, 1.8, 10.0, lateral_speed=0.9 * side, bounds=MotionBounds())
+    found = find_maneuvers(Scenario("e", road, ego, horizon_s=2.0, step_s=1.0), PAPER)
+    (first,) = found.cheapest(1)
+    places = [abs(at(first.trajectory.states, 0.05 * k)[1]) for k in range(41)]
+    assert max(places) <= 1.75 + 1e-5
+    assert first.trajectory.greatest_acceleration <= 4.0
+
+
 def test_the_same_cells_hold_it():
     found = find_maneuvers(Scenario("e", ROAD, MOVING, step_s=0.5), PAPER)
     (first,) = found.cheapest(1)

@@ -22,7 +22,7 @@ CHECK_S = 0.05
 GAP_M = 0.01
 """The gap (m) that ego keeps from obstacles, for the solver's rounding."""
 
-_HAIR_M = 1e-6
+_HAIR_M, _FAR_M = 1e-6, 1e7
 
 Side = str
 """Where ego is relative to an obstacle: behind, in_front, right, left."""
@@ -127,13 +127,15 @@ class OthersBeside:
 
     @cached_property
     def _closed(self) -> dict[str | int, _Closed]:
-        """Obstacles by id, for ego's body, and missing lanes by number, for its middle."""
+        """Obstacles by id, for ego's body; what is no lane by number, for its middle."""
         length, width = self.body
         closed: dict[str | int, _Closed] = {
             name: _Closed(*own, length, width) for name, own in self.boxes.items()
         }
         scenario, count = self._graph.scenario, len(self.times)
-        for number, hole in enumerate(scenario.road.holes()):
+        right, left = scenario.road.lanes[0], scenario.road.lanes[-1]
+        verges = (Box(-_FAR_M, _FAR_M, right - _FAR_M, right), Box(-_FAR_M, _FAR_M, left, _FAR_M))
+        for number, hole in enumerate((*scenario.road.holes(), *verges)):
             # A recorded ego may be on a lane that the map ends before
             if not hole.covers(scenario.ego.s, scenario.ego.d):
                 rows = np.tile((hole.s_min, hole.s_max, hole.d_min, hole.d_max), (count, 1))
@@ -160,7 +162,7 @@ class OthersBeside:
         sure: bool = False,
         preferred: Collection[Side] = (),
     ) -> Iterator[Cut]:
-        """Rows to add where a solution overlaps obstacles, or missing lanes, up to a time.
+        """Rows to add where a solution overlaps obstacles, or is beside all lanes, up to a time.
 
         Ego stays on a side on which the path's cells are; of several on a ``preferred`` one, then
         on the nearest. With ``sure``, only rows that every motion along the path keeps that
@@ -186,7 +188,7 @@ class OthersBeside:
                         yield self.cut(name, side, j)
 
     def hits(self, solution: Solution) -> Iterator[tuple[str | int, list[int]]]:
-        """The obstacles and missing lanes that a solution overlaps, and the times' numbers."""
+        """What a solution overlaps, obstacles or places without a lane, and the times' numbers."""
         for name, _, hit in self._clearances(solution, len(self.times)):
             numbers = np.flatnonzero(hit).tolist()
             if numbers:
