@@ -120,6 +120,33 @@ def test_speed_is_what_places_say():
     assert found.reward().argmax() == 0
 
 
+@pytest.mark.parametrize("with_past", [True, False])
+@pytest.mark.parametrize("says", ["its way", "its heading"])
+def test_sliding_is_no_way_to_be_slower(with_past, says):
+    """Straight on at 17 m/s, turned aside by 40° in the end: 13 m/s are along the heading."""
+    world = street(speed=13.0)
+    turned = np.radians(40) * np.minimum(AHEAD / 8.0, 1.0)
+    speed = 13.0 / np.cos(turned)
+    slides = along(on_axis(np.cumsum(speed * STEP_S)), world.past[-1])
+    slides[:, 2] = turned
+    slides[:, 3] = speed if says == "its way" else 13.0
+    steady = along(on_axis(13.0 * AHEAD), world.past[-1])
+    after = world.past if with_past else None
+    found = score(np.array([slides, steady]), world, GERMAN, after)
+    assert found.outcomes("speed_limit") == ["open", "kept"]
+    assert found.allowed.tolist() == [False, True]
+    assert found.reward().argmax() == 1
+
+
+def test_who_jumps_to_the_next_lane_is_no_faster():
+    """At 13.6 of 13.9 m/s, as a simulator puts it there: the heading stays along the road."""
+    world = street(speed=13.6)
+    jumps = along(on_axis(13.6 * AHEAD), world.past[-1])
+    jumps[8:, 1] = 3.5
+    found = score(jumps[None], world, GERMAN, world.past)
+    assert found.outcomes("speed_limit") == ["kept"]
+
+
 def test_what_the_past_has_violated_is_judged_anew():
     # At 20 m/s in a town. One goes on so, one brakes with 4 m/s² to 12 m/s, and one does and then
     # is at 20 m/s again for the last four of its twenty states

@@ -33,6 +33,10 @@ _SLIP_S, _GRIP_MPS2, _HAIR = 0.3, 10.0, 1e-6
 Tyres hold about 1 g on a dry road.
 """
 
+_BESIDE = 0.18
+"""A vehicle whose middle moves to the side of its heading by more than this part of its way ahead,
+as at 10°, does not roll along it: not even one that turns does so while it is fast."""
+
 _SEAM_S, _GAINS_MPS2, _SEAM_LASTS_S = 0.5, 4.0, 1.5
 """A track that gains speed this hard for this long, and loses it as hard soon after, or the
 reverse, passes a seam between two cameras' pictures: tracks are stretched or compressed there."""
@@ -135,6 +139,9 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     gained = window.gained(speed) / apart
     error = known.speed_mps / np.where(single, 1.0, seconds)
     error += zero_if_nan(np.abs(gained) * beside)
+    # Who slides has a speed along its heading, and another one by its places
+    slides = (poses.steers & steers & ~own)[:, None]
+    error += np.where(slides, np.hypot(along, _sliding(poses, window, step_s, along)) - along, 0.0)
     # Motion that contradicts itself has a larger error
     error = np.maximum(error + contradicts[:, None], known.joint(error, zero_if_nan(just_then)))
     # A slip may be anywhere in the time over which it shows
@@ -157,6 +164,25 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         acceleration_error=zero_if_nan(gained_error),
         scale_error=scale_error,
     )
+
+
+def _sliding(
+    poses: Poses, window: _Window, step_s: float, along: NDArray[float64]
+) -> NDArray[float64]:
+    """The lasting speed (m/s) to the side of the heading, 0 where a vehicle could have it.
+
+    It is to the same side before and after a state, unlike in a bend, or at a jump to another lane.
+    """
+    halves = []
+    for column in window.outer:
+        seconds = (column - np.arange(column.shape[1])) * step_s
+        x, y = (way[window.rows, column] - way for way in (poses.x, poses.y))
+        aside = y * np.cos(poses.heading) - x * np.sin(poses.heading)
+        halves.append(aside / np.where(seconds != 0, seconds, np.nan))
+    before, after = (np.where(np.isnan(own), halves[1 - k], own) for k, own in enumerate(halves))
+    lasting = np.minimum(np.abs(before), np.abs(after))
+    is_sliding = (before * after > 0) & (lasting > _BESIDE * along)
+    return np.where(is_sliding, lasting, 0.0)
 
 
 def _since_before(poses: Poses, otherwise: NDArray[float64], step_s: float) -> NDArray[float64]:
