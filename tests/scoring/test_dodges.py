@@ -120,6 +120,18 @@ def test_speed_is_what_places_say():
     assert found.reward().argmax() == 0
 
 
+def test_who_is_nowhere_judged_keeps_nothing():
+    """Far off the map, and across the road, which leads nobody there."""
+    world = lit_junction()
+    straight = along(on_axis(10.0 * AHEAD), world.past[-1])
+    away, across = straight.copy(), straight.copy()
+    away[:, 1] += 1e5
+    across[:, 2] = np.pi / 2
+    found = score(np.array([straight, away, across]), world, GERMAN, None)
+    assert found.outcomes("red_light") == ["violated", "not judged", "not judged"]
+    assert found.off_road.tolist() == [0, 20, 20]
+
+
 @pytest.mark.parametrize("with_past", [True, False])
 @pytest.mark.parametrize("says", ["its way", "its heading"])
 def test_sliding_is_no_way_to_be_slower(with_past, says):

@@ -22,8 +22,9 @@ class CandidateScore:
     or with ego's middle beside all lanes, or driven backwards; ``why`` gives the reason. ``drives``
     are those of ``verify_recording`` for past and candidate; if there are many candidates they are
     computed on demand. ``late`` is the number of states until everything that the past violated is
-    kept for good. ``judged_from`` has, for a violation of what the past had violated, too, the
-    state of the candidate from which it is judged anew.
+    kept for good. ``is_judged``: whether any of its states is in a judged drive. ``judged_from``
+    has, for a violation of what the past had violated, too, the state of the candidate from which
+    it is judged anew.
     """
 
     __repr__ = short_repr
@@ -36,6 +37,7 @@ class CandidateScore:
     why: str
     drives: Sequence[DriveVerdict | NoDrive]
     late: int = 0
+    is_judged: bool = True
     judged_from: Mapping[RuleFor, int] = field(default_factory=dict)
 
     @property

@@ -40,14 +40,13 @@ class CandidateCharges:
     begins: Sequence[int]
     off_road: int
     why: str
+    is_judged: bool
     again: Callable[[int], CandidateScore] | None = None
 
     def later(self, again: Callable[[int], CandidateScore]) -> CandidateCharges:
         """The same without the drives, which ``again`` recomputes."""
         judged = list(map(_judged, self.drives))
-        return CandidateCharges(
-            self.number, judged, self.begins, off_road=self.off_road, why=self.why, again=again
-        )
+        return replace(self, drives=judged, again=again)
 
     def score(self) -> CandidateScore:
         """The candidate's score."""
@@ -70,6 +69,7 @@ class CandidateCharges:
             not_judged=tuple(not_judged.values()),
             off_road=self.off_road,
             why=self.why,
+            is_judged=self.is_judged,
             drives=tuple([x for x in drives if isinstance(x, DriveVerdict | NoDrive)]),
         )
         if self.again is None:

@@ -184,7 +184,9 @@ def _charges(
             if isinstance(drive, JudgedDrive) and not isinstance(drive.judged, NotJudged):
                 row[max(start, 0) : max(start + drive.drive.arrays.n_states, 0)] = True
     off_road = beside | ~on_road
-    leave, go_back = (np.logical_or.reduce(flags, axis=1).tolist() for flags in (off_road, back))
+    leave, go_back, are_judged = (
+        np.logical_or.reduce(flags, axis=1).tolist() for flags in (off_road, back, on_road)
+    )
     counts = (off_road | back).sum(axis=1).tolist()
     return [
         CandidateCharges(
@@ -192,6 +194,7 @@ def _charges(
             drives,
             begins[row],
             off_road=counts[row],
+            is_judged=are_judged[row],
             why=_why(drives, leaves=leave[row], goes_back=go_back[row]),
         )
         for row, (number, drives) in enumerate(block)

@@ -229,4 +229,4 @@ def _outcome(found: CandidateScore, rule: str) -> str:
     if any(result.rule == rule for result in found.open):
         return "open"
     not_judged = any(result.rule == rule for result in found.not_judged)
-    return "not judged" if not_judged or not found.drives else "kept"
+    return "not judged" if not_judged or not found.is_judged else "kept"
