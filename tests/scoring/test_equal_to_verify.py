@@ -177,7 +177,7 @@ def test_a_past_that_is_not_asked_about_counts_for_nothing():
     bodies = [detected("ego", 10.0, 0.0), detected("ahead", 10.0, 30.0, lost=range(5))]
     world = TrafficWorld(build_recording([lane], bodies, step_s=0.1, side="right"), "ego", 1.0)
     prepared, _ = world.drives("right", 11, 30)
-    assert prepared.surroundings.whole.first == 5
+    assert prepared.drives.surroundings.whole.first == 5
     ahead = [(10.0 + k, 0.0, 0.0, 10.0) for k in range(1, 21)]
     assert_equal_to_verify([ahead], world, GERMAN, None)
 

@@ -52,16 +52,15 @@ class PossibleTypes:
 
     def near(self, egos: Iterable[str], reach_m: float) -> tuple[str, ...]:
         """Those of some egos that have a participant of unknown type near them at some time."""
-        if not self._paths:
-            return ()
         wanted = frozenset(egos)
-        return tuple(
-            body.id
-            for body in self._recording.participants
-            if body.id in wanted and body.states and self._comes_near(_path_of(body), reach_m)
-        )
+        bodies = self._recording.participants
+        return tuple(x.id for x in bodies if x.id in wanted and self.is_near(x, reach_m))
 
-    def _comes_near(self, own: _Path, reach_m: float) -> bool:
+    def is_near(self, body: Participant, reach_m: float) -> bool:
+        """Whether a participant of unknown type is near a body at some time."""
+        if not self._paths or not body.states:
+            return False
+        own = _path_of(body)
         for other in self._paths.values():
             _, at, theirs = np.intersect1d(own.steps, other.steps, return_indices=True)
             apart = np.hypot(*(own.places[at] - other.places[theirs]).T)

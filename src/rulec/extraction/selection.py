@@ -70,14 +70,18 @@ class _PartLookedAt:
         """The drives of an ego, each with the traces of its others."""
         if ego not in self.doubtful:
             return self.drives.of(ego)
-        others = [
-            {drive.arrays.id: drive.arrays for drive in other.of(ego) if isinstance(drive, Drive)}
-            for other in self.others
-        ]
-        return (
-            replace(drive, otherwise=_like(drive, others)) if isinstance(drive, Drive) else drive
-            for drive in self.drives.of(ego)
-        )
+        return with_drives_otherwise(self.drives.of(ego), [other.of(ego) for other in self.others])
+
+
+def with_drives_otherwise(
+    drives: Iterable[Drive | NoDrive], others: Iterable[Iterable[Drive | NoDrive]]
+) -> Iterator[Drive | NoDrive]:
+    """The drives with the traces of each of the ``others`` that are as long."""
+    traces = [{x.arrays.id: x.arrays for x in other if isinstance(x, Drive)} for other in others]
+    return (
+        replace(drive, otherwise=_like(drive, traces)) if isinstance(drive, Drive) else drive
+        for drive in drives
+    )
 
 
 def _like(drive: Drive, others: Sequence[Mapping[str, TraceArrays]]) -> tuple[TraceArrays, ...]:

@@ -16,7 +16,15 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, agreed_answers, some_rules
 from rulec.extraction.traces.recorded_drive import Drive
-from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleFor, Verdict, Violation, rule_for
+from rulec.monitoring.verdict import (
+    NotJudged,
+    OpenVerdict,
+    RuleFor,
+    Verdict,
+    Violation,
+    agreed_by_type,
+    rule_for,
+)
 from rulec.scoring.candidate_score import CandidateScore
 from rulec.scoring.charges import at
 from rulec.trace.trace_arrays import TraceArrays
@@ -42,10 +50,65 @@ def judged_anew(
     ``steps`` are the candidates' first step, and the one from which they are judged so: the first
     half of their time is left for ending a violation that goes on, and for nothing else.
     """
-    first, begin = steps
     known = {rule_for(violation) for violation in before}
     if not known:
         return scores
+    found = _anew(scores, known, roundings, steps)
+    n_others = max(
+        (len(drive.otherwise) for x in scores for drive, _ in verdicts_of(x.drives)), default=0
+    )
+    for number in range(n_others):
+        others, types = zip(*[_with_types(own, number) for own in scores], strict=True)
+        anew = _anew(others, known, roundings, steps)
+        found = [
+            _agreed_by_type(own, other, kinds, known) if kinds else own
+            for own, other, kinds in zip(found, anew, types, strict=True)
+        ]
+    return found
+
+
+def _with_types(score: CandidateScore, number: int) -> tuple[CandidateScore, list[str]]:
+    """The score with the drives there would be by the types of that number, and these types."""
+    drives: list[DriveVerdict | NoDrive] = []
+    types: set[str] = set()
+    for drive in score.drives:
+        if isinstance(drive, DriveVerdict) and len(drive.drive.otherwise) > number:
+            own, other = drive.drive.arrays, drive.drive.otherwise[number]
+            types |= {kind for _, kind in other.objects.items() - own.objects.items()}
+            drive = replace(drive, drive=replace(drive.drive, arrays=other))
+        drives.append(drive)
+    return replace(score, drives=drives), sorted(types)
+
+
+def _agreed_by_type(
+    score: CandidateScore, other: CandidateScore, types: Sequence[str], known: Collection[RuleFor]
+) -> CandidateScore:
+    """What both scores say of what the past violated; where they differ it depends on the types."""
+    one, two = (
+        Verdict(
+            "",
+            tuple([x for x in found.violations if rule_for(x) in known]),
+            tuple([x for x in found.open if rule_for(x) in known]),
+        )
+        for found in (score, other)
+    )
+    agreed = agreed_by_type(one, [(types, two)])
+    return replace(
+        score,
+        violations=(*[x for x in score.violations if rule_for(x) not in known], *agreed.violations),
+        open=(*[x for x in score.open if rule_for(x) not in known], *agreed.open),
+        late=max(score.late, other.late),
+    )
+
+
+def _anew(
+    scores: Sequence[CandidateScore],
+    known: Collection[RuleFor],
+    roundings: Sequence[CompiledRulebook],
+    steps: tuple[int, int],
+) -> list[CandidateScore]:
+    """The scores, with the ``known`` rules judged anew."""
+    first, begin = steps
     books, names = some_rules(frozenset(rule for rule, _ in known), roundings)
     futures = [
         _Future(number, drive.first_step, drive.arrays.said_by(names))

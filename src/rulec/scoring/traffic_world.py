@@ -25,6 +25,7 @@ from rulec.recordings.track import Track, TrackOutlines, TrackStates, rectangles
 from rulec.recordings.tracks.derived_motion import accelerations_of
 from rulec.rulebook.rulebook_model import Traffic
 from rulec.scenario.recorded.route import lanelet_area
+from rulec.scoring.drives_by_type import DrivesByType
 from rulec.scoring.scoring_messages import BAD_CANDIDATES
 from rulec.value_display import short_repr
 
@@ -54,7 +55,7 @@ class TrafficWorld:
     ego: str = ""
     now_s: float | None = None
     wanted: RequestedDrives = field(default_factory=RequestedDrives)
-    _prepared: dict[object, CandidateDrives] = field(
+    _prepared: dict[object, DrivesByType] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
 
@@ -188,7 +189,7 @@ class TrafficWorld:
             )
         return bodies
 
-    def drives(self, traffic: Traffic, first: int, last: int) -> tuple[CandidateDrives, bool]:
+    def drives(self, traffic: Traffic, first: int, last: int) -> tuple[DrivesByType, bool]:
         """The data prepared for rules of a side of traffic, and candidates of a range of steps.
 
         The second result is whether all of it is mirrored.
@@ -204,7 +205,8 @@ class TrafficWorld:
             if mirrored:
                 recording = mirrored_recording(recording)
             self._prepared.clear()
-            self._prepared[key] = CandidateDrives(recording, side, self.wanted.thresholds, span)
+            drives = CandidateDrives(recording, side, self.wanted.thresholds, span)
+            self._prepared[key] = DrivesByType(drives)
         return self._prepared[key], mirrored
 
     def _with_ego(self, body: Participant) -> Recording:
