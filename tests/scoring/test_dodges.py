@@ -1,5 +1,7 @@
 """What trackers of single rules are evaded by does not pay."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -148,6 +150,17 @@ def test_sliding_is_no_way_to_be_slower(with_past, says):
     assert found.outcomes("speed_limit") == ["open", "kept"]
     assert found.allowed.tolist() == [False, True]
     assert found.reward().argmax() == 1
+
+
+@pytest.mark.parametrize("with_past", [True, False])
+def test_nobody_is_believed_to_be_slower_than_its_places(with_past):
+    """Not even among vehicles of SUMO, whose own speeds count."""
+    recording = replace(street(speed=13.0).recording, form="SUMO data")
+    world = TrafficWorld(recording, "ego")
+    paths = np.array([along(on_axis(x * AHEAD), world.past[-1]) for x in (14.5, 13.5)])
+    paths[:, :, 3] = 13.8
+    found = score(paths, world, GERMAN, world.past if with_past else None)
+    assert found.outcomes("speed_limit") == ["violated", "kept"]
 
 
 def test_who_jumps_to_the_next_lane_is_no_faster():

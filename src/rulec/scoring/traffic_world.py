@@ -16,6 +16,7 @@ from rulec.extraction.candidate_drives import CandidateDrives
 from rulec.extraction.recording_parts import egos_of, span_of, whole_recording
 from rulec.extraction.selection import RequestedDrives, chosen_side, with_night_assumed
 from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.extraction.tracks.source_tolerances import tolerances_of
 from rulec.recordings.encodings.speed_units import MPS_PER_KMH
 from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.mending.mended_recording import mended
@@ -171,6 +172,8 @@ class TrafficWorld:
 
     def _bodies(self, rows: NDArray[float64], first: int) -> list[Participant]:
         n_bodies, n_states, _ = rows.shape
+        if self._trusts_speeds:
+            rows = _with_driven_speeds(rows, self.now + 1 - first, self.recording.step_s)
         gained = accelerations_of(rows[..., 3], self.recording.step_s)
         rows = np.concatenate((rows, gained[..., None]), axis=2)
         size = self._size
@@ -232,6 +235,11 @@ class TrafficWorld:
         return replace(found, complete=found.complete | {HEADINGS})
 
     @cached_property
+    def _trusts_speeds(self) -> bool:
+        """Whether the recording's speeds count, as SUMO's do; a candidate's could be any."""
+        return tolerances_of(self._known, self.wanted.thresholds).stated_mps is not None
+
+    @cached_property
     def _body(self) -> Participant:
         return next(body for body in self._known.participants if body.id == self.ego)
 
@@ -259,6 +267,18 @@ class TrafficWorld:
         x, y = (outlines[step] - (state.x, state.y)).T
         ahead, aside = x * cos + y * sin, y * cos - x * sin
         return float(np.ptp(ahead)), float(np.ptp(aside)), -float(ahead.min() + ahead.max()) / 2
+
+
+def _with_driven_speeds(rows: NDArray[float64], n_past: int, step_s: float) -> NDArray[float64]:
+    """States of which those after the past have the speeds (m/s) that their places show."""
+    n_states = rows.shape[1]
+    if n_states < 2:
+        return rows
+    order = min(n_states - 1, 2)
+    x, y = (np.gradient(rows[..., k], step_s, axis=1, edge_order=order) for k in (0, 1))
+    driven: NDArray[float64] = rows.copy()
+    driven[:, n_past:, 3] = np.hypot(x, y)[:, n_past:]
+    return driven
 
 
 def _numbers(
