@@ -4,6 +4,7 @@ import json
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -148,6 +149,19 @@ def test_a_signal_ends_it_though_the_editor_still_has_its_input(wire, number):
     server = wire()
     server.server.send_signal(number)
     assert server.server.wait(60) == 128 + number
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device")
+def test_replies_that_cannot_be_written_are_said_once_each():
+    bodies = [message(id=0, method="initialize", params=BEGINNING).encode(), b"{abc}"]
+    given = b"".join(b"Content-Length: %d\r\n\r\n%s" % (len(body), body) for body in bodies)
+    with Path("/dev/full").open("wb") as full:
+        command = [sys.executable, "-m", "rulec", "lsp"]
+        done = subprocess.run(command, input=given, stdout=full, stderr=subprocess.PIPE)
+    assert done.returncode == 2
+    assert b"Traceback" not in done.stderr
+    assert done.stderr.count(b"Error sending data\n") == len(bodies)
+    assert b"error[R0720]" in done.stderr
 
 
 def test_a_name_that_cannot_be_is_refused_without_a_traceback(wire, tmp_path):

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from lsprotocol import types as lsp
-from pygls.exceptions import JsonRpcException, JsonRpcParseError
+from pygls.exceptions import JsonRpcException, JsonRpcInternalError, JsonRpcParseError
 from pygls.lsp.server import LanguageServer
 
 from rulec.diagnostics import Diagnostic, RulecError
@@ -51,6 +51,8 @@ class EditorSession(LanguageServer):
         """Report an error in a message: to the client that sent it, or else to the log."""
         if isinstance(error, UNREADABLE) and isinstance(self.protocol, StrictProtocol):
             self.protocol.refuse(None, JsonRpcParseError(str(error)))
+        elif source is JsonRpcInternalError and isinstance(error, OSError):
+            pass  # Nothing can be sent to the client: pygls would try to send it that, endlessly.
         elif not isinstance(error, JsonRpcException):
             super().report_server_error(error, source)
 

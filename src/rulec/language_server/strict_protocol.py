@@ -21,11 +21,15 @@ UNREADABLE = (ValueError, RecursionError)
 def _is_no_refusal(record: logging.LogRecord) -> bool:
     """Whether a log record is about more than a refusal, which its reply explains already.
 
-    Of a message whose parts do not fit its method, a line stays, and not the traceback below it.
+    Of a message whose parts do not fit its method, and of a reply that cannot be written, a line
+    stays, and not the traceback below it.
     """
     record.msg, record.args = record.getMessage().partition("\n")[0], ()
+    problem = record.exc_info[1] if record.exc_info else None
+    if isinstance(problem, OSError) and record.msg.startswith("Error sending data"):
+        record.exc_info = None
     kinds = (JsonRpcException, *(UNREADABLE if record.name == "pygls.server" else ()))
-    return not (record.exc_info and isinstance(record.exc_info[1], kinds))
+    return not isinstance(problem, kinds)
 
 
 # Editors show each error logged by pygls as a crash of the server, even for an invalid new name.
