@@ -79,6 +79,28 @@ hard rule alone (t: thing, c: car) {
 """
 
 
+def test_random_drives_go_on_where_words_are_constant():
+    """Both monitors take every state: Python's would refuse one in which a constant changes."""
+    text = """
+    rulebook lorries
+    type car
+    size is one of small, large default small
+    constant size
+    signal loaded(c: car), red, goes default false
+    constant loaded
+    quantity mass in t default 1
+    constant mass
+    hard rule stops { require always (red and large and mass > 3 t implies not goes) }
+    hard rule waits (c: car) { require always (loaded(c) implies eventually goes) }
+    """
+    compiled = rulec.compile_rulebook(rulec.parse_rulebook(text), step_s=1)
+    parts = list(proof_of(CLibrary(monitor_layout(compiled, {"car": 4})), 400))
+    assert [(part.n, part.differs) for part in parts if "which all is known" in part.subject] == [
+        (400, ())
+    ]
+    assert [text for part in parts for text in part.differs] == []
+
+
 def test_facts_that_count_and_counts_of_counts_are_no_fault():
     """C does not look at the facts; where not all is known it tells more of such a count."""
     compiled = rulec.compile_rulebook(rulec.parse_rulebook(COUNTING), step_s=1)

@@ -46,10 +46,15 @@ def drives(
         casts = list(_casts(layout, chance))
         if share_unknown == 0:
             casts = [_seated(layout, cast) for cast in casts]
-        quiet = chance.choice(QUIET)
+        shares = share_unknown, chance.choice(QUIET)
+        # Python's monitor refuses a state in which a constant has changed, and a drive would end.
+        constants = {
+            item.name: _value(chance, item, layout, shares)
+            for item in layout.fields.read
+            if item.constant
+        }
         pools = [
-            [_state(layout, chance, cast, (share_unknown, quiet)) for _ in range(n)]
-            for cast in casts
+            [_state(layout, chance, cast, shares, constants) for _ in range(n)] for cast in casts
         ]
         left -= of_pool
         longest = max(LENGTHS[0], of_pool // 4)
@@ -91,10 +96,19 @@ def _seated(layout: MonitorLayout, objects: Mapping[str, str]) -> dict[str, str]
 
 
 def _state(
-    layout: MonitorLayout, chance: Random, objects: Mapping[str, str], shares: tuple[float, float]
+    layout: MonitorLayout,
+    chance: Random,
+    objects: Mapping[str, str],
+    shares: tuple[float, float],
+    constants: Mapping[str, Any],
 ) -> dict[str, Any]:
+    def value(item: Declaration) -> Any:
+        if item.name in constants:
+            return constants[item.name]
+        return _value(chance, item, layout, shares)
+
     return {
-        item.name: everywhere(item, objects, layout, partial(_value, chance, item, layout, shares))
+        item.name: everywhere(item, objects, layout, partial(value, item))
         for item in layout.fields.read
     }
 
@@ -133,7 +147,8 @@ def table_drives(layout: MonitorLayout, chance: Random, n_states: int) -> Iterat
         if len(_seated(layout, objects)) < len(objects):
             continue
         states = [
-            _with(values, _state(layout, chance, objects, (0.0, 1.0))) for values in trace.states
+            _with(values, _state(layout, chance, objects, (0.0, 1.0), {}))
+            for values in trace.states
         ]
         classes = [machine.letters[letter] for letter in letters]
         left = max(len(states), n_states // len(layout.rules))
