@@ -172,6 +172,10 @@ def test_ten_thousand_changed_tables():
         ("HOA: v1", "HOA: v2"),
         ("--BODY--", "Alias: @a 0 --BODY--"),
         ("--END--", ""),
+        ("Acceptance: 1 Inf(0)", "Acceptance: ) Inf(0)"),
+        ("Acceptance: 1 Inf(0)", "Acceptance: 0 Inf(0)"),
+        ("Acceptance: 1 Inf(0)", "Acceptance: 1 Inf(0) | Inf(1)"),
+        ("Start: 0\nAP", "Start: 0AP"),
     ],
 )
 def test_a_changed_hoa_text_is_not_proved(before, after):

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from rulec.validation.unprovable import UnprovableError, require
 
 _TOKEN = re.compile(
-    r"\s+|/\*(?:(?!/\*).)*?\*/|(?P<token>\"(?:[^\"\\]|\\.)*\"|--[A-Z]+--|[A-Za-z_][\w-]*:?|\d+"
+    r"\s+|/\*(?:(?!/\*).)*?\*/|(?P<token>\"(?:[^\"\\]|\\.)*\"|--[A-Z]+--|[A-Za-z_][\w-]*:?|[0-9]+(?!\w)"
     r"|[][{}()!&|])",
     re.DOTALL,
 )
@@ -96,7 +96,10 @@ class _Reader:
         require(not self._tokens, _NEITHER)
         leads = {start, *(edge.target for row in edges.values() for edge in row)}
         require(sorted(edges) == list(range(n_states)) and leads <= edges.keys(), _NEITHER)
-        _, *condition = head["Acceptance:"]
+        n_marks, *condition = head["Acceptance:"]
+        numbers = {int(word) for word in condition if word.isdecimal()}
+        used = numbers.union(*(edge.marks for row in edges.values() for edge in row))
+        require(max(used, default=-1) < int(n_marks), _NEITHER)
         rows = [edges[state] for state in range(n_states)]
         return HoaAutomaton(rows, start, lambda marks: _Reader(condition).holds(marks))
 
