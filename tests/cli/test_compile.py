@@ -50,6 +50,21 @@ def test_an_heir_of_another_step_is_compiled_for_one_step(tmp_path, capsys, monk
     assert Monitor(compile_rulebook("./heir.rules")).step_s == Fraction(1, 2)
 
 
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        (["--prove"], "--prove is about monitors in C and Rust: add `--emit c`"),
+        (["--emit", "ltl", "--objects", "vehicle=4"], "--objects is about monitors in C and Rust"),
+        (["--emit", "c", "--no-certificate"], "--no-certificate is about the compiled rulebook"),
+        (["--emit", "c", "--step", "1", "--step", "2"], "C or Rust is for one step: give --step"),
+    ],
+)
+def test_an_option_without_effect_is_refused(options, why, tmp_path, capsys):
+    assert main(["compile", "esterle2019", "-o", str(tmp_path / "out"), *options]) == 2
+    assert why in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
 def test_automata_that_are_not_of_the_rulebook_are_named(tmp_path, capsys):
     (tmp_path / "R0.hoa").write_text("of a rule that there was\n")
     assert main(["compile", "esterle2019", "-o", str(tmp_path)]) == 0

@@ -113,6 +113,10 @@ def command(
     if (objects or prove) and emit in ("automata", "ltl"):
         name = "--objects" if objects else "--prove"
         raise click.UsageError(f"{name} is about monitors in C and Rust: add `--emit c`")
+    if no_certificate and emit != "automata":
+        raise click.UsageError(
+            "--no-certificate is about the compiled rulebook: leave out `--emit`, or this option"
+        )
     if emit != "automata" and len(steps_s) > 1:
         target = "LTL" if emit == "ltl" else "a monitor in C or Rust"
         raise click.UsageError(f"{target} is for one step: give --step once")
