@@ -20,9 +20,8 @@ from rulec.extraction.signals.conduct.leaving_rings import crossed_on_ring
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
     beyond_near_edge,
     comes_back_over_middle,
-    swings_round,
-    u_turns,
 )
+from rulec.extraction.signals.conduct.u_turns import swings_round, u_turns
 from rulec.extraction.signals.map.junction_signals import lies_askew_in_turn
 from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses
