@@ -6,6 +6,7 @@ from the west on y = -4 and gets to the ring at 200°.
 
 from dataclasses import replace
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -167,6 +168,26 @@ def test_an_entry_may_touch_the_ring_twice_but_a_street_leads_through():
     for y in (0, 10):
         through = lanelet("through", [(-40, y), (40, y)])
         assert not ring_lanelets(recording([*lanes, through]), "right")
+
+
+@pytest.mark.parametrize("back_m", [0.2, 1.5])
+def test_a_ring_whose_line_steps_back_between_its_pieces_is_one(back_m):
+    """As lanes inside a bend of OpenDRIVE do; the last piece ends with such a step."""
+
+    def with_steps_back(line):
+        points = [line[0]]
+        for before, point in pairwise(line):
+            ahead = (point - before) / np.hypot(*(point - before))
+            # Back a little to the right of the line, which turns left
+            aside = np.array([ahead[1], -ahead[0]]) * 0.01
+            points += [point, point - back_m * (ahead - aside)]
+        return np.array([*points[:-1], points[-2] + back_m * ahead, line[-1]])
+
+    lanes = [
+        replace(x, centre=with_steps_back(x.centre)) if x.id in ("e0", "e1") else x
+        for x in roundabout("arms")
+    ]
+    assert ring_lanelets(recording(lanes), "right") == RING
 
 
 def test_a_map_without_lanes_has_none():

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import shapely
 
+from rulec.array_types import Floats
 from rulec.recordings.polylines import line_length
 from rulec.recordings.recording import Lanelet, Recording, Side, is_lane
 from rulec.scenario.recorded.reference_line import turn
@@ -22,6 +23,9 @@ _UNEVEN = 0.5
 _EVERY_M = 2.0
 _INSIDE_M = 1.0
 """A lane that leads through a ring is farther inside it than this."""
+
+_STEP_M, _BACK = 2.0, np.pi / 2
+"""Steps of lines that turn by more than ``_BACK`` (rad) lead back, by less than ``_STEP_M``."""
 
 _STRAIGHT_M, _LEAST_TURN = 30.0, 0.2
 """A roundabout turns by more than ``_LEAST_TURN`` (rad) on each stretch of ``_STRAIGHT_M``."""
@@ -61,9 +65,29 @@ def _between(lanelets: Mapping[str, Lanelet], marked: frozenset[str]) -> frozens
 
 
 def _turned(lanelet: Lanelet) -> float:
-    steps = np.diff(lanelet.centre, axis=0)
-    headings = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
-    return float(headings[-1] - headings[0])
+    turns = _turns(np.diff(lanelet.centre, axis=0))
+    if np.abs(turns).max(initial=0.0) > _BACK:
+        turns = _turns(np.diff(_without_steps_back(lanelet.centre), axis=0))
+    return float(turns.sum())
+
+
+def _turns(steps: Floats) -> Floats:
+    """The angles (rad) between successive steps."""
+    headings = np.arctan2(steps[:, 1], steps[:, 0])
+    turns: Floats = turn(headings[:-1], headings[1:])
+    return turns
+
+
+def _without_steps_back(line: Floats) -> Floats:
+    """A line's first and last point and, in between, those ``_STEP_M`` apart.
+
+    Where two pieces of a map's line meet, the second one may begin a little before the first ends.
+    """
+    kept = [line[0]]
+    for point in line[1:]:
+        if np.hypot(*(point - kept[-1])) >= _STEP_M:
+            kept.append(point)
+    return np.array([kept[0], *kept[1:-1], line[-1]])
 
 
 def _rings(
@@ -89,8 +113,14 @@ def _rings(
 
 
 def _corner(before: Lanelet, after: Lanelet) -> float:
-    first, second = before.centre[-1] - before.centre[-2], after.centre[1] - after.centre[0]
-    return float(turn(np.arctan2(first[1], first[0]), np.arctan2(second[1], second[0])))
+    """The angle (rad) between the end of a lanelet and the beginning of the next one."""
+    first, second = before.centre[-2:], after.centre[:2]
+    (angle,) = _turns(np.concatenate([np.diff(first, axis=0), np.diff(second, axis=0)]))
+    if abs(angle) > _BACK:
+        first = _without_steps_back(before.centre)[-2:]
+        second = _without_steps_back(after.centre)[:2]
+        (angle,) = _turns(np.concatenate([np.diff(first, axis=0), np.diff(second, axis=0)]))
+    return float(angle)
 
 
 def _is_round(ring: tuple[str, ...], lanes: Mapping[str, Lanelet]) -> bool:
