@@ -34,11 +34,11 @@ def check(found, most):
     )
 
 
-def compared(found, pairs, *, words=True):
+def compared(found, pairs, *, words=True, edges=False):
     """Compare maneuvers with drives through them, their verdicts and words: how many were drives.
 
     Of random motions in recordings only verdicts are: where maps are beside their tracks, sides are
-    in doubt, and settled by how a drive goes on.
+    in doubt, and settled by how a drive goes on. So they are on the ``edges`` of cells.
     """
     drives = drives_of(found, [motion for _, motion in pairs]) if pairs else ()
     traced = [
@@ -46,7 +46,7 @@ def compared(found, pairs, *, words=True):
         for (nodes, motion), drive in zip(pairs, drives, strict=True)
         if drive is not None
         and (trace := in_layers(found, drive)) is not None
-        and not on_an_edge(found, nodes, motion)
+        and (edges or not on_an_edge(found, nodes, motion))
     ]
     # Many motions take the same maneuver
     verdicts = {nodes: found.verdict(Maneuver(nodes, 0.0, None)) for nodes, _ in traced}
@@ -55,6 +55,30 @@ def compared(found, pairs, *, words=True):
         assert not words or list(contradicting(found, nodes, trace)) == []
         assert list(disagreeing(of_drive, verdicts[nodes])) == []
     return len(traced)
+
+
+def check_on_edges(found, number, chance):
+    """Compare the verdicts of random motions with those of all cells that they may be in.
+
+    As for motions that are exactly where cells meet: how many were compared.
+    """
+    graph, (step_s, count) = found.graph, states_of(found)
+    every, pairs = round(graph.step_s / step_s), []
+    for _ in range(number):
+        kind = chance.choice(KINDS)
+        motion = np.array(of_a_kind(kind, graph.scenario, graph.bounds, step_s, count, chance))
+        path = paths_of(graph, motion[::every].tolist())
+        if path is not None:
+            pairs.append((_one_of(graph, path, chance), motion))
+    return compared(found, pairs, words=False, edges=True)
+
+
+def _one_of(graph, path, chance):
+    """A path through some cells of each layer, all of which are on one."""
+    nodes = [chance.choice(sorted(path[0]))]
+    for rows, cells in zip(graph.successors, path[1:], strict=True):
+        nodes.append(chance.choice(sorted(cells.intersection(rows[nodes[-1]]))))
+    return tuple(nodes)
 
 
 def check_sampled(found, number, chance, *, words=False):
