@@ -257,6 +257,7 @@ def test_arrays_that_make_no_sense(candidates):
     ("candidates", "way_out"),
     [
         ([[0, 0, 0, 1]], "put a single candidate into a list: `[candidate]`"),
+        (np.zeros((0, 3, 4)), "give at least one candidate"),
         (np.zeros((2, 3, 5)), "give x, y, heading, speed of each state, and at least one state"),
         ([[[0, 0, 0, np.nan]]], "leave out candidates that have no place in some state"),
         ("none", "give lists of numbers of equal length, or `numpy.array("),

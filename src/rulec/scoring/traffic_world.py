@@ -302,6 +302,8 @@ def _numbers(
     if found.ndim != n_axes or found.shape[-1] != len(_COLUMNS) or not found.size:
         message = f"{what}: an array of shape {found.shape}"
         way_out = f"give {', '.join(_COLUMNS)} of each state, and at least one state"
+        if n_axes == found.ndim == 3 and not len(found):
+            way_out = "give at least one candidate"
         if n_axes == 3 and found.ndim == 2 and found.shape[-1] == len(_COLUMNS):
             way_out = "put a single candidate into a list: `[candidate]`"
         if n_axes == 2 and found.ndim == 3:
