@@ -209,6 +209,32 @@ def test_who_stops_at_a_sign_has_the_same_words_alone_and_with_one_that_drives_o
     assert [state["cause_to_brake"] for state in found.drive.trace.states][-4:] == [True] * 4
 
 
+def test_a_gap_beside_another_one_is_as_wide_in_company_of_one_whose_headings_are_noise():
+    """The first candidate's headings are wrong by a few 0.0001 rad, the other's by tenths."""
+    step_s, speed = 0.1, 10.0
+    t = step_s * np.arange(60)
+    bodies = [
+        build_participant("ego", "car", t[:20], speed * t[:20], 0 * t[:20], step_s=step_s),
+        build_participant("beside", "car", t, speed * t, 0 * t + 3.35, step_s=step_s),
+    ]
+    lane = build_lanelet("lane", [(-100, 0), (500, 0)], types=["urban"], left_of="left")
+    left = build_lanelet("left", [(-100, 3.5), (500, 3.5)], types=["urban"], right_of="lane")
+    found = build_recording([lane, left], bodies, step_s=step_s, side="right")
+    world = TrafficWorld(found, "ego", now_s=1.9)
+    noise = np.random.default_rng(1).standard_normal(40)
+    nearly, badly = (
+        np.column_stack((speed * t[20:], 0 * t[20:], error * noise, speed + 0 * t[20:]))
+        for error in (1e-4, 0.2)
+    )
+    scores = assert_equal_to_verify(np.array([nearly, badly]), world, GERMAN, world.past)
+    gaps = [
+        [state["lateral_gap"]["beside"] for state in one.drives[0].drive.trace.states][-20:]
+        for one in scores.candidates
+    ]
+    assert all(one.high - one.low < 0.2 for one in gaps[0])
+    assert any(one.high - one.low > 0.5 for one in gaps[1])
+
+
 @pytest.mark.long
 @pytest.mark.skipif(not RECORDINGS.is_dir(), reason="no recordings")
 def test_recorded_worlds():

@@ -45,8 +45,11 @@ def lateral_gaps(context: DriveContext) -> tuple[Floats, Bounds]:
     if not len(close):
         return np.maximum(gap, 0.0), _rounded(across, gap, (nearer, farther))
     few, joint = cells.part(close), context.tolerances.joint
-    errors = few.of(own_heading_errors(context)), _heading_errors_of_others(context, few)
-    are_known = all(error.max() <= _KNOWN_RAD for error in errors)
+    errors = (
+        _if_it_matters(few.of(own_heading_errors(context))),
+        _if_it_matters(_heading_errors_of_others(context, few)),
+    )
+    are_known = not any([error.any() for error in errors])
     if not are_known:
         for turns, error in zip((own, others), errors, strict=True):
             rough = joint(nearer[close], _at_most_by_turning(few, turns, error))
@@ -136,6 +139,14 @@ def _heading_errors_of_others(context: DriveContext, cells: Cells) -> Floats:
     rows, columns = context.tracks.rows[cells.rows], context.columns[cells.columns]
     errors: Floats = context.surroundings.heading_errors[rows, columns]
     return errors
+
+
+def _if_it_matters(error: Floats) -> Floats:
+    """Errors (rad) of headings, 0 for those that move no corner by much.
+
+    By cell, so that bounds do not depend on which drives are processed together.
+    """
+    return np.where(error <= _KNOWN_RAD, 0.0, error)
 
 
 def _at_most_by_turning(cells: Cells, turns: RoadExtents, error: Floats) -> Floats:
