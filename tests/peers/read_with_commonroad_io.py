@@ -35,8 +35,9 @@ def read(path):
     else:
         scenario, problems = CommonRoadFileReader(path).open()
         environment = scenario.environment
+        # The library puts a stop line without a place at the end of its lanelet
         nodes = ElementTree.parse(path).getroot().findall("lanelet")
-        drawn = {node.get("id") for node in nodes if node.find("stopLine") is not None}
+        drawn = {node.get("id") for node in nodes if node.find("stopLine/point") is not None}
     network = scenario.lanelet_network
     return {
         "step_s": scenario.dt,

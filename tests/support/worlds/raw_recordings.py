@@ -153,15 +153,14 @@ def _lanelet(one, signs):
         frozenset(kind.text for kind in one.findall("laneletType")),
         limits,
         tuple(ref.get("ref") for ref in one.findall("trafficLightRef")),
-        _stop_line(one.find("stopLine"), (left[-1], right[-1])),
+        _stop_line(one.find("stopLine")),
     )
 
 
-def _stop_line(element, at_the_end):
-    """Its two points; without any, it lies at the end of its lanelet."""
-    if element is None:
-        return None
-    return _points(element) if element.find("point") is not None else at_the_end
+def _stop_line(element):
+    """Its two points; without any, nobody has measured where it lies."""
+    points = [] if element is None else element.findall("point")
+    return _points(element) if len(points) == 2 else None
 
 
 def _limits(sign):

@@ -78,7 +78,7 @@ def read_lanelet(tree: Tree) -> LaneletEntry:
         limit_mps=None if limit is None else speed_limit(limit),
         left_mark=_mark(tree.child("leftBound")),
         right_mark=_mark(tree.child("rightBound")),
-        stop_line=_stop_line(tree.first("stopLine"), np.stack((left[-1], right[-1]))),
+        stop_line=_stop_line(tree.first("stopLine")),
     )
     return LaneletEntry(lanelet, tree.ids("trafficSignRef"), tree.ids("trafficLightRef"))
 
@@ -120,14 +120,18 @@ def _mark(bound: Tree) -> recording.LaneMark | None:
     return None if mark is None else _MARKS[mark.one_of(_MARKS)]
 
 
-def _stop_line(tree: Tree | None, lane_end: recording.Points) -> recording.Points | None:
-    """The ends of a stop line: without points, it lies at the end of its lanelet."""
+def _stop_line(tree: Tree | None) -> recording.Points | None:
+    """The ends of a stop line; None if the file gives no points for it.
+
+    The format then puts it at the end of its lanelet, for want of a place that was measured: in
+    recorded traffic everybody stops up to ten metres beyond such lines.
+    """
     if tree is None:
         return None
     points = read_points(tree)
     if len(points) == 1:
         raise tree.wrong("a stop line has only one end")
-    return points[:2] if len(points) else lane_end
+    return points[:2] if len(points) else None
 
 
 def complete(
