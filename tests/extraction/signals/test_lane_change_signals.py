@@ -397,6 +397,19 @@ def test_who_only_reaches_over_from_the_lane_beyond_may_not_have_to_brake(y, unk
 
 
 @pytest.mark.parametrize(
+    ("others", "named", "unknown"),
+    [({"8"}, ("8",), True), ({"9"}, ("9",), False), ({"8", "9"}, ("9",), False)],
+)
+def test_who_perhaps_has_to_brake_is_not_named_beside_who_surely_has_to(others, named, unknown):
+    """8 only reaches over from the lane beyond; 9, 5 m/s faster and 3 m behind, is in the lane."""
+    bodies = {"8": steady(8, 0, 6.6, 10), "9": steady(9, 3 - 15, 4, speed=15)}
+    there = [body for name, body in bodies.items() if name in others]
+    signals = lane_change_signals(context_of(recording(lanes(3), [vehicle(7, CHANGE), *there])))
+    assert signals.whom["lane_is_clear"].tolist() == [(), (), named, ()]
+    assert signals.unknown["lane_is_clear"].tolist() == [False, False, unknown, False]
+
+
+@pytest.mark.parametrize(
     ("mps", "error_mps", "unknown"), [(0.0, 0.0, True), (2.0, 0.0, False), (2.0, 1.8, True)]
 )
 def test_who_stands_and_drifts_across_a_mark_does_not_surely_disturb_others(

@@ -180,10 +180,11 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
         no_room, maybe_none = squeezed(context, ways)
         in_lane = context.extents.lane[:, states] == context.ego_lane[states]
         in_lane |= found & ~context.in_ego_lane[:, states]
-        has_to_brake = found & in_lane & ~_pulls_away(context, states)
-        disturbed[:, flagged] = found | no_room
+        surely = found & in_lane & ~_pulls_away(context, states) | no_room
+        moot[flagged] = ~np.logical_or.reduce(surely)
+        # Who is about to be past or only reaches into the lane is not named beside who is in it
+        disturbed[:, flagged] = np.where(moot[flagged], found, surely)
         unsure[flagged] = perhaps.any(axis=0) | maybe_none.any(axis=0)
-        moot[flagged] = ~np.logical_or.reduce(has_to_brake | no_room)
     turns = u_turns(context)
     brakes, may_brake = has_to_brake_for_turn(context, turns)
     disturbed |= brakes
