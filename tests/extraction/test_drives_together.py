@@ -1,5 +1,6 @@
 """Drives along one road that are looked at together: each is the one that it is by itself."""
 
+import numpy as np
 import pytest
 
 from rulec.extraction.drives import Drives, NoDrive
@@ -42,6 +43,38 @@ def test_one_that_stands_in_one_drive_and_moves_in_the_next():
     cars = [steady(7, 0, 0, 15.0), steady(8, 0, 0, 15.0, first=9), vehicle(9, places)]
     two_ways = [straight(1, 0, 600), lanelet(2, [(600, 4), (0, 4)])]
     assert_alike(recording(two_ways, cars, step_s=0.5), ("7", "8", "9"))
+
+
+def test_one_that_comes_from_afar_faces_nobody_there():
+    """At 98° to the northward road all the time: it never comes towards ego.
+
+    The road begins eastward, and against that it would.
+    """
+    way, bend = np.radians(188.0), np.linspace(0, np.pi / 2, 10)
+    line = [
+        (-60.0, 0.0),
+        *np.array((20 * np.sin(bend) - 20, 20 - 20 * np.cos(bend))).T,
+        (0.0, 600.0),
+    ]
+    egos = [
+        vehicle(7, {k: (0.0, 100.0 + 2.5 * k) for k in range(60)}, speed=5.0, heading=np.pi / 2),
+        vehicle(8, {k: (0.0, 60.0 + 2.5 * k) for k in range(60)}, speed=5.0, heading=np.pi / 2),
+    ]
+    places = {
+        k: (-3.0 * (60 - k) * np.cos(way) + 3.0, 260.0 - 3.0 * (60 - k) * np.sin(way))
+        for k in range(60)
+    }
+    comes = vehicle(9, places, speed=6.0, heading=way, kind="bicycle")
+    # With so many elsewhere, places are known near the road only
+    far = [
+        vehicle(10 + n, {k: (2e3 + k, 50.0 * n) for k in range(60)}, speed=2.0) for n in range(4)
+    ]
+    found = recording([lanelet(1, line)], [*egos, comes, *far], step_s=0.5)
+    assert_alike(found, ("7", "8"))
+    (drive,) = Drives(found, "right").of("7")
+    seen = [state["oncoming"]["9"] for state in drive.trace.states if "9" in state["oncoming"]]
+    assert seen
+    assert not any(seen)
 
 
 @pytest.mark.long

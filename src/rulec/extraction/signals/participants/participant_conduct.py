@@ -61,7 +61,9 @@ def _faces(context: DriveContext) -> Flags:
     rows = (leans.any(axis=1) & faces.any(axis=1)).nonzero()[0]
     if len(rows):
         latest, against = context.spans.latest, turned[rows] > np.pi / 2
-        faces[rows] |= against & (latest(faces[rows]) > latest(~against))
+        # Which other places are known depends on the drives that are processed together
+        counts = context.relevant[rows]
+        faces[rows] |= against & (latest(faces[rows] & counts) > latest(~against & counts))
     return faces
 
 
@@ -74,7 +76,8 @@ def _waits_elsewhere(context: DriveContext, cells: Cells) -> Flags:
     box drifts: it counts as standing.
     """
     rows = distinct(cells.rows)
-    slow = np.abs(context.extents.along[rows]) * KMH_PER_MPS < context.thresholds.standing_kmh
+    # By its whole track: which of its places on the road are known depends on other drives
+    slow = ~(context.tracks.speed[rows] * KMH_PER_MPS >= context.thresholds.standing_kmh)
     still = context.spans.all(slow)[rows.searchsorted(cells.rows), cells.columns]
     of_type = context.tracks.of_type
     drivers = of_type("vehicle") | of_type("light_rider") | of_type("rail_vehicle")
