@@ -49,7 +49,7 @@ def lateral_gaps(context: DriveContext) -> tuple[Floats, Bounds]:
         _if_it_matters(few.of(own_heading_errors(context))),
         _if_it_matters(_heading_errors_of_others(context, few)),
     )
-    are_known = not any([error.any() for error in errors])
+    are_known = not any(error.any() for error in errors)
     if not are_known:
         for turns, error in zip((own, others), errors, strict=True):
             rough = joint(nearer[close], _at_most_by_turning(few, turns, error))
