@@ -16,6 +16,9 @@ _INT16_MAX = np.iinfo(np.int16).max
 _MOST_EMPTY = 8
 """Padded rows, and tables of numbers, may be at most this many times the size of their values."""
 
+ODD = np.uint64(0x9E3779B97F4A7C15)
+"""A weight without a pattern, from the digits of the golden ratio."""
+
 _MOST_KEPT_BYTES = 31 << 20
 """Just below glibc's greatest threshold."""
 
@@ -36,6 +39,26 @@ def distinct(values: NDArray[_Number]) -> NDArray[_Number]:
     ascending = values.flatten()
     ascending.sort()
     return ascending[are_new(ascending)]
+
+
+def different_pairs(
+    left: NDArray[np.uint64], right: NDArray[np.uint64]
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """The position of one example of each distinct pair, and for each pair its example's number.
+
+    Pairs are compared by a weighted sum; where two differ but have the same sum, each is its own
+    example.
+    """
+    codes = left * ODD + right
+    different = distinct(codes)
+    which: NDArray[np.intp] = different.searchsorted(codes)
+    every = np.arange(len(codes))
+    examples = np.empty(len(different), dtype=np.intp)
+    examples[which] = every
+    like = examples[which]
+    if ((left == left[like]) & (right == right[like])).all():
+        return examples, which
+    return every, every
 
 
 def are_new(ascending: NDArray[Any]) -> NDArray[np.bool_]:

@@ -46,8 +46,8 @@ def lateral_gaps(context: DriveContext) -> tuple[Floats, Bounds]:
         return np.maximum(gap, 0.0), _rounded(across, gap, (nearer, farther))
     few, joint = cells.part(close), context.tolerances.joint
     errors = (
-        _if_it_matters(few.of(own_heading_errors(context))),
-        _if_it_matters(_heading_errors_of_others(context, few)),
+        _noticeable(few.of(own_heading_errors(context))),
+        _noticeable(_heading_errors_of_others(context, few)),
     )
     are_known = not any(error.any() for error in errors)
     if not are_known:
@@ -141,7 +141,7 @@ def _heading_errors_of_others(context: DriveContext, cells: Cells) -> Floats:
     return errors
 
 
-def _if_it_matters(error: Floats) -> Floats:
+def _noticeable(error: Floats) -> Floats:
     """Errors (rad) of headings, 0 for those that move no corner by much.
 
     By cell, so that bounds do not depend on which drives are processed together.

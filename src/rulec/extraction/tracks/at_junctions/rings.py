@@ -114,12 +114,15 @@ def _rings(
 
 def _corner(before: Lanelet, after: Lanelet) -> float:
     """The angle (rad) between the end of a lanelet and the beginning of the next one."""
-    first, second = before.centre[-2:], after.centre[:2]
-    (angle,) = _turns(np.concatenate([np.diff(first, axis=0), np.diff(second, axis=0)]))
+    angle = _angle(before.centre, after.centre)
     if abs(angle) > _BACK:
-        first = _without_steps_back(before.centre)[-2:]
-        second = _without_steps_back(after.centre)[:2]
-        (angle,) = _turns(np.concatenate([np.diff(first, axis=0), np.diff(second, axis=0)]))
+        angle = _angle(_without_steps_back(before.centre), _without_steps_back(after.centre))
+    return angle
+
+
+def _angle(before: Floats, after: Floats) -> float:
+    """The angle (rad) between the last step of a line and the first one of the next."""
+    (angle,) = _turns(np.array((before[-1] - before[-2], after[1] - after[0])))
     return float(angle)
 
 

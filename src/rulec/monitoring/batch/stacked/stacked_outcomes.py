@@ -20,13 +20,13 @@ from rulec.monitoring.batch.stacked.instances import (
     doubtful_instances,
 )
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
-from rulec.monitoring.batch.stacked.stacked_rule import FEW_WORDS, ODD, StackedRule, stretches
+from rulec.monitoring.batch.stacked.stacked_rule import FEW_WORDS, StackedRule, stretches
 from rulec.monitoring.batch.uncertain.partial_reader import number_of_value
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.uncertain_machine import Answer
 from rulec.trace import Value
-from rulec.trace.plain_arrays import distinct, ranges
+from rulec.trace.plain_arrays import ODD, distinct, ranges
 from rulec.vocabulary.partial_values import UNKNOWN
 
 
@@ -85,9 +85,9 @@ def outcomes(
         first_alike = np.where(by_itself, np.arange(len(is_odd)), first_alike)
         answers: dict[int, Answer | None] = dict.fromkeys(is_odd.nonzero()[0].tolist())
         is_told = is_odd.copy()
-        told = distinct(first_alike[~is_odd]).tolist()
-        of_each = [rule.answers(rows, ends, told) for rows, ends in alternatives]
-        for place, *of_word in zip(told, *of_each, strict=True):
+        different = distinct(first_alike[~is_odd]).tolist()
+        of_each = [rule.answers(rows, ends, different) for rows, ends in alternatives]
+        for place, *of_word in zip(different, *of_each, strict=True):
             answer = answers[place] = _joined(of_word)
             is_told[place] = answer.worst != KEPT
         places = is_told[first_alike].nonzero()[0]

@@ -31,7 +31,7 @@ from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import Answer, UncertainMachine
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Value
-from rulec.trace.plain_arrays import distinct
+from rulec.trace.plain_arrays import different_pairs
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 from rulec.vocabulary.vocabulary_model import values_of
@@ -50,9 +50,6 @@ MOST_BYTES = 1 << 22
 
 FEW_WORDS = 1 << 5
 """Fewer words are evaluated one by one, without searching for equal ones."""
-
-ODD = np.uint64(0x9E3779B97F4A7C15)
-"""A weight without a pattern, from the digits of the golden ratio."""
 
 _MOST_BITS = 63
 _NO_CLASS = 1 << _MOST_BITS
@@ -294,26 +291,6 @@ class StackedRule:
             self._answers.clear()
             self._words.clear()
             self._bytes = n_bytes
-
-
-def different_pairs(
-    left: NDArray[np.uint64], right: NDArray[np.uint64]
-) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """The position of one example of each distinct pair, and for each pair its example's number.
-
-    Pairs are compared by a weighted sum; where two differ but have the same sum, each is its own
-    example.
-    """
-    codes = left * ODD + right
-    different = distinct(codes)
-    which: NDArray[np.intp] = different.searchsorted(codes)
-    every = np.arange(len(codes))
-    examples = np.empty(len(different), dtype=np.intp)
-    examples[which] = every
-    like = examples[which]
-    if ((left == left[like]) & (right == right[like])).all():
-        return examples, which
-    return every, every
 
 
 def stretches(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rulec.monitoring.batch.stacked.stacked_rule import ODD, different_pairs
+from rulec.trace.plain_arrays import ODD, different_pairs
 
 _SAME_SUM = [(0, int(ODD)), (1, 0), (0, 5), (1, 0)]
 
