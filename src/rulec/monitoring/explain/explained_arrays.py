@@ -6,12 +6,14 @@ from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import overload
 
+import numpy as np
+
 from rulec.array_types import Flags
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in, reads_in
 from rulec.monitoring.bindings import Binding, binding_of
-from rulec.monitoring.explain.column_truths import ColumnTruths
+from rulec.monitoring.explain.completed_tables import CompletedTables
 from rulec.monitoring.explain.explained_parts import Deciding
 from rulec.monitoring.explain.explained_states import shown_states
 from rulec.monitoring.explain.explanation import Explained, Explanation, explanation_of
@@ -19,6 +21,9 @@ from rulec.monitoring.explain.observed_states import ObservedStates
 from rulec.monitoring.implied_values import with_implied_values
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.limits import LIMITS
+from rulec.monitoring.moments.array_tables import ArrayTables
+from rulec.monitoring.moments.row_evaluation import RowEvaluation
+from rulec.monitoring.moments.temporal_operators import RowStretches
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.one_completion import (
     Supposed,
@@ -49,9 +54,12 @@ def explain_arrays(
     binding = binding_of(violation.binding, present, arrays.n_states)
     stretch = range(binding.first, binding.last + 1)
     words = _Vocabularies.of(rulebook, rule, arrays.told)
-    truths = ColumnTruths(arrays, rulebook.vocabulary, binding, words.supposed, words.untold)
     is_long = len(stretch) > 2 * LIMITS.states_explained
-    if is_long or arrays.ends != "cut" or not _is_plain(rule.formula, truths):
+    if (
+        is_long
+        or arrays.ends != "cut"
+        or not _is_plain(rule.formula, arrays, rulebook.vocabulary, binding)
+    ):
         return None
     decisive = binding.last if violation.step is None else violation.step
     shown = [number - binding.first for number in shown_states(stretch, decisive)]
@@ -62,39 +70,92 @@ def explain_arrays(
         shown=shown,
         decisive=decisive - binding.first,
         given=views.given,
-        find_truths=truths.of,
+        find_truths=_truths_of(arrays, words, binding),
     )
     views.look_at({*observed.looked_up, 0})
     subject = Explained(violation, rule, words.completed, rulebook.semantics, arrays.step_s)
     return explanation_of(subject, observed, stretch, decided_by)
 
 
-def _is_plain(formula: ltl.Formula, truths: ColumnTruths) -> bool:
+def _truths_of(
+    arrays: TraceArrays, words: _Vocabularies, binding: Binding
+) -> Callable[[ltl.Proposition], Flags]:
+    """The truth of propositions in each state of a binding."""
+    tables = CompletedTables(ArrayTables(arrays, words.given), words.declared, words.supposed)
+    states = np.arange(binding.first, binding.last + 1)
+    stretches = RowStretches(np.array([[0]]), np.array([[len(states) - 1]]), "over")
+    evaluation = RowEvaluation(tables, tables.spans, stretches, states, {})
+    numbers = {item: np.array([number]) for number, item in enumerate(arrays.objects)}
+    bound = {variable: numbers[item] for variable, item in binding.objects.items()}
+
+    def truths(proposition: ltl.Proposition) -> Flags:
+        found: Flags = evaluation.of(proposition, bound).spread((1, len(states))).sure[0]
+        return found
+
+    return truths
+
+
+def _is_plain(
+    formula: ltl.Formula, arrays: TraceArrays, vocabulary: Vocabulary, binding: Binding
+) -> bool:
     """Whether the values that a formula reads in a state depend on that state alone."""
-    vocabulary = truths.vocabulary
     effects: set[str] = set()
-    ahead = [name for name in vocabulary.implied if truths.says(name)]
+    ahead = [name for name in vocabulary.implied if name in arrays.world or name in arrays.about]
     while ahead:
         implied = {*vocabulary.implied.get(ahead.pop(), ())} - effects
         effects |= implied
         ahead += implied
     return not any(
-        (name in effects and not own.says_all(name, arguments))
-        or (name in vocabulary.constants and not own.is_steady(name, arguments))
-        for own, name, arguments in _read_by(formula, truths)
+        (name in effects and not _is_said(arrays, name, cells))
+        or (name in vocabulary.constants and not _is_steady(arrays, name, cells))
+        for name, cells in _read_by(formula, arrays, vocabulary, binding)
     )
 
 
 def _read_by(
-    formula: ltl.Formula, truths: ColumnTruths
-) -> Iterator[tuple[ColumnTruths, str, tuple[str, ...]]]:
-    """The names that a formula reads, with their variables and the truths for their objects."""
+    formula: ltl.Formula, arrays: TraceArrays, vocabulary: Vocabulary, binding: Binding
+) -> Iterator[tuple[str, slice | None]]:
+    """The names that a formula reads, with the cells of their values; None if there are none."""
     for read in reads_in(formula):
-        if isinstance(read, ltl.Count):
-            for _, own in truths.of_counted(read):
-                yield from _read_by(read.body, own)
-        else:
-            yield truths, read.name, read.arguments
+        if not isinstance(read, ltl.Count):
+            yield read.name, _cells(arrays, read.name, read.arguments, binding)
+            continue
+        for (item, kind), span in zip(arrays.objects.items(), arrays.spans.tolist(), strict=True):
+            first, last = max(binding.first, span[0]), min(binding.last, span[1])
+            if first <= last and vocabulary.is_subtype(kind, read.type):
+                inner = Binding({**binding.objects, read.variable: item}, first, last)
+                yield from _read_by(read.body, arrays, vocabulary, inner)
+
+
+def _cells(
+    arrays: TraceArrays, name: str, arguments: Sequence[str], binding: Binding
+) -> slice | None:
+    if name in arrays.world:
+        return slice(binding.first, binding.last + 1)
+    if name not in arrays.about or len(arguments) != 1:
+        return None
+    number = [*arrays.objects].index(binding.objects[arguments[0]])
+    if not arrays.only.get(name, np.ones(number + 1, dtype=bool))[number]:
+        return None
+    begins = int(arrays.starts[number] - arrays.spans[number, 0])
+    return slice(begins + binding.first, begins + binding.last + 1)
+
+
+def _is_said(arrays: TraceArrays, name: str, cells: slice | None) -> bool:
+    """Whether a name is given in all of the cells, even as unknown."""
+    if cells is None:
+        return False
+    return name not in arrays.absent or not arrays.absent[name][cells].any()
+
+
+def _is_steady(arrays: TraceArrays, name: str, cells: slice | None) -> bool:
+    """Whether a name has the same value in all of the cells."""
+    if cells is None:
+        return True
+    values = (arrays.world if name in arrays.world else arrays.about)[name]
+    columns = [values, *arrays.bounds.get(name, ())]
+    columns += [own[name] for own in (arrays.unknown, arrays.absent) if name in own]
+    return all(bool((column[cells] == column[cells][0]).all()) for column in columns)
 
 
 @dataclass(frozen=True, slots=True)

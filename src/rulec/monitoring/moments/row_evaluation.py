@@ -18,9 +18,13 @@ from rulec.monitoring.batch.columns.column_numbers import (
     comparison_sides,
     digits_of,
 )
-from rulec.monitoring.moments import truth_rows as rows_of
 from rulec.monitoring.moments.name_tables import NameTables, ValueRows
-from rulec.monitoring.moments.truth_rows import RowStretches, TruthRows, known
+from rulec.monitoring.moments.temporal_operators import (
+    RowStretches,
+    temporal_binary,
+    temporal_unary,
+)
+from rulec.trace.partial_truth import Truth
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Enumeration
 
@@ -55,7 +59,7 @@ class RowEvaluation:
             return False
         return int(self.states[-1]) == n_states - 1
 
-    def of(self, formula: ltl.Formula, bound: Mapping[str, Indices]) -> TruthRows:
+    def of(self, formula: ltl.Formula, bound: Mapping[str, Indices]) -> Truth:
         """The truth of a formula.
 
         ``bound`` has the objects of its variables, per row or for all rows.
@@ -66,60 +70,48 @@ class RowEvaluation:
             case ltl.Comparison():
                 return self._comparison(formula, bound)
             case ltl.Same(left, right):
-                return known((bound[left] == bound[right])[:, None])
+                return Truth.known((bound[left] == bound[right])[:, None])
             case ltl.Constant(value):
-                return known(np.full((1, self.n_states), value))
+                return Truth.known(np.full((1, self.n_states), value))
             case ltl.Unary(operator, operand):
                 inner = self.of(operand, bound)
                 if operator in BOOLEAN:
-                    return rows_of.negation(inner)
-                return rows_of.temporal_unary(
-                    formula, self._spread(inner), self.stretches, self.n_states
-                )
+                    return ~inner
+                return temporal_unary(formula, self._spread(inner), self.stretches, self.n_states)
             case ltl.Binary():
                 return self._binary(formula, bound)
 
-    def _binary(self, formula: ltl.Binary, bound: Mapping[str, Indices]) -> TruthRows:
+    def _binary(self, formula: ltl.Binary, bound: Mapping[str, Indices]) -> Truth:
         first = self.of(formula.left, bound)
         match formula.operator:
             case ltl.BinaryOperator.AND:
-                if not first.possible.any():
-                    return first
-                return rows_of.conjunction(first, self.of(formula.right, bound))
+                return first & self.of(formula.right, bound) if first.possible.any() else first
             case ltl.BinaryOperator.OR:
-                if first.sure.all():
-                    return first
-                return rows_of.disjunction(first, self.of(formula.right, bound))
+                return first if first.sure.all() else first | self.of(formula.right, bound)
             case ltl.BinaryOperator.IMPLIES:
-                if not first.possible.any():
-                    return rows_of.negation(first)
-                return rows_of.disjunction(rows_of.negation(first), self.of(formula.right, bound))
+                return ~first | self.of(formula.right, bound) if first.possible.any() else ~first
             case ltl.BinaryOperator.IFF:
-                return rows_of.equivalence(first, self.of(formula.right, bound))
+                return first.same_as(self.of(formula.right, bound))
             case ltl.BinaryOperator.XOR:
-                same = rows_of.equivalence(first, self.of(formula.right, bound))
-                return rows_of.negation(same)
+                return ~first.same_as(self.of(formula.right, bound))
             case _:
-                second = self.of(formula.right, bound)
-                return rows_of.temporal_binary(
-                    formula, self._spread(first), self._spread(second), self.stretches
-                )
+                left, right = self._spread(first), self._spread(self.of(formula.right, bound))
+                return temporal_binary(formula, left, right, self.stretches)
 
-    def _spread(self, truth: TruthRows) -> TruthRows:
+    def _spread(self, truth: Truth) -> Truth:
         """The truth with a column for each state."""
         if truth.sure.shape[1] == self.n_states:
             return truth
-        shape = len(truth.sure), self.n_states
-        return TruthRows(np.broadcast_to(truth.sure, shape), np.broadcast_to(truth.possible, shape))
+        return truth.spread((len(truth.sure), self.n_states))
 
-    def _atom(self, atom: ltl.Atom, bound: Mapping[str, Indices]) -> TruthRows:
+    def _atom(self, atom: ltl.Atom, bound: Mapping[str, Indices]) -> Truth:
         rows = self._rows(atom.name, atom.arguments, bound)
         values = rows.values
         declaration = self.tables.vocabulary.declarations[atom.name]
         if isinstance(declaration, Enumeration):
             assert atom.value is not None, "the formula has been checked"
             values = values == declaration.values.index(atom.value)
-        return TruthRows(values & ~rows.unknown, values | rows.unknown)
+        return Truth.known(values).unknown_at(rows.unknown)
 
     def _rows(
         self, name: str, arguments: tuple[str, ...], bound: Mapping[str, Indices]
@@ -134,7 +126,7 @@ class RowEvaluation:
         several = np.broadcast_arrays(*[bound[argument] for argument in arguments])
         return tables.about_several(name, np.stack(several, axis=1)).at(states=states)
 
-    def _comparison(self, comparison: ltl.Comparison, bound: Mapping[str, Indices]) -> TruthRows:
+    def _comparison(self, comparison: ltl.Comparison, bound: Mapping[str, Indices]) -> Truth:
         ready = self.comparisons.get(id(comparison))
         if ready is None:
             ready = comparison_sides(comparison.terms, comparison.relation, comparison.limit)
@@ -148,7 +140,7 @@ class RowEvaluation:
         low = _digits(ready.scale, lows, unknown)
         same = all(lower is upper for (_, lower), (_, upper) in zip(lows, highs, strict=True))
         high = low if same else _digits(ready.scale, highs, unknown)
-        return TruthRows(ready.every[low, high] & ~unknown, ready.some[low, high] | unknown)
+        return Truth(ready.every[low, high], ready.some[low, high]).unknown_at(unknown)
 
     def _term(self, term: ltl.Term, bound: Mapping[str, Indices]) -> ValueRows:
         if isinstance(term, ltl.QuantityTerm):

@@ -18,7 +18,7 @@ from rulec.monitoring.batch.columns.column_numbers import ComparisonSides
 from rulec.monitoring.moments.array_tables import ArrayTables
 from rulec.monitoring.moments.name_tables import NameTables, tables_of_trace
 from rulec.monitoring.moments.row_evaluation import RowEvaluation
-from rulec.monitoring.moments.truth_rows import RowEnding, RowStretches
+from rulec.monitoring.moments.temporal_operators import RowEnding, RowStretches
 from rulec.resource_limits import LOOKBACK
 from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace

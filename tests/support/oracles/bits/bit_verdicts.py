@@ -53,9 +53,9 @@ def _column(proposition: Proposition, reading: ColumnReader, task: RuleBinding) 
         case Atom(name, arguments, wanted):
             items = tuple([task.objects[one] for one in arguments])
             truth = reading.atom(name, items, wanted)
-            if not np.ndim(truth.true) and not truth.true and not truth.false:
+            if not np.ndim(truth.sure) and not truth.sure and truth.possible:
                 raise NotGivenError(name, items)
-            true = truth.true
+            true = truth.sure
         case Comparison():
             true = reading.compared(proposition, task.objects)
     return np.asarray(true) if np.ndim(true) else np.full(n_states, true)

@@ -5,7 +5,7 @@ Truth values follow Kleene's strong three-valued logic, as in ``StateView`` for 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,40 +16,17 @@ from rulec.logic.fold import Algebra, fold
 from rulec.logic.free_names import names_in, reads_in
 from rulec.logic.kleene import ObjectBinding
 from rulec.monitoring.batch.columns.column_numbers import Mask, comparison_sides, digits_of
+from rulec.trace.partial_truth import UNKNOWN, Truth
 from rulec.trace.trace_columns import Array, TraceColumns
 from rulec.vocabulary import Enumeration, Vocabulary
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Truth:
-    """Two masks: where something is known to be true, and where it is known to be false."""
-
-    true: Mask
-    false: Mask
-
-
-UNKNOWN = Truth(np.False_, np.False_)
-
-
-def known(values: Mask) -> Truth:
-    """A truth value that is known in every state."""
-    return Truth(values, ~values)
-
-
-def _equivalence(left: Truth, right: Truth) -> Truth:
-    return Truth(
-        (left.true & right.true) | (left.false & right.false),
-        (left.true & right.false) | (left.false & right.true),
-    )
-
-
 KLEENE_COLUMNS: Algebra[Truth] = Algebra(
     proposition=lambda _: UNKNOWN,
-    constant=lambda value: known(np.bool_(value)),
-    negation=lambda operand: Truth(operand.false, operand.true),
-    conjunction=lambda left, right: Truth(left.true & right.true, left.false | right.false),
-    disjunction=lambda left, right: Truth(left.true | right.true, left.false & right.false),
-    equivalence=_equivalence,
+    constant=lambda value: Truth.known(np.asarray(value)),
+    negation=Truth.__invert__,
+    conjunction=Truth.__and__,
+    disjunction=Truth.__or__,
+    equivalence=Truth.same_as,
 )
 """The operators; the values of propositions depend on the columns."""
 
@@ -130,8 +107,8 @@ class ColumnReader:
                 inner = {**bound, count.variable: name}
                 truth = self._truth(count.body, inner)
                 there = self._presence(name)
-                total += truth.true & there
-                undecided.append((inner, there & ~(truth.true | truth.false)))
+                total += truth.sure & there
+                undecided.append((inner, there & truth.unknown))
         return total, undecided
 
     def _missing(self, count: ltl.Count, bound: ObjectBinding) -> NotGivenError:
@@ -161,13 +138,13 @@ class ColumnReader:
             return self.atom(part.name, items, part.value)
 
         def identity(same: ltl.Same) -> Truth:
-            return known(np.bool_(bound[same.left] == bound[same.right]))
+            return Truth.known(np.asarray(bound[same.left] == bound[same.right]))
 
         return fold(formula, replace(KLEENE_COLUMNS, proposition=proposition, identity=identity))
 
     def _compared(self, comparison: ltl.Comparison, bound: ObjectBinding) -> Truth:
         try:
-            return known(self.compared(comparison, bound))
+            return Truth.known(np.asarray(self.compared(comparison, bound)))
         except NotGivenError:
             return UNKNOWN
 
@@ -184,5 +161,5 @@ class ColumnReader:
         declaration = self._vocabulary.declarations[name]
         if isinstance(declaration, Enumeration):
             assert expected is not None, "the rulebook has been checked"
-            return known(np.asarray(values == declaration.values.index(expected)))
-        return known(np.asarray(values, dtype=bool))
+            return Truth.known(np.asarray(values == declaration.values.index(expected)))
+        return Truth.known(np.asarray(values, dtype=bool))

@@ -39,7 +39,7 @@ class LinkedFacts:
         known = self._kept.get(key)
         if known is None:
             truths = [reader.met_values.truth_anywhere(fact.formula) for fact in self.facts]
-            known = all(bool(truth.true) for truth in truths) or self._can_all_be(reader)
+            known = all(bool(truth.sure) for truth in truths) or self._can_all_be(reader)
             self._kept[key] = known
         return known
 
@@ -114,7 +114,7 @@ def _contradicted_states(
     """The states of those spots in which some of the linked axioms cannot all hold."""
     holds: Mask = np.True_
     for fact in facts:
-        holds = holds & reader.truth(fact.formula, spots, _OBJECT).true
+        holds = holds & reader.truth(fact.formula, spots, _OBJECT).sure
     doubtful = (~np.broadcast_to(holds, len(spots.states))).nonzero()[0]
     if not len(doubtful):
         return doubtful

@@ -10,8 +10,9 @@ import numpy as np
 
 from rulec.logic import formula as ltl
 from rulec.logic.fold import Algebra, fold
-from rulec.monitoring.batch.columns.column_reader import KLEENE_COLUMNS, UNKNOWN, Truth, known
+from rulec.monitoring.batch.columns.column_reader import KLEENE_COLUMNS
 from rulec.monitoring.batch.stacked.stack import FEW, Stack, StackColumn
+from rulec.trace.partial_truth import FALSE, TRUE, UNKNOWN, Truth
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN_VALUE
@@ -19,8 +20,6 @@ from rulec.vocabulary.partial_values import PartialValue
 
 _BITS = {bits: 1 << np.arange(bits, dtype=f"u{bits // 8}") for bits in (8, 64)}
 """For each number the bit at its place."""
-
-_TRUE, _FALSE = known(np.True_), known(np.False_)
 
 
 class MetValues:
@@ -74,7 +73,7 @@ class MetValues:
     @property
     def _anywhere(self) -> Algebra[Truth]:
         # Not stored: a reference cycle would keep all columns alive after their verdicts.
-        return replace(KLEENE_COLUMNS, proposition=self._truth, identity=lambda _: _TRUE)
+        return replace(KLEENE_COLUMNS, proposition=self._truth, identity=lambda _: TRUE)
 
     def _truth(self, part: ltl.Proposition) -> Truth:
         if isinstance(part, ltl.Comparison):
@@ -87,8 +86,8 @@ class MetValues:
             assert part.value is not None, "the rulebook has been checked"
             holds = 1 << declaration.values.index(part.value)
         if met == holds:
-            return _TRUE
-        return UNKNOWN if met & holds else _FALSE
+            return TRUE
+        return UNKNOWN if met & holds else FALSE
 
     @cached_property
     def signals(self) -> dict[str, int]:

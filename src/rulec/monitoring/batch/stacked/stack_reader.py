@@ -21,11 +21,12 @@ from rulec.monitoring.batch.columns.column_numbers import (
     numbers_between,
     partial_values,
 )
-from rulec.monitoring.batch.columns.column_reader import KLEENE_COLUMNS, UNKNOWN, Truth, known
+from rulec.monitoring.batch.columns.column_reader import KLEENE_COLUMNS
 from rulec.monitoring.batch.stacked.met_values import MetValues
 from rulec.monitoring.batch.stacked.stack import Stack, StackColumn, either
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRead
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
+from rulec.trace.partial_truth import TRUE, UNKNOWN, Truth
 from rulec.trace.trace_columns import Array, smallest_unsigned
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN_VALUE
@@ -161,7 +162,7 @@ class StackReader:
         known = read.of_counts.get(key)
         if known is None:
             assert isinstance(read.read, NumberRead), "it counts"
-            is_nobody = bool(met.truth_anywhere(count.body).false)
+            is_nobody = not met.truth_anywhere(count.body).possible
             known = 1 << read.read.digit(Fraction(0)) if is_nobody else read.every
             read.of_counts[key] = known
         return known
@@ -240,16 +241,16 @@ class StackReader:
         if read.counts_itself:
             truth = self.truth(count.body, spots, read.variables[0])
             suits = self._at(stack.of_type(count.type)[stack.object_of], read.variables, spots)
-            least = (suits & truth.true).astype(np.uint8)
-            most = (suits & ~truth.false).astype(np.uint8)
+            least = (suits & truth.sure).astype(np.uint8)
+            most = (suits & truth.possible).astype(np.uint8)
         else:
             cells = stack.cells_of_type(count.type)
             states = stack.state_of[cells]
             own_spots = Spots(states, {count.variable: cells})
             truth = self.truth(count.body, own_spots, count.variable)
             there = np.ones(len(states), dtype=bool)
-            least = np.bincount(states[there & truth.true], minlength=stack.n_states)
-            most = np.bincount(states[there & ~truth.false], minlength=stack.n_states)
+            least = np.bincount(states[there & truth.sure], minlength=stack.n_states)
+            most = np.bincount(states[there & truth.possible], minlength=stack.n_states)
         n_counts = int(most.max(initial=0)) + 1
         digits = np.array([number.digit(factor * Fraction(n)) for n in range(n_counts)])
         pairs = (digits[:, None] * number.size + digits).astype(smallest_unsigned(number.size**2))
@@ -259,7 +260,7 @@ class StackReader:
         return numbers
 
     def truth(self, formula: ltl.Formula, spots: Spots, about: str = "") -> Truth:
-        """Where a formula without temporal operators is true, and where it is false.
+        """The truth of a formula without temporal operators.
 
         Every variable stands for the same object, called ``about`` here.
         """
@@ -269,10 +270,8 @@ class StackReader:
                 return self._compared(part, spots, about)
             return self._atom(part, spots, (about,) * len(part.arguments))
 
-        def identity(_: ltl.Same) -> Truth:
-            return known(np.True_)
-
-        return fold(formula, replace(KLEENE_COLUMNS, proposition=proposition, identity=identity))
+        own = replace(KLEENE_COLUMNS, proposition=proposition, identity=lambda _: TRUE)
+        return fold(formula, own)
 
     def _compared(self, comparison: ltl.Comparison, spots: Spots, about: str) -> Truth:
         terms = []
@@ -282,7 +281,7 @@ class StackReader:
             terms.append((factor, ltl.QuantityTerm(term.name, own)))
         sides = comparison_sides(tuple(terms), comparison.relation, comparison.limit)
         numbers = self._between(sides.scale, spots)
-        return Truth(sides.every.take(numbers), ~sides.some.take(numbers))
+        return Truth(sides.every.take(numbers), sides.some.take(numbers))
 
     def _atom(self, atom: ltl.Atom, spots: Spots, arguments: tuple[str, ...]) -> Truth:
         declaration = self.stack.vocabulary.declarations[atom.name]
@@ -303,10 +302,8 @@ class StackReader:
             holds = np.asarray(values == declaration.values.index(atom.value))
         else:
             holds = np.asarray(values, dtype=bool)
-        if dark is None:
-            return known(holds)
-        here = self._at(dark, arguments, spots)
-        return Truth(holds & ~here, ~holds & ~here)
+        truth = Truth.known(holds)
+        return truth if dark is None else truth.unknown_at(self._at(dark, arguments, spots))
 
     def values_at(
         self, name: str, variables: Sequence[str], spots: Spots

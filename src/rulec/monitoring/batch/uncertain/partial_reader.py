@@ -13,11 +13,12 @@ from rulec.logic import formula as ltl
 from rulec.logic.free_names import reads_in
 from rulec.logic.kleene import ObjectBinding
 from rulec.monitoring.batch.columns.column_numbers import Mask, numbers_between, partial_values
-from rulec.monitoring.batch.columns.column_reader import UNKNOWN as UNKNOWN_TRUTH
-from rulec.monitoring.batch.columns.column_reader import ColumnReader, NotGivenError, Truth
+from rulec.monitoring.batch.columns.column_reader import ColumnReader, NotGivenError
 from rulec.monitoring.uncertainty.number_regions import NumberRegions
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.trace import Value
+from rulec.trace.partial_truth import UNKNOWN as UNKNOWN_TRUTH
+from rulec.trace.partial_truth import Truth
 from rulec.trace.trace_columns import Array, Key, TraceColumns
 from rulec.vocabulary import Declaration, Quantity, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
@@ -188,7 +189,7 @@ class PartialReader(ColumnReader):
             super().atom(name, items, expected),
             self.columns.unknown.get((name, items)),
         )
-        return truth if unknown is None else Truth(truth.true & ~unknown, truth.false & ~unknown)
+        return truth if unknown is None else truth.unknown_at(unknown)
 
     def _compared(self, comparison: ltl.Comparison, bound: ObjectBinding) -> Truth:
         unknown: Mask = np.False_
@@ -203,4 +204,4 @@ class PartialReader(ColumnReader):
             if key in self.columns.upper:
                 unknown = unknown | (self.columns.upper[key] != self.columns.values[key])
         truth = super()._compared(comparison, bound)
-        return Truth(truth.true & ~unknown, truth.false & ~unknown)
+        return truth.unknown_at(np.asarray(unknown))

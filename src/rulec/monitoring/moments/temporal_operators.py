@@ -1,6 +1,6 @@
-"""Three-valued truth of formulas in every state, with a row for each choice of objects.
+"""Operators of time on truth with a row for each choice of objects, and a column for each state.
 
-The operators are Kleene's; the temporal ones follow ``logic.semantics`` on the stretch of a row.
+They follow ``logic.semantics`` on the stretch of a row.
 """
 
 from __future__ import annotations
@@ -14,23 +14,13 @@ from numpy.typing import NDArray
 from rulec.array_types import Flags
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import PAST, Range, range_of
+from rulec.trace.partial_truth import Truth
 
 RowEnding = Literal["over", "goes on", "cut"]
 """What follows a row's last state: nothing, the same state for ever, or unobserved states.
 
 In a cut row the states before the first one are unobserved, too.
 """
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class TruthRows:
-    """Where something is ``sure`` and where it is ``possible`` (rows x states, or one row for all).
-
-    What is sure is also possible.
-    """
-
-    sure: Flags
-    possible: Flags
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,40 +32,11 @@ class RowStretches:
     ends: RowEnding
 
 
-def known(values: Flags) -> TruthRows:
-    """Truth that is known everywhere."""
-    return TruthRows(values, values)
-
-
-def negation(operand: TruthRows) -> TruthRows:
-    """A negation is certain where its operand is not possible."""
-    return TruthRows(~operand.possible, ~operand.sure)
-
-
-def conjunction(left: TruthRows, right: TruthRows) -> TruthRows:
-    """The conjunction."""
-    return TruthRows(left.sure & right.sure, left.possible & right.possible)
-
-
-def disjunction(left: TruthRows, right: TruthRows) -> TruthRows:
-    """The disjunction."""
-    return TruthRows(left.sure | right.sure, left.possible | right.possible)
-
-
-def equivalence(left: TruthRows, right: TruthRows) -> TruthRows:
-    """Both or neither."""
-    other, another = negation(left), negation(right)
-    return disjunction(conjunction(left, right), conjunction(other, another))
-
-
-_TRUE = known(np.ones((1, 1), dtype=bool))
-
-
 def temporal_unary(
-    formula: ltl.Unary, operand: TruthRows, stretches: RowStretches, n_states: int
-) -> TruthRows:
+    formula: ltl.Unary, operand: Truth, stretches: RowStretches, n_states: int
+) -> Truth:
     """A temporal operator on one formula; its bound is in steps."""
-    always = known(np.broadcast_to(_TRUE.sure, (1, n_states)))
+    always = _always(n_states)
     join = _since if formula.operator in PAST else _until
     span = range_of(formula)
     match formula.operator:
@@ -87,14 +48,14 @@ def temporal_unary(
         ):
             return join(always, operand, span, stretches)
         case ltl.UnaryOperator.NEVER:
-            return negation(join(always, operand, span, stretches))
+            return ~join(always, operand, span, stretches)
         case _:
-            return negation(join(always, negation(operand), span, stretches))
+            return ~join(always, ~operand, span, stretches)
 
 
 def temporal_binary(
-    formula: ltl.Binary, left: TruthRows, right: TruthRows, stretches: RowStretches
-) -> TruthRows:
+    formula: ltl.Binary, left: Truth, right: Truth, stretches: RowStretches
+) -> Truth:
     """A temporal operator between two formulas; its bound is in steps."""
     span = range_of(formula)
     match formula.operator:
@@ -105,43 +66,40 @@ def temporal_binary(
         case ltl.BinaryOperator.WEAK_UNTIL:
             return _weak_until(left, right, span, stretches)
         case ltl.BinaryOperator.RELEASE:
-            return negation(_until(negation(left), negation(right), span, stretches))
+            return ~_until(~left, ~right, span, stretches)
         case _:
-            return negation(_weak_until(negation(left), negation(right), span, stretches))
+            return ~_weak_until(~left, ~right, span, stretches)
 
 
-def _weak_until(
-    left: TruthRows, right: TruthRows, span: Range, stretches: RowStretches
-) -> TruthRows:
+def _weak_until(left: Truth, right: Truth, span: Range, stretches: RowStretches) -> Truth:
     """Until, or ``left`` up to the end of the range."""
-    always = known(np.broadcast_to(_TRUE.sure, (1, left.sure.shape[-1])))
-    breaks = _until(always, negation(left), Range(0, span.high), stretches)
-    return disjunction(_until(left, right, span, stretches), negation(breaks))
+    breaks = _until(_always(left.sure.shape[-1]), ~left, Range(0, span.high), stretches)
+    return _until(left, right, span, stretches) | ~breaks
 
 
-def _since(left: TruthRows, right: TruthRows, span: Range, stretches: RowStretches) -> TruthRows:
+def _always(n_states: int) -> Truth:
+    return Truth.known(np.broadcast_to(np.True_, (1, n_states)))
+
+
+def _since(left: Truth, right: Truth, span: Range, stretches: RowStretches) -> Truth:
     beyond: RowEnding = "cut" if stretches.ends == "cut" else "over"
     return _looked_back(left, right, span, stretches.first, beyond)
 
 
-def _until(left: TruthRows, right: TruthRows, span: Range, stretches: RowStretches) -> TruthRows:
+def _until(left: Truth, right: Truth, span: Range, stretches: RowStretches) -> Truth:
     """Until, computed as since on reversed states."""
     behind = left.sure.shape[-1] - 1 - stretches.last
-    back = _looked_back(_turned(left), _turned(right), span, behind, stretches.ends)
-    return _turned(back)
-
-
-def _turned(truth: TruthRows) -> TruthRows:
-    return TruthRows(truth.sure[:, ::-1], truth.possible[:, ::-1])
+    turned = np.s_[:, ::-1]
+    return _looked_back(left[turned], right[turned], span, behind, stretches.ends)[turned]
 
 
 def _looked_back(
-    left: TruthRows,
-    right: TruthRows,
+    left: Truth,
+    right: Truth,
     span: Range,
     first: NDArray[np.intp],
     beyond: RowEnding,
-) -> TruthRows:
+) -> Truth:
     """Since, with the given truth ``beyond`` a row's ``first`` state."""
     sure, _ = _since_known(left.sure, right.sure, span, first, goes_on=beyond == "goes on")
     possible, unbroken = _since_known(
@@ -151,7 +109,7 @@ def _looked_back(
         state = np.arange(possible.shape[-1])
         reaches = True if span.high is None else state - span.high < first
         possible = possible | (unbroken & reaches)
-    return TruthRows(sure, possible)
+    return Truth(sure, possible)
 
 
 def _since_known(
