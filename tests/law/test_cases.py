@@ -5,8 +5,7 @@ from typing import Any
 import pytest
 
 from rulec.monitoring.verify import verify
-from rulec.trace import Trace
-from support.builders.national_books import CASES, NATIONAL, compiled, read, rules_on
+from support.builders.national_books import CASES, NATIONAL, compiled, read, rules_on, trace_of
 
 JUDGED = [
     pytest.param(case, name, id=f"{case['id']}-{name}")
@@ -50,22 +49,6 @@ without leaving its lane does not overtake, by the highway police, Cass. civ. 48
 force since 2026-04-01. Korea: art. 38(1) wants a signal from whoever drives onto a roundabout.
 Poland: art. 28(3) lets no vehicle be overtaken on a level crossing, and a cycle is one.
 """
-
-
-def trace_of(case: dict[str, Any], traffic: str) -> Trace:
-    """The case as a trace; near and far are the sides that they are where traffic drives so."""
-    near, far = ("right_of", "left_of") if traffic == "right" else ("left_of", "right_of")
-    sides = {"near": near, "far": far, "same_lane": "same_lane"}
-    states = []
-    for said in case["states"]:
-        state = {**case["throughout"]}
-        for name, value in said.items():
-            both = isinstance(value, dict) and name in state
-            state[name] = {**state[name], **value} if both else value
-        if "lateral" in state:
-            state["lateral"] = {one: sides[side] for one, side in state["lateral"].items()}
-        states.append(state)
-    return Trace(case["id"], 1.0, case["objects"], tuple(states))
 
 
 def said_of(case: dict[str, Any], name: str) -> str:

@@ -11,6 +11,7 @@ from rulec.resources import rulebooks_folder
 from rulec.rulebook.loader import Loaded, read_rulebook
 from rulec.rulebook.rulebook_model import Rule
 from rulec.toml import parsed_toml
+from rulec.trace import Trace
 
 NO_LAW = {"vocabulary", "schemas", "esterle2019"}
 
@@ -48,3 +49,19 @@ def rules_on(name: str, topics: list[str]) -> list[Rule]:
         for rule in read(name).rulebook.rules
         if any(rule.name == topic or rule.name.startswith(f"{topic}_") for topic in topics)
     ]
+
+
+def trace_of(case: dict[str, Any], traffic: str) -> Trace:
+    """The case as a trace; near and far are the sides that they are where traffic drives so."""
+    near, far = ("right_of", "left_of") if traffic == "right" else ("left_of", "right_of")
+    sides = {"near": near, "far": far, "same_lane": "same_lane"}
+    states = []
+    for said in case["states"]:
+        state = {**case["throughout"]}
+        for name, value in said.items():
+            both = isinstance(value, dict) and name in state
+            state[name] = {**state[name], **value} if both else value
+        if "lateral" in state:
+            state["lateral"] = {one: sides[side] for one, side in state["lateral"].items()}
+        states.append(state)
+    return Trace(case["id"], 1.0, case["objects"], tuple(states))
