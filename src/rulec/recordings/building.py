@@ -16,6 +16,7 @@ from rulec.diagnostics import did_you_mean, named
 from rulec.diagnostics.argument_kinds import checked_kinds, expected, expected_fields
 from rulec.recordings.building_checks import BuildingChecks
 from rulec.recordings.encodings.xml_element import LARGEST
+from rulec.recordings.lane_centres.centre_lanelets import ALL_JUNCTIONS
 from rulec.recordings.lanes.lane_table import FASTEST_LIMIT_MPS, WIDEST_M
 from rulec.recordings.lanes.lanes_along import (
     LANE_TYPES,
@@ -25,6 +26,8 @@ from rulec.recordings.lanes.lanes_along import (
 )
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import (
+    HEADINGS,
+    MENDED,
     MOST_STEPS,
     OBSTACLE_TYPES,
     Lamp,
@@ -52,7 +55,8 @@ _ENOUGH_PAIRS, _MOVES_MPS = 3, 1.0
 
 COMPLETE = frozenset(
     {"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout", "lanes"}
-    | {"officer", "arrivals"}
+    | {"officer", "arrivals", HEADINGS, MENDED}
+    | ALL_JUNCTIONS
 )
 """The kinds of things of which a recording can be declared complete."""
 
@@ -343,7 +347,7 @@ def _check_speeds(checks: BuildingChecks, body: Participant, step_s: float) -> N
     """Check that the speeds of one that drives fit its positions, one time step apart."""
     steps = sorted(body.states)
     pairs = [(body.states[k], body.states[k + 1]) for k in steps if k + 1 in body.states]
-    stated = [max(abs(a.speed), abs(b.speed)) for a, b in pairs]
+    stated = [(abs(a.speed) + abs(b.speed)) / 2 for a, b in pairs]
     driven = [float(np.hypot(b.x - a.x, b.y - a.y)) / step_s for a, b in pairs]
     if len(pairs) < _ENOUGH_PAIRS or min(np.median(stated), np.median(driven)) < _MOVES_MPS:
         return

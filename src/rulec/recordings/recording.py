@@ -299,10 +299,13 @@ class StatedError(NamedTuple):
 
 
 class Rounding(NamedTuple):
-    """The units of the last decimals in which positions (m) and speeds (m/s) are written."""
+    """The units of the last decimals in which positions (m) and speeds (m/s) are written.
+
+    Speeds follow from positions where they are not written (None).
+    """
 
     place_m: float
-    speed_mps: float
+    speed_mps: float | None
 
 
 @dataclass(frozen=True, slots=True)

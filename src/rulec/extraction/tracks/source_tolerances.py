@@ -151,4 +151,5 @@ def rounded_to(rounding: Rounding) -> Tolerances:
     Each of two places, and a distance between them, may be off by half a unit along both axes.
     """
     place_m = _DIAGONAL * rounding.place_m
-    return Tolerances(place_m, place_m, rounding.speed_mps / 2)
+    speed_mps = rounding.speed_mps
+    return Tolerances(place_m, place_m, None if speed_mps is None else speed_mps / 2)

@@ -113,6 +113,12 @@ class Tracks:
         """The outlines of all participants, one in each column."""
         return _bodies(self, repeated=True)
 
+    def outline(self, row: int, column: int) -> Points | None:
+        """The outline of a participant in a column; None where it is absent."""
+        body = self.participants[row]
+        step = next(iter(body.outlines)) if body.standing else self.first + column
+        return body.outlines.get(step)
+
     @cached_property
     def fastest(self) -> Floats:
         """The greatest speed (m/s) of each participant, 0 where none is known."""

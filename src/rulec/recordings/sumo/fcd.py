@@ -21,6 +21,7 @@ from rulec.recordings.sumo.fcd_content import (
     MICROSECONDS,
     NOWHERE,
     PLACE,
+    SPEED,
     FcdHead,
     FcdTrack,
     FloatingCarData,
@@ -70,7 +71,8 @@ def read_fcd_as_xml(path: Path) -> FloatingCarData:
 def _add(data: FloatingCarData, element: XmlElement) -> None:
     name, attributes = element.name, element.attributes
     try:
-        row = x, y, angle, speed = tuple(map(number_in, _place_of(attributes)))
+        x, y, angle = map(number_in, _place_of(attributes))
+        speed = number_in(attributes[SPEED]) if SPEED in attributes else 0.0
         acceleration = number_in(attributes.get("acceleration", "nan"))
         key = attributes["id"]
     except (KeyError, ValueError):
@@ -98,7 +100,7 @@ def _add(data: FloatingCarData, element: XmlElement) -> None:
     elif track.moments[-1] == moment:
         raise element.wrong(f"`{short(key)}` is twice in one time step")
     track.moments.append(moment)
-    track.rows.extend(row)
+    track.rows.extend((x, y, angle, speed if SPEED in attributes else float("nan")))
     track.accelerations.append(acceleration if abs(acceleration) < LARGEST else float("nan"))
     if "signals" in attributes:
         track.lamps[moment] = int(element.number("signals"))
@@ -112,7 +114,8 @@ def _wrong(element: XmlElement) -> RulecError:
     element.text("id")
     for key in PLACE:
         element.number(key)
-    element.number("acceleration", 0.0)
+    for key in (SPEED, "acceleration"):
+        element.number(key, 0.0)
     raise AssertionError("one of these is not a number")
 
 

@@ -19,8 +19,11 @@ LONGEST_ID = 200
 MICROSECONDS = 1_000_000
 """Microseconds in a second; moments are whole numbers of microseconds."""
 
-PLACE = ("x", "y", "angle", "speed")
+PLACE = ("x", "y", "angle")
 """The attributes that every participant has at every moment."""
+
+SPEED = "speed"
+"""SUMO writes it unless told which attributes to write; else speeds follow from places."""
 
 NOWHERE = -(2.0**30)
 """SUMO's x and y for participants without a position, for instance while teleporting."""
@@ -83,7 +86,7 @@ def fcd_head(comment: str) -> FcdHead:
 
 @dataclass(slots=True)
 class FcdTrack:
-    """The track of a participant; rows are x, y (m), angle (degrees) and speed (m/s).
+    """The track of a participant; rows are x, y (m), angle (degrees) and speed (m/s, or NaN).
 
     ``moments`` are indices into the moments of the file.
     """

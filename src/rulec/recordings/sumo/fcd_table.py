@@ -23,12 +23,13 @@ from rulec.recordings.sumo.fcd_content import (
     MICROSECONDS,
     NOWHERE,
     PLACE,
+    SPEED,
     FcdTrack,
     FloatingCarData,
 )
 
 _TIME = "timestep_time"
-_MORE = ("acceleration", "signals")
+_MORE = (SPEED, "acceleration", "signals")
 _TEXTS = ("id", "type", "lane", "edge", "vehicle")
 
 
@@ -76,13 +77,18 @@ def _add(
     if carrier is not None:
         # Passengers count as part of their vehicle
         rows = rows[~np.array([bool(carrier.names[code]) for code in carrier.codes[rows]])]
-    place = np.stack([columns.numbers[f"{kind}_{name}"][rows] for name in PLACE], axis=-1)
+    unknown = np.full(len(columns.rows), np.nan)
+    numbers = [columns.numbers.get(f"{kind}_{name}", unknown)[rows] for name in (*PLACE, SPEED)]
+    place = np.stack(numbers, axis=-1)
     is_there = ~(place[:, :2] == NOWHERE).all(axis=1)
     rows, place = rows[is_there], place[is_there]
-    odd = np.argwhere(~(np.abs(place) < LARGEST))
+    bad = ~(np.abs(place) < LARGEST)
+    bad[:, -1] &= ~np.isnan(place[:, -1])
+    odd = np.argwhere(bad)
     if odd.size:
-        row, name = odd[0].tolist()
-        raise columns.wrong(int(rows[row]), f"its column `{kind}_{PLACE[name]}` holds no number")
+        row, at = odd[0].tolist()
+        name = (*PLACE, SPEED)[at]
+        raise columns.wrong(int(rows[row]), f"its column `{kind}_{name}` holds no number")
     twice = np.flatnonzero(np.diff(at[rows]) == 0)
     if twice.size:
         why = f"`{short(key)}` is twice in one time step"

@@ -15,7 +15,7 @@ from numpy import float64, intp
 from numpy.typing import NDArray
 
 from rulec.recordings.encodings.xml_element import LARGEST, number_in
-from rulec.recordings.sumo.fcd_content import BODIES
+from rulec.recordings.sumo.fcd_content import BODIES, PLACE, SPEED
 from rulec.trace.formats.byte_words import (
     BYTES,
     Bytes,
@@ -30,8 +30,8 @@ PADDING = 1 << 10
 """Bytes needed behind the last line; longer names or pieces of lines are left to the XML parser."""
 
 N_NUMBERS = 5
-_NUMBERS = ("x", "y", "angle", "speed", "acceleration")
-_EVERY = frozenset({"id", *_NUMBERS[:-1]})
+_NUMBERS = (*PLACE, SPEED, "acceleration")
+_EVERY = frozenset({"id", *PLACE})
 """The attributes that each element has."""
 
 _MOST_KINDS = 1 << 6
@@ -88,7 +88,7 @@ class Elements:
 
     ``named`` are indices into ``names``, and ``owners`` into ``keys``. Keys are in the order of
     their first element, whose type is in ``types``. ``rows`` are the numbers, NaN for a missing
-    acceleration. ``on`` maps each lane or edge to which of the two it is, and its first element;
+    speed or acceleration. ``on`` maps each lane or edge to which of the two it is, and its first element;
     ``lamps`` maps elements to bits.
     """
 

@@ -40,6 +40,7 @@ from rulec.recordings.sumo.net import SumoNet, read_net
 from rulec.recordings.sumo.vehicle_types import VehicleType, read_vehicle_types, vehicle_type
 from rulec.recordings.table_heads import head_of, is_fcd_head
 from rulec.recordings.track import Track, tracked
+from rulec.recordings.tracks.derived_motion import velocities_of
 
 ON_NETS = frozenset({"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout"})
 ON_NETS |= {"lanes", "junctions"}
@@ -150,7 +151,13 @@ _MANY = 100
 def _rounding(data: FloatingCarData) -> Rounding:
     """The rounding of positions and speeds: the fewest decimals that hold all of them."""
     tracks = [np.frombuffer(track.rows).reshape(-1, 4) for track in data.tracks.values()]
-    return Rounding(_unit([rows[:, :2] for rows in tracks]), _unit([rows[:, 3] for rows in tracks]))
+    speeds = [rows[:, 3] for rows in tracks]
+    place_m = _unit([rows[:, :2] for rows in tracks])
+    return Rounding(place_m, None if any(map(_has_unknown, speeds)) else _unit(speeds))
+
+
+def _has_unknown(numbers: NDArray[float64]) -> bool:
+    return bool(np.isnan(numbers).any())
 
 
 def _unit(numbers: Sequence[NDArray[float64]]) -> float:
@@ -272,6 +279,8 @@ def fcd_participants(
     count = len(track_rows.moments)
     own = np.fromiter(map(steps.__getitem__, track_rows.moments), dtype=int64, count=count)
     rows = np.array(track_rows.rows, dtype=float).reshape(-1, 4)
+    if _has_unknown(rows[:, 3]):
+        _fill_in_speeds(rows, own, step_s)
     is_vehicle = track_rows.element == "vehicle"
     found = holes_of_rows(own, rows, step_s)
     if found is not None and is_vehicle:
@@ -299,6 +308,13 @@ def fcd_participants(
             shows=_SHOWN if lamps else frozenset(),
             resumes=None if number == 1 else int(own[start - 1]),
         )
+
+
+def _fill_in_speeds(rows: NDArray[float64], steps: NDArray[int64], step_s: float) -> None:
+    """Fill in unknown speeds (m/s), from places one step apart."""
+    runs = np.split(np.arange(len(rows)), (np.diff(steps) > 1).nonzero()[0] + 1)
+    driven = [np.hypot(*velocities_of(rows[run, :2], step_s).T) for run in runs]
+    rows[:, 3] = np.where(np.isnan(rows[:, 3]), np.concatenate(driven), rows[:, 3])
 
 
 def _steered(rows: NDArray[float64], starts: NDArray[intp]) -> NDArray[float64]:

@@ -98,7 +98,9 @@ def _is_farther_out(context: DriveContext, own: int, row: int, column: int) -> b
     nearest = int(np.hypot(x - tracks.x[row, column], y - tracks.y[row, column]).argmin())
     forth = np.array([np.cos(heading[nearest]), np.sin(heading[nearest])])
     outwards = np.array([forth[1], -forth[0]]) * (1 if context.side == "right" else -1)
-    ours, theirs = (tracks.participants[one].outlines[column + tracks.first] for one in (own, row))
+    ours, theirs = (tracks.outline(one, column) for one in (own, row))
+    if ours is None or theirs is None:
+        return False
     aside = np.array([-np.sin(heading[-1]), np.cos(heading[-1])])
     from_ego = theirs - (x[nearest], y[nearest])
     clear = float((from_ego @ outwards).min() - np.ptp(ours @ aside) / 2)

@@ -23,6 +23,7 @@ from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_pa
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
+from rulec.recordings.recording import Points
 
 _BEFORE_M = 8.0
 _STRAIGHT_RAD = np.radians(30.0)
@@ -66,8 +67,10 @@ def _conflict(
     along, left = _in_frame(context, row, origin, heading)
     angle = np.angle(np.exp(1j * (tracks.heading[row] - heading)))
     # Clear of ego's way before it turned: a vehicle that follows ego is behind it
-    to_right, to_left = _clear(context, (own.row, came), (row, begin), origin, heading)
-    clear = to_left if towards > 0 else to_right
+    ours, theirs = tracks.outline(own.row, came), tracks.outline(row, begin)
+    if ours is None or theirs is None:
+        return None
+    clear = _clear((ours, theirs), towards, origin, heading)
     behind = float(_in_frame(context, own.row, origin, heading)[0][begin] - along[begin])
     half = float(passages.lengths[own.row]) / 2
     beside = -max(place, LAPS_M) <= clear <= ASIDE_M and -half <= behind <= BEHIND_M
@@ -108,21 +111,13 @@ def _came(context: DriveContext, own: Passage, begin: int) -> int:
 
 
 def _clear(
-    context: DriveContext,
-    ego: tuple[int, int],
-    other: tuple[int, int],
-    origin: tuple[float, float],
-    heading: float,
-) -> tuple[float, float]:
-    """How far (m) a body is clear of ego to ego's right and left, each at a row and column."""
-    tracks, ranges = context.surroundings.passages.tracks, []
-    for row, column in (ego, other):
-        corners = tracks.participants[row].outlines[column + tracks.first]
-        x, y = corners[:, 0] - origin[0], corners[:, 1] - origin[1]
-        left = y * np.cos(heading) - x * np.sin(heading)
-        ranges.append((float(left.min()), float(left.max())))
-    (low, high), (other_low, other_high) = ranges
-    return low - other_high, other_low - high
+    outlines: tuple[Points, Points], towards: float, origin: tuple[float, float], heading: float
+) -> float:
+    """How far (m) a body is clear of ego, whose outline is the first, on the side it turns to."""
+    ours, theirs = (
+        towards * ((own - origin) @ (-np.sin(heading), np.cos(heading))) for own in outlines
+    )
+    return float(theirs.min() - ours.max())
 
 
 def _crossed(
@@ -136,9 +131,8 @@ def _crossed(
     *origin, heading = frame
     cos, sin = np.cos(heading), np.sin(heading)
     columns, lows, highs = [], [], []
-    outlines = tracks.participants[own.row].outlines
     for column in tracks.present[own.row, begin:].nonzero()[0] + begin:
-        corners = outlines.get(int(column) + tracks.first)
+        corners = tracks.outline(own.row, int(column))
         if corners is None:
             continue
         x, y = corners[:, 0] - origin[0], corners[:, 1] - origin[1]

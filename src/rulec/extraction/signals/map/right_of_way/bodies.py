@@ -67,18 +67,16 @@ def gap_s(context: DriveContext, rows: tuple[int, int], columns: tuple[int, int]
 def _laid_out(context: DriveContext, row: int, begin: int, end: int) -> tuple[Floats, Floats]:
     """A body's polygons between two columns, interpolated, and the columns of each."""
     tracks = context.surroundings.passages.tracks
-    outlines = tracks.participants[row].outlines
     parts = ceil(context.recording.step_s / _FINE_S)
     polygons, places = [], []
     for column in range(max(begin, 0), end):
-        step = tracks.first + column
-        if step not in outlines:
+        before, after = (tracks.outline(row, at) for at in (column, column + 1))
+        if before is None:
             continue
-        if step + 1 not in outlines:
-            polygons.append(shapely.Polygon(outlines[step]))
+        if after is None:
+            polygons.append(shapely.Polygon(before))
             places.append(float(column))
             continue
-        before, after = outlines[step], outlines[step + 1]
         # Shapes with other corners in the next state stay as they are
         change = after - before if after.shape == before.shape else np.zeros_like(before)
         for part in np.arange(parts) / parts:

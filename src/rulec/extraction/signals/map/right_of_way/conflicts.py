@@ -114,7 +114,7 @@ def _let_pass(
         return (found[0], collide(context, own, other, there, _GRAZES_M)) if waits else found
     present = context.surroundings.passages.tracks.present[other.row].nonzero()[0]
     first = max(int(present[0]), own.first)
-    brakes = not waits and slows_down(context, other, first, there.stop)
+    brakes = not waits and slows_down(context, other, first, there.stop) is not False
     return (found[0], False) if brakes else None
 
 
@@ -166,7 +166,7 @@ def _runs_into(
             return first, False
     moved_mps = max(slowest[1], passages.tracks.speed[other.row, moved_in])
     sure = moved_mps > SLOWEST_MPS and slowest.max() > DRIVES_MPS
-    return first, bool(sure) and not slows_down(context, own, enters, until)
+    return first, bool(sure) and slows_down(context, own, enters, until) is False
 
 
 def _column(when: float | None) -> int | None:

@@ -129,19 +129,19 @@ def _held_up_until(
     before = max(decides - round(SEES_S / step_s), 0)
     seen = first + before, first + decides
     if waits_longer or not (soon[decides] and soon[-1]):
-        braked = soon[before] and _brakes_for(
+        braked = bool(soon[before]) and _brakes_for(
             context, other, (seen[0], int(until)), comes, may_turn=not waits_longer
         )
         decides = before
     else:
         # Nor was one that brakes once ego is gone
         braked = slows_down(context, other, first + decides, int(until))
-    if not braked:
+    if braked is False:
         return _stops_again(context, ego, other, (seen, until, comes), place)
     own_reason = _slows_for_itself(context, ego, other, first + decides, comes)
     if waits_longer and own_reason:
         return None
-    unsure = leaves is None or own_reason or waits_longer
+    unsure = leaves is None or own_reason or waits_longer or braked is None
     unsure = unsure or _catches_up(context, (own, enters, until), other, at, left_m)
     return int(columns[soon.argmax()]), not unsure
 
@@ -207,9 +207,8 @@ def _slows_for_itself(
     (own, _, leaves), step_s = ego, context.recording.step_s
     last = comes if leaves is None else int(leaves)
     until = min(last + round(_BRIEFLY_S / step_s), comes)
-    return slows_down(context, other, first, last) and slows_for_itself(
-        context, (own.row, other.row), (first, until)
-    )
+    slows = slows_down(context, other, first, last)
+    return bool(slows) and slows_for_itself(context, (own.row, other.row), (first, until))
 
 
 def is_train(context: DriveContext, own: Passage, row: int) -> bool:
@@ -289,14 +288,20 @@ def _stands(context: DriveContext, other: Passage, column: int) -> bool:
     return bool(speed < SLOWEST_MPS) and column < other.first
 
 
-def slows_down(context: DriveContext, other: Passage, first: int, last: int) -> bool:
-    """Whether a participant is clearly slower for a while than in ``first``, then or later."""
+def slows_down(context: DriveContext, other: Passage, first: int, last: int) -> bool | None:
+    """Whether a participant is clearly slower for a while than in ``first``, then or later.
+
+    None if it is not until its track ends, and that is too soon to tell.
+    """
     passages, step_s = context.surroundings.passages, context.recording.step_s
     steps = max(round(_BRIEFLY_S / step_s), 1)
-    travelled = passages.travelled[other.row, first : max(last, first) + steps + 1]
-    steps = min(steps, len(travelled) - 1)
-    slowest = float((travelled[steps:] - travelled[:-steps]).min()) / steps / step_s
-    return slowest < _SLOWED * float(passages.tracks.speed[other.row, first])
+    end = max(last, first) + steps + 1
+    there = passages.tracks.present[other.row, first:end]
+    travelled = passages.travelled[other.row, first:end][np.logical_and.accumulate(there)]
+    means = (travelled[steps:] - travelled[:-steps]) / steps / step_s
+    if (means < _SLOWED * passages.tracks.speed[other.row, first]).any():
+        return True
+    return False if len(travelled) == end - first else None
 
 
 def _keeps_driving(context: DriveContext, other: Passage, first: int, last: int) -> bool:
