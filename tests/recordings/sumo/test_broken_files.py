@@ -46,7 +46,7 @@ def problem_with(file, net=None):
         ('x="21"', 'x="2_1"', "`x` of a `vehicle` is `2_1`"),
         ('x="21"', 'x="２１"', "`x` of a `vehicle` is `２１`"),
         ('time="0.10"', 'time="0_0.10"', "`time` of a `timestep` is `0_0.10`"),
-        ('angle="90" ', "", "a `vehicle` has no `angle`"),
+        ('angle="90.0" ', "", "a `vehicle` has no `angle`"),
         ('lane="in_1"', 'acceleration="much" lane="in_1"', "`acceleration` of a `vehicle` is"),
         ('lane="in_1"', 'signals="left" lane="in_1"', "`signals` of a `vehicle` is `left`"),
         ("<fcd-export>", f"<fcd-export>{body()}", "a `vehicle` is in no `timestep`"),

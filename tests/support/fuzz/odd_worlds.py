@@ -124,7 +124,7 @@ def odd_worlds(place, pick):
             return ["traces", file, "--recorded", "-o", str(folder / "made.jsonl")]
         case 5:
             out = str(folder / "fleet")
-            return ["fleet", file, "-r", "vienna", "-o", out, "-j", "1"]
+            return ["fleet", file, "-r", "esterle2019", "-o", out, "-j", "1"]
         case _:
             return ["verify", file, "-r", pick.choice(("vienna", "esterle2019")), "--json"]
 

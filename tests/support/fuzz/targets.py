@@ -13,6 +13,7 @@ import pyarrow.parquet
 from rulec.cli.main import VERBS, main, rulec
 from support.builders.compiled_files import sealed
 from support.fuzz.mutators import STRANGE_WORDS, mutated_json, mutated_words
+from support.fuzz.odd_worlds import odd_worlds
 from support.fuzz.recorded_traffic import maps, recordings
 from support.fuzz.signed_books import signatures
 from support.generators.mutated_files import mutated_bytes
@@ -364,6 +365,7 @@ TARGETS = {
         signatures,
         recordings,
         maps,
+        odd_worlds,
         arguments,
     )
 }

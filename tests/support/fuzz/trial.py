@@ -96,11 +96,11 @@ def _try_one(trial, place, seed):
         signal.signal(signal.SIGPROF, _hang)
         signal.signal(signal.SIGALRM, _wait)
         signal.setitimer(
-            signal.ITIMER_PROF, LONGEST_S_OF_ALL_PAIRS if "--all" in words else LONGEST_S
+            signal.ITIMER_PROF, LONGEST_S_OF_ALL_PAIRS if "--all" in str(words) else LONGEST_S
         )
         signal.alarm(LONGEST_WAIT_S)
         try:
-            status = int(main(words))
+            status = int(words() if callable(words) else main(words))
         except HangError as error:
             problem = str(error)
         except BaseException as error:

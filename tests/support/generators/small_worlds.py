@@ -93,7 +93,7 @@ def _driven(pick, t, meets, at_m, speed):
 
 def _body(pick, name, kind, t, way, motion, aside=0.0):
     """A participant on a way; some are there only for a part of the time."""
-    places, speeds = motion
+    places, _ = motion
     x, y, heading = way.at(places, aside)
     length, width = SIZES[kind]
     begin, end = 0, len(t)
@@ -106,7 +106,7 @@ def _body(pick, name, kind, t, way, motion, aside=0.0):
         lamps = {lamp: [pick.random() < 0.1] * (end - begin) for lamp in names}
     return rulec.build_participant(
         name, kind, t[own], x[own], y[own], step_s=STEP_S, heading=heading[own],
-        speed=speeds[own], length=length, width=width, lamps=lamps,
+        length=length, width=width, lamps=lamps,
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext, once
-from rulec.extraction.signals.conduct.u_turns import swings_round, u_turns
+from rulec.extraction.signals.conduct.u_turns import may_turn_round, swings_round, u_turns
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
@@ -286,7 +286,9 @@ def _on_map(context: DriveContext) -> Flags:
 
 
 def _u_turn(context: DriveContext) -> SignalColumns:
-    return SignalColumns({"u_turn": u_turns(context)})
+    return SignalColumns(
+        {"u_turn": u_turns(context)}, unknown={"u_turn": may_turn_round(context)}
+    )
 
 
 def _joins_road(context: DriveContext) -> SignalColumns:
@@ -314,7 +316,8 @@ def _joins_road(context: DriveContext) -> SignalColumns:
         if outside[span].any() or stood >= first:
             (joins if stood > left and state - stood <= reach else perhaps)[span] = True
     if joins.any():
-        round_ = context.spans.within(swings_round(context), reach, around=True)
+        swings = swings_round(context) | may_turn_round(context)
+        round_ = context.spans.within(swings, reach, around=True)
         perhaps, joins = perhaps | (joins & round_), joins & ~round_
     return SignalColumns({"joins_road": joins}, unknown={"joins_road": perhaps & ~joins})
 

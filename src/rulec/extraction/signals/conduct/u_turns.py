@@ -18,7 +18,7 @@ _ROUND_RAD, _ROUND_M, _JUMP_RAD = np.radians(150.0), 60.0, np.radians(60.0)
 """A turn round is by ``_ROUND_RAD`` within ``_ROUND_M``, and never by ``_JUMP_RAD`` in one step."""
 
 _HAIR_RAD = 1e-6
-_ACROSS_RAD = np.radians(30.0)
+_ACROSS_RAD, _TURNS_RAD = np.radians(30.0), np.radians(10.0)
 _LEAST_M = 2.0
 
 
@@ -34,6 +34,37 @@ def u_turns(context: DriveContext) -> Flags:
         turns = turns & context.spans.any(turns & _leaves_road(context))
         turns &= ~context.spans.any(_touches_junction(context, turns))
     return turns
+
+
+@once
+def may_turn_round(context: DriveContext) -> Flags:
+    """Mask of states in which ego may be turning round: its track begins or ends meanwhile.
+
+    It is across its road so near to where it was first seen, and turns there, or has turned so far
+    near to where it was last seen.
+    """
+    tracks, columns = context.own.tracks, context.steps - context.own.tracks.first
+    turned, perhaps = np.abs(context.ego_extents.turned[0]), np.zeros(context.states, dtype=bool)
+    across = np.minimum(turned, np.pi - turned) >= _ACROSS_RAD
+    for row, part in zip(context.ego.rows.tolist(), context.spans.slices, strict=True):
+        if not across[part].any():
+            continue
+        there = tracks.present[row].nonzero()[0]
+        x, y, heading = (of[row, there] for of in (tracks.x, tracks.y, tracks.heading))
+        way = np.append(0.0, np.hypot(np.diff(x), np.diff(y)).cumsum())
+        soon, last = way <= _ROUND_M, int(way.searchsorted(way[-1] - _ROUND_M))
+        soon &= np.ptp(np.unwrap(heading[soon])) >= _TURNS_RAD
+        since = np.unwrap(heading[last:])
+        swung = np.zeros(len(way))
+        swung[last:] = np.maximum(
+            np.maximum.accumulate(since) - since, since - np.minimum.accumulate(since)
+        )
+        at = there.searchsorted(columns[part])
+        perhaps[part] = across[part] & (soon[at] | (swung[at] >= _ACROSS_RAD))
+    if perhaps.any():
+        perhaps &= ~u_turns(context)
+        perhaps &= ~context.spans.any(_touches_junction(context, perhaps))
+    return perhaps
 
 
 def _leaves_road(context: DriveContext) -> Flags:

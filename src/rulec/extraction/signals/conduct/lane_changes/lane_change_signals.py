@@ -21,7 +21,7 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
     beyond_near_edge,
     comes_back_over_middle,
 )
-from rulec.extraction.signals.conduct.u_turns import swings_round, u_turns
+from rulec.extraction.signals.conduct.u_turns import may_turn_round, swings_round, u_turns
 from rulec.extraction.signals.map.junction_signals import lies_askew_in_turn
 from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses
@@ -56,7 +56,7 @@ def _lane_change(context: DriveContext) -> SignalColumns:
     changes = _changes(context)
     unknown = (changes != _changes_from_beside(context)) | _astride(context)
     if changes.any():
-        swings = swings_round(context) | lies_askew_in_turn(context)
+        swings = swings_round(context) | may_turn_round(context) | lies_askew_in_turn(context)
         stands = np.abs(_speed_ahead(context)) * KMH_PER_MPS < context.thresholds.standing_kmh
         unknown |= _within_tolerance(context, changes) | _there_and_back(context, changes)
         unknown |= changes & (swings | stands)
@@ -185,9 +185,9 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
         # Who is about to be past or only reaches into the lane is not named beside who is in it
         disturbed[:, flagged] = np.where(moot[flagged], found, surely)
         unsure[flagged] = perhaps.any(axis=0) | maybe_none.any(axis=0)
-    turns = u_turns(context)
-    brakes, may_brake = has_to_brake_for_turn(context, turns)
+    brakes, may_brake = has_to_brake_for_turn(context, u_turns(context))
     disturbed |= brakes
+    may_brake |= np.logical_or(*has_to_brake_for_turn(context, may_turn_round(context)))
     unsure |= may_brake.any(axis=0)
     clear: Flags = ~np.logical_or.reduce(disturbed)
     unknown = unsure
