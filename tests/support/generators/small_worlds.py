@@ -49,7 +49,13 @@ class Way:
         return np.append(0.0, np.hypot(*np.diff(self.points, axis=0).T).cumsum())
 
     def at(self, places, aside):
-        """x, y and heading at arc lengths, so far (m) to the left; straight on beyond both ends."""
+        """x, y and heading at arc lengths; straight on beyond both ends.
+
+        ``aside``: how far to the left (m) at an arc length. Nobody moves aside who stands.
+        """
+        more = 0.01
+        slope = np.arctan2(aside(places + more) - aside(places), more)
+        aside = aside(places)
         own = self.places
         ahead = np.unwrap(np.arctan2(*np.diff(self.points, axis=0).T[::-1]))
         middles = (own[:-1] + own[1:]) / 2
@@ -58,7 +64,7 @@ class Way:
         beyond = places - places.clip(0, own[-1])
         x = x + beyond * np.cos(heading) - aside * np.sin(heading)
         y = y + beyond * np.sin(heading) + aside * np.cos(heading)
-        return x, y, heading
+        return x, y, heading + slope
 
 
 def small_world(pick):
@@ -91,7 +97,11 @@ def _driven(pick, t, meets, at_m, speed):
     return way - np.interp(meets, t, way) + at_m, speeds
 
 
-def _body(pick, name, kind, t, way, motion, aside=0.0):
+def _kept(aside):
+    return lambda places: aside + 0 * places
+
+
+def _body(pick, name, kind, t, way, motion, aside=_kept(0.0)):
     """A participant on a way; some are there only for a part of the time."""
     places, _ = motion
     x, y, heading = way.at(places, aside)
@@ -214,7 +224,7 @@ def _junction(pick):
         lag = pick.choice((0.0, pick.uniform(-1, 1), pick.uniform(-5, 5)))
         motion = _driven(pick, t, meets + lag, middle, speed)
         aside = pick.uniform(-1.4, -0.9) if kind == "bicycle" else pick.uniform(-0.3, 0.3)
-        bodies.append(_body(pick, str(number + 1), kind, t, way, motion, aside))
+        bodies.append(_body(pick, str(number + 1), kind, t, way, motion, _kept(aside)))
     if walk is not None:
         motion = _driven(pick, t, meets + pick.uniform(-4, 4), 9.0, pick.uniform(0.8, 2.0))
         bodies.append(_body(pick, "p", "pedestrian", t, walk, motion))
@@ -272,20 +282,24 @@ def _on_road(pick, name, t, middles, limit):
     speed = pick.uniform(3, 7) if kind == "bicycle" else limit * pick.uniform(0.4, 1.2)
     start = pick.uniform(100, 260) + (200 if lane[0] == "b" else 0)
     motion = _driven(pick, t, 0.0, start, speed)
-    aside = np.full(len(t), pick.uniform(-0.3, 0.3))
+    off = pick.uniform(-0.3, 0.3)
+    aside = _kept(off)
     turn = pick.random()
     if turn < 0.45 and speed > 4:
         by = LANE_M * pick.choice((-1, 1, 1, 2)) * pick.choice((1.0, 1.0, 0.5))
-        begin = pick.uniform(-2, t[-1])
-        share = ((t - begin) / pick.uniform(2.5, 5)).clip(0, 1)
-        aside = aside + by * (1 - np.cos(np.pi * share)) / 2
-        if pick.random() < 0.3:  # and back
-            share = ((t - begin - 5) / 4).clip(0, 1)
-            aside = aside - by * (1 - np.cos(np.pi * share)) / 2
+        begin = start + speed * pick.uniform(-2, t[-1])
+        length, back = speed * pick.uniform(2.5, 5), pick.choice((0.0, 0.0, 1.0))
+
+        def aside(places):
+            there, again = (
+                (1 - np.cos(np.pi * ((places - at) / length).clip(0, 1))) / 2
+                for at in (begin, begin + 1.3 * length)
+            )
+            return off + by * (there - back * again)
+
     elif turn < 0.5:
         motion = 2 * start - motion[0], -motion[1]  # backwards
     elif turn < 0.58 and "b0" in middles and "e0" in middles:
-        y0, y1 = (middles[own].points[0, 1] for own in sorted(middles, reverse=True)[:2])
         y0 = middles["e0"].points[0, 1]
         y1 = middles["b0"].points[0, 1]
         bend = np.linspace(-np.pi / 2, np.pi / 2, 13)
@@ -294,5 +308,5 @@ def _on_road(pick, name, t, middles, limit):
         arc = np.column_stack((x + radius * np.cos(bend), (y0 + y1) / 2 + radius * np.sin(bend)))
         way = Way(np.concatenate(([(-150.0, y0)], arc, [(-150.0, y1)])))
         motion = _driven(pick, t, pick.uniform(0, t[-1]), x + 150 + radius, pick.uniform(2, 5))
-        kind, aside = "car", aside * 0
+        kind, aside = "car", _kept(0.0)
     return _body(pick, name, kind, t, way, motion, aside)

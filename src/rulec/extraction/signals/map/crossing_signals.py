@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.signals.map.junction_signals import at_unknown_way
 from rulec.extraction.signals.map.map_signals import crossings_told, next_crossing
 from rulec.extraction.signals.map.zone_signals import (
     crossings_lit,
@@ -125,7 +126,8 @@ def _crosses_side_road(context: DriveContext) -> SignalColumns:
     """Pedestrians that use the road into which ego turns without being let across by ego.
 
     An ego that waits in the junction until they are across has entered it lawfully. Who drives into
-    it and then takes the way of one that steps onto the road meanwhile does so from then on.
+    it and then takes the way of one that steps onto the road meanwhile does so from then on. Unknown
+    of those about a junction where the drive does not show which way ego takes.
     """
     rows, (crosses, unsure) = _pedestrians(context), np.zeros((2, *context.relevant.shape), bool)
     start, end = side_road(context)
@@ -136,6 +138,7 @@ def _crosses_side_road(context: DriveContext) -> SignalColumns:
             taken, open_end, past = _takes_way(context, rows)
             uses |= in_turn(context) & (context.spans.next_state(uses) < past)
             crosses[rows], unsure[rows] = uses & taken, uses & open_end
+    unsure |= at_unknown_way(context, _pedestrians(context))
     return SignalColumns(
         about={"crosses_side_road": crosses},
         only={"crosses_side_road": context.tracks.of_type("pedestrian")},

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import shapely
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext, once
@@ -137,6 +140,19 @@ def way_not_known(context: DriveContext) -> Flags:
             if parts and not _on_known_way(context, (start, end), number):
                 unknown[columns] |= at_junction[columns]
     return unknown
+
+
+def at_unknown_way(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Mask of those of ``rows`` that are about a junction at which ego's way is not known."""
+    found = np.zeros(context.relevant.shape, dtype=bool)
+    found[rows] = context.relevant[rows] & way_not_known(context)
+    cells = found.nonzero()
+    about = np.zeros(len(cells[0]), dtype=bool)
+    places = shapely.points(context.tracks.x[cells], context.tracks.y[cells])
+    for junction in context.surroundings.passages.junctions:
+        about |= shapely.dwithin(junction.area, places, context.thresholds.side_road_m)
+    found[cells] = about
+    return found
 
 
 def _ways_part(context: DriveContext, start: float, columns: slice) -> bool:

@@ -168,8 +168,11 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
             several = way_not_known(context) if len(every) > len(lights) else crosses & False
             for state in ((ahead | crossed) & (context.ego_lane == lane)).nonzero()[0].tolist():
                 own = every if several[state] else lights
-                moments = while_crossing(state) if crossed[state] else (state,)
+                around = while_crossing(state) if crossed[state] else None
+                moments = around or (state,)
                 shown = {_colour(context, own, moment) for moment in moments}
+                if crossed[state] and around is None:
+                    shown.add("")
                 if unseen[state]:
                     shown |= _colours_unseen(context, own, state)
                 crosses[state] |= crossed[state]
@@ -221,7 +224,8 @@ def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags
             moments = around_crossing(context, own_front(context), line)
             lights = lights_of(context.recording, context.road, piece, k)
             for state in (beside & passes(context, line[1])).nonzero()[0].tolist():
-                shown = {_colour(context, lights, moment) for moment in moments(state)}
+                around = moments(state) or ()
+                shown = {_colour(context, lights, moment) for moment in around} or {""}
                 # Ego's own lane has no line there, or ego came from beside to the one farther on
                 past = int(lane[state]) not in lit or came_from[state] == k
                 differs = past and not shown <= {"green_light", "no_light"}

@@ -115,17 +115,19 @@ def may_stop_beyond(context: DriveContext, line: tuple[float, float]) -> Flags:
 
 def around_crossing(
     context: DriveContext, front: Floats, line: tuple[float, float]
-) -> Callable[[int], range]:
+) -> Callable[[int], range | None]:
     """A function from a state in which ego is beyond a line to the states around its crossing.
 
     Ego crosses between the states before and after, at its average speed in between; closer to one
     of them than ``_AT_ONCE_S``, it crosses in that state. Where the line lies between two places,
-    all states from the first place on count, or from where ego last stood beyond it.
+    all states from the first place on count, or from where ego last stood beyond it. None if its
+    drive begins between these two: it may have crossed the line before.
     """
     first, last = line
     stands = context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh
     latest = context.spans.latest(passes(context, first) | (stands & (front > first)))
     since = np.where(latest < context.spans.first, context.spans.columns, latest)
+    began = front[context.spans.first]
     at_once = _AT_ONCE_S / context.recording.step_s
 
     def when(state: int, place: float) -> float:
@@ -134,7 +136,9 @@ def around_crossing(
             return float(state)  # it stood there, or was there from the start
         return state - float((after - place) / (after - before))
 
-    def around(state: int) -> range:
+    def around(state: int) -> range | None:
+        if latest[state] < context.spans.first[state] and began[state] > first:
+            return None
         begin, end = when(int(since[state]), first), when(state, last)
         begins = round(begin) if abs(round(begin) - begin) <= at_once else floor(begin)
         ends = round(end) if abs(round(end) - end) <= at_once else ceil(end)
