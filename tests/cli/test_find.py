@@ -2,11 +2,15 @@
 
 import csv
 import json
+import re
+from pathlib import Path
 
 import pyarrow.parquet
 import pytest
 
 from rulec.cli.main import main
+from rulec.diagnostics import RulecError
+from rulec.rulebook.query_reader import read_query
 from rulec.trace.formats import trace_files
 from rulec.trace.formats.trace_files import read_chunks
 
@@ -234,3 +238,31 @@ def test_words_of_a_vocabulary_beside_those_of_a_rulebook(files, capsys):
     assert "nothing is called `CONGESTED`" in capsys.readouterr().err
     assert main(["find", "wet", drives, "-r", book, "-u", "road"]) == 2
     assert "the name `wet` is declared twice" in capsys.readouterr().err
+
+
+OF_A_RULE = re.compile(r"\brule\b|what_is_asked")
+
+
+def said_of(formula):
+    """The texts of a formula's mistakes."""
+    try:
+        read_query(formula, vocabulary="paper")
+    except RulecError as error:
+        found = error.diagnostics
+        return [" ".join([one.message, one.expected, one.help, *one.notes]) for one in found]
+    return []
+
+
+def test_no_message_about_a_formula_speaks_of_a_rule():
+    """Formulas of rulebooks with mistakes, with and without their variables."""
+    bad = Path(__file__).parents[1] / "programs" / "bad"
+    texts = [path.read_bytes().decode(errors="replace") for path in sorted(bad.glob("*.rules"))]
+    rule = r"rule \w+\s*(\([^)]*\))?[^{}\n]*\{\s*require (.*?)\s*\}"
+    asked = [(head, formula) for text in texts for head, formula in re.findall(rule, text)]
+    both = sorted({*asked, *(("", formula) for _, formula in asked)})
+    said = [text for head, formula in both for text in said_of(f"{head} {formula}")]
+    assert len(said) > 300
+    assert "the formula has no variable `v` expected a variable of the formula" in " ".join(said)
+    assert not [
+        text for text in said if OF_A_RULE.search(re.sub(r"`(?!what_)[^`]*`|\(.*?\)", "", text))
+    ]

@@ -5,8 +5,9 @@ import re
 import pytest
 
 from rulec import Session
-from rulec.rulebook.loader import diagnose
+from rulec.rulebook.loader import diagnose, load_vocabulary
 from rulec.rulebook.names.word_meanings import DescribedWord, offer, suggestion
+from rulec.vocabulary import Enumeration, Quantity
 
 WORDS = (
     DescribedWord("crossing_zone", "ego [is|is not] on or at a pedestrian crossing"),
@@ -158,3 +159,37 @@ def test_repairs_of_slips(rule, hint):
     text = f"rulebook example\nuse road\ntraffic right\nhard rule r {rule}\n"
     found = diagnose("example.rules", text.encode()).findings
     assert [hint in finding.help for finding in found] == [True]
+
+
+def test_no_offer_changes_whom_a_rule_speaks_of():
+    """Each word of the roads, said of more objects than it is about: `speed(v)` is not `speed`."""
+    road = load_vocabulary("road")
+    words = {
+        word: len(item.parameters)
+        for item in road.declarations.values()
+        for word in (item.values if isinstance(item, Enumeration) else (item.name,))
+    }
+    numbers = {item.name for item in road.declarations.values() if isinstance(item, Quantity)}
+    lines = [
+        "rulebook a",
+        "use road",
+        "define still = reversing",
+        "define at(v: vehicle) = near(v)",
+    ]
+    for word, needed in {**words, "still": 0, "at": 1}.items():
+        given = "v, w" if needed else "v"
+        number = " > 0" if word in numbers else ""
+        lines.append(
+            f"hard rule of_{word} (v: vehicle, w: vehicle) "
+            f"{{ require never ({word}({given}){number} and near(w) and near(v)) }}"
+        )
+    found = [
+        x for x in diagnose("a.rules", "\n".join(lines).encode()).findings if x.code == "R0301"
+    ]
+    assert len(found) == len([word for word in words.values() if word < 2]) + 2 > 190
+    assert not [mistake.help for mistake in found if mistake.offers]
+    of_another = {mistake.help for mistake in found if "`speed`" in mistake.message}
+    assert of_another == {
+        "`speed` is about ego or the world, and no word says it of `v`; did you mean "  # noqa: ISC004
+        "`speed_difference` (the speed by which ego is faster than …)?"
+    }

@@ -26,6 +26,9 @@ from rulec.syntax.parser import parse_formula
 _HEAD = re.compile(r"\s*(\(\s*\w+\s*(?::\s*\w+\s*)(?:,\s*\w+\s*(?::\s*\w+\s*)?)*\))")
 """Variables with their types, as in the head of a rule; no formula begins like this."""
 
+_A_RULE = re.compile(r"\b([Tt]he|[Aa]) rule\b")
+_A_FORMULA = r"\1 formula"
+
 _NAME = "what_is_asked"
 _QUERY = "the formula"
 _NO_WORD = (
@@ -83,13 +86,20 @@ def read_query(
 
 
 def _in_words(problem: Diagnostic) -> Diagnostic:
-    """The diagnostic without the rule's name, and with help for a formula instead of a rule."""
+    """The diagnostic in words for a formula, where there is no rule and nothing is declared."""
     way_out = problem.help.replace("after the rule's name", "before the formula")
     way_out = re.sub(r": `use (\w+)`$", r": `--use \1`", way_out)
-    # Nothing is declared in a formula.
     way_out = re.sub(r"^declare it, such as .*", _NO_WORD, way_out)
     way_out = re.sub(r": `extends ([\w-]+)`(, or copy it)?$", r": `--rulebook \1`", way_out)
-    return replace(problem, message=problem.message.replace(f" of `{_NAME}`", ""), help=way_out)
+    message = problem.message.replace(f" of `{_NAME}`", "")
+    message = message.replace(f"rule `{_NAME}`", "the formula")
+    return replace(
+        problem,
+        message=_A_RULE.sub(_A_FORMULA, message),
+        expected=_A_RULE.sub(_A_FORMULA, problem.expected),
+        help=_A_RULE.sub(_A_FORMULA, way_out),
+        notes=tuple(_A_RULE.sub(_A_FORMULA, note) for note in problem.notes),
+    )
 
 
 def _word(vocabulary: str, folders: Sequence[Path]) -> str:

@@ -10,7 +10,13 @@ from rulec.diagnostics.code import Code
 from rulec.diagnostics.ways_out import Help, offering
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.elaborate.elaboration_messages import hour_meant, kind_of, origins, short
-from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, WRONG_ARITY
+from rulec.rulebook.names.atom_messages import (
+    MIXED_DIMENSIONS,
+    NOT_BOOLEAN,
+    WRONG_ARITY,
+    says_nothing_of,
+)
+from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.rulebook_overlay import Value
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_parameters
@@ -79,7 +85,9 @@ def object_as_relation(use: tree.AtomUse, scope: Scope) -> Diagnostic:
     )
 
 
-def wrong_number_of_arguments(use: tree.AtomUse, item: tree.DefineItem) -> Diagnostic:
+def wrong_number_of_arguments(
+    use: tree.AtomUse, item: tree.DefineItem, symbols: SymbolTable
+) -> Diagnostic:
     """A definition used with too few or too many arguments.
 
     What is expected has the arguments that the user wrote, not the names of the parameters, which
@@ -88,7 +96,8 @@ def wrong_number_of_arguments(use: tree.AtomUse, item: tree.DefineItem) -> Diagn
     needed, given = len(item.parameters), len(use.arguments)
     things = {0: "nothing", 1: "one thing"}.get(needed, f"{needed} things")
     has = {0: "none is", 1: "one is"}.get(given, f"{given} are")
-    written = [argument.text for argument in use.arguments] if given < needed else []
+    names = [argument.text for argument in use.arguments]
+    written = names if given < needed else []
     arguments = ", ".join([*written, *["…"] * needed][:needed])
     head = f"{item.name.text}{print_parameters(item.parameters)}"
     origin = f"defined here as `{head}`" if needed else f"`{item.name.text}` is defined here"
@@ -98,8 +107,8 @@ def wrong_number_of_arguments(use: tree.AtomUse, item: tree.DefineItem) -> Diagn
         expected=f"expected `{item.name.text}{f'({arguments})' if needed else ''}`",
         help=(
             "give it as many as its definition has"
-            if needed
-            else f"write `{item.name.text}` alone: it is about ego or the world, and no object"
+            if given < needed
+            else says_nothing_of(item.name.text, names, needed, symbols)
         ),
         labels=(Label(item.name.span.place, origin),),
     )

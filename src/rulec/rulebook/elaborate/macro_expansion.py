@@ -27,7 +27,7 @@ def expand_macro(
         return None
     if len(use.arguments) != len(item.parameters):
         scope.used |= {argument.text for argument in use.arguments}
-        scope.report_wrong_arity(use, say.wrong_number_of_arguments(use, item))
+        scope.report_wrong_arity(use, say.wrong_number_of_arguments(use, item, scope.symbols))
         return None
     variables: dict[str, BoundVariable] = {}
     relations: dict[str, str | AnyArgument] = {}

@@ -49,7 +49,8 @@ WRONG_ARITY = Code(
     title="an atom has the wrong number of arguments",
     why="A signal or an enumeration is about the world, or about as many objects as its "
     "declaration has parameters. In a formula it needs that many variables.",
-    bad="rulebook example\nuse paper\nhard rule r (v: vehicle) { require f(v) or CONGESTED(v) }\n",
+    bad="rulebook example\nuse paper\n"
+    "hard rule r (v: vehicle) { require always (f or CONGESTED) }\n",
     good="rulebook example\nuse paper\n"
     "hard rule r (v: vehicle) { require always (f(v) or CONGESTED) }\n",
 )
@@ -260,22 +261,47 @@ def wrong_number(
     needed, given = len(item.parameters), len(use.arguments)
     objects = {0: "no object", 1: "one object"}.get(needed, f"{needed} objects")
     has = {0: "none is", 1: "one is"}.get(given, f"{given} are")
-    arguments = [*variables, *["…"] * needed][:needed]
-    written = f"{name}({', '.join(arguments)})" if needed else name
-    # Of several variables, which are meant only the author knows.
-    named_here = {argument.text for argument in use.arguments}
-    is_certain = len(variables) == needed or named_here.issuperset(arguments)
+    named_here = [argument.text for argument in use.arguments]
+    rest = [variable for variable in variables if variable not in named_here]
+    written = f"{name}({', '.join([*named_here, *rest, *['…'] * needed][:needed])})"
+    if given > needed:
+        way_out: Help = says_nothing_of(name, named_here, needed, symbols)
+    elif variables:
+        # Of several variables, which are meant only the author knows.
+        way_out = offering(
+            f"write `{written}`", *((written,) if given + len(rest) == needed else ())
+        )
+    else:
+        way_out = _declared(name, item)
     is_value = isinstance(item, Enumeration) and item.name != name
     subject = f"`{name}` is a value of `{item.name}`, which" if is_value else f"`{name}`"
     return WRONG_ARITY.at(
         use.span,
         f"{subject} is about {objects}, and {has} given",
         expected=f"expected {objects}",
-        help=offering(f"write `{written}`", *((written,) if is_certain else ()))
-        if variables or not needed
-        else _declared(name, item),
+        help=way_out,
         labels=(Label(symbols.spans[name].place, f"`{name}` is declared here"),),
     )
+
+
+def says_nothing_of(name: str, objects: Sequence[str], needed: int, symbols: SymbolTable) -> str:
+    """Help where a word is said of too many objects.
+
+    Without them it would be about somebody else, so this is never an edit.
+    """
+    if needed:
+        return f"say of {'which' if needed == 1 else f'which {needed}'} of them it holds"
+    others = [
+        word
+        for word in {*symbols.atoms(), *symbols.items}
+        if isinstance(item := symbols.behind_atom(word) or symbols.items[word], Quantity | Signal)
+        and len(item.parameters) == len(objects)
+    ]
+    near = offer(
+        name, described(others, {Path(file.name).stem for file in symbols.of_vocabularies})
+    )
+    whom = f"`{name}` is about ego or the world, and no word says it of {named(objects)}"
+    return f"{whom}; {near}" if near else whom
 
 
 def wrong_arity_of_argument(mistake: Diagnostic, use: tree.AtomUse, given: Span) -> Diagnostic:
