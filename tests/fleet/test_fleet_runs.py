@@ -536,7 +536,7 @@ def test_a_damaged_table_in_a_folder_is_reported(tmp_path, capsys):
 
 def test_what_is_odd_about_recordings_is_told(tmp_path):
     columns = tracks([0])
-    columns["speed"] = [20 * 3.6 if name == "a" else 8 * 3.6 for name in columns["track"]]
+    columns["speed"] = [20 * 1.6 if name == "a" else 8 * 1.6 for name in columns["track"]]
     path = tmp_path / "t.parquet"
     parquet.write_table(pyarrow.table(columns), path)
     done = run([path], tmp_path / "out", road_map=lanes(tmp_path))

@@ -143,17 +143,19 @@ class TraceVerbs(SessionSettings):
         *,
         form: str | None = None,
         scenario_id: str | None = None,
+        frame_rate: float | None = None,
     ) -> Recording:
         """Read the recording in a file; ``scenario_id`` selects one of several.
 
         ``map_path`` is the map for formats that do not contain roads; ``form``, such as ``"sumo"``,
-        is for files whose format cannot be detected. Raises RulecError.
+        is for files whose format cannot be detected. ``frame_rate`` (Hz) is for tables with frames
+        in the place of times, and to confirm time steps that speeds contradict. Raises RulecError.
         """
         from rulec.recordings.recording_files import read_recording
         from rulec.recordings.recording_format import RecordingSource
 
         roads = None if map_path is None else Path(map_path)
-        return read_recording(RecordingSource(Path(path), roads, form, scenario_id))
+        return read_recording(RecordingSource(Path(path), roads, form, scenario_id, frame_rate))
 
     def formats(self) -> tuple[ListedFormat, ...]:
         """The formats of recorded traffic and of maps, with the signals that each can provide."""

@@ -22,6 +22,7 @@ _ARGUMENTS = {
     "ego": "ego",
     "engine": "engine",
     "extent": "extent",
+    "frame-rate": "frame_rate",
     "horizon": "horizon_s",
     "input-format": "form",
     "map": "map_path",

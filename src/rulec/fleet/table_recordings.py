@@ -42,6 +42,7 @@ class TrackTableJudge:
     request: RequestedDrives
     roads: Roads
     seen: SeenKeys | None
+    frame_rate: float | None = None
 
     def rows(self, table: Any) -> Iterator[Row]:
         """The rows of all drives, recording by recording.
@@ -70,14 +71,14 @@ class TrackTableJudge:
     def _of_recording(self, rows: Any, own: Mapping[str, str]) -> Iterator[Row]:
         name, file = own[RECORDING], own.get(FILE, "")
         try:
-            recording = recording_of(rows, name, self.roads)
+            recording = recording_of(rows, name, self.roads, self.frame_rate)
             verdicts = RecordingVerdicts(recording, self.to_rows.rules, self.request, file or name)
             yield from self.to_rows.of_recording(verdicts, file)
         except RulecError as error:
             yield self.to_rows.of_nothing(own, reason_of(error, own))
 
 
-def recording_of(table: Any, name: str, roads: Roads) -> Recording:
+def recording_of(table: Any, name: str, roads: Roads, frame_rate: float | None = None) -> Recording:
     """The recording of the tracks in an Arrow table.
 
     Raises RulecError R0610, R0614 without a map, otherwise as ``read_map``.
@@ -90,7 +91,9 @@ def recording_of(table: Any, name: str, roads: Roads) -> Recording:
 
     known = [column for column in table.column_names if column not in (MAP, ROWS)]
     columns = {column: cells_in(table.column(column)) for column in known}
-    rows, remark = track_rows_of(table_of(columns, f"tracks of `{name}`, rows counted in it"))
+    rows, remark = track_rows_of(
+        table_of(columns, f"tracks of `{name}`, rows counted in it"), frame_rate
+    )
     chosen = maps[0] if maps and maps[0] else roads
     if chosen is None:
         raise no_map(name, "it has tracks, but no roads")
@@ -98,7 +101,7 @@ def recording_of(table: Any, name: str, roads: Roads) -> Recording:
         chosen = _map(chosen, rows.times.step_s, note_read(chosen))
     recording = track_recording(name, [rows], chosen, form="tracks as a table", remarks=[remark])
     check_near(recording, None)
-    return with_doubts(recording, rows.columns.refused)
+    return with_doubts(recording, rows.columns.refused, sure=frame_rate is not None)
 
 
 @lru_cache(maxsize=_MOST_MAPS)

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from rulec.recordings.recording import Recording
 
 _MOST_NAMED = 5
+_SAME_RATE = 0.02
 
 
 def is_recording(file: str) -> bool:
@@ -83,7 +84,15 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
     def looked_at(recording: Recording) -> Recording:
         if form.takes_map:
             check_near(recording, source.path)
-        return with_doubts(with_side(recording), partial(RECORDING.refused, source.path))
+        rate = source.frame_rate
+        if rate is not None and abs(rate * recording.step_s - 1) > _SAME_RATE:
+            raise OTHER_CHOICE.error(
+                SourceLocation(str(source.path)),
+                f"`{source.path.name}` states its own time steps, of {recording.step_s:g} s",
+                help=f"leave out --frame-rate; `--frame-rate {1 / recording.step_s:g}` confirms it",
+            )
+        refused = partial(RECORDING.refused, source.path)
+        return with_doubts(with_side(recording), refused, sure=rate is not None)
 
     if source.map_path is not None and not form.takes_map:
         raise OTHER_CHOICE.error(

@@ -29,13 +29,15 @@ class RecordingSource:
     """A file of recorded traffic, and how to read it.
 
     ``map_path`` is the map for formats without roads, ``form`` the name of the format, None to
-    detect it, ``scenario_id`` the one to read of several in the file, None for all.
+    detect it, ``scenario_id`` the one to read of several in the file, None for all. ``frame_rate``
+    (Hz) is the stated one, which replaces a table's, and confirms that of others; None if none is.
     """
 
     path: Path
     map_path: Path | None = None
     form: str | None = None
     scenario_id: str | None = None
+    frame_rate: float | None = None
 
     def __post_init__(self) -> None:
         expected_fields(self)

@@ -27,8 +27,8 @@ def read_scene(path: Path, choice: Choice) -> Scenario:
 
     Raises RulecError: as for ``read_recording``, R0612 if what is chosen is not in the file.
     """
-    source = RecordingSource(path, choice.map_path, choice.input_format, choice.scenario_id)
-    return scene_of(read_recording(source), choice, path)
+    own = (choice.map_path, choice.input_format, choice.scenario_id, choice.frame_rate)
+    return scene_of(read_recording(RecordingSource(path, *own)), choice, path)
 
 
 def scene_of(recording: Recording, choice: Choice, file: Path) -> Scenario:

@@ -246,8 +246,8 @@ class Choice:
     is on. ``prediction``: others move as recorded, or from time 0 on with constant acceleration; a
     mapping gives each of these two a probability. ``congested_below_kmh`` is the median speed below
     which traffic is congested. ``ego_width_m``: None is the width of the participant that ego
-    replaces, if any; else ego is a point. ``map_path``, ``input_format`` and ``scenario_id`` are
-    those of a ``RecordingSource``. Ids are those of the file; numbers are accepted.
+    replaces, if any; else ego is a point. ``map_path``, ``input_format``, ``scenario_id`` and
+    ``frame_rate`` are those of a ``RecordingSource``. Ids are those of the file, or numbers.
     """
 
     ego: str | int | None = None
@@ -259,6 +259,7 @@ class Choice:
     input_format: str | None = None
     scenario_id: str | None = None
     ego_width_m: float | None = None
+    frame_rate: float | None = None
 
     def __post_init__(self) -> None:
         expected_fields(self)

@@ -1,9 +1,14 @@
 """What a file says of how bodies move, against how their places move."""
 
+import re
+from functools import partial
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from rulec import RulecError, read_recording
+from rulec import RulecError, read_recording, recording_from_columns
 
 LANE = """
 <lanelet id="1">
@@ -12,7 +17,7 @@ LANE = """
 </lanelet>"""
 
 
-def told(tmp_path, cars=4, size=(4.5, 1.8), step=0.1, limit="", **changed):
+def told(tmp_path, cars=4, size=(4.5, 1.8), step=0.1, limit="", rate=None, **changed):
     """The remarks on cars that go east and north in turns, at 10 m/s."""
     said = f"<speedLimit>{limit}</speedLimit>" if limit else ""
     lane = LANE.replace("</lanelet>", f"{said}</lanelet>")
@@ -20,7 +25,7 @@ def told(tmp_path, cars=4, size=(4.5, 1.8), step=0.1, limit="", **changed):
     file = tmp_path / "DEU_Some-1_1_T-1.xml"
     head = f'commonRoadVersion="2020a" benchmarkID="DEU_Some-1_1_T-1" timeStepSize="{step}"'
     file.write_text(f"<commonRoad {head}>{lane}{bodies}</commonRoad>")
-    return read_recording(file).remarks
+    return read_recording(file, frame_rate=rate).remarks
 
 
 def _car(number, size, changed):
@@ -59,8 +64,7 @@ def test_what_is_said_as_it_moves(tmp_path):
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
-        ({"speed": lambda row: 36.0}, "speeds are 3.6 times what places and times say"),
-        ({"step": 100}, "speeds are 1e+03 times what places and times say"),
+        ({"speed": lambda row: 16.0}, "speeds are 1.6 times what places and times say"),
         ({"heading": lambda row: row["heading"] + 0.5}, "29° off their headings"),
         ({"size": (1.8, 4.5)}, "wider than long"),
         (
@@ -72,6 +76,64 @@ def test_what_is_said_as_it_moves(tmp_path):
 def test_units_and_sizes_that_contradict_the_places(tmp_path, changed, said):
     (remark,) = told(tmp_path, **changed)
     assert said in remark
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"speed": lambda row: 36.0}, "speeds are 3.6 times what places and times say"),
+        ({"step": 100}, "speeds are 1e+03 times what places and times say"),
+        ({"speed": lambda row: 3.0}, "speeds are 0.3 times what places and times say"),
+    ],
+)
+def test_speeds_that_contradict_places_stop_it_until_somebody_is_sure(tmp_path, changed, said):
+    with pytest.raises(RulecError, match=re.escape(said)) as refused:
+        told(tmp_path, **changed)
+    (problem,) = refused.value.diagnostics
+    rate = 1 / changed.get("step", 0.1)
+    by_places = f"say `frame_rate={rate:g}` if time steps are, and it is judged by places"
+    assert (problem.code, problem.help) == ("R0610", by_places)
+    (remark,) = told(tmp_path, rate=rate, **changed)
+    assert said in remark
+    with pytest.raises(RulecError, match="states its own time steps") as refused:
+        told(tmp_path, rate=2 * rate, **changed)
+    assert refused.value.diagnostics[0].code == "R0613"
+
+
+TRACKS = st.lists(
+    st.tuples(st.floats(1.0, 40.0), st.integers(10, 40), st.floats(-0.25, 0.25)),
+    min_size=3,
+    max_size=8,
+)
+
+
+@given(TRACKS, st.sampled_from((0.04, 0.1, 0.5)), st.integers(0, 1000))
+def test_noise_stops_no_table_and_a_wrong_unit_stops_each(tracks, step_s, seed):
+    """Speeds up to a quarter off, places off by decimetres; then in km/h, and with frames."""
+    chance = np.random.default_rng(seed)
+    rows = {name: [] for name in ("track", "frame", "x", "y", "speed")}
+    for number, (speed, steps, off) in enumerate(tracks):
+        noise = 0.1 * speed * step_s
+        for k in range(steps + int(6 / speed / step_s)):
+            said = speed * (1 + off + chance.uniform(-0.2, 0.2))
+            x = k * step_s * speed + chance.uniform(-noise, noise)
+            row = (str(number), k, x, 0.1 * number, said)
+            for column, value in zip(rows.values(), row, strict=True):
+                column.append(value)
+    lanes = {"lane": ["a", "a"], "x": [-50.0, 2000.0], "y": [0.0, 0.0]}
+    read = partial(recording_from_columns, lanes=lanes)
+    assert read(rows, frame_rate=1 / step_s).step_s == pytest.approx(step_s)
+    with pytest.raises(RulecError, match="no frame rate"):
+        read(rows)
+    times = [frame * step_s for frame in rows["frame"]]
+    timed = {"t": times, **{name: rows[name] for name in ("track", "x", "y", "speed")}}
+    right = read(timed)
+    in_kmh = {**timed, "speed": [3.6 * speed for speed in timed["speed"]]}
+    for wrong in (in_kmh, {**timed, "t": [float(frame) for frame in rows["frame"]]}):
+        if wrong is in_kmh or step_s < 0.5:
+            with pytest.raises(RulecError, match="times what places and times say"):
+                read(wrong)
+        assert read(wrong, frame_rate=1 / step_s).step_s == pytest.approx(right.step_s)
 
 
 @pytest.mark.parametrize(
@@ -167,5 +229,5 @@ def test_one_impossible_speed(tmp_path):
 
 
 def test_impossible_speeds_in_a_wrong_unit(tmp_path):
-    (remark,) = told(tmp_path, speed=lambda row: 1000.0)
+    (remark,) = told(tmp_path, rate=10, speed=lambda row: 1000.0)
     assert "speeds are 100 times what places and times say" in remark

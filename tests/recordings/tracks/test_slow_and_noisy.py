@@ -89,8 +89,9 @@ def test_headings_that_do_not_fit_are_found_all_the_same(mps):
 
 def test_speeds_in_another_unit_are_found_all_the_same():
     changed = {"speed": lambda own: own["speed"] * 3.6}
-    (remark,) = doubts(3.0, ("heading", "speed"), **changed)
-    assert "call the column `speed_kmh`" in remark
+    with pytest.raises(RulecError, match="times what places and times say") as refused:
+        doubts(3.0, ("heading", "speed"), **changed)
+    assert "call the column `speed_kmh`" in refused.value.diagnostics[0].help
 
 
 def test_who_backs_does_so_in_noise():

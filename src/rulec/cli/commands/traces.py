@@ -113,7 +113,7 @@ def command(
 
 
 _OF_DRIVES = {"ego", "thresholds", "assumed", "as_recorded"}
-_OF_DRIVES |= {"map_path", "input_format", "scenario_id"}
+_OF_DRIVES |= {"map_path", "input_format", "scenario_id", "frame_rate"}
 """The options that have a meaning for drives."""
 
 

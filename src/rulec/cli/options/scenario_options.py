@@ -72,6 +72,15 @@ _roads_options = combined(
             metavar="ID",
             help="Read only this recording of a file that contains several.",
         ),
+        click.option(
+            "--frame-rate",
+            "frame_rate",
+            metavar="HZ",
+            type=click.FloatRange(min=0, min_open=True),
+            callback=finite,
+            help="Frames a second of recorded traffic: of a table with the column `frame`, or to "
+            "confirm time steps that speeds contradict.",
+        ),
     ]
 )
 
@@ -110,7 +119,7 @@ def trace_format(options: Mapping[str, Any]) -> Format | None:
 
 def recording_source(file: str | Path, options: dict[str, Any]) -> RecordingSource:
     """The source of a file; consumes the values of ``recording_options``."""
-    names = ("map_path", "input_format", "scenario_id")
+    names = ("map_path", "input_format", "scenario_id", "frame_rate")
     return RecordingSource(Path(file), *(options.pop(name) for name in names))
 
 

@@ -106,6 +106,8 @@ class FleetFolder:
             "scenario": source.scenario_id or "",
             "egos": "; ".join(egos),
         }
+        if source.frame_rate is not None:
+            settings["frame_rate"] = repr(source.frame_rate)
         manifest = self.path / MANIFEST
         if manifest.is_file():
             self._check(_read(manifest), settings, inputs)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 
@@ -80,9 +80,7 @@ class UnitWorker:
             if unit.piece is not None:
                 yield from self._of_table(unit, to_rows)
                 return
-            form, scenario = self.source.form, self.source.scenario_id
-            source = RecordingSource(Path(unit.path), self.source.map_path, form, scenario)
-            for recording in read_recordings(source):
+            for recording in read_recordings(replace(self.source, path=Path(unit.path))):
                 own = {"file": unit.path, "recording": recording.name}
                 try:
                     verdicts = RecordingVerdicts(recording, rules, self.request, unit.path)
@@ -97,7 +95,7 @@ class UnitWorker:
         roads = None if self.source.map_path is None else str(self.source.map_path)
         assumed = Assumptions(self.ends, self.request.assumed, self.request.defaults)
         judges: Mapping[TableKind, TrackTableJudge | TraceTableJudge] = {
-            "tracks": TrackTableJudge(to_rows, self.request, roads, None),
+            "tracks": TrackTableJudge(to_rows, self.request, roads, None, self.source.frame_rate),
             "traces": TraceTableJudge(to_rows, assumed, None),
         }
         slices = slices_of_unit(unit)

@@ -18,7 +18,7 @@ from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Recording
 from rulec.recordings.track import TrackStates
-from rulec.trace.plain_arrays import median
+from rulec.trace.plain_arrays import median, quantile
 
 _MOST_BODIES = 60
 _FEWEST_BODIES = 3
@@ -31,6 +31,9 @@ _ALIKE = 1.5
 _ASKEW_DEG, _ACROSS_DEG = 20.0, 45.0
 """Angles that cars in bends, or badly measured ones, do not exceed on average."""
 
+_CONTRADICTING, _MOST = 2.0, 0.75
+"""If speeds of so many bodies differ by this factor, units or time steps are wrong."""
+
 _FASTEST_MPS = 100.0
 """The highest plausible median speed (360 km/h)."""
 
@@ -40,11 +43,14 @@ _LONGEST_CAR_M = 8.0
 _SPEEDS = "speeds are"
 
 
-def with_doubts(recording: Recording, refused: Callable[[str], RulecError]) -> Recording:
+def with_doubts(
+    recording: Recording, refused: Callable[..., RulecError], *, sure: bool = False
+) -> Recording:
     """The recording, with a remark on each quantity that contradicts the motion of bodies.
 
     ``refused`` makes the error for an unreadable recording. Raises it (R0610) if most vehicles move
-    across or against their headings.
+    across or against their headings, or if speeds contradict places and times, unless somebody is
+    ``sure`` of the time steps.
     """
     recording = without_impossible_speeds(recording)
     tracks = _tracks(recording)
@@ -60,8 +66,30 @@ def with_doubts(recording: Recording, refused: Callable[[str], RulecError]) -> R
             "median; axes may be exchanged, or headings be in degrees, or be counted from north"
         )
         raise refused(why)
-    remarks = (*recording.remarks, *_doubts(tracks, recording, angle))
+    ratios = np.array([_speed_ratio(moved, recording.step_s) for moved in tracks])
+    if not sure and (factor := _contradiction(ratios)):
+        why = (
+            f"{_SPEEDS} {factor:.3g} times what places and times say: time steps of "
+            f"{recording.step_s:.4g} s, or units of speeds or places, are wrong"
+        )
+        raise refused(why, help_text=_way_out(factor, recording))
+    remarks = (*recording.remarks, *_doubts(tracks, recording, angle, median(ratios)))
     return replace(recording, remarks=remarks) if remarks != recording.remarks else recording
+
+
+def _contradiction(ratios: NDArray[float64]) -> float:
+    """The factor by which the speeds of most bodies contradict their places; 0 if they do not."""
+    low, middle, high = (quantile(ratios, part) for part in (1 - _MOST, 0.5, _MOST))
+    return middle if low > _CONTRADICTING or 0 < high < 1 / _CONTRADICTING else 0.0
+
+
+def _way_out(factor: float, recording: Recording) -> str:
+    rate = 1 / recording.step_s
+    of_columns = [x.partition(": ")[2] for x in recording.remarks if x.startswith(_SPEEDS)]
+    if recording.form == "tracks as a table":
+        of_columns.append(f"say `--frame-rate {rate * factor:.4g}` if speeds and places are right")
+    by_places = f"say `--frame-rate {rate:.6g}` if time steps are, and it is judged by places"
+    return "; or ".join([*of_columns, by_places])
 
 
 def _tracks(recording: Recording) -> list[LongWays]:
@@ -79,7 +107,9 @@ def _tracks(recording: Recording) -> list[LongWays]:
     return tracks
 
 
-def _doubts(tracks: list[LongWays], recording: Recording, angle: float) -> Iterator[str]:
+def _doubts(
+    tracks: list[LongWays], recording: Recording, angle: float, ratio: float
+) -> Iterator[str]:
     if angle > _ASKEW_DEG:
         yield f"vehicles move {angle:.0f}° off their headings, which may be in degrees"
     fastest = median(np.array([_mean_mps(moved, recording.step_s) for moved in tracks]))
@@ -88,7 +118,6 @@ def _doubts(tracks: list[LongWays], recording: Recording, angle: float) -> Itera
             f"half of the vehicles move at {fastest * KMH_PER_MPS:,.0f} km/h or more: columns, or "
             "units of times or places, may be wrong"
         )
-    ratio = median(np.array([_speed_ratio(moved, recording.step_s) for moved in tracks]))
     # Tables have said so themselves, of all their rows
     already_said = any(remark.startswith(_SPEEDS) for remark in recording.remarks)
     if ratio > 0 and not 1 / _ALIKE <= ratio <= _ALIKE and not already_said:

@@ -29,7 +29,7 @@ from rulec.recordings.map_files import read_map
 from rulec.recordings.recording import Lamp, Recording
 from rulec.recordings.road_map import RoadMap
 from rulec.recordings.table_heads import SAME_NAME
-from rulec.recordings.tracks.even_times import even_times
+from rulec.recordings.tracks.even_times import EvenTimes, even_times, framed_times
 from rulec.recordings.tracks.roads_of_tracks import lanes_beside, roads_of, track_recording
 from rulec.recordings.tracks.track_rows import TrackRows
 
@@ -87,11 +87,20 @@ TRACK_COLUMNS = (
     *(ColumnKind(lamp, {}) for lamp in _LAMPS),
 )
 
+_FRAMES = frozenset({"frame", "frame_id", "frameid", "frame_nr", "frame_number"})
+_FRAME = ColumnKind("t", dict.fromkeys(sorted(_FRAMES), 1.0), required=True)
+_TIMES = frozenset(
+    alias for kind in TRACK_COLUMNS if kind.name == "t" for alias in ("t", *kind.also)
+)
+_OF_FRAMES = (
+    "say how many frames a second has, as in `--frame-rate 25`; or name a column `t`, in seconds"
+)
+
 
 def read_track_table(source: RecordingSource) -> Iterator[Recording]:
     """The recording in a file. Raises RulecError R0610, R0614, R0615, R0701, R0706."""
     path = source.path
-    rows, remark = track_rows_of(open_table(path, TRACKS))
+    rows, remark = track_rows_of(open_table(path, TRACKS), source.frame_rate)
     roads = roads_of(path, source.map_path, rows.times.step_s, lanes_beside(path))
     name = path.name.split(".")[0] or path.name
     yield track_recording(name, [rows], roads, form="tracks as a table", remarks=[remark])
@@ -102,16 +111,18 @@ def recording_from_columns(
     lanes: Mapping[str, Any] | RoadMap | str | Path,
     *,
     name: str = "tracks",
+    frame_rate: float | None = None,
 ) -> Recording:
     """A recording from columns: a dict of sequences or arrays, or a data frame.
 
     ``tracks`` has the columns of [tracks as a table](formats.md#tracks-as-a-table), such as
     ``track``, ``t``, ``x`` and ``y``; ``lanes`` has those of lanes as a table, or is a ``RoadMap``
-    or the path of a map. Raises RulecError R0610 for invalid values, with row (counted from 0) and
-    column, R0615 if nobody is near the roads, else as reading that map. Odd but readable values,
-    such as speeds that contradict positions, are reported in ``remarks``.
+    or the path of a map. ``frame_rate`` (Hz) is needed where ``frame`` is in the place of ``t``,
+    and confirms times that speeds contradict. Raises RulecError R0610 for invalid values, with row
+    (counted from 0) and column, R0615 if nobody is near the roads, else as reading that map. Odd
+    but readable values are reported in ``remarks``.
     """
-    rows, remark = track_rows_of(table_of(tracks, "tracks"))
+    rows, remark = track_rows_of(table_of(tracks, "tracks"), frame_rate)
     if isinstance(lanes, RoadMap):
         roads = lanes
     elif isinstance(lanes, str | Path):
@@ -120,18 +131,27 @@ def recording_from_columns(
         roads = lane_map(lanes)
     recording = track_recording(name, [rows], roads, form="tracks as a table", remarks=[remark])
     check_near(recording, None)
-    return with_doubts(recording, rows.columns.refused)
+    return with_doubts(recording, rows.columns.refused, sure=frame_rate is not None)
 
 
-def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:
-    """The rows of a table of tracks, and a remark about column names that are almost known."""
+def track_rows_of(table: ColumnTable, frame_rate: float | None = None) -> tuple[TrackRows, str]:
+    """The rows of a table of tracks, and a remark about column names that are almost known.
+
+    A ``frame_rate`` (Hz) says what a second is, whatever the times are; frames need it.
+    """
     _check_one_recording(table)
-    named = named_columns(table, TRACK_COLUMNS)
+    heads = {name.strip().casefold() for name in table.names}
+    kinds = TRACK_COLUMNS
+    if framed := not _TIMES & heads and bool(_FRAMES & heads):
+        if frame_rate is None:
+            why = "it has frames in the place of times `t`, and no frame rate"
+            raise table.refused(why, help_text=_OF_FRAMES)
+        kinds = tuple(_FRAME if kind.name == "t" else kind for kind in kinds)
+    named = named_columns(table, kinds)
     numbers = named.numbers
     if ("vx" in numbers) != ("vy" in numbers):
         has, lacks = ("vx", "vy") if "vx" in numbers else ("vy", "vx")
         raise table.refused(f"it has a column `{has}`, but none `{lacks}`")
-    heads = {name.strip().casefold() for name in table.names}
     front = "front_x" in heads
     if front != ("front_y" in heads):
         raise table.refused("only one of the columns `front_x` and `front_y` is there")
@@ -140,7 +160,13 @@ def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:
         # Who has no velocity somewhere has none: places tell it as well
         velocity = None
     _check_exchanged(named)
-    times = even_times(numbers["t"], named.columns, named.texts["track"].codes)
+    if framed and frame_rate is not None:
+        times = framed_times(numbers["t"], frame_rate, named.columns)
+    else:
+        times = even_times(numbers["t"], named.columns, named.texts["track"].codes)
+    if frame_rate is not None:
+        start = times.start_s / times.step_s / frame_rate
+        times = EvenTimes(1 / frame_rate, times.steps, start)
     rows = TrackRows(
         columns=named.columns,
         track=named.texts["track"],
@@ -159,7 +185,8 @@ def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:
         front=front,
         lamps={lamp: numbers[lamp] for lamp in _LAMPS if lamp in numbers},
     )
-    _check_seconds(rows, heads)
+    if frame_rate is None:
+        _check_seconds(rows, heads)
     return rows, unread_remark(named.unread, TRACK_COLUMNS)
 
 
