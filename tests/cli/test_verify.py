@@ -4,7 +4,9 @@ import json
 
 import pytest
 
+from rulec import compile_rulebook
 from rulec.cli.main import main
+from rulec.monitoring.rulebook_edition import rulebook_hash
 
 OBJECTS = {"v1": "vehicle"}
 
@@ -31,6 +33,15 @@ def verify(tmp_path, capsys):
     return run
 
 
+VIENNA = "Convention on Road Traffic, done at Vienna on 8 November 1968"
+LAW = {
+    "law": VIENNA,
+    "as_of": "1968-11-08",
+    "at": "1968-11-08",
+    "rulebook_hash": rulebook_hash(compile_rulebook("esterle2019")),
+}
+
+
 def test_the_documented_line_of_json(verify):
     status, out, err = verify([line("t1", "brrf")], options=["--json"])
     assert (status, err) == (1, "")
@@ -38,6 +49,7 @@ def test_the_documented_line_of_json(verify):
         "version": 1,
         "trace": "t1",
         "rulebook": "esterle2019",
+        "law": LAW,
         "satisfied": False,
         "violations": [
             {
@@ -62,6 +74,7 @@ def test_satisfied(verify):
         "version": 1,
         "trace": "t1",
         "rulebook": "esterle2019",
+        "law": LAW,
         "satisfied": True,
         "violations": [],
         "open": [],
@@ -73,7 +86,9 @@ def test_satisfied(verify):
 def test_text(verify):
     status, out, err = verify([line("t1", "brrf"), line("t2", "bblf")], options=["--explain", "0"])
     assert (status, err) == (1, "")
-    assert out == (
+    head, _, rest = out.partition("\n")
+    assert head == f"by esterle2019: {VIENNA} as of 1968-11-08 [{LAW['rulebook_hash'][:8]}]"
+    assert rest == (
         "t1: violated\n"
         "  hard rule R1 [Article 11.1, 11.6] for v = v1: cannot be kept any more after state 3\n"
         "2 traces: 1 satisfied, 1 violated\n"

@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from rulec import Session
 from rulec.cli.main import main
 from support.builders.recorded_cars import three_cars
 
@@ -210,22 +211,23 @@ def test_several_rulebooks_side_by_side(verify):
         A, "-r", "./slower.rules", "-r", "./other.rules", "-r", "./slower.rules"
     )
     assert (status, err) == (1, "")
-    assert [line for line in out.splitlines() if line.startswith("by ")] == [
+    assert [line.partition(" [")[0] for line in out.splitlines() if line.startswith("by ")] == [
         "by slower",
         "by other",
         "by tiny",
-        "by          slower         other  tiny",
+        "by                slower         other  tiny",
     ]
     # 3 drives 43.2 km/h, 4 drives 50.4 km/h, another one slower; of none it is known to be dry.
-    assert out.splitlines()[-8:] == [
-        "by          slower         other  tiny",
-        "─" * 38,
-        "slow             2  no such rule     1",
-        "─" * 38,
-        "satisfied        0             3     0",
-        "violated         2             0     1",
-        "open             1             0     2",
-        "not judged       0             0     0",
+    assert out.splitlines()[-9:] == [
+        "by                slower         other  tiny",
+        "─" * 44,
+        "slow                   2  no such rule     1",
+        "─" * 44,
+        "satisfied              0             3     0",
+        "violated               2             0     1",
+        "open                   1             0     2",
+        "not judged             0             0     0",
+        "rules not judged       1             0     1",
     ]
 
 
@@ -236,8 +238,8 @@ def test_several_rulebooks_on_traces_and_in_files(verify):
     )
     status, out, _ = verify("t.jsonl", "-r", "./slower.rules", "-o", "t.csv", "-o", "t.json")
     assert status == 2
-    assert "slow             1  kept\n" in out
-    assert "not judged       1     1\n" in out
+    assert "slow                   1  kept\n" in out
+    assert "not judged             1     1\n" in out
     lines = [json.loads(line) for line in Path("t.json").read_text().splitlines()]
     assert [(line["rulebook"], line.get("satisfied")) for line in lines] == [
         ("slower", False),
@@ -286,7 +288,7 @@ def test_editions_of_one_rulebook_are_told_apart(verify):
     old, new = "tiny (old/tiny.rules)", "tiny (tiny.rules)"
     assert (status, err) == (1, "")
     headings = [line for line in out.splitlines() if line.startswith("by ")]
-    assert headings[:2] == [f"by {old}", f"by {new}"]
+    assert [line.partition(" [")[0] for line in headings[:2]] == [f"by {old}", f"by {new}"]
     assert headings[2].split("  ")[-2:] == [old, new]
     # The rules are the editions' own, and are not said to be from another book.
     assert "hard rule slow [Art. 1]:" in out
@@ -300,3 +302,33 @@ def test_editions_of_one_rulebook_are_told_apart(verify):
     with Path("alone.csv").open(newline="") as stream:
         alone = {row["rulebook_hash"] for row in csv.DictReader(stream)}
     assert alone == {row["rulebook_hash"] for row in rows if row["rulebook"] == new}
+
+
+@pytest.mark.parametrize(
+    ("day", "said"),
+    [
+        ("2020-01-01", "by dated: Act as of 2020-01-01 ["),
+        (
+            "2026-11-29",
+            "by dated: Act as of 2020-01-01, without what has changed until 2026-11-29 [",
+        ),
+        ("2019-05-01", "by dated: Act as of 2020-01-01, as in force on 2019-05-01 ["),
+    ],
+)
+def test_a_verdict_says_by_which_text_it_is(day, said, verify, capsys):
+    Path("dated.rules").write_text(
+        'rulebook dated\nlaw "Act" as of 2020-01-01\nuse road\n'
+        "hard rule calm { require always speed <= 45 km/h }\n"
+    )
+    outputs = ("-o", "v.sarif", "-o", "v.json", "-o", "-")
+    files = [A, "-r", "./dated.rules"]
+    assert main(["verify", *files, "--at", day, *outputs, "--explain", "0"]) == 1
+    assert capsys.readouterr().out.startswith(said)
+    verdicts = [json.loads(line) for line in Path("v.json").read_text().splitlines()]
+    (run,) = json.loads(Path("v.sarif").read_text())["runs"]
+    laws = [verdict["law"] for verdict in verdicts]
+    assert {law["at"] for law in laws} == {day}
+    assert run["tool"]["driver"]["properties"] == {"rulebook": "dated", **laws[0]}
+    session = Session(at=day)
+    (first, *_) = session.verify_recording(A, "dated.rules").answers()
+    assert first.answer.law._asdict() == {"rulebook": "dated", **laws[0]}

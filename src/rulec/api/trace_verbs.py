@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args
 
@@ -78,13 +79,14 @@ class TraceVerbs(SessionSettings):
             TypeError: for the path of a file, which other verbs accept.
         """
         from rulec.monitoring.assumptions import check_assumed
+        from rulec.monitoring.rulebook_edition import edition_of
         from rulec.monitoring.verify import verify
 
         compiled = self._compiled(rules)
         if assumptions is not None:
             check_assumed(assumptions.values, compiled.vocabulary, "values")
             trace = assumptions.applied(trace)
-        return verify(trace, compiled)
+        return replace(verify(trace, compiled), law=edition_of(compiled))
 
     def verify_many(
         self,
@@ -103,8 +105,11 @@ class TraceVerbs(SessionSettings):
         """
         from rulec.monitoring.assumptions import check_assumed
         from rulec.monitoring.batch.batch_verify import verify_many
+        from rulec.monitoring.rulebook_edition import edition_of
+        from rulec.monitoring.verdict import with_law
 
         compiled = self._compiled(rules)
+        law = edition_of(compiled)
         if assumptions is not None:
             check_assumed(assumptions.values, compiled.vocabulary, "values")
             traces = (assumptions.of([item])[0] for item in traces)
@@ -112,8 +117,8 @@ class TraceVerbs(SessionSettings):
             from rulec.code_generation.compiled_c.c_engine import CEngine
 
             in_c = CEngine(compiled)
-            return (in_c.answer(item) for item in traces)
-        return verify_many(traces, compiled)
+            return (with_law(in_c.answer(item), law) for item in traces)
+        return (with_law(answer, law) for answer in verify_many(traces, compiled))
 
     def verify_columns(self, columns: TraceColumns, rules: Rules) -> list[VerdictColumns]:
         """Judge traces given as arrays; one result per rule and binding. Raises RulecError."""

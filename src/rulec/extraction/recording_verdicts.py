@@ -17,8 +17,16 @@ from rulec.garbage_collection import no_garbage_collection
 from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.findings import JudgedTrace
 from rulec.monitoring.batch.stacked.verify_arrays import answer_to, judge_arrays, verify_arrays
+from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
-from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed, agreed_by_type
+from rulec.monitoring.verdict import (
+    NotJudged,
+    Verdict,
+    Violation,
+    agreed,
+    agreed_by_type,
+    with_law,
+)
 from rulec.recordings.recording import Recording
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import Rows, short_repr
@@ -119,9 +127,15 @@ class RecordingVerdicts(Rows):
             waiting.append(drive)
             states += drive.arrays.n_states if isinstance(drive, Drive) else 0
             if states >= MOST_STATES:
-                yield from verified(waiting, self._roundings)
+                yield from self._verified(waiting)
                 waiting, states = [], 0
-        yield from verified(waiting, self._roundings)
+        yield from self._verified(waiting)
+
+    def _verified(self, drives: Sequence[Drive | NoDrive]) -> Iterator[DriveVerdict | NoDrive]:
+        for found in verified(drives, self._roundings):
+            if isinstance(found, DriveVerdict):
+                found = replace(found, answer=with_law(found.answer, edition_of(self.rules)))
+            yield found
 
     def by_default(self, words: frozenset[str]) -> dict[str, tuple[str, ...]]:
         """Rule -> names that it reads, that are not in ``words`` and take defaults in all states.

@@ -5,19 +5,13 @@ Findings of a fleet may be added up only if all of these are the same.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from hashlib import sha256
-from typing import Any
 
-import msgspec
-
-from rulec.automata.bundle.bundle_schema import ENTRY_OF
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.traffic_thresholds import USUAL
-from rulec.logic.printing import formula_text
+from rulec.monitoring.rulebook_edition import rulebook_hash
 from rulec.trace import Value
 from rulec.value_display import short_repr
 from rulec.version import __version__
@@ -71,35 +65,3 @@ def _written(value: Value) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return repr(value).removesuffix(".0") if isinstance(value, float) else str(value)
-
-
-def rulebook_hash(rules: CompiledRulebook) -> str:
-    """SHA-256 (hexadecimal) of everything that decides verdicts and opportunities.
-
-    That is the rules, facts and vocabulary. The hash is the same for a rulebook's source and its
-    compiled file, at any step: texts for people and automata do not count.
-    """
-    vocabulary = rules.vocabulary
-    content = [
-        rules.name,
-        rules.semantics,
-        rules.traffic,
-        [
-            [rule.name, rule.strength, rule.level, str(rule.weight), _variables(rule)]
-            for rule in rules.rules
-        ],
-        [formula_text(rule.formula) for rule in rules.rules],
-        [rule.trigger and formula_text(rule.trigger) for rule in rules.rules],
-        sorted([_variables(axiom), formula_text(axiom.formula)] for axiom in rules.axioms),
-        sorted(rules.priorities),
-        sorted((item.name, item.parent or "") for item in vocabulary.types.values()),
-        [
-            msgspec.to_builtins(msgspec.convert(item, ENTRY_OF[type(item)], from_attributes=True))
-            for item in vocabulary.declarations.values()
-        ],
-    ]
-    return sha256(json.dumps(content, ensure_ascii=False).encode()).hexdigest()
-
-
-def _variables(about: Any) -> list[list[str]]:
-    return [[variable.name, variable.type] for variable in about.variables]

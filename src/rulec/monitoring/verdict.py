@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 from rulec.diagnostics import RulecError
+from rulec.monitoring.rulebook_edition import Edition
 from rulec.rulebook.rulebook_model import Strength
 from rulec.value_display import Rows, short_repr
 
@@ -139,7 +140,7 @@ class Verdict(Rows):
 
     ``open`` depends on something unknown, ``not_judged`` lists rules for which this source lacks
     values. ``presumed`` are names that have their default because no source provides them.
-    ``engine`` is what judged: Python, or the monitor in C.
+    ``engine`` is what judged: Python, or the monitor in C. ``law`` is the text that was judged by.
     """
 
     __repr__ = short_repr
@@ -150,6 +151,7 @@ class Verdict(Rows):
     not_judged: tuple[RuleNotJudged, ...] = ()
     presumed: tuple[str, ...] = ()
     engine: EngineName = field(default="python", compare=False, repr=False)
+    law: Edition | None = field(default=None, compare=False, repr=False)
 
     @property
     def satisfied(self) -> bool | None:
@@ -256,6 +258,11 @@ class NotJudged:
 
     trace: str | None
     error: RulecError
+
+
+def with_law(answer: Verdict | NotJudged, law: Edition) -> Verdict | NotJudged:
+    """The answer, if it is a verdict with the text that was judged by."""
+    return replace(answer, law=law) if isinstance(answer, Verdict) else answer
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from hashlib import sha256
 from typing import IO, Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.monitoring.rulebook_edition import edition_of
 from rulec.report.findings.sarif import SCHEMA, uri_of
 from rulec.report.verdict_findings.verdict_finding import (
     FindingContext,
@@ -36,6 +37,7 @@ class SarifWriter:
         driver = {
             "name": "rulec",
             "version": about.version,
+            "properties": edition_of(about.rulebook)._asdict(),
             "rules": [_rule(rule, about.rulebook.name) for rule in about.rules.values()],
         }
         head = json.dumps({"tool": {"driver": driver}, "columnKind": "unicodeCodePoints"})

@@ -74,6 +74,11 @@ class BatchTally:
             getattr(self, rules).update(getattr(other, rules))
 
     @property
+    def with_verdict(self) -> set[str]:
+        """The rules with a verdict in some drive."""
+        return {*+self.judged_in, *+self.drives}
+
+    @property
     def counts(self) -> dict[bool | None, int]:
         """The number of drives satisfied (True), violated (False) and open (None)."""
         return {True: self.satisfied, False: self.violated, None: self.doubtful}
@@ -110,13 +115,9 @@ def as_text(total: BatchTally, rules: CompiledRulebook, unread: Sequence[str]) -
 
 
 def _rules(total: BatchTally, rules: CompiledRulebook) -> str:
-    names = [rule.name for rule in rules.rules]
-    never = [name for name in names if not total.judged_in[name] and not total.open_in[name]]
-    some_open = [name for name in names if total.open_in[name] and name not in never]
-    parts = [f"{len(names) - len(never) - len(some_open):,} judged"]
-    parts += [f"{len(some_open):,} open in some drive"] if some_open else []
-    parts += [f"{len(never):,} cannot be judged from these recordings"] if never else []
-    return f"{counted(len(names), 'rule')}: {', '.join(parts)}"
+    return verdict_report.rule_counts(
+        rules.rules, total.with_verdict, {*+total.open_in}, "these recordings"
+    )
 
 
 def _first(first: tuple[str, str, float]) -> str:

@@ -14,6 +14,7 @@ from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.violation_evidence import ViolationEvidence, evidence_of
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.explain.margins import Margin
+from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.verdict import NotJudged
 from rulec.report.json_document import JsonDocument, as_line, filled
 from rulec.report.verdicts import verdict_json
@@ -118,6 +119,7 @@ def as_json(
         filled(
             RecordedVerdict,
             answer,
+            law=filled(verdict_json.LawData, edition_of(verdicts.rules)),
             violations=violations,
             **verdict_json.doubts(answer, verdicts.rules),
             **recorded,

@@ -57,19 +57,12 @@ def _rule_counts(verdicts: RecordingVerdicts, tally: ViolationTally, width: int)
     vocabulary = verdicts.rules.vocabulary
     # It may also depend on the types that participants of unknown type have
     order = [*vocabulary.declarations, *vocabulary.types]
-    judged = [rule for rule in rules if tally.judged_in[rule.name]]
-    never = [rule for rule in rules if rule not in judged and rule.name not in tally.open_rules]
-    some_open = [rule for rule in rules if rule.name in tally.open_rules]
-    parts = [f"{len(rules) - len(never) - len(some_open):,} judged"]
-    if some_open:
-        words = first_of(sorted(tally.open_on, key=order.index), MOST_DEFAULTS)
-        parts.append(
-            f"{len(some_open):,} open in some drive" + (f" (words: {words})" if words else "")
-        )
-    if never:
-        parts.append(f"{len(never):,} cannot be judged from this recording")
-    yield f"rules       {counted(len(rules), 'rule')}: {', '.join(parts)}"
-    yield from _unjudged(never, tally, width)
+    words = first_of(sorted(tally.open_on, key=order.index), MOST_DEFAULTS)
+    judged = {rule.name for rule in rules if tally.judged_in[rule.name]} | {*tally.first_s}
+    counts = verdict_report.rule_counts(rules, judged, tally.open_rules, "this recording", words)
+    yield f"rules       {counts}"
+    with_any = judged | {*tally.open_rules}
+    yield from _unjudged([rule for rule in rules if rule.name not in with_any], tally, width)
 
 
 def _unjudged(rules: Sequence[CompiledRule], tally: ViolationTally, width: int) -> Iterator[str]:

@@ -22,12 +22,18 @@ def as_text(tallies: Sequence[tuple[CompiledRulebook, BatchTally]]) -> str:
     for verdict, word in ((True, "satisfied"), (False, "violated"), (None, "open")):
         rows.append((word, *(f"{total.counts[verdict]:,}" for _, total in tallies)))
     rows.append(("not judged", *(f"{total.not_judged:,}" for _, total in tallies)))
+    rows.append(("rules not judged", *(f"{_without_any(*tally):,}" for tally in tallies)))
     lines = table_lines(
         [tuple(map(visible, row)) for row in rows],
         right=range(1, len(tallies) + 1),
         ruled=[0, len(names)] if names else [0],
     )
     return "\n".join(lines)
+
+
+def _without_any(rules: CompiledRulebook, total: BatchTally) -> int:
+    """The number of rules that no trace or drive has a verdict or an open one on."""
+    return len({rule.name for rule in rules.rules} - total.with_verdict - {*+total.open_in})
 
 
 def _cell(name: str, rules: CompiledRulebook, total: BatchTally) -> str:

@@ -11,6 +11,7 @@ from msgspec import UNSET, UnsetType
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.monitoring.explain.explanation import Explanation
+from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleNotJudged, Verdict
 from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
 from rulec.report.verdicts.violation_table import repaired_states
@@ -188,6 +189,18 @@ class NotJudgedRule(JsonPart, frozen=True, kw_only=True):
     inherited_from: str | UnsetType = UNSET
 
 
+class LawData(JsonPart, frozen=True, kw_only=True):
+    """The law that is judged by: the text of the day ``as_of``, asked for the day ``at``.
+
+    ``rulebook_hash`` is the SHA-256 of all that decides its verdicts.
+    """
+
+    law: str
+    as_of: str
+    at: str
+    rulebook_hash: str
+
+
 class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
     """The verdict on a trace: whether it keeps every hard rule.
 
@@ -197,6 +210,7 @@ class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
 
     trace: str
     rulebook: str
+    law: LawData
     satisfied: bool | None
     violations: Sequence[ViolationData]
     open: Sequence[OpenData] = ()
@@ -223,6 +237,7 @@ def as_json(
     """Write a verdict; ``explained`` are explanations of its first violations."""
     own = {
         "rulebook": rulebook.name,
+        "law": filled(LawData, edition_of(rulebook)),
         "violations": violations_data(verdict, rulebook, explained),
         "engine": verdict.engine if says_engine else UNSET,
         **doubts(verdict, rulebook),

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence, Set
 from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.logic.printing import number_in_words
+from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.terminal_text import counted, styled, visible
@@ -75,6 +76,40 @@ _WORDS: dict[bool | None, tuple[str, str]] = {
     False: ("violated", "red"),
     None: ("open", "yellow"),
 }
+
+
+def rule_counts(
+    rules: Sequence[CompiledRule],
+    judged: Set[str],
+    open_in: Container[str],
+    source: str,
+    words: str = "",
+) -> str:
+    """How many rules have a verdict in some drive, are open at best, or cannot be judged."""
+    all_open = sum(rule.name in open_in and rule.name not in judged for rule in rules)
+    some_open = sum(rule.name in open_in and rule.name in judged for rule in rules)
+    n_judged = sum(rule.name in judged for rule in rules)
+    parts = [f"{n_judged:,} judged"]
+    parts += [f"{some_open:,} of them open in some drive"] if some_open else []
+    parts += [f"{all_open:,} open"] if all_open else []
+    if words and (some_open or all_open):
+        parts[-1] += f" (words: {words})"
+    if never := len(rules) - n_judged - all_open:
+        parts.append(f"{never:,} cannot be judged from {source}")
+    return f"{counted(len(rules), 'rule')}: {', '.join(parts)}"
+
+
+def headline(rules: CompiledRulebook) -> str:
+    """The rulebook, its law and the day of its text, and which text it is, in a line."""
+    edition = edition_of(rules)
+    law = f": {edition.law}" if edition.law else ""
+    if edition.as_of:
+        law += f" as of {edition.as_of}"
+        if edition.at > edition.as_of:
+            law += f", without what has changed until {edition.at}"
+        elif edition.at and edition.at != edition.as_of:
+            law += f", as in force on {edition.at}"
+    return visible(f"by {edition.rulebook}{law} [{edition.rulebook_hash[:8]}]")
 
 
 def _open_lines(verdict: Verdict, rulebook: CompiledRulebook) -> Iterator[str]:
