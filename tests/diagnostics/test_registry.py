@@ -113,7 +113,7 @@ def test_a_code_makes_an_error():
     assert error.diagnostics == (BROKEN.at(None, "this is broken", notes=("at night",)),)
 
 
-def test_a_traceback_shows_each_way_out_once():
+def test_an_error_says_what_was_expected_and_each_way_out_once():
     said = [
         Diagnostic("R0703", "there is no `DE`", help="did you mean `de`?"),
         Diagnostic("R0703", "there is no `de `", help="did you mean `de`?"),
@@ -121,5 +121,12 @@ def test_a_traceback_shows_each_way_out_once():
         Diagnostic("R0617", "`side` is `up`", expected="expected `left`, `right`"),
     ]
     error = pickle.loads(pickle.dumps(RulecError(said)))
-    assert error.__notes__ == ["help: did you mean `de`?", "expected `left`, `right`"]
-    assert RulecError(said[2]).__notes__ == []
+    assert str(error).splitlines() == [
+        "there is no `DE` [R0703]; there is no `de ` [R0703]; it cannot be read [R0701]; "
+        "`side` is `up` [R0617]",
+        "help: did you mean `de`?",
+        "expected `left`, `right`",
+    ]
+    assert str(RulecError(said[2])) == "it cannot be read [R0701]"
+    both = Diagnostic("R0780", "it has shape (2,)", expected="expected (3,)", help="transpose it")
+    assert str(RulecError(both)) == "it has shape (2,) [R0780]\nexpected (3,)\nhelp: transpose it"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Any, Literal, TypeAlias
 
 from rulec.diagnostics.argument_names import for_caller
@@ -104,15 +105,9 @@ class RulecError(Rows, Exception):
         self._given = tuple(diagnostics)
         # Text that is not valid Unicode, as in a file's name, must not fail when printed
         text = "; ".join(_one_line(d) for d in self.diagnostics)
-        super().__init__(text.encode(errors="backslashreplace").decode())
-        # Tracebacks show the notes below the error, from Python 3.11 on
-        shown = self.diagnostics[:20]
-        ways_out = dict.fromkeys(
-            f"help: {one.help}" if one.help else one.expected
-            for one in shown
-            if one.help or one.expected
-        )
-        self.__notes__ = [text.encode(errors="backslashreplace").decode() for text in ways_out]
+        texts = ((one.expected, one.help and f"help: {one.help}") for one in self.diagnostics[:20])
+        ways_out = dict.fromkeys(filter(None, chain.from_iterable(texts)))
+        super().__init__("\n".join([text, *ways_out]).encode(errors="backslashreplace").decode())
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
@@ -120,7 +115,7 @@ class RulecError(Rows, Exception):
         return tuple(map(_for_caller, self._given))
 
     def __repr__(self) -> str:
-        return f"RulecError({'; '.join(d.code for d in self.diagnostics[:20])}: {self.args[0]:.80})"
+        return f"RulecError({'; '.join(d.code for d in self.diagnostics[:20])}: {self.args[0].splitlines()[0]:.80})"
 
     def rows(self) -> list[dict[str, Any]]:
         """One row per diagnostic."""
