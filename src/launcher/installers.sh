@@ -29,11 +29,7 @@ os.execvp(sys.argv[2], sys.argv[2:])
 quietly() {
     mkdir -p "$stamps/tmp" 2>/dev/null
     TMPDIR=$stamps/tmp "$python" -E -c "$in_own_group" "$home" "$@" >"$log" 2>&1 </dev/null &
-    child=$!
-    wait "$child"
-    status=$?
-    child=
-    return "$status"
+    await "$!"
 }
 
 # Renamed first, so that even if killed here, no partial environment stays in place.

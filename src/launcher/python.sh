@@ -32,6 +32,21 @@ if system == "Linux":
 sys.stdout.write("\n".join((version, venv, place, os.path.realpath(sys.executable))))
 '
 
+# Sets status to that of starting a Python, which is killed if it takes 20 s.
+try_to_start() {
+    "$1" -E -c '' >/dev/null 2>&1 </dev/null &
+    candidates_process=$!
+    (
+        trap 'kill "$nap"' TERM
+        sleep 20 &
+        nap=$!
+        wait "$nap" && kill -s KILL "$candidates_process"
+    ) >/dev/null 2>&1 </dev/null &
+    guard=$!
+    await "$candidates_process"
+    kill "$guard" 2>/dev/null
+}
+
 # Sets python, version and place to those of the first suitable Python.
 find_python() {
     if [ -n "${RULEC_PYTHON:-}" ]; then
@@ -43,9 +58,15 @@ find_python() {
     for candidate in "$@"; do
         if ! command -v "$candidate" >/dev/null 2>&1; then
             [ -z "${RULEC_PYTHON:-}" ] || seen=", $candidate is not found"
+            [ ! -e "$candidate" ] || seen=", $candidate does not run"
             continue
         fi
-        answer=$("$candidate" -E -c "$probe" 2>/dev/null </dev/null) || answer=
+        answer='' fault='does not run'
+        try_to_start "$candidate"
+        if [ "$status" -gt 128 ]; then fault='does not answer'; fi
+        if [ "$status" = 0 ]; then
+            answer=$("$candidate" -E -c "$probe" 2>/dev/null </dev/null) || answer=
+        fi
         {
             IFS= read -r version
             IFS= read -r venv
@@ -60,7 +81,7 @@ EOF
             seen="$seen, $candidate ($version) lacks venv and ensurepip (on Debian and Ubuntu: \
 apt install python$version-venv)"
             ;;
-        '') seen="$seen, $candidate does not run" ;;
+        '') seen="$seen, $candidate $fault" ;;
         *) seen="$seen, $candidate is $version" ;;
         esac
     done

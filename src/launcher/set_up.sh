@@ -14,8 +14,14 @@ stop() {
 }
 
 check_folder() {
-    [ -w "$home" ] || stop "cannot write to $home, where its environment .venv has to go." \
-        "Copy the checkout to a folder of your own and call it there."
+    if [ ! -w "$home" ]; then
+        unreachable=
+        if [ -L "$environment/bin/python" ] && [ ! -x "$environment/bin/python" ]; then
+            unreachable="cannot reach the Python of its environment $environment, and for another one "
+        fi
+        stop "${unreachable}cannot write to $home, where its environment .venv has to go." \
+            "Copy the checkout to a folder of your own and call it there."
+    fi
     rm -rf "$environment.gone"
     if [ -d "$environment" ]; then rmdir "$environment" 2>/dev/null; fi
     if [ -L "$environment" ] || { [ -e "$environment" ] && [ ! -d "$stamps" ]; }; then
@@ -37,15 +43,25 @@ check_space() {
     esac
 }
 
+# Waits for a background command, which ignores SIGINT, so that a signal is answered by the launcher
+# alone, and at once.
+await() {
+    child=$1
+    wait "$child" 2>/dev/null
+    status=$?
+    child=
+    return "$status"
+}
+
 # The kernel releases the lock on the checkout's folder when its last holder ends, even if killed,
 # including an installer that outlives the launcher: it cannot go stale, and leaves no file behind.
 lock='
-import fcntl, signal, sys
-signal.signal(signal.SIGINT, signal.SIG_DFL)
+import fcntl, sys
 try:
     fcntl.flock(9, fcntl.LOCK_EX | fcntl.LOCK_NB)
 except BlockingIOError:
     sys.stderr.write("rulec: another call is setting up; waiting for it to finish ...\n")
+    sys.stderr.flush()
     fcntl.flock(9, fcntl.LOCK_EX)
 except OSError:
     pass  # a file system without locks
@@ -55,17 +71,22 @@ interrupted() {
     trap '' HUP INT TERM
     if [ -n "$child" ]; then
         kill -s INT -- "-$child" 2>/dev/null || kill -s TERM "$child" 2>/dev/null
-        wait "$child"
+        wait "$child" 2>/dev/null
     fi
-    discard
-    say "interrupted; the unfinished environment is removed."
+    if [ -n "$making" ]; then
+        discard
+        say "interrupted; the unfinished environment is removed."
+    else
+        say "interrupted."
+    fi
     exit "$1"
 }
 
 # Lets another Spot stand in for the wheel: an empty distribution with the wheel's name.
 bring_own_spot() {
     [ -n "$own_spot" ] || return 0
-    site=$("$environment/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+    site=$("$environment/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))' \
+        2>>"$log") || return
     mkdir -p "$site/spottl-$own_spot.dist-info"
     printf 'Metadata-Version: 2.1\nName: spottl\nVersion: %s\n' "$own_spot" \
         >"$site/spottl-$own_spot.dist-info/METADATA"
@@ -84,6 +105,15 @@ install_project() {
         "$home/src/launcher/locks/python$version${extra:+-test}.txt" >"$kept" || return
     install_with --require-hashes -r "$kept" && install_with --no-deps --no-build-isolation -e . &&
         rm -f "$kept"
+}
+
+# Names the checkout from site-packages, not from the root: Python 3.11 reads these files in the
+# locale's encoding, and with LC_ALL=C does not start where a folder's name is not ASCII.
+link_checkout() {
+    for link in "$environment"/lib/python*/site-packages/*_rulec.pth; do
+        [ -f "$link" ] || continue
+        { echo ../../../../src >"$link.new" && mv "$link.new" "$link"; } || return
+    done
 }
 
 install_with() {
@@ -156,10 +186,7 @@ write_stamps() {
 make_ready() {
     check_folder
     log=$stamps/log
-    child=
-    trap 'interrupted 129' HUP
-    trap 'interrupted 130' INT
-    trap 'interrupted 143' TERM
+    making=yes
     extra=
     if [ "$purpose" = test ]; then extra='[test]'; fi
     if read_stamp run && [ "${made_from#* * }" = "$home" ]; then
@@ -167,13 +194,16 @@ make_ready() {
     else
         make_anew || give_up
     fi
-    write_stamps || give_up
+    { link_checkout && write_stamps; } || give_up
     rm -rf "$stamps/before" "$stamps/tmp" "$log"
-    trap - HUP INT TERM
     say "ready."
 }
 
 set_up() {
+    child='' making=''
+    trap 'interrupted 129' HUP
+    trap 'interrupted 130' INT
+    trap 'interrupted 143' TERM
     # An environment keeps the Python that was requested when it was made.
     read_stamp run
     if [ -n "$made_with" ] && command -v "$made_with" >/dev/null; then
@@ -183,9 +213,13 @@ set_up() {
     export PATH="${PATH:-/usr/local/bin:/usr/bin:/bin}" # without one, Python does not find itself
     settle_installers
     find_python
+    check_settings "$python"
     check_platform
     exec 9<"$home"
-    "$python" -E -c "$lock"
+    "$python" -E -c "$lock" &
+    await "$!" || stop "the Python in $python does not run. Set RULEC_PYTHON to another one, and" \
+        "call again."
     is_ready || make_ready
+    trap - HUP INT TERM
     exec 9<&-
 }

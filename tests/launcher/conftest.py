@@ -2,6 +2,7 @@
 
 import ast
 import marshal
+import os
 import shutil
 import signal
 import subprocess
@@ -29,6 +30,11 @@ LOOKS = {
     "ensurepip": True,
     "spot": None,
 }
+
+
+def in_own_group():
+    as_from_a_terminal()
+    os.setpgid(0, 0)
 
 
 @dataclass
@@ -71,7 +77,7 @@ class Checkout:
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
-            preexec_fn=as_from_a_terminal,
+            preexec_fn=in_own_group,
             encoding="utf-8",
         )
 

@@ -109,6 +109,8 @@ def main() -> None:
         case ["-m", "pip", *_] | ["pip", *_]:
             behave("pip" if name == "environment" else "uv pip")
             write(".venv/bin/rulec", "")
+            os.makedirs(".venv/lib/python3.11/site-packages", exist_ok=True)
+            write(".venv/lib/python3.11/site-packages/_rulec.pth", os.path.abspath("src"))
         case ["-m", tool, *_]:
             behave(tool)
         case [script, *rest] if script.endswith("/rulec"):

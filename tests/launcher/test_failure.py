@@ -137,6 +137,35 @@ def test_read_only_checkout(checkout):
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_read_only_checkout_whose_python_is_out_of_reach(ready):
+    python = ready.environment / "bin/python"
+    python.unlink()
+    python.symlink_to("/root/python")
+    ready.folder.chmod(0o555)
+    said = lines(ready.call())
+    ready.folder.chmod(0o755)
+    assert said[-1].startswith("rulec: cannot reach the Python of its environment")
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"PYTHONIOENCODING": "nonsense"},
+        {"PYTHONUTF8": "7"},
+        {"PYTHONMALLOC": "nonsense"},
+        {"PYTHONHASHSEED": "nonsense"},
+        {"PYTHONTRACEMALLOC": "nonsense"},
+        {"PYTHONINTMAXSTRDIGITS": "3"},
+    ],
+)
+def test_python_that_does_not_start_with_its_variables_is_no_violation(ready, settings):
+    said = lines(ready.call(**settings))
+    assert len(said) == 1
+    assert said[0].endswith("Correct or unset them, and call again.")
+    assert ready.call(PYTHONIOENCODING="latin-1").returncode == 0
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
 def test_read_only_checkout_that_is_ready_runs(ready):
     ready.folder.chmod(0o555)
     result = ready.call()

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import time
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,36 @@ def test_interruption_leaves_nothing_behind(checkout, tool, sent):
     assert installers_end(checkout)
     stop_waiting(checkout, tool)
     assert checkout.call().returncode == 0
+
+
+@pytest.mark.parametrize("to_all", [True, False])
+@pytest.mark.parametrize("delay_ms", range(20, 300, 20))
+def test_interrupted_at_any_moment_it_says_so_in_a_sentence(checkout, delay_ms, to_all):
+    """To all, as from a terminal, or to the launcher alone, as from a supervisor."""
+    process = checkout.start("./rulec", RULEC_SET_UP="run")
+    time.sleep(delay_ms / 1000)
+    (os.killpg if to_all else os.kill)(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=20)
+    assert out == ""
+    assert process.returncode in (130, -signal.SIGINT, 0)
+    said = err.splitlines()
+    assert all(line.startswith("rulec: ") for line in said)
+    assert (process.returncode == 130) == (said[-1:] != [] and "interrupted" in said[-1])
+    assert checkout.environment.exists() == (process.returncode == 0)
+
+
+def test_interrupted_while_waiting_for_another_call_it_removes_nothing(checkout):
+    checkout.tell("venv", waits=True)
+    first = checkout.start("./rulec")
+    checkout.wait_until_waiting("venv")
+    second = checkout.start("./rulec")
+    second.stderr.readline()
+    os.killpg(second.pid, signal.SIGINT)
+    assert second.communicate(timeout=20) == ("", "rulec: interrupted.\n")
+    assert second.returncode == 130
+    checkout.let_go_on()
+    first.communicate(timeout=20)
+    assert first.returncode == 0
 
 
 def test_interrupted_renewal_leaves_nothing_behind(ready):

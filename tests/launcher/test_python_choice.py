@@ -1,5 +1,7 @@
 """Which Python the environment is made with, and what is said when none will do."""
 
+import shutil
+
 import pytest
 
 ALL = "python3 python3.13 python3.12 python3.11 python3.10 python3.14 python"
@@ -85,11 +87,24 @@ def test_rulec_python_may_be_a_name(checkout):
     [
         ("other", "other is 3.8."),
         ("/no/python", "/no/python is not found."),
-        ("cat", "cat does not"),
+        ("cat", "cat does not run."),
+        ("./folder", "./folder does not run."),
+        ("./text", "./text does not run."),
+        ("./hangs", "./hangs does not answer."),
+        ("./lies", "./lies does not run."),
+        ("", "python3 does not run."),
     ],
 )
 def test_unfit_rulec_python_is_not_replaced_by_another(checkout, asked, fault):
     checkout.add_tool("other", version=[3, 8, 0])
+    (checkout.folder / "folder").mkdir()
+    (checkout.folder / "text").write_text("not a program")
+    for name, body in ("hangs", "exec sleep 60"), ("lies", "exit 0"):
+        checkout.add_script(name, body).rename(checkout.folder / name)
+    if asked == "./hangs":
+        checkout.add_script("sleep", f"[ $1 != 20 ] || set 0.1; exec {shutil.which('sleep')} $1")
+    if not asked:
+        checkout.add_script("python3", "exit 1")
     assert fault in refused(checkout, RULEC_PYTHON=asked)
 
 

@@ -2,9 +2,13 @@
 
 import ast
 import shutil
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
+ROOT = Path(__file__).resolve().parents[2]
 AWKWARD = ["", "two words", "*", "$HOME", "'\"", "-x", "--", "ä\nb"]
 
 
@@ -70,6 +74,24 @@ def test_any_folder_name_will_do(checkout, tmp_path, name):
         assert result.returncode == 0, result.stderr
         assert seen(result)["script"] == str(home / ".venv/bin/rulec")
     assert result.stderr == ""
+
+
+@pytest.mark.parametrize("locale", [{"LC_ALL": "C"}, {"LC_ALL": "POSIX"}, {"LC_ALL": "none"}, {}])
+def test_environment_starts_in_any_locale(checkout, tmp_path, locale):
+    """Its link to the checkout is put into an environment of the real Python: 3.11 reads links in
+    the locale's encoding."""
+    checkout.folder.rename(tmp_path / "weiß und blau")
+    checkout.folder = tmp_path / "weiß und blau"
+    checkout.call()
+    (link,) = checkout.environment.rglob("*.pth")
+    assert link.read_bytes().isascii()
+    real = tmp_path / "größe/.venv"
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", real], check=True)
+    (packages,) = real.glob("lib/python3*/site-packages")
+    shutil.copy(link, packages)
+    (real.parent / "src").symlink_to(ROOT / "src")
+    command = [real / "bin/python", "-c", "import rulec.version"]
+    subprocess.run(command, env=locale, cwd="/", check=True)
 
 
 SHELLS = ["sh", "dash", "bash --posix", "busybox sh"]

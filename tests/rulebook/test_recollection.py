@@ -153,7 +153,7 @@ def test_standard_input_is_recalled_by_its_text(folder, made):
     ("module", "name", "value"),
     [
         (check_cache, "__version__", "0.0.0"),
-        (cache_folder_module, "package_files", lambda: [("a.py", Path(__file__).stat())]),
+        (cache_folder_module, "package_files", lambda: [("wei\udcdf/a.py", Path(__file__).stat())]),
     ],
 )
 def test_another_rulec_checks_anew(folder, made, monkeypatch, module, name, value):

@@ -66,7 +66,7 @@ def program_digest() -> str:
     """A digest of the times and sizes of rulec's own files, as they were at the first call."""
     seen = sha256()
     for path, status in package_files():
-        seen.update(f"{path}\0{status.st_mtime_ns}\0{status.st_size}\n".encode())
+        seen.update(os.fsencode(f"{path}\0{status.st_mtime_ns}\0{status.st_size}\n"))
     return seen.hexdigest()
 
 
