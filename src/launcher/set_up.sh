@@ -103,7 +103,8 @@ install_project() {
     kept=$stamps/requirements.txt
     awk -v leave="$leave_wheel" '/^[^ #]/ { left_out = leave != "" && /^spottl==/ } !left_out' \
         "$home/src/launcher/locks/python$version${extra:+-test}.txt" >"$kept" || return
-    install_with --require-hashes -r "$kept" && install_with --no-deps --no-build-isolation -e . &&
+    install_with --only-binary :all: --require-hashes -r "$kept" &&
+        install_with --no-deps --no-build-isolation -e . &&
         rm -f "$kept"
 }
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -209,3 +210,75 @@ def test_states_are_merged_that_no_word_tells_apart(steps, word):
         taken = [edge for edge, way in small[another].items() if way in (TRUE, (p, -p)[letter])]
         assert [mark] == [taken_mark for _, taken_mark in taken]
         ((another, _),) = taken
+
+
+NAMES = tuple("abcd")
+
+STEPS = st.one_of(
+    st.tuples(st.just("ite"), *[st.integers(-20, 20)] * 3),
+    st.tuples(
+        st.just("given"), st.integers(), st.dictionaries(st.sampled_from(NAMES), st.booleans())
+    ),
+    st.tuples(st.just("for_some"), st.integers(), st.sets(st.sampled_from(NAMES))),
+)
+ALL_VALUES = [dict(zip(NAMES, values, strict=True)) for values in product((False, True), repeat=4)]
+
+
+def value_of(diagrams, function, values):
+    while abs(function) != TRUE:
+        name, low, high = diagrams.parts(function)
+        function = high if values[name] else low
+    return function == TRUE
+
+
+@given(st.lists(STEPS, min_size=1, max_size=30))
+def test_functions_are_their_truth_tables_and_equal_ones_one_number(steps):
+    """The tables are computed beside them, row by row; a negation has the opposite sign."""
+    diagrams = Diagrams()
+    for name in NAMES:
+        diagrams.declare(name)
+    functions = [TRUE, *map(diagrams.variable, NAMES)]
+    tables = [[True] * 16, *[[values[name] for values in ALL_VALUES] for name in NAMES]]
+
+    def picked(number):
+        place = abs(number) % len(functions)
+        if number < 0:
+            return -functions[place], [not value for value in tables[place]]
+        return functions[place], tables[place]
+
+    for kind, first, *rest in steps:
+        function, table = picked(first)
+        if kind == "ite":
+            (yes, if_yes), (no, if_no) = map(picked, rest)
+            functions.append(diagrams.ite(function, yes, no))
+            rows = zip(table, if_yes, if_no, strict=True)
+            tables.append([one if test else other for test, one, other in rows])
+            continue
+        functions.append(getattr(diagrams, kind)(function, *rest))
+        fixed = rest[0] if kind == "given" else {}
+        open_ones = rest[0] if kind == "for_some" else set()
+        tables.append(
+            [
+                any(
+                    value
+                    for other, value in zip(ALL_VALUES, table, strict=True)
+                    if all(
+                        other[name] == fixed.get(name, values[name])
+                        for name in NAMES
+                        if name not in open_ones
+                    )
+                )
+                for values in ALL_VALUES
+            ]
+        )
+    numbers = {}
+    for function, table in zip(functions, tables, strict=True):
+        assert [value_of(diagrams, function, values) for values in ALL_VALUES] == table
+        read = {
+            name
+            for name in NAMES
+            if diagrams.given(function, {name: True}) != diagrams.given(function, {name: False})
+        }
+        assert diagrams.variables(function) == read
+        assert numbers.setdefault(tuple(table), function) == function
+        assert numbers.setdefault(tuple(not value for value in table), -function) == -function

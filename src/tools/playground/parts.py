@@ -34,7 +34,7 @@ PLATFORM = (
     "cp314",
 )
 
-LIBRARIES = ("astutils", "click", "dd", "lark", "ply", "typing_extensions")
+LIBRARIES = ("click", "lark", "typing_extensions")
 """The pure-Python packages that the page's questions import, copied from this environment."""
 
 

@@ -1,65 +1,44 @@
-"""Binary decision diagrams (Bryant, 1986) over letters and obligations, with the library ``dd``.
+"""Binary decision diagrams (Bryant, 1986) over letters and obligations.
 
-A function is an integer of ``dd.bdd``: 1 is true, -1 is false, and negation changes the sign. So
-equal functions are equal integers, on every machine.
+A function is an integer: 1 is true, -1 is false, any other one a node's number, and negation
+changes the sign (Brace, Rudell, Bryant, 1990). So equal functions are equal integers, and as nodes
+are numbered in the order of their making, the same ones on every machine.
 """
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
-from typing import Any
 
 from rulec.logic import formula as ltl
 from rulec.logic.fold import Algebra, fold
 
-
-@contextmanager
-def _without_graphs() -> Iterator[None]:
-    """Keep ``dd`` from importing NetworkX (0.4 s), which it needs only to draw diagrams.
-
-    Nothing else in ``dd`` changes without it.
-    """
-    if "networkx" in sys.modules:
-        yield
-        return
-    sys.modules["networkx"] = None  # type: ignore[assignment]
-    try:
-        yield
-    finally:
-        del sys.modules["networkx"]
-
-
-with _without_graphs():
-    from dd.bdd import BDD
-
 TRUE, FALSE = 1, -1
-
-
-class _Functions(BDD):
-    """Diagrams that are dropped as a whole: skips the search of ``dd`` for leaked references."""
-
-    def __del__(self) -> None:
-        pass
 
 
 class Diagrams:
     """Boolean functions of variables, which are ordered as they are declared."""
 
     def __init__(self) -> None:
-        # The type hints of ``dd`` are incomplete.
-        self._functions: Any = _Functions()  # type: ignore[abstract]
+        self._levels: dict[str, int] = {}
+        self._names: list[str] = []
+        # Level, and the functions for false and for true, of each node; the latter is never a
+        # negation. There is no node 0, and node 1 is below all variables.
+        self._nodes = [(sys.maxsize, 0, 0)] * 2
+        self._numbers: dict[tuple[int, int, int], int] = {}
+        self._chosen: dict[tuple[int, int, int], int] = {}
         self._supports: dict[int, frozenset[str]] = {1: frozenset()}
         self._letters: dict[ltl.Proposition, str] = {}
 
     def declare(self, name: str) -> None:
         """Declare a variable below all others."""
-        self._functions.add_var(name)
+        if name not in self._levels:
+            self._levels[name] = len(self._names)
+            self._names.append(name)
 
     def variable(self, name: str) -> int:
         """The function that is true where the variable is true."""
-        return int(self._functions.var(name))
+        return self._node(self._levels[name], FALSE, TRUE)
 
     def declare_letters(self, names: Mapping[ltl.Proposition, str]) -> None:
         """Declare a new variable for each proposition, with the given name."""
@@ -73,7 +52,39 @@ class Diagrams:
 
     def ite(self, test: int, yes: int, no: int) -> int:
         """If ``test`` then ``yes``, else ``no``."""
-        return int(self._functions.ite(test, yes, no))
+        if yes == no or test == TRUE:
+            return yes
+        if test == FALSE:
+            return no
+        key = (test, yes, no)
+        chosen = self._chosen.get(key)
+        if chosen is None:
+            nodes = self._nodes
+            level = min(nodes[abs(test)][0], nodes[abs(yes)][0], nodes[abs(no)][0])
+            test_low, test_high = self._cofactors(test, level)
+            yes_low, yes_high = self._cofactors(yes, level)
+            no_low, no_high = self._cofactors(no, level)
+            low = self.ite(test_low, yes_low, no_low)
+            chosen = self._node(level, low, self.ite(test_high, yes_high, no_high))
+            self._chosen[key] = chosen
+        return chosen
+
+    def _node(self, level: int, low: int, high: int) -> int:
+        if low == high:
+            return low
+        if high < 0:
+            return -self._node(level, -low, -high)
+        number = self._numbers.setdefault((level, low, high), len(self._nodes))
+        if number == len(self._nodes):
+            self._nodes.append((level, low, high))
+        return number
+
+    def _cofactors(self, function: int, level: int) -> tuple[int, int]:
+        """A function where the variable of a level, not below its own, is false, and true."""
+        own, low, high = self._nodes[abs(function)]
+        if own != level:
+            return function, function
+        return (low, high) if function > 0 else (-low, -high)
 
     def both(self, left: int, right: int) -> int:
         """Conjunction."""
@@ -92,9 +103,8 @@ class Diagrams:
 
         The function must not be constant.
         """
-        level, low, high = self._functions.succ(function)
-        name = self._functions.var_at_level(level)
-        return (name, low, high) if function > 0 else (name, -low, -high)
+        level = self._nodes[abs(function)][0]
+        return self._names[level], *self._cofactors(function, level)
 
     def variables(self, function: int) -> frozenset[str]:
         """The variables that a function depends on."""
@@ -108,12 +118,29 @@ class Diagrams:
 
     def given(self, function: int, values: Mapping[str, bool]) -> int:
         """The function with some variables fixed to these values."""
-        met = {name: values[name] for name in self.variables(function) & values.keys()}
-        return int(self._functions.let(met, function)) if met else function
+        return self._decided(function, {self._levels[name]: values[name] for name in values}, {})
 
     def for_some(self, function: int, names: Iterable[str]) -> int:
         """The function with these variables quantified existentially."""
-        return int(self._functions.exist(set(names), function))
+        return self._decided(function, dict.fromkeys(map(self._levels.__getitem__, names)), {})
+
+    def _decided(
+        self, function: int, values: Mapping[int, bool | None], known: dict[int, int]
+    ) -> int:
+        """The function with the variables of these levels fixed, or, for None, quantified."""
+        decided = known.get(function)
+        if decided is not None:
+            return decided
+        level = self._nodes[abs(function)][0]
+        if level > max(values, default=-1):
+            return function
+        low, high = self._cofactors(function, level)
+        value = values.get(level)
+        low = FALSE if value is True else self._decided(low, values, known)
+        high = FALSE if value is False else self._decided(high, values, known)
+        decided = self.either(low, high) if level in values else self._node(level, low, high)
+        known[function] = decided
+        return decided
 
     def copied(self, function: int, to: Diagrams) -> int:
         """The same function, over the variables of the same names, in other diagrams."""
