@@ -13,7 +13,11 @@ from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
 from rulec.logic.formula import Formula, atoms_of
 from rulec.logic.past_registers import Register
 
-_Values = tuple[int, ...]
+_Bits = tuple[int, ...]
+_Sides = tuple[tuple[bool, bool], ...]
+"""For each register the values of its left and its right operand."""
+
+_EVERY = ((True, True), (True, False), (False, True), (False, False))
 
 
 def with_registers(
@@ -33,33 +37,46 @@ def with_registers(
     for proposition in automaton.ap():
         if proposition.ap_name() not in fresh:
             product.register_ap(proposition)
-    going = buddy.bddtrue
+    going, over = buddy.bddtrue, buddy.bddfalse
     if spot_formulas.alive is not None:
         going = buddy.bdd_ithvar(product.register_ap(spot_formulas.alive))
+        over = -going
     product.copy_acceptance_of(automaton)
     product.set_init_state(product.new_state())
     empty = tuple(register.at_first for register in registers)
     never_left = [_is_never_left(automaton, state) for state in range(automaton.num_states())]
     numbers = {(automaton.get_init_state_number(), empty): 0}
     reached = list(numbers)
-    over = (-going, operands.nothing, empty)
+    known: dict[tuple[int, _Bits], list[tuple[Any, _Sides | None, int, Any]]] = {}
     for state, values in reached:
         source = numbers[state, values]
         if never_left[state]:
             (edge,) = automaton.out(state)
             product.new_edge(source, source, buddy.bddtrue, edge.acc)
             continue
-        choices = [(letters & going, cube, later) for letters, cube, later in operands.on(values)]
-        for edge in automaton.out(state):
-            for letters, cube, later in [*choices, over]:
-                both = buddy.bdd_restrict(edge.cond, cube) & letters
-                if both == buddy.bddfalse:
-                    continue
-                target = (edge.dst, empty if never_left[edge.dst] else later)
-                if target not in numbers:
-                    numbers[target] = product.new_state()
-                    reached.append(target)
-                product.new_edge(source, numbers[target], both, edge.acc)
+        # Of what the registers hold, only whether it is due decides on the letters of edges.
+        due = tuple([value >> 1 & 1 for value in values])
+        if (state, due) not in known:
+            choices = [(cube, letters & going, sides) for cube, letters, sides in operands.on(due)]
+            known[state, due] = [
+                (both, sides, edge.dst, edge.acc)
+                for edge in automaton.out(state)
+                for cube, letters, sides in (*choices, (operands.nothing, over, None))
+                if (both := buddy.bdd_restrict(edge.cond, cube) & letters) != buddy.bddfalse
+            ]
+        after = [
+            {sides: register.after(value, *sides) for sides in _EVERY}
+            for register, value in zip(registers, values, strict=True)
+        ]
+        for letters, sides, state_after, marks in known[state, due]:
+            later = empty
+            if sides is not None and not never_left[state_after]:
+                later = tuple([own[side] for own, side in zip(after, sides, strict=True)])
+            target = state_after, later
+            if target not in numbers:
+                numbers[target] = product.new_state()
+                reached.append(target)
+            product.new_edge(source, numbers[target], letters, marks)
     product.merge_edges()
     return product
 
@@ -91,30 +108,20 @@ class _Operands:
         """The condition on the registers' atoms that none of them is true."""
         for *_, atom in self._registers:
             self.nothing &= -atom
-        self._known: dict[_Values, list[tuple[Any, Any, _Values]]] = {}
 
-    def on(self, values: _Values) -> list[tuple[Any, Any, _Values]]:
-        """Steps of registers: triples of letters, present values and next states."""
-        if values not in self._known:
-            result: list[tuple[Any, Any, _Values]] = [(buddy.bddtrue, buddy.bddtrue, ())]
-            for value, (register, left, right, atom) in zip(values, self._registers, strict=True):
-                result = [
-                    (letters & more, cube & (atom if later & 1 else -atom), (*others, later))
-                    for letters, cube, others in result
-                    for later, more in _steps(
-                        register, value, *(buddy.bdd_restrict(side, cube) for side in (left, right))
-                    ).items()
-                    if (letters & more) != buddy.bddfalse
-                ]
-            self._known[values] = result
-        return self._known[values]
+    def on(self, due: _Bits) -> list[tuple[Any, Any, _Sides]]:
+        """Steps of registers that hold these bits for a letter.
 
-
-def _steps(register: Register, value: int, left: Any, right: Any) -> dict[int, Any]:
-    """The register's next states, each with the letters that lead there."""
-    steps: dict[int, Any] = {}
-    for is_left, when_left in ((True, left), (False, -left)):
-        for is_right, when_right in ((True, right), (False, -right)):
-            later = register.after(value, is_left, is_right)
-            steps[later] = steps.get(later, buddy.bddfalse) | (when_left & when_right)
-    return steps
+        Each has the registers' values, the letters, and the values of the operands.
+        """
+        result: list[tuple[Any, Any, _Sides]] = [(buddy.bddtrue, buddy.bddtrue, ())]
+        for is_due, (register, *operands, atom) in zip(due, self._registers, strict=True):
+            result = [
+                (cube & (atom if register.after(is_due << 1, *own) & 1 else -atom), both, (*sides, own))
+                for cube, letters, sides in result
+                for left, right in [[buddy.bdd_restrict(side, cube) for side in operands]]
+                for own in _EVERY
+                if (both := letters & (left if own[0] else -left) & (right if own[1] else -right))
+                != buddy.bddfalse
+            ]
+        return result
