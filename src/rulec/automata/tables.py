@@ -103,17 +103,22 @@ def _tables(
     verdicts: list[list[bool]] = []
     over = automaton.after_the_end
     ends_well = None if over is None else _loop_verdicts(over, automaton)
-    for members in classes:
-        letter = members & -members
-        taken = [
-            next((edge.target, edge.colours) for edge in edges if edge.letters & letter)
-            for edges in automaton.edges
-        ]
-        targets.append([target for target, _ in taken])
+    firsts = [members & -members for members in classes]
+    # Far fewer sets of letters than edges have them, and each may have 100,000 bits.
+    labels = {edge.letters for edges in automaton.edges for edge in edges}
+    within = {
+        label: [place for place, first in enumerate(firsts) if label & first] for label in labels
+    }
+    rows = []
+    for edges in automaton.edges:
+        taken = {place: edge for edge in reversed(edges) for place in within[edge.letters]}
+        rows.append([(edge.target, edge.colours) for _, edge in sorted(taken.items())])
+    for step in zip(*rows, strict=True):
+        targets.append([target for target, _ in step])
         if ends_well is None:
-            verdicts.append(_loop_verdicts(taken, automaton))
+            verdicts.append(_loop_verdicts(step, automaton))
         else:
-            verdicts.append([ends_well[target] for target, _ in taken])
+            verdicts.append([ends_well[target] for target, _ in step])
     return list(zip(*targets, strict=True)), list(zip(*verdicts, strict=True))
 
 

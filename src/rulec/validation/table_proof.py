@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -25,8 +25,9 @@ Rows: TypeAlias = list[list[int]]
 
 @dataclass(frozen=True, slots=True)
 class ClaimedTable:
-    """A deterministic table: the letters of each class, as bits, and rows by state."""
+    """A deterministic table: each letter's class, a class's letters as bits, and rows by state."""
 
+    numbers: Sequence[int]
     classes: tuple[int, ...]
     following: Rows
     outputs: Rows
@@ -62,7 +63,14 @@ class ClaimedTable:
         same = int.from_bytes(excluded, "little") == letters.everything & ~possible
         require(same, "the letters that it leaves out are not those that the facts exclude")
         classes = tuple([int.from_bytes(each, "little") for each in bits])
-        return cls(classes, following, verdicts)
+        return cls(numbers, classes, following, verdicts)
+
+    def split(self, letters: int) -> Iterator[tuple[int, int]]:
+        """The classes of some possible letters, each with those that it contains, as bits."""
+        while letters:
+            number = self.numbers[_lowest(letters)]
+            yield number, letters & self.classes[number]
+            letters &= ~self.classes[number]
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,8 +144,7 @@ def prove_table(
             by_class[state] = [
                 (symbol, move, common)
                 for move in machine.moves(state)
-                for symbol, members in enumerate(table.classes)
-                if (common := move.letters & members)
+                for symbol, common in sorted(table.split(move.letters))
             ]
         for symbol, move, common in by_class[state]:
             target = move.target, table.following[row][symbol]

@@ -76,11 +76,8 @@ def translate(
     else:
         automaton = _combined(whole, True, spot_formulas)
     is_small = total_bound(whole) <= _SMALL or bool(past.memories)
-    compare: Callable[[], None] | None = None
-    if is_small:
-        check(automaton, whole, spot_formulas, past.memories)
-    else:
-        compare = partial(check, automaton, whole, spot_formulas, past.memories, cpu_s=_CHECK_CPU_S)
+    cpu_s = None if is_small else _CHECK_CPU_S
+    compare = partial(check, automaton, whole, spot_formulas, past.memories, cpu_s=cpu_s)
     if past.registers:
         automaton = _shaped(with_registers(automaton, past.registers, spot_formulas))
     return Translation(
@@ -116,7 +113,7 @@ def _guessed(formula: ltl.Formula, memories: Sequence[Memory], spot_formulas: Sp
 
 def _combined(formula: ltl.Formula, polarity: bool, spot_formulas: SpotFormulas) -> Any:
     """The automaton of a formula or its negation; bounded ones are translated in parts."""
-    if total_bound(formula) == 0:
+    if total_bound(formula) == 0 and spot_formulas.alive is None:
         return spot_formulas.translate(_language(formula, polarity, spot_formulas), *_SHAPE)
     match formula:
         case ltl.Unary(ltl.UnaryOperator.NOT, operand):
