@@ -27,6 +27,14 @@ MOST_DIGITS: Final = 1000
 """The most digits of a number read exactly, in rulebooks, compiled files and saved monitors."""
 
 
+class BudgetSpentError(RulecError):
+    """A budget of time for a whole call is spent, so that no part of it is answered any more.
+
+    What has been answered by then depends on the machine: to leave out the rest and go on would
+    make the answer depend on it, too.
+    """
+
+
 @dataclass(frozen=True, slots=True)
 class ResourceLimit:
     """A limit by name: the greatest number of ``counted``, and what else helps."""
@@ -50,6 +58,10 @@ class ResourceLimit:
         """
         if amount > self.value():
             raise self.exceeded(place, whose, f"{amount:,}" if amount < 10**18 else "over 10^18")
+
+    def spent(self, place: SourceLocation | None, whose: str) -> BudgetSpentError:
+        """The error for a budget that is spent, which ends the whole call."""
+        return BudgetSpentError(self.exceeded(place, whose).diagnostics)
 
     def exceeded(
         self, place: SourceLocation | None, whose: str = "", amount: str = ""

@@ -10,7 +10,7 @@ import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from hashlib import sha256
 from pathlib import Path
@@ -46,10 +46,6 @@ STEPS_OF: Mapping[str, Sequence[Fraction]] = {
 nuPlan has American roads, including Nevada, at 20 Hz, CitySim at 30, AD4CHE Chinese ones at 30;
 many simulators use 20.
 """
-
-_PATIENT_CPU_S = 60
-"""The processor time of a job that needs more than users wait for, so that what ships does not
-depend on how fast the machine is that generates it."""
 
 _BOOKS = shipped_key("which rulebooks, of which texts")
 TRIED = ("esterle2019", "de")
@@ -143,10 +139,6 @@ def _recorded() -> Iterator[dict[bytes, bytes]]:
         jobs: Sequence[Job], *, choice: str | None = None, **rest: Any
     ) -> tuple[list[Done | Failed | None], str]:
         answers, spot = ask(jobs, choice=choice, **rest | {"time": CompilerTime(math.inf)})
-        killed = [job for job, answer in zip(jobs, answers, strict=True) if answer is None]
-        patient = [replace(job, cpu_s=_PATIENT_CPU_S) for job in killed]
-        others = iter(ask(patient, choice=choice, time=CompilerTime(math.inf))[0])
-        answers = [next(others) if answer is None else answer for answer in answers]
         for job, answer in zip(jobs, answers, strict=True):
             if isinstance(answer, Done) and answer.machine.reads == job.reads:
                 key = machine_cache.machine_key(choice or "", job)

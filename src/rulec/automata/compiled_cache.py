@@ -28,6 +28,7 @@ from rulec.rulebook.files.search_path import Dependency, find_rulebook, read_byt
 from rulec.version import __version__
 
 if TYPE_CHECKING:
+    from rulec.automata.compiler import CompilerTime
     from rulec.automata.outcome_machine import OutcomeMachine
     from rulec.automata.step_compilation import StepCompiler
     from rulec.rulebook.rulebook_model import Rulebook
@@ -160,7 +161,7 @@ class _File:
 
 def _cached(compiled: CompiledRulebook, steps: CachedSteps, file: _File) -> CompiledRulebook:
     known = compiled.prefixes if isinstance(compiled.prefixes, StoredPrefixes) else None
-    return replace(compiled, recompile=steps, prefixes=CachedPrefixes(file, known))
+    return replace(compiled, recompile=steps, prefixes=CachedPrefixes(file, steps, known))
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,6 +196,7 @@ class CachedSteps:
         self._own = own
         self._given = own.vocabulary, own.axioms, own.sources, *own.rules
         self._steps = steps
+        self._time = None if steps is None else steps.time
         self._answers: dict[str, CompiledRulebook | RulecError] = {}
 
     def __reduce__(self) -> tuple[type[CachedSteps], tuple[object, ...]]:
@@ -249,12 +251,22 @@ class CachedSteps:
             file.write(text, compiled)
         return _cached(compiled, self, file)
 
+    @property
+    def time(self) -> CompilerTime:
+        """The time that compilers have for all of its steps and machines."""
+        if self._time is None:
+            # Processes, 15 ms: only where something is compiled.
+            from rulec.automata.compiler import CompilerTime
+
+            self._time = CompilerTime()
+        return self._time
+
     def _compiler(self) -> StepCompiler:
         if self._steps is None:
             # The parser takes 60 ms to import: only where the cache has no answer.
             from rulec.automata.step_compilation import StepCompiler
 
-            self._steps = StepCompiler(_ReadAgain(self._question)())
+            self._steps = StepCompiler(_ReadAgain(self._question)(), self.time)
         return self._steps
 
 
@@ -291,19 +303,25 @@ class CachedPrefixes:
     """A ``PrefixCompiler`` that adds its machines to the file of their rulebook."""
 
     _file: _File
+    _steps: CachedSteps
     _stored: StoredPrefixes | None = None
 
     def __call__(self, rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
         """The machines of the rulebook's rules. Raises RulecError R0403 if Spot is missing."""
-        if self._stored is not None:
-            return self._stored(rulebook)
+        known = self._stored or StoredPrefixes({})
+        rules = tuple([rule for rule in rulebook.rules if rule.name not in known.entries])
+        if not rules:
+            return known(rulebook)
         # The compiler takes 30 ms to import: only where the cache has no machines.
         from rulec.automata.prefix_machines import prefix_machines
 
-        machines = prefix_machines(rulebook)
+        machines = prefix_machines(replace(rulebook, rules=rules), self._steps.time)
+        added = stored(replace(rulebook, rules=rules, prefixes=lambda _: machines))
         whole = self._file.read()
-        if whole is not None and whole.rulebook is not None:
-            prefixes = stored(replace(whole.rulebook, prefixes=lambda _: machines))
-            if all(rule.name in machines for rule in whole.rulebook.rules):
-                self._file.write(whole, replace(whole.rulebook, prefixes=prefixes))
-        return machines
+        if added is not None and whole is not None and whole.rulebook is not None:
+            self._stored = known = StoredPrefixes(
+                {**known.entries, **added.entries}, {**known.orders, **added.orders}
+            )
+            if {rule.name for rule in whole.rulebook.rules}.issuperset(known.entries):
+                self._file.write(whole, replace(whole.rulebook, prefixes=known))
+        return {**known(rulebook), **machines}

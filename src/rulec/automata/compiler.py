@@ -1,7 +1,7 @@
 """Compiles a rulebook to monitors, with Spot or with decision diagrams, in another process.
 
 A formula's automaton can be doubly exponential in it. Spot then uses up memory or ends its process;
-so it runs in a separate process, with limits on processor time and memory.
+so it runs in a separate process, with limits on memory, and on the processor time of all rules.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import atexit
 import os
 import pickle
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
@@ -27,7 +28,7 @@ from rulec.automata.bundle.compiled_rulebook import (
     alike,
 )
 from rulec.automata.compiler_jobs import Done, Failed, Job
-from rulec.automata.compiler_messages import no_machine, no_spot, not_confined
+from rulec.automata.compiler_messages import no_machine, no_spot, no_time, not_confined
 from rulec.automata.worker import compiler_choice
 from rulec.automata.worker.machine_cache import MachineCache
 from rulec.automata.worker.worker_answers import HAS_PROCESSES, WorkerGreeting, answered_here
@@ -45,8 +46,6 @@ from rulec.rulebook.rules.axiom_instances import axiom_instances
 from rulec.rulebook.rules.exemptions import rule_trigger
 from rulec.rulebook.rules.implied_signals import with_implied
 from rulec.version import __version__
-
-CPU_LIMIT_S = 5
 
 # The worker finds the modules that this process finds, and nothing in the working directory.
 _REQUIRE_CONFINED = "RULEC_REQUIRE_CONFINED"
@@ -110,43 +109,40 @@ def lower(
     return RulebookFormulas(tuple(formulas), step_s, tuple(problems))
 
 
-def compile_rulebook(
-    rulebook: Rulebook, *, step_s: Fraction | None = None, cpu_limit_s: int = CPU_LIMIT_S
-) -> CompiledRulebook:
+def compile_rulebook(rulebook: Rulebook, *, step_s: Fraction | None = None) -> CompiledRulebook:
     """Compile every rule for one step: ``lower``, then ``build_all``."""
-    return build_all(rulebook, lower(rulebook, step_s), cpu_limit_s)
+    return build_all(rulebook, lower(rulebook, step_s))
 
 
 def build_all(
     rulebook: Rulebook,
     formulas: RulebookFormulas,
-    cpu_limit_s: int = CPU_LIMIT_S,
     *,
     more_will_come: bool = False,
     time: CompilerTime | None = None,
 ) -> CompiledRulebook:
     """Build the automaton of every formula, in the order of the rules.
 
-    ``cpu_limit_s`` is the processor time that a rule's automaton may take, in whole seconds. With
-    ``more_will_come`` the worker stays alive for the next call, since starting one takes 0.25 s.
+    With ``more_will_come`` the worker stays alive for the next call, since starting one takes
+    0.25 s.
     Raises RulecError with the formulas' problems; R0401 for each rule whose automaton is too large,
     R0402 for each whose automaton failed its check, R0403 for each that needs Spot if Spot is
-    missing, R0409 for axioms that contradict each other, R0718 for the first rule for which no
+    missing, R0409 for axioms that contradict each other; BudgetSpentError (R0718) alone if no
     ``time`` is left.
     """
     compiled: list[CompiledRule] = []
     problems = list(formulas.problems)
     if problems and not formulas.rules:
         raise RulecError(problems)  # there is nothing to compile, so no process is started
-    jobs = [_job(rulebook, rule, cpu_limit_s) for rule in formulas.rules]
+    jobs = [_job(rulebook, rule) for rule in formulas.rules]
     answers, spot = answers_to(jobs, more_will_come=more_will_come, time=time)
     for lowered, answer in zip(formulas.rules, answers, strict=True):
         if isinstance(answer, Done):
             compiled.append(_compiled(lowered.rule, lowered.step_s, answer))
+        elif answer == Failed("time"):
+            raise no_time(lowered.rule.name, at(lowered.rule.span), lowered.step_s)
         else:
-            problems.append(no_machine(lowered.rule, answer, cpu_limit_s, lowered.step_s))
-            if isinstance(answer, Failed) and answer.why == "time":
-                break  # no time is left for later rules either
+            problems.append(no_machine(lowered.rule, answer, lowered.step_s))
     if problems:
         # Every rule reports contradictory facts; each report is kept once.
         raise RulecError(dict.fromkeys(problems))
@@ -178,7 +174,6 @@ def job_of(rule: CompiledRule, rulebook: CompiledRulebook) -> Job:
         remarks=(),
         semantics=rulebook.semantics,
         groups=axiom_groups(propositions_of(formula), instances, rulebook.vocabulary),
-        cpu_s=CPU_LIMIT_S,
     )
 
 
@@ -190,9 +185,9 @@ class CompilerTime:
     taken_s: float = 0.0
 
     @property
-    def is_over(self) -> bool:
-        """Whether no time is left."""
-        return self.taken_s > self.most_s
+    def left_s(self) -> float:
+        """How much is left."""
+        return self.most_s - self.taken_s
 
 
 def answers_to(
@@ -224,13 +219,13 @@ def answers_to(
         # A worker lives until it is done or a job kills it; a new one takes the remaining jobs.
         with _worker(choice, more_will_come=more_will_come) as (process, spot):
             for job in missing[len(answers) :]:
-                if time.is_over:
+                if time.left_s <= 0:
                     answers.append(Failed("time"))
                     continue
-                answer, seconds = _ask(process, job)
+                answer, seconds = _ask(process, job, time.left_s)
                 answers.append(answer)
                 time.taken_s += seconds
-                if answer is None:
+                if answer in (None, Failed("time")):
                     _end(process)
                     break
     cache.keep(missing, answers, spot)
@@ -298,20 +293,26 @@ def _started(choice: str) -> _Started:
     return process, ready.spot
 
 
-def _ask(process: subprocess.Popen[bytes], job: Job) -> tuple[Done | Failed | None, float]:
-    """The worker's answer, None if the job killed it, and the time that it took (s)."""
+def _ask(
+    process: subprocess.Popen[bytes], job: Job, most_s: float
+) -> tuple[Done | Failed | None, float]:
+    """The worker's answer, None if the job killed it, and the time that it took (s).
+
+    It is stopped after ``most_s`` seconds of processor time.
+    """
     assert process.stdin is not None
     assert process.stdout is not None
     try:
-        pickle.dump(job, process.stdin)
+        pickle.dump((job, most_s), process.stdin)
         process.stdin.flush()
         answer: tuple[Done | Failed, float] = pickle.load(process.stdout)
     except (EOFError, BrokenPipeError, pickle.UnpicklingError):
-        return None, job.cpu_s
+        is_late = process.wait() == -signal.SIGXCPU
+        return (Failed("time"), most_s) if is_late else (None, 0.0)
     return answer
 
 
-def _job(rulebook: Rulebook, lowered: RuleFormula, cpu_limit_s: int) -> Job:
+def _job(rulebook: Rulebook, lowered: RuleFormula) -> Job:
     rule, formula, step = lowered.rule, lowered.formula, lowered.step_s
     cite = f", {rule.cite}" if rule.cite else ""
     remarks = [
@@ -329,7 +330,6 @@ def _job(rulebook: Rulebook, lowered: RuleFormula, cpu_limit_s: int) -> Job:
         remarks=tuple(remarks),
         semantics=rulebook.semantics,
         groups=axiom_groups(propositions_of(formula), instances, vocabulary),
-        cpu_s=cpu_limit_s,
     )
 
 

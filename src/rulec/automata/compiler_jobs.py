@@ -17,13 +17,16 @@ MOST_LETTERS = 1 << 16
 MOST_STEPS_AHEAD = 10_000
 """An automaton has at least one state per step of a bound; more steps cannot be built in time."""
 
+MOST_STATES, MOST_EDGES = 20_000, 200_000
+"""The most of an automaton while it is built, whatever it is reduced to: sizes, not times, so that
+the same rules can be compiled on every machine."""
+
 
 @dataclass(frozen=True, slots=True)
 class Job:
     """One rule to translate, with its bounds in steps.
 
-    ``groups`` are the axioms about its variables. ``cpu_s`` is the processor time that it may use,
-    in whole seconds.
+    ``groups`` are the axioms about its variables.
     """
 
     name: str
@@ -32,7 +35,6 @@ class Job:
     remarks: tuple[str, ...]
     semantics: Semantics
     groups: tuple[AxiomGroup, ...]
-    cpu_s: int
     most_letters: int = MOST_LETTERS
 
     def remarks_on(self, alive: str | None) -> tuple[str, ...]:
@@ -54,13 +56,16 @@ class Done:
 class Failed:
     """The reason why there is no monitor.
 
-    ``letters``, ``steps``, ``sets`` (of acceptance) or ``memory``: too many or too much is needed.
-    ``check``: the result was wrong. ``facts``: those in ``contradiction`` cannot hold together.
-    ``reach``: Spot is needed. ``time``: earlier rules used up the rulebook's time. ``bug``: any
-    unforeseen error, with its traceback.
+    ``letters``, ``steps``, ``size`` (states or edges), ``sets`` (of acceptance) or ``memory``: too
+    many or too much is needed. ``check``: the result was wrong. ``facts``: those in
+    ``contradiction`` cannot hold together.
+    ``reach``: Spot is needed. ``time``: the rulebook's time is used up. ``bug``: any unforeseen
+    error, with its traceback.
     """
 
-    why: Literal["letters", "steps", "sets", "memory", "check", "facts", "reach", "time", "bug"]
+    why: Literal[
+        "letters", "steps", "size", "sets", "memory", "check", "facts", "reach", "time", "bug"
+    ]
     traceback: str = ""
     contradiction: tuple[AxiomInstance, ...] = ()
 
@@ -89,12 +94,16 @@ class BeyondReachError(Exception):
     """A formula that a compiler cannot translate."""
 
 
+class SizeError(Exception):
+    """An automaton gets more than ``MOST_STATES`` or ``MOST_EDGES``."""
+
+
 class AcceptanceError(Exception):
     """An automaton needs more acceptance sets than a compiler supports."""
 
 
 Translator: TypeAlias = Callable[[Job], Translated]
-"""Raises CheckError, BeyondReachError and AcceptanceError."""
+"""Raises CheckError, BeyondReachError, SizeError and AcceptanceError."""
 
 
 @dataclass(frozen=True, slots=True)

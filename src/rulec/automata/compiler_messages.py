@@ -5,14 +5,13 @@ from __future__ import annotations
 from fractions import Fraction
 
 from rulec.automata.bundle.bundle_messages import AUTOMATON_TOO_LARGE
-from rulec.automata.compiler_jobs import Failed
+from rulec.automata.compiler_jobs import MOST_EDGES, MOST_STATES, Failed
 from rulec.automata.worker.confinement import Confinement
-from rulec.diagnostics import Diagnostic
+from rulec.diagnostics import Diagnostic, SourceLocation
 from rulec.diagnostics.code import Code
-from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import operations_of
 from rulec.logic.printing import number_in_words
-from rulec.resource_limits import COMPILING
+from rulec.resource_limits import COMPILING, BudgetSpentError
 from rulec.rulebook.rulebook_model import Rule, provision_note
 from rulec.rulebook.rules.axiom_messages import contradictory_facts
 
@@ -62,14 +61,12 @@ _GET_SPOT = (
 )
 
 
-def no_machine(
-    rule: Rule, failed: Failed | None, cpu_limit_s: int, step_s: Fraction | None = None
-) -> Diagnostic:
+def no_machine(rule: Rule, failed: Failed | None, step_s: Fraction | None = None) -> Diagnostic:
     """The diagnostic (R0401 to R0403, R0409) for a failure; None: Spot's process died (R0401).
 
     ``step_s`` is the step in which the rule's bounds were counted. Raises RuntimeError for a bug.
     """
-    why = f"it takes more than {cpu_limit_s} s or 2 GiB to build"
+    why = "it takes more than 2 GiB to build"
     match failed:
         case Failed("bug", traceback):
             raise RuntimeError(f"while compiling rule {rule.name}:\n{traceback}")
@@ -90,13 +87,10 @@ def no_machine(
                 help=_GET_SPOT,
                 notes=_provision(rule),
             )
-        case Failed("time"):
-            whose = f"before rule `{rule.name}`"
-            if step_s is not None:
-                whose += f" for steps of {number_in_words(step_s)} s"
-            return COMPILING.exceeded(at(rule.span), whose).diagnostics[0]
         case Failed("letters"):
             why = "it reads too many signals, enumerations and numbers at once"
+        case Failed("size"):
+            why = f"it gets more than {MOST_STATES:,} states or {MOST_EDGES:,} edges"
         case Failed("sets"):
             why = "it needs more acceptance sets than Spot supports"
         case Failed("steps"):
@@ -125,6 +119,14 @@ def no_machine(
         help=help_text,
         notes=_provision(rule),
     )
+
+
+def no_time(name: str, place: SourceLocation | None, step_s: Fraction | None) -> BudgetSpentError:
+    """The error (R0718) for a rulebook whose time is used up when this rule is compiled."""
+    whose = f"up to rule `{name}`"
+    if step_s is not None:
+        whose += f" for steps of {number_in_words(step_s)} s"
+    return COMPILING.spent(place, whose)
 
 
 def _provision(rule: Rule) -> tuple[str, ...]:

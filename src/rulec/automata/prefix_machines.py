@@ -10,15 +10,15 @@ objects begin when these appear: otherwise, in some possible past, ego passed th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.compiler import answers_to, job_of
+from rulec.automata.compiler import CompilerTime, answers_to, job_of
 from rulec.automata.compiler_jobs import MOST_LETTERS, Done, Failed, Job
+from rulec.automata.compiler_messages import no_time
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, Read
 from rulec.automata.outcome_machine import OutcomeMachine, of_prefixes
-from rulec.automata.worker import compiler_choice
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.semantics import Semantics
@@ -30,10 +30,13 @@ _KNOWN: dict[tuple[object, ...], OutcomeMachine | None] = {}
 _MOST_KNOWN = 1 << 10
 
 
-def prefix_machines(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
+def prefix_machines(
+    rulebook: CompiledRulebook, time: CompilerTime | None = None
+) -> Mapping[str, OutcomeMachine | None]:
     """The machine of each rule for prefixes, by the rule's name; None if it gets too large.
 
-    They are compiled on first use. Raises RulecError R0403 if Spot is requested but not installed.
+    They are compiled on first use. Raises RulecError R0403 if Spot is requested but not installed,
+    BudgetSpentError (R0718) if no ``time`` is left.
     """
     keys = {rule.name: _key(rule, rulebook) for rule in rulebook.rules}
     missing = [rule for rule in rulebook.rules if keys[rule.name] not in _KNOWN]
@@ -41,33 +44,19 @@ def prefix_machines(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine |
         _KNOWN.clear()
         missing = list(rulebook.rules)
     jobs = [job for rule in missing for job in _jobs(rule, rulebook)]
-    answers = iter(_answers(jobs, is_spots=bool(rulebook.spot)))
+    answers = iter(answers_to(jobs, time=time)[0] if jobs else ())
     for rule in missing:
-        own = _table(next(answers)) if _looks_back(rule) else rule.machine
-        finite = own if rulebook.semantics == "finite" else _table(next(answers))
+        mine = [next(answers) for _ in _jobs(rule, rulebook)]
+        if Failed("time") in mine:
+            raise no_time(rule.name, rulebook.place_of(rule.name), rule.step_s)
+        tables = [_table(answer) for answer in mine]
+        own = tables[0] if _looks_back(rule) else rule.machine
+        finite = own if rulebook.semantics == "finite" else tables[-1]
         machine = None
         if own is not None and finite is not None:
             machine = _machine(own, finite, goes_on=_goes_on(rule))
         _KNOWN[keys[rule.name]] = machine
     return {name: _KNOWN[key] for name, key in keys.items()}
-
-
-def _answers(jobs: Sequence[Job], *, is_spots: bool) -> list[Done | Failed | None]:
-    """The answers, from decision diagrams unless the environment chooses another compiler.
-
-    Spot takes twice as long for words that end, and ten times for some rules; the tables are the
-    same. Formulas that diagrams cannot translate go to Spot if it compiled the rulebook.
-    """
-    if not jobs:
-        return []
-    if compiler_choice.choice():
-        return answers_to(jobs)[0]
-    answers, _ = answers_to(jobs, choice=compiler_choice.DIAGRAMS)
-    left = [job for job, answer in zip(jobs, answers, strict=True) if not isinstance(answer, Done)]
-    if not left or not is_spots:
-        return answers
-    others = iter(answers_to(left)[0])
-    return [answer if isinstance(answer, Done) else next(others) for answer in answers]
 
 
 def _key(rule: CompiledRule, rulebook: CompiledRulebook) -> tuple[object, ...]:

@@ -44,7 +44,7 @@ class StepCompiler:
         self._roundings: dict[tuple[Formula, ...], StepCompiler] = {}
         self._judgeable: dict[Fraction, tuple[CompiledRulebook, ...]] = {}
         self._built = 0
-        self._time = time or CompilerTime()
+        self.time = time or CompilerTime()
 
     def __reduce__(self) -> tuple[Callable[[Rulebook], StepCompiler], tuple[Rulebook]]:
         return StepCompiler, (self.rulebook,)
@@ -84,7 +84,7 @@ class StepCompiler:
             rules = zip(self.rulebook.rules, formulas, strict=True)
             rounded = tuple([replace(rule, formula=formula) for rule, formula in rules])
             self._roundings[formulas] = StepCompiler(
-                replace(self.rulebook, rules=rounded), self._time
+                replace(self.rulebook, rules=rounded), self.time
             )
         return self._roundings[formulas](step_s)
 
@@ -109,7 +109,7 @@ class StepCompiler:
             kept = tuple(rule for rule in self.rulebook.rules if rule not in rules)
             why = f"its automaton is too large for steps of {number_in_words(step_s)} s"
             left_out = [TooLargeRule(rule.name, rule.strength, why) for rule in rules]
-            smaller = StepCompiler(replace(self.rulebook, rules=kept), self._time)
+            smaller = StepCompiler(replace(self.rulebook, rules=kept), self.time)
             # With bounds rounded up, other rules may be too large than with bounds rounded down.
             return tuple(
                 replace(book, too_large=(*left_out, *book.too_large))
@@ -133,12 +133,16 @@ class StepCompiler:
             # A caller that needs a second step will probably need more.
             more_will_come = self._header is not None
             lacking = replace(formulas, rules=missing)
-            built = build_all(
-                self.rulebook, lacking, more_will_come=more_will_come, time=self._time
-            )
-            self._header = replace(built, recompile=self, prefixes=_prefixes)
+            built = build_all(self.rulebook, lacking, more_will_come=more_will_come, time=self.time)
+            self._header = replace(built, recompile=self, prefixes=self._prefixes)
             machines.update({(rule.name, rule.step_s): rule for rule in built.rules})
         return replace(self._header, rules=tuple(machines[key] for key in keys))
+
+    def _prefixes(self, rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
+        # Takes 0.1 s to import with NumPy, and is needed only for cut traces.
+        from rulec.automata.prefix_machines import prefix_machines
+
+        return prefix_machines(rulebook, self.time)
 
     def _compiled(self, rules: Sequence[Rule], step_s: Fraction | None) -> CompiledRulebook:
         return self.built(lower(replace(self.rulebook, rules=tuple(rules)), step_s))
@@ -151,13 +155,6 @@ def _fitted(compiler: StepCompiler, step_s: Fraction) -> tuple[CompiledRulebook,
         if is_too_large(error):
             raise
         return compiler.rounded(step_s)
-
-
-def _prefixes(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
-    # Takes 0.1 s to import with NumPy, and is needed only for cut traces.
-    from rulec.automata.prefix_machines import prefix_machines
-
-    return prefix_machines(rulebook)
 
 
 def _check_steps(before: int, rulebook: Rulebook) -> None:

@@ -23,6 +23,7 @@ from rulec.recordings.recording_format import RecordingSource
 from rulec.report.text.terminal_text import visible
 from rulec.report.verdicts import recording_table, verdict_report
 from rulec.report.verdicts.state_times import StateTimes
+from rulec.resource_limits import BudgetSpentError
 
 if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation
@@ -120,6 +121,8 @@ def judge_with_progress(
             else:
                 yield from judged.pieces(tell)
             left = judged.left
+    except BudgetSpentError:
+        raise
     except RulecError as error:
         yield error if label == path else _relabelled(error, path, label)
 

@@ -25,7 +25,7 @@ from rulec.report.verdict_findings.verdict_finding import RecordingFindings, Ver
 from rulec.report.verdicts import verdict_report
 from rulec.report.verdicts.batch_table import BatchTally
 from rulec.report.verdicts.state_times import StateTimes
-from rulec.resource_limits import REFUSED
+from rulec.resource_limits import REFUSED, BudgetSpentError
 from rulec.trace import Trace
 from rulec.trace.formats.trace_files import Format, format_of, read_chunks
 from rulec.trace.trace_messages import SAME_ID
@@ -189,6 +189,8 @@ class TraceRun:
             with opened(Path(file)) as stream:
                 self.opened = True
                 yield from self._in_stream(stream, file, form or format_of(file), assumed)
+        except BudgetSpentError:
+            raise
         except RulecError as error:
             yield ([error], 0, NotJudged(None, error)), None
 

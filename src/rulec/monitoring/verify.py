@@ -17,6 +17,7 @@ from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import StateValidator, check_objects, check_told
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed
+from rulec.resource_limits import BudgetSpentError
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_trace
 
@@ -121,7 +122,7 @@ def _errors_at(place: SourceLocation | None) -> Iterator[None]:
         yield
     except RulecError as error:
         # The error is about this trace, so the place of the rule is only a note.
-        raise RulecError([_at(place, diagnostic) for diagnostic in error.diagnostics]) from None
+        raise type(error)([_at(place, diagnostic) for diagnostic in error.diagnostics]) from None
 
 
 def _at(place: SourceLocation | None, problem: Diagnostic) -> Diagnostic:
@@ -140,6 +141,8 @@ def verify_or_reason(item: Trace | RulecError, rulebook: CompiledRulebook) -> Ve
         return NotJudged(None, item)
     try:
         return verify(item, rulebook)
+    except BudgetSpentError:
+        raise
     except RulecError as error:
         return NotJudged(item.id, as_answer(with_place(error, item.place)))
 

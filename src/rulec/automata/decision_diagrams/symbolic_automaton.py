@@ -6,7 +6,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias, TypeVar
 
-from rulec.automata.compiler_jobs import BeyondReachError
+from rulec.automata.compiler_jobs import (
+    MOST_EDGES,
+    MOST_STATES,
+    BeyondReachError,
+    SizeError,
+)
 from rulec.automata.decision_diagrams.diagrams import FALSE, TRUE, Diagrams
 from rulec.logic.past_registers import Register
 
@@ -44,8 +49,9 @@ def explored(
     """All reachable states, and the edges of each.
 
     ``step`` yields a state's edges as target, marks and letters; the letters of two edges are
-    disjoint.
+    disjoint. Raises SizeError.
     """
+    n_edges = 0
     states = [first]
     numbers = {first: 0}
     rows = []
@@ -57,6 +63,9 @@ def explored(
                 states.append(target)
             row[numbers[target], marks] = letters
         rows.append(row)
+        n_edges += len(row)
+        if len(states) > MOST_STATES or n_edges > MOST_EDGES:
+            raise SizeError
     return states, rows
 
 

@@ -14,6 +14,7 @@ import spot
 
 import buddy  # isort: skip - only once spot has been imported
 
+from rulec.automata.compiler_jobs import MOST_EDGES, MOST_STATES, SizeError
 from rulec.automata.spot_bridge.obligations import Obligations
 from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
 from rulec.logic.formula import Formula
@@ -65,9 +66,10 @@ class Progression:
     def _table(self) -> tuple[list[Any], list[list[tuple[Any, int]]]]:
         """The obligations of each state, and its edges as (letters, target).
 
-        State 0 is the one before the word; nothing leads back to it.
+        State 0 is the one before the word; nothing leads back to it. Raises SizeError.
         """
         states: list[Any] = [None]
+        n_edges = 0
         numbers: dict[int, int] = {}
         table = []
         for state in states:
@@ -81,6 +83,9 @@ class Progression:
                     states.append(target)
                 edges.append((letters, numbers[target.id()]))
             table.append(edges)
+            n_edges += len(edges)
+            if len(states) > MOST_STATES or n_edges > MOST_EDGES:
+                raise SizeError
         return states, table
 
     def infinite(self) -> Any:

@@ -9,6 +9,7 @@ import spot
 
 import buddy  # isort: skip - only once spot has been imported
 
+from rulec.automata.compiler_jobs import MOST_EDGES, MOST_STATES, SizeError
 from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
 from rulec.logic.formula import Formula, atoms_of
 from rulec.logic.past_registers import Register
@@ -28,7 +29,7 @@ def with_registers(
     A state combines a state of the automaton and one of each register. These and a letter determine
     the registers' values, by them the automaton's edge, and the registers' next states, so the
     product stays deterministic and complete. After the end of a finite word, and in a state that is
-    never left, the past makes no difference, so the registers are reset.
+    never left, the past makes no difference, so the registers are reset. Raises SizeError.
     """
     operands = _Operands(automaton, registers, spot_formulas)
     propositions = automaton.get_dict()
@@ -77,6 +78,8 @@ def with_registers(
                 numbers[target] = product.new_state()
                 reached.append(target)
             product.new_edge(source, numbers[target], letters, marks)
+        if len(reached) > MOST_STATES or product.num_edges() > MOST_EDGES:
+            raise SizeError
     product.merge_edges()
     return product
 
@@ -116,8 +119,9 @@ class _Operands:
         """
         result: list[tuple[Any, Any, _Sides]] = [(buddy.bddtrue, buddy.bddtrue, ())]
         for is_due, (register, *operands, atom) in zip(due, self._registers, strict=True):
+            held = {own: atom if register.after(is_due << 1, *own) & 1 else -atom for own in _EVERY}
             result = [
-                (cube & (atom if register.after(is_due << 1, *own) & 1 else -atom), both, (*sides, own))
+                (cube & held[own], both, (*sides, own))
                 for cube, letters, sides in result
                 for left, right in [[buddy.bdd_restrict(side, cube) for side in operands]]
                 for own in _EVERY

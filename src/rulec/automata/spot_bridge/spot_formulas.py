@@ -10,11 +10,13 @@ import spot
 import buddy  # isort: skip - only once spot has been imported
 
 from rulec.automata.alphabet import AND, NOT, OR, joined, names_of, propositions_of
+from rulec.automata.compiler_jobs import MOST_EDGES, MOST_STATES, SizeError
 from rulec.logic.bounds import Range
 from rulec.logic.fold import Algebra, fold, temporal_operation
 from rulec.logic.formula import Constant, Formula, Proposition, Unary
 
 F = spot.formula
+_SIZES = f"det-max-states={MOST_STATES},det-max-edges={MOST_EDGES}"
 _STRONG_NEXT = F("X[!]p").kind()
 """Spot's `X` is weak where a word may end, and the strong one has no constructor."""
 
@@ -39,8 +41,14 @@ class SpotFormulas:
         self._known: dict[Formula, Any] = {}
 
     def translate(self, language: Any, *shape: str) -> Any:
-        """Translate Spot's LTL formula to an automaton over the shared dictionary."""
-        return spot.translate(language, *shape, dict=self.dictionary)
+        """Translate Spot's LTL formula to an automaton over the shared dictionary.
+
+        Raises SizeError if a deterministic one is wanted, and it gets too large.
+        """
+        found = spot.translate(language, *shape, dict=self.dictionary, xargs=_SIZES)
+        if "det" in shape and not spot.is_deterministic(found):
+            raise SizeError
+        return found
 
     def formula_of(self, formula: Formula) -> Any:
         """Spot's formula; in LTLf if words are finite."""

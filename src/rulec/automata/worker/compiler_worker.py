@@ -10,8 +10,8 @@ import resource
 import sys
 import time
 from contextlib import suppress
+from math import ceil, isfinite
 
-from rulec.automata.compiler_jobs import Job
 from rulec.automata.worker.confinement import Confinement
 from rulec.automata.worker.worker_answers import WorkerGreeting, answered, chosen
 
@@ -34,11 +34,12 @@ def main(confined: Confinement, choice: str) -> None:
     answers.flush()
     while True:
         try:
-            job: Job = pickle.load(sys.stdin.buffer)
+            job, most_s = pickle.load(sys.stdin.buffer)
         except EOFError:
             return
         began = time.process_time()
-        _limit(resource.RLIMIT_CPU, int(began) + 1 + job.cpu_s)
+        if isfinite(most_s):
+            _limit(resource.RLIMIT_CPU, ceil(began + most_s))
         answer = answered(job, compiler)
         pickle.dump((answer, time.process_time() - began), answers)
         answers.flush()

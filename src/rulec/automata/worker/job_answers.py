@@ -16,6 +16,7 @@ from rulec.automata.compiler_jobs import (
     Done,
     Failed,
     Job,
+    SizeError,
     Translated,
 )
 from rulec.automata.mealy_monitor import MealyMonitor
@@ -44,6 +45,8 @@ def answer_to(job: Job, compiler: Compiler) -> Done | Failed:
         return Failed("check")
     except BeyondReachError:
         return Failed("reach")
+    except SizeError:
+        return Failed("size")
     except AcceptanceError:
         return Failed("sets")
     machine = build_machine(translated.automaton, job.reads, translated.possible)

@@ -27,6 +27,7 @@ from rulec.fleet.table_traces import TraceTableJudge
 from rulec.monitoring.assumptions import Assumptions
 from rulec.recordings.recording_files import read_recordings
 from rulec.recordings.recording_format import RecordingSource
+from rulec.resource_limits import BudgetSpentError
 from rulec.trace.formats.arrow.parquet import arrow
 from rulec.trace.trace_model import Ending
 
@@ -85,8 +86,12 @@ class UnitWorker:
                 try:
                     verdicts = RecordingVerdicts(recording, rules, self.request, unit.path)
                     yield from to_rows.of_recording(verdicts, unit.path)
+                except BudgetSpentError:
+                    raise
                 except RulecError as error:
                     yield to_rows.of_nothing(own, reason_of(error, own))
+        except BudgetSpentError:
+            raise
         except RulecError as error:
             own = {"file": unit.path}
             yield to_rows.of_nothing(own, reason_of(error, own))

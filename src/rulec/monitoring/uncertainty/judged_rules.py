@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.outcome_machine import OutcomeMachine
+from rulec.automata.outcome_machine import OutcomeMachine, of_running_words
 from rulec.logic.free_names import names_of
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
 from rulec.monitoring.uncertainty.untold_names import untold_names, untold_types, with_untold
@@ -62,28 +62,42 @@ def _why_not_if_cut(rule: CompiledRule, rulebook: CompiledRulebook) -> str:
 def _judged_rules(
     rulebook: CompiledRulebook, told: frozenset[str] | None, *, cut: bool
 ) -> JudgedRules:
-    prefixes: Mapping[str, OutcomeMachine | None] | None = None
-    if cut:
-        prefixes = {} if rulebook.prefixes is None else rulebook.prefixes(rulebook)
     unknown = untold_names(rulebook.vocabulary, told)
     types = untold_types(rulebook.vocabulary, told)
+
+    def untold_by(rule: CompiledRule, machine: OutcomeMachine | None) -> RuleNotJudged | None:
+        lacking = uncertain_machine(rule, machine).untold(unknown)
+        lacking += tuple([own.type for own in rule.variables if own.type in types])
+        return RuleNotJudged(rule.name, rule.strength, lacking) if lacking else None
+
+    # A machine for cut words is built only if some word without a past can violate the rule.
+    running: dict[str, OutcomeMachine] = rulebook.prepared.setdefault(of_running_words, {})
+    if cut and not running:
+        running.update({rule.name: of_running_words(rule.machine) for rule in rulebook.rules})
+    left_out = {
+        rule.name: untold_by(rule, running[rule.name] if cut else None) for rule in rulebook.rules
+    }
+    prefixes: Mapping[str, OutcomeMachine | None] = {}
+    if cut and rulebook.prefixes is not None:
+        rules = tuple([rule for rule in rulebook.rules if left_out[rule.name] is None])
+        prefixes = rulebook.prefixes(replace(rulebook, rules=rules)) if rules else {}
     machines = []
     not_judged = [
         RuleNotJudged(rule.name, rule.strength, (), rule.why) for rule in rulebook.too_large
     ]
     for rule in rulebook.rules:
-        outcomes = None if prefixes is None else prefixes.get(rule.name)
-        if prefixes is not None and outcomes is None:
+        outcomes, without = prefixes.get(rule.name), left_out[rule.name]
+        if cut and without is None:
             why = _why_not_if_cut(rule, rulebook)
-            not_judged.append(RuleNotJudged(rule.name, rule.strength, (), why))
-            continue
-        machine = uncertain_machine(rule, outcomes)
-        untold = machine.untold(unknown)
-        untold += tuple([variable.type for variable in rule.variables if variable.type in types])
-        if untold:
-            not_judged.append(RuleNotJudged(rule.name, rule.strength, untold))
+            without = (
+                RuleNotJudged(rule.name, rule.strength, (), why)
+                if outcomes is None
+                else untold_by(rule, outcomes)
+            )
+        if without is None:
+            machines.append((rule, uncertain_machine(rule, outcomes)))
         else:
-            machines.append((rule, machine))
+            not_judged.append(without)
     declarations = rulebook.vocabulary.declarations
     read = {name for rule in rulebook.rules for name in names_of(rule.formula)}
     presumed = [name for name, item in declarations.items() if item.presumed and name in read]
