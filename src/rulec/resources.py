@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from functools import cache
-from hashlib import sha256
 from pathlib import Path
 
 _PACKAGE = Path(__file__).resolve().parent
@@ -48,17 +46,3 @@ def emacs_mode() -> Path:
 def scenarios_folder() -> Path:
     """The folder of the built-in scenarios."""
     return _PACKAGE / "scenario" / "builtin"
-
-
-@cache
-def code_digest(names: tuple[str, ...]) -> bytes:
-    """A digest of these files and folders of rulec's code; ``grammar`` is the grammars' folder."""
-    seen = sha256()
-    for path in [_folder(name) if name == "grammar" else _PACKAGE / name for name in names]:
-        files = [path] if path.is_file() else sorted(path.rglob("*"))
-        for file in files:
-            if file.suffix in (".py", ".lark", ".json"):
-                data = file.read_bytes()
-                seen.update(f"{file.relative_to(path.parent)}\0{len(data)}\0".encode())
-                seen.update(data)
-    return seen.digest()

@@ -17,7 +17,6 @@ from tools.emacs_mode import emacs_mode
 from tools.formats_page import format_words_page, formats_page
 from tools.json_schemas import SCHEMAS, schema_text
 from tools.parser_tables import parser_tables
-from tools.shipped_caches import SHIPPED
 from tools.textmate import textmate_grammar
 from tools.tree_sitter import folds, highlights, tree_sitter_grammar, tree_sitter_manifest
 from tools.vocabulary_page import road_page
@@ -47,23 +46,19 @@ GENERATED: Mapping[str, Callable[[], str]] = {
 
 def is_current(name: str) -> bool:
     """Compare a generated file with what would be generated now."""
-    if name in SHIPPED:
-        return SHIPPED[name][1]()
     path = ROOT / name
     return path.is_file() and path.read_text(encoding="utf-8") == GENERATED[name]()
 
 
 def main(arguments: Sequence[str]) -> int:
     """Write every file that is out of date; with ``--check`` only name them."""
-    outdated = [name for name in (*GENERATED, *SHIPPED) if not is_current(name)]
+    outdated = [name for name in GENERATED if not is_current(name)]
     for name in outdated:
         print(f"{name} is out of date" if "--check" in arguments else f"wrote {name}")
         if "--check" not in arguments:
-            # Machines depend on the parser's tables and the trees written just before.
-            data = SHIPPED[name][0]() if name in SHIPPED else GENERATED[name]().encode()
             (ROOT / name).parent.mkdir(parents=True, exist_ok=True)
             with written_whole(ROOT / name) as stream:
-                stream.write(data)
+                stream.write(GENERATED[name]().encode())
     return int(bool(outdated) and "--check" in arguments)
 
 

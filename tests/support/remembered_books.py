@@ -36,7 +36,6 @@ def remember_books() -> None:
             return _PARSED(source)
         key = source.name, source.text
         if key not in trees:
-            # Those that ship are of these texts and this code, or are not taken.
             with keeping():
                 trees[key] = _PARSED(source)
         return trees[key]

@@ -12,7 +12,7 @@ from rulec.batch import worker_pool
 from rulec.batch.batch_messages import process_lost
 from rulec.batch.jobs import Jobs, available_processors, chosen_jobs
 from rulec.batch.worker_pool import LostTask, in_order
-from rulec.cache.keeping import recalled, recalling
+from rulec.cache.keeping import is_keeping, keeping
 
 
 def squares(most, number):
@@ -163,11 +163,11 @@ def test_a_lost_process_is_said_of_its_file():
 
 
 def _recalls(_):
-    yield recalled()
+    yield is_keeping()
 
 
-@pytest.mark.parametrize("what", ["all", "shipped", "none"])
+@pytest.mark.parametrize("what", [True, False])
 def test_what_is_recalled_here_is_recalled_there(what):
-    with recalling(what):
+    with keeping(on=what):
         results = [result for _, result in in_order(_recalls, range(2), Jobs(2))]
     assert results == [what, what]

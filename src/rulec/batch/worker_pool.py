@@ -16,7 +16,7 @@ from time import monotonic
 from typing import Generic, NoReturn, TypeVar
 
 from rulec.batch.jobs import Jobs
-from rulec.cache.keeping import Recalled, recalled, recalling
+from rulec.cache.keeping import is_keeping, keeping
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -133,7 +133,7 @@ class _Pool(Generic[Task, Result]):
         jobs: int,
         lost: Callable[[Task, int | None], object],
     ) -> None:
-        self._work = ForkingPickler.dumps((work, recalled()))
+        self._work = ForkingPickler.dumps((work, is_keeping()))
         self._tasks = tasks
         self._jobs = jobs
         self._lost = lost
@@ -249,10 +249,10 @@ def _serve(connection: Connection) -> None:
     # Ending by an exception also cleans up what a task has started, such as its own processes.
     signal.signal(signal.SIGTERM, _leave)
     work: Callable[[object], Iterator[object]]
-    cached: Recalled
+    cached: bool
     with suppress(EOFError, OSError):
         work, cached = connection.recv()
-        with recalling(cached):
+        with keeping(on=cached):
             _do_tasks(connection, work)
 
 

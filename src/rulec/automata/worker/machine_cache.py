@@ -1,8 +1,7 @@
 """Cache of the answers of a compiler's process, with the whole job as the key.
 
 The key is the job, with formula, facts and remarks, and the compiler; so an unchanged rule is not
-compiled again, whatever the command and rulebook. Only machines are kept, all of them proved. Those
-of shipped rulebooks are shipped, too.
+compiled again, whatever the command and rulebook. Only machines are kept, all of them proved.
 """
 
 from __future__ import annotations
@@ -17,23 +16,10 @@ import msgspec
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.worker import compiler_choice
-from rulec.cache.keeping import knows_shipped
 from rulec.cache.kept_bytes import KeptBytes
-from rulec.cache.shipped_bytes import ShippedBytes, shipped, shipped_key
 
 MOST_MACHINES = 6000
 """The greatest number kept; the longest unused go first. A large rulebook has 200 for one step."""
-
-
-SHIPPED = "machine"
-MAKERS = (
-    *("automata/spot_bridge", "automata/decision_diagrams"),
-    *(f"logic/{name}.py" for name in ("formula", "fold", "bounds", "past_registers", "semantics")),
-    *(f"automata/worker/{name}.py" for name in ("job_answers", "machine_cache")),
-    *(f"automata/{name}.py" for name in ("alphabet", "compiler_jobs")),
-    *(f"automata/{name}.py" for name in ("guards", "mealy_monitor", "tables", "thresholds")),
-)
-"""The kind of the shipped entries, and the code that determines them."""
 
 
 class KeptMachine(msgspec.Struct, array_like=True):
@@ -54,12 +40,6 @@ class MachineCache:
     def __init__(self, choice: str) -> None:
         self._kept = KeptBytes("machine", MOST_MACHINES)
         self._compiler = f"{choice} {_installed()}" if self._kept.can_be else None
-        # Not used if the environment chooses a compiler, or if the default, Spot, is missing.
-        is_usual = not compiler_choice.choice() and (choice or find_spec(compiler_choice.SPOT))
-        self._shipped = (
-            shipped(SHIPPED, MAKERS) if knows_shipped() and is_usual else ShippedBytes({})
-        )
-        self._choice = choice
 
     def recalled(self, jobs: Sequence[Job]) -> tuple[list[Done | None], str | None]:
         """The answer to each job, and Spot's version; each None if unknown."""
@@ -72,9 +52,7 @@ class MachineCache:
         return answers, spot
 
     def _recalled(self, job: Job) -> KeptMachine | None:
-        data = self._shipped.recall(machine_key(self._choice, job))
-        if data is None and self._compiler is not None:
-            data = self._kept.recall(self._key(job))
+        data = None if self._compiler is None else self._kept.recall(self._key(job))
         if data is not None:
             with suppress(ValueError):  # the base class of msgspec's errors
                 return msgspec.msgpack.decode(data, type=KeptMachine)
@@ -87,23 +65,12 @@ class MachineCache:
         contents = {}
         for job, answer in zip(jobs, answers, strict=True):
             if isinstance(answer, Done) and answer.machine.reads == job.reads:
-                contents[self._key(job)] = as_bytes(answer, spot)
+                contents[self._key(job)] = msgspec.msgpack.encode(_kept(answer, spot))
         self._kept.keep(contents)
 
     def _key(self, job: Job) -> str:
         # The repr of a job shows everything except places in files.
         return self._kept.key(str(self._compiler), repr(job))
-
-
-def machine_key(choice: str, job: Job) -> bytes:
-    """The key of a shipped answer to a job; an empty choice means the default, Spot."""
-    return shipped_key(choice or compiler_choice.SPOT, repr(job))
-
-
-def as_bytes(answer: Done, spot: str, *, with_text: bool = True) -> bytes:
-    """A machine in the cache's format, with the version of Spot that made it and the HOA text."""
-    kept = _kept(answer, spot)
-    return msgspec.msgpack.encode(kept if with_text else msgspec.structs.replace(kept, hoa=""))
 
 
 def _installed() -> str:

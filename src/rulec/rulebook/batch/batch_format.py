@@ -15,7 +15,6 @@ from rulec.rulebook.batch.form_cache import KnownForms
 from rulec.rulebook.files.search_path import read_bytes
 from rulec.rulebook.files.source_walk import FoundSources, LeftAlone
 from rulec.settings import Exclusion
-from rulec.syntax.caching.tree_cache import ships_in_form
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +72,7 @@ def format_files(
                 continue
             try:
                 data = read_bytes(path)
-                if known.has(data) or (recalls and ships_in_form(data.decode(errors="replace"))):
+                if known.has(data):
                     done[identity] = Formatted(str(path), path, data, data)
                     continue
                 done[identity] = formatted(str(path), path, data)
