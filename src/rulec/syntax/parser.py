@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from itertools import takewhile
+from itertools import islice, takewhile
 from types import ModuleType
 from typing import TypeVar, cast
 
@@ -15,11 +15,11 @@ from rulec.syntax.assembly import Part, assemble_file, assemble_rule
 from rulec.syntax.building import formulas, items
 from rulec.syntax.building.formulas import NodeValues
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
-from rulec.syntax.keywords import DECLARATION_WORDS, HEADER_WORDS, RESERVED
+from rulec.syntax.keywords import DECLARATION_WORDS, HEADER_WORDS, ITEM_WORDS, RESERVED
 from rulec.syntax.messages import structure
 from rulec.syntax.messages.lookalikes import hidden_meaning
 from rulec.syntax.parse_nodes import Mismatch, ParseNode, Start, TooDeep
-from rulec.syntax.scanner import Token, checked, scan
+from rulec.syntax.scanner import Token, checked, scan, tokens_of
 from rulec.syntax.split_file import FileSplitter
 
 MAX_PIECE = 10_000
@@ -33,6 +33,10 @@ _NAMING_PROVISIONS = ("option", "param", "define")
 
 NOTHING_READ = tree.File("rulebook", None, complete=False)
 """The tree of a file that cannot be read at all."""
+
+_WORDS_BEHIND_HEAD = ITEM_WORDS.difference(HEADER_WORDS)
+_SHOWN_BEHIND_HEAD = 8
+"""Tokens: more than any boundary of items is decided by."""
 
 _Built = TypeVar("_Built")
 
@@ -73,7 +77,7 @@ def parse_head(source: Source) -> tree.File:
 
     Raises RulecError if the file is not a text.
     """
-    tokens = scan(checked(source))
+    tokens = _head_tokens(checked(source))
     reader = PieceReader(source, tokens)
 
     def is_header_line(piece: Piece | RulePieces) -> bool:
@@ -82,6 +86,19 @@ def parse_head(source: Source) -> tree.File:
     pieces = takewhile(is_header_line, FileSplitter(source, tokens).split())
     lines = [reader.item(cast("Piece", piece)) for piece in pieces]
     return assemble_file(source, lines)[0] if lines else NOTHING_READ
+
+
+def _head_tokens(source: Source) -> list[Token]:
+    """The tokens of a file up to its first rule or declaration, and a few that show its end."""
+    tokens: list[Token] = []
+    stream = tokens_of(source)
+    depth = 0
+    for token in stream:
+        tokens.append(token)
+        if depth == 0 and token.first and token.text in _WORDS_BEHIND_HEAD:
+            return [*tokens, *islice(stream, _SHOWN_BEHIND_HEAD)]
+        depth += (token.text == "{") - (token.text == "}")
+    return tokens
 
 
 def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:

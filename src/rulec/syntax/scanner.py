@@ -6,6 +6,8 @@ It recognises strings, comments and line starts; the grammar decides what the to
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from itertools import islice
 from typing import NamedTuple
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, Span
@@ -79,14 +81,19 @@ class Token(NamedTuple):
 
 
 def scan(source: Source) -> list[Token]:
-    """All tokens of a text, without white space and comments.
+    """All tokens of a text. Raises RulecError if it has more than ``MAX_TOKENS``."""
+    tokens = [*islice(tokens_of(source), MAX_TOKENS + 1)]
+    if len(tokens) > MAX_TOKENS:
+        raise RulecError(_too_many(source, tokens[-1].start))
+    return tokens
+
+
+def tokens_of(source: Source) -> Iterator[Token]:
+    """The tokens of a text one by one, without white space and comments.
 
     ``kind`` is one of string, unterminated, quoted (in single quotes), word, number, symbol.
-
-    Raises RulecError if the text has more than ``MAX_TOKENS`` tokens.
     """
     text = source.text
-    tokens: list[Token] = []
     first = True
     position = 0
     match = _TOKEN.match
@@ -101,12 +108,9 @@ def scan(source: Source) -> list[Token]:
                 kind = "unterminated"
             elif kind == "unterminated":
                 end = _end_of_unterminated(text, position, end)
-            tokens.append(Token(kind, text[position:end], position, end, first))
+            yield Token(kind, text[position:end], position, end, first)
             first = False
-            if len(tokens) > MAX_TOKENS:
-                raise RulecError(_too_many(source, position))
         position = end
-    return tokens
 
 
 def _end_of_unterminated(text: str, start: int, end: int) -> int:

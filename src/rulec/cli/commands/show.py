@@ -73,13 +73,13 @@ def command(
         put_answer(_automaton_of(books[0], rule, patterns, to, at), to)
         return ExitStatus.OK
     if len(books) == 1:
-        put_answer(_shown(books[0], rule, patterns, to, at, several=False), to)
+        put_answer(_known(books[0], rule, patterns, to, at, several=False), to)
         return ExitStatus.OK
     shown: list[str] = []
     missing: list[click.UsageError] = []
     for book in books:
         with errors_told(), _collected(missing):
-            text = _shown(book, rule, patterns, to, at, several=True)
+            text = _known(book, rule, patterns, to, at, several=True)
             shown.append(text if to.form == "json" else f"{book}\n\n{text}\n")
     if missing and not shown:
         raise missing[0]
@@ -126,7 +126,7 @@ def _is_rulebook(argument: str) -> bool:
     return is_path or argument in available_rulebooks(search_path())
 
 
-def _shown(
+def _known(
     reference: str,
     name: str | None,
     patterns: Sequence[str],
@@ -136,12 +136,36 @@ def _shown(
     several: bool,
 ) -> str:
     """A rule as text or JSON, or all that match in brief; one JSON line each if ``several``."""
+    # Late import, not for --help: files and the cache (10 ms).
+    from rulec.automata.bundle.required_signature import refuse_source
+    from rulec.rulebook.batch.answer_cache import AnswerQuestion
+
+    if Path(reference).suffix == ".json":
+        return _shown(reference, name, patterns, to, at, several=several)[0]
+    refuse_source(reference)
+    words = ("show", reference, repr((name, patterns, to.form, width_of(to), at, several)))
+    shown: str = AnswerQuestion(words, search_path()).answer(
+        lambda: _shown(reference, name, patterns, to, at, several=several)
+    )
+    return shown
+
+
+def _shown(
+    reference: str,
+    name: str | None,
+    patterns: Sequence[str],
+    to: Output,
+    at: str,
+    *,
+    several: bool,
+) -> tuple[str, Sequence[str]]:
+    """What to show, and the files that it comes from; none for a compiled rulebook."""
     # Late import, not for --help: rules and automata (60 ms).
     from rulec.report.json_document import as_indented, as_line
     from rulec.report.rulebooks import rule_json, rule_page
     from rulec.report.rulebooks.spoken_rules import spoken_book
 
-    whole, compiled = _read(reference, at)
+    whole, compiled, paths = _read(reference, at)
     book = _matching(whole, patterns)
     chosen = _chosen(book, name, reference)
     page = None if chosen is None else _page(book, compiled, chosen)
@@ -152,15 +176,14 @@ def _shown(
         page = replace(page, rule=rules[0])
     if to.form == "json":
         document = rule_json.as_document(book.name, rules, book.vocabulary, page)
-        return as_line(document) if several else as_indented(document)
+        return as_line(document) if several else as_indented(document), paths
     width = width_of(to)
     if page is not None:
-        return rule_page.as_text(page, book.name, book.vocabulary, width)
+        return rule_page.as_text(page, book.name, book.vocabulary, width), paths
     if not rules:
-        return f"{book.name} has no rules; `rulec explain NAME` explains what it defines"
-    return "\n\n\n".join(
-        rule_page.summary(rule, book.name, book.vocabulary, width) for rule in rules
-    )
+        return f"{book.name} has no rules; `rulec explain NAME` explains what it defines", paths
+    pages = [rule_page.summary(rule, book.name, book.vocabulary, width) for rule in rules]
+    return "\n\n\n".join(pages), paths
 
 
 def _matching(book: Rulebook, patterns: Sequence[str]) -> Rulebook:
@@ -180,7 +203,7 @@ def _automaton_of(
     reference: str, name: str | None, patterns: Sequence[str], to: Output, at: str
 ) -> str:
     """The automaton of a rule, in the requested format."""
-    whole, compiled = _read(reference, at)
+    whole, compiled, _ = _read(reference, at)
     book = _matching(whole, patterns)
     chosen = _chosen(book, name, reference)
     if chosen is None:
@@ -200,22 +223,25 @@ def _page(book: Rulebook, compiled: CompiledRulebook | None, chosen: Rule) -> Ru
     return page_of(chosen, machine, compiled.vocabulary)
 
 
-def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None]:
+def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None, Sequence[str]]:
+    """A rulebook, in its compiled form if it is, and the files of its source."""
     # Late import, not for --help: rulebooks (130 ms).
     from rulec.automata.bundle.bundle_file import read_compiled
     from rulec.automata.bundle.compiled_rulebook import CompiledRule
     from rulec.automata.bundle.required_signature import refuse_source
+    from rulec.rulebook.loader import read_rulebook
     from rulec.rulebook.rulebook_model import Rule, Rulebook
 
     if Path(reference).suffix != ".json":
         refuse_source(reference)
-        return rulec.Session(search_path(), at).load_rulebook(reference), None
+        loaded = read_rulebook(reference, search_path(), at)
+        return loaded.rulebook, None, loaded.paths
     compiled = read_compiled(Path(reference), at)
     # The other fields of a compiled rule are its compiled form.
     names = {field.name for field in fields(CompiledRule)} & {field.name for field in fields(Rule)}
     rules = [Rule(**{name: getattr(rule, name) for name in names}) for rule in compiled.rules]
     in_books = tuple(replace(rule, book=rule.book or compiled.name) for rule in rules)
-    return Rulebook(compiled.name, compiled.vocabulary, in_books), compiled
+    return Rulebook(compiled.name, compiled.vocabulary, in_books), compiled, ()
 
 
 def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 
 import click
 
@@ -11,6 +12,7 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import open_session, put_answer, sources_of_rulebooks, width_of
 from rulec.diagnostics import named
+from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.terminal_text import wants_color
 from rulec.settings import search_path
 
@@ -26,31 +28,57 @@ def command(rulebooks: tuple[str, ...], patterns: tuple[str, ...], to: Output, a
     RULEBOOK is a name or the path of a source. With several RULEBOOKs, or none for all available
     ones, show which one extends which.
     """
-    # Late import, not for --help: rulebooks and their colours (80 ms).
+    # Late import, not for --help: files and the cache (10 ms).
+    from rulec.rulebook.batch.answer_cache import AnswerQuestion
+
+    rulebooks = sources_of_rulebooks(rulebooks, "cannot be taken apart")
+    if patterns and len(rulebooks) != 1:
+        raise click.UsageError("--rule chooses among the rules of one RULEBOOK; give one")
+    width, color = width_of(to), wants_color(sys.stdout)
+    if len(rulebooks) == 1:
+        words = ("tree", at, to.form, str(width), str(color), *rulebooks, *patterns)
+        question = AnswerQuestion(words, search_path())
+        shown = question.answer(lambda: _lineage(rulebooks[0], patterns, to, at))
+    else:
+        shown = _forest(rulebooks, to, at)
+    put_answer(shown, to)
+
+
+def _lineage(
+    rulebook: str, patterns: Sequence[str], to: Output, at: str
+) -> tuple[str, Sequence[str]]:
+    """The lineage of a rulebook, and its files; none if there are warnings, which are printed."""
+    # Late import, not for cached results: rulebooks and their colours (80 ms).
+    from rulec.analysis.lineage.book_lineage import read_with_lineage
+    from rulec.report.rulebooks import lineage_tree
+
+    loaded, lineage = read_with_lineage(rulebook, search_path(), at)
+    if loaded.warnings:
+        print_diagnostics(loaded.warnings)
+    inherited = lineage_tree.chosen(lineage, patterns)
+    if patterns and not inherited.rules:
+        raise click.UsageError(f"{inherited.book} has no rule like {named(patterns)}")
+    if to.form == "text":
+        shown = lineage_tree.as_text(inherited, width_of(to), color=wants_color(sys.stdout))
+    else:
+        shown = lineage_tree.as_json(inherited)
+    return shown, () if loaded.warnings else loaded.paths
+
+
+def _forest(rulebooks: Sequence[str], to: Output, at: str) -> str:
+    """Which of these rulebooks, or of all, extends which."""
+    # Late import, as above.
     from rulec.analysis.lineage.book_lineage import book_header
     from rulec.analysis.lineage.rule_lineage import extension_forest
     from rulec.report.rulebooks import lineage_tree
     from rulec.rulebook.files.catalogue import rulebook_heads
 
-    rulebooks = sources_of_rulebooks(rulebooks, "cannot be taken apart")
-    width, color = width_of(to), wants_color(sys.stdout)
-    if len(rulebooks) == 1:
-        inherited = lineage_tree.chosen(open_session(at).tree(rulebooks[0]), patterns)
-        if patterns and not inherited.rules:
-            raise click.UsageError(f"{inherited.book} has no rule like {named(patterns)}")
-        shown = lineage_tree.as_json(inherited)
-        if to.form == "text":
-            shown = lineage_tree.as_text(inherited, width, color=color)
-    else:
-        if patterns:
-            raise click.UsageError("--rule chooses among the rules of one RULEBOOK; give one")
+    if rulebooks:
         session = open_session(at)
-        if rulebooks:
-            books = [book for name in rulebooks for book in session.tree(name).books]
-        else:
-            books = [book_header(tree) for tree in rulebook_heads(search_path())]
-        branches = extension_forest(books)
-        shown = lineage_tree.forest_as_json(branches)
-        if to.form == "text":
-            shown = lineage_tree.forest_as_text(branches, width, color=color)
-    put_answer(shown, to)
+        books = [book for name in rulebooks for book in session.tree(name).books]
+    else:
+        books = [book_header(tree) for tree in rulebook_heads(search_path())]
+    branches = extension_forest(books)
+    if to.form == "text":
+        return lineage_tree.forest_as_text(branches, width_of(to), color=wants_color(sys.stdout))
+    return lineage_tree.forest_as_json(branches)

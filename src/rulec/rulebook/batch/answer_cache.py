@@ -7,7 +7,7 @@ wrong with a file, the answer is computed again.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import date
@@ -43,6 +43,15 @@ class AnswerQuestion:
             if kept["stamp"] == self._stamp(kept["sources"]):
                 return kept["answer"]
         return None
+
+    def answer(self, made: Callable[[], tuple[Any, Iterable[str]]]) -> Any:
+        """The answer, recalled or ``made``, and kept if it comes from any sources."""
+        answer = self.recall()
+        if answer is None:
+            answer, sources = made()
+            if sources:
+                self.remember(answer, sources)
+        return answer
 
     def remember(self, answer: Any, sources: Iterable[str]) -> None:
         """Keep an answer that comes from these sources, if that is possible."""

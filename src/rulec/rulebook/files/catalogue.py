@@ -11,7 +11,8 @@ from pathlib import Path
 
 from rulec.diagnostics import RulecError
 from rulec.rulebook.files import search_path as search
-from rulec.syntax import decode, parse, parse_head, tree
+from rulec.syntax import decode, parse_head, tree
+from rulec.syntax.caching.tree_cache import parsed
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +72,7 @@ def _head(path: Path) -> tree.File | None:
 
 def _tree(path: Path) -> tree.File | None:
     try:
-        return parse(decode(str(path), search.read_bytes(path)))[0]
+        return parsed(decode(str(path), search.read_bytes(path)))[0]
     except RulecError:
         return None
 
