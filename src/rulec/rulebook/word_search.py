@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -15,6 +16,14 @@ from rulec.rulebook.names.constant_and_presumed import mark_constant_and_presume
 from rulec.rulebook.names.symbol_table import SymbolTable, symbol_table
 from rulec.syntax import decode, tree
 from rulec.syntax.caching.tree_cache import parsed
+from rulec.syntax.keywords import ITEM_WORDS
+
+_DECLARATIONS = re.compile(
+    r"(?:\b(?:type|signal|quantity)\b|\b\w+\s*(?:\([^()]*\)\s*)?\bis\s+one\s+of\b)"
+    rf".*?(?=^[ \t]*(?:{'|'.join(sorted(ITEM_WORDS))})\b|\Z)",
+    re.MULTILINE | re.DOTALL,
+)
+"""Whatever may declare words; a rulebook that has a word nowhere there is not parsed."""
 
 Defined = tree.DefineItem | tree.ParamItem | tree.OptionItem
 
@@ -76,10 +85,12 @@ def _in_rulebooks(name: str, search_path: Sequence[Path]) -> Iterator[FoundWord]
 
 
 def _trees_with(name: str, book: str, search_path: Sequence[Path]) -> Trees | None:
-    """The trees of a rulebook whose text contains a word."""
+    """The trees of a rulebook whose text may declare a word."""
     with suppress(RulecError):
         file = find(book, search_path)
-        return parse_all(file) if name in file.source.text else None
+        word = re.compile(rf"\b{re.escape(name)}\b")
+        declarations = _DECLARATIONS.findall(file.source.text)
+        return parse_all(file) if any(map(word.search, declarations)) else None
     return None
 
 
