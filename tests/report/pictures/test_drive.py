@@ -31,6 +31,7 @@ from rulec.report.pictures.drives.scene_json import scene_data
 from rulec.report.pictures.drives.scene_of_drive import SIGHT_M, drive_scene
 from rulec.vocabulary.partial_values import Interval
 from support.builders.recordings import recording, straight, vehicle
+from support.oracles.page_policy import check_policy
 
 HOSTILE = "</script><script>alert('x')</script>&<b>"
 STATES = 9
@@ -320,6 +321,14 @@ def test_the_page_has_every_moment(scene):
     # What stands still is there once.
     still = replace(scene.bodies[1], poses=np.tile(scene.bodies[1].poses[0], (STATES, 1)))
     assert len(scene_data(replace(scene, bodies=(still,)))["bodies"][0]["x"]) == 1
+
+
+@pytest.mark.parametrize("theme", ["auto", "light", "dark"])
+def test_a_page_allows_its_own_styles_and_script_alone(scene, theme):
+    page = drive_page.drive_page(scene, 0, None, theme)
+    check_policy(page)
+    with pytest.raises(AssertionError):
+        check_policy(page.replace("</script>", " alert(1)</script>"))
 
 
 def test_a_theme_can_be_fixed(scene):

@@ -10,6 +10,7 @@ import pytest
 from rulec.diagnostics import RulecError
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Picture, Polyline, corners
 from rulec.report.pictures.drawing.picture_formats import Drawing, as_bytes
+from support.oracles.page_policy import check_policy
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -37,6 +38,11 @@ def test_a_halo_is_drawn_before_its_words_for_viewers_that_know_no_order_of_pain
     rules = dict(re.findall(r"^(\.name\S*) \{ (.*) \}$", svg, re.MULTILINE))
     assert "stroke" in rules[".name.halo"]
     assert "stroke" not in rules[".name"]
+
+
+@pytest.mark.parametrize("pictures", [1, 2])
+def test_a_page_allows_its_own_style_and_script_alone(pictures):
+    check_policy(as_bytes(drawing(pictures), "html", "f").decode())
 
 
 def test_svg():

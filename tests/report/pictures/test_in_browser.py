@@ -7,6 +7,7 @@ import subprocess
 import pytest
 
 from rulec.cli.main import main
+from support.oracles.page_policy import hash_of
 
 BROWSER = next(
     filter(None, map(shutil.which, ["chromium", "chromium-browser", "google-chrome"])), None
@@ -35,11 +36,16 @@ def run(file, *options):
     return done.stdout
 
 
+def with_script(page, script):
+    """The page with one more script, which its policy allows, too."""
+    text = page.read_text(encoding="utf-8").replace("script-src", f"script-src {hash_of(script)}")
+    return text.replace("</body>", f"<script>{script}</script></body>")
+
+
 def after(page, script):
     """The page as it is when a script of somebody who uses it has run."""
     used = page.with_name("used.html")
-    text = page.read_text(encoding="utf-8")
-    used.write_text(text.replace("</body>", f"<script>{script}</script></body>"), encoding="utf-8")
+    used.write_text(with_script(page, script), encoding="utf-8")
     dom = run(used, "--dump-dom")
     hidden = ["other" in tag for tag in re.findall(r"<figure[^>]*>", dom)]
     output = re.search(r"<output[^>]*>(.*?)</output>", dom)[1]
@@ -108,9 +114,29 @@ def told(page, script, name):
 
 def after_drive(page, script):
     used = page.with_name("used.html")
-    text = page.read_text(encoding="utf-8")
-    used.write_text(text.replace("</body>", f"<script>{script}</script></body>"), encoding="utf-8")
+    used.write_text(with_script(page, script), encoding="utf-8")
     return run(used, "--dump-dom")
+
+
+def test_no_policy_is_broken(page, drive_page):
+    """The listener comes first, since what is refused is told when it is met."""
+    listener = (
+        "document.documentElement.dataset.refused = '';"
+        "document.addEventListener('securitypolicyviolation',"
+        " (event) => document.documentElement.dataset.refused += event.violatedDirective)"
+    )
+    for file, handled in ((page, '<form id="time">'), (drive_page, 'class="scripted"')):
+        text = with_script(file, "").replace("script-src", f"script-src {hash_of(listener)}")
+        head, body = text.split("<title>", 1)
+        watched = file.with_name("watched.html")
+        for more, refused in (("", ""), ("<i style='color: red'></i>", "style-src-attr")):
+            policy, rest = body.split('content="default', 1)
+            meta, rest = rest.split(">", 1)
+            shown = f'{head}<title>{policy}content="default{meta}><script>{listener}</script>{rest}'
+            watched.write_text(shown.replace("<main>", f"<main>{more}"), encoding="utf-8")
+            dom = run(watched, "--dump-dom")
+            assert f'data-refused="{refused}"' in dom
+            assert handled in dom
 
 
 def pressed(key, more=""):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from hashlib import sha256
 from html import escape
 from pathlib import Path
 from typing import Literal, cast
@@ -15,9 +17,6 @@ from rulec.report.pictures.drawing.styles import STYLES, Theme, as_css
 from rulec.report.text.terminal_text import visible
 
 Format = Literal["svg", "png", "pdf", "html"]
-
-# The page may use only its own content and load nothing.
-POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 
 _SLIDER = """\
 <form id="time" hidden>
@@ -64,25 +63,39 @@ def as_bytes(drawing: Drawing, form: str, file: str, theme: Theme = "auto") -> b
     return f"{as_svg(whole, theme)}\n".encode()
 
 
+def policy(styles: Iterable[str], scripts: Iterable[str]) -> str:
+    """The content policy of a page that loads nothing, for the texts of its own elements."""
+    own_styles, own_scripts = (
+        " ".join(map(_hash, texts)) or "'none'" for texts in (styles, scripts)
+    )
+    return f"default-src 'none'; style-src {own_styles}; script-src {own_scripts}"
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
+
+
 def _as_page(drawing: Drawing) -> str:
     """A self-contained page, which is complete without its script."""
     title = escape(visible(drawing.title))
     below = [drawing.legend] if drawing.legend else []
     frames = "\n".join(_figure(picture) for picture in drawing.pictures)
+    last = len(drawing.pictures) - 1
+    style = f"\n{as_css(_styles([*drawing.pictures, *below]))}\n{_beside('page.css')}"
+    scripts = [f"\n{_beside('slider.js')}"] if last > 0 else []
     parts = [
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
         f"<title>{title}</title>",
-        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
+        f'<meta http-equiv="Content-Security-Policy" content="{policy([style], scripts)}">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
         '<meta name="color-scheme" content="light dark">',
-        f"<style>\n{as_css(_styles([*drawing.pictures, *below]))}\n{_beside('page.css')}</style>",
+        f"<style>{style}</style>",
         f"</head>\n<body>\n<main>\n<h1>{title}</h1>",
     ]
-    last = len(drawing.pictures) - 1
     parts += [_SLIDER.format(last=last)] if last > 0 else []
     parts.append(f'<div id="frames">\n{frames}\n</div>')
     parts += [f"<aside>\n{_inline_svg(legend)}\n</aside>" for legend in below]
-    parts += [f"<script>\n{_beside('slider.js')}</script>"] if last > 0 else []
+    parts += [f"<script>{script}</script>" for script in scripts]
     return "\n".join([*parts, "</main>\n</body>\n</html>\n"])
 
 
@@ -98,7 +111,12 @@ def _figure(picture: Picture) -> str:
 
 def as_svg(picture: Picture, theme: Theme = "auto") -> str:
     """The content of an SVG file."""
-    return _inline_svg(picture, f"<style>\n{as_css(_styles([picture]), theme)}\n</style>\n")
+    return _inline_svg(picture, f"<style>{style_of(picture, theme)}</style>\n")
+
+
+def style_of(picture: Picture, theme: Theme) -> str:
+    """The text of the style element in an SVG file."""
+    return f"\n{as_css(_styles([picture]), theme)}\n"
 
 
 def _styles(pictures: Iterable[Picture]) -> set[str]:

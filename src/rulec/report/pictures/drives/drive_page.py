@@ -6,7 +6,7 @@ import json
 from html import escape
 from pathlib import Path
 
-from rulec.report.pictures.drawing.picture_formats import POLICY, as_svg
+from rulec.report.pictures.drawing.picture_formats import as_svg, policy, style_of
 from rulec.report.pictures.drawing.styles import DARK, LIGHT, Theme
 from rulec.report.pictures.drives.drive_picture import drive_picture
 from rulec.report.pictures.drives.drive_scene import DriveScene, SceneViolation
@@ -24,16 +24,18 @@ def drive_page(
     # Escaped, so that the data cannot close the element that contains it.
     text = json.dumps(data, separators=(",", ":"), ensure_ascii=False).replace("<", "\\u003c")
     fixed = "" if theme == "auto" else f' data-theme="{theme}"'
+    picture = drive_picture(scene, state, violation)
+    style, script = f"\n{_colours()}{_beside('drive_page.css')}", f"\n{_beside('drive_page.js')}"
     values = {
         "title": title,
-        "policy": POLICY,
+        "policy": policy([style, style_of(picture, theme)], [script]),
         "fixed": fixed,
-        "style": _colours() + _beside("drive_page.css"),
+        "style": style,
         "notes": "".join(f"<p>{escape(visible(note))}</p>" for note in scene.notes),
         "last": str(scene.states - 1),
-        "picture": as_svg(drive_picture(scene, state, violation), theme),
+        "picture": as_svg(picture, theme),
         "data": text,
-        "script": _beside("drive_page.js"),
+        "script": script,
     }
     # A single pass over the template: inserted text is not searched for placeholders.
     head, *parts = _beside("drive_page.html").split("{{")
