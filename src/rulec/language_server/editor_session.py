@@ -16,6 +16,7 @@ from rulec.language_server.lenses.code_lenses import KnownAnswers
 from rulec.language_server.names.document_names import DocumentNames, names_in_document
 from rulec.language_server.strict_protocol import UNREADABLE, StrictProtocol
 from rulec.language_server.workspace import published_diagnostics as published
+from rulec.language_server.workspace.background_check import LARGE, BackgroundCheck, view_around
 from rulec.language_server.workspace.editor_workspace import (
     CheckedDocument,
     Document,
@@ -45,7 +46,7 @@ class EditorSession(LanguageServer):
         self.findings: dict[str, dict[str, list[Diagnostic]]] = {}
         self.answers = KnownAnswers()
         self.waiting: list[asyncio.TimerHandle] = []
-        self.checks_due: dict[str, asyncio.TimerHandle] = {}
+        self.checks_due: dict[str, asyncio.TimerHandle | BackgroundCheck] = {}
 
     def report_server_error(self, error: Exception, source: Any) -> None:
         """Report an error in a message: to the client that sent it, or else to the log."""
@@ -56,24 +57,44 @@ class EditorSession(LanguageServer):
         elif not isinstance(error, JsonRpcException):
             super().report_server_error(error, source)
 
-    def check(self, document: Document) -> CheckedDocument | None:
-        """Check a document and publish its findings, whichever file they are in."""
-        uri = document.uri
+    def check(self, document: Document) -> None:
+        """Check a document and publish its findings: at once, or behind the scenes.
+
+        The latter if it is large and has to be read as a whole.
+        """
+        if waiting := self.checks_due.pop(document.uri, None):
+            waiting.cancel()
+        size = len(document.text)
+        if size > MOST_CHARACTERS or (size > LARGE and document.parsed is None):
+            loop = asyncio.get_running_loop()
+            behind = BackgroundCheck(document, self.editor, loop, self._large_checked)
+            self.checks_due[document.uri] = behind
+            behind.start()
+            return
         try:
-            checked = self.editor.check(document)
-            findings: Iterable[Diagnostic] = checked.findings
+            findings = self.editor.check(document).findings
         except RulecError as error:  # in the project's settings
-            checked, findings = None, error.diagnostics
+            findings = error.diagnostics
+        self._found(document.uri, findings)
+
+    def _large_checked(
+        self, document: Document, _: CheckedDocument | None, findings: Iterable[Diagnostic]
+    ) -> None:
+        self.checks_due.pop(document.uri, None)
+        self._found(document.uri, findings)
+        self._ask_again()
+
+    def _found(self, uri: str, findings: Iterable[Diagnostic]) -> None:
+        """Publish the findings of a document's check, whichever file they are in."""
         before = self.findings.get(uri, {})
         self.findings[uri] = published.by_file(findings, uri)
         for file in dict.fromkeys((uri, *before, *self.findings[uri])):
             self.publish(file)
-        return checked
 
     def check_changed(self, document: Document) -> None:
-        """Check a document that has changed: at once, or if it is large, once typing pauses.
+        """Check a document that has changed: at once, or if it is very large, once typing pauses.
 
-        A large text is always read as a whole, so older versions are not checked any more.
+        Such a text is always read as a whole. What is under way for an older version is given up.
         """
         if waiting := self.checks_due.pop(document.uri, None):
             waiting.cancel()
@@ -81,13 +102,11 @@ class EditorSession(LanguageServer):
             self.check(document)
             return
         loop = asyncio.get_running_loop()
-        self.checks_due[document.uri] = loop.call_later(_IDLE_S, self._check_large, document.uri)
+        self.checks_due[document.uri] = loop.call_later(_IDLE_S, self._check_open, document.uri)
 
-    def _check_large(self, uri: str) -> None:
-        self.checks_due.pop(uri, None)
+    def _check_open(self, uri: str) -> None:
         if document := self.editor.documents.get(uri):
             self.check(document)
-            self._ask_again()
 
     def _ask_again(self) -> None:
         """Have the editor ask for what it got no answer to while a check was waited for."""
@@ -142,10 +161,32 @@ class EditorSession(LanguageServer):
         document = self.editor.document(uri)
         if document is None or uri in self.checks_due:
             return None
+        known = document.checked
+        if known is not None and known.text == document.text and len(known.text) > MOST_CHARACTERS:
+            return self._names_of(known, document)
         try:
-            names = names_in_document(self.editor.check(document))
+            return self._names_of(self.editor.check(document), document)
         except RulecError:
             return None
+
+    def names_around(
+        self, params: lsp.TextDocumentPositionParams
+    ) -> tuple[DocumentNames, TextPositions] | None:
+        """The same, for a place in the document; while a check is due, from a view around it."""
+        document = self.editor.document(params.text_document.uri)
+        if document is None or document.uri not in self.checks_due:
+            return self.names(params.text_document.uri)
+        offset = self.editor.positions(document.text).offset(params.position)
+        view = Document(document.uri, view_around(document.text, offset))
+        try:
+            return self._names_of(self.editor.check(view), document)
+        except RulecError:
+            return None
+
+    def _names_of(
+        self, checked: CheckedDocument, document: Document
+    ) -> tuple[DocumentNames, TextPositions] | None:
+        names = names_in_document(checked)
         return None if names is None else (names, self.editor.positions(document.text))
 
 

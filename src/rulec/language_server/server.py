@@ -80,6 +80,8 @@ def _documents(server: EditorSession) -> None:
     @server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)
     def closed(params: lsp.DidCloseTextDocumentParams) -> None:
         uri = params.text_document.uri
+        if waiting := server.checks_due.pop(uri, None):
+            waiting.cancel()
         server.editor.close(uri)
         for file in dict.fromkeys((uri, *server.findings.pop(uri, {}))):
             server.publish(file)
@@ -93,7 +95,7 @@ def _documents(server: EditorSession) -> None:
 def _names(server: EditorSession) -> None:
     @server.feature(lsp.TEXT_DOCUMENT_HOVER)
     def hover(params: lsp.HoverParams) -> lsp.Hover | None:
-        known = server.names(params.text_document.uri)
+        known = server.names_around(params)
         if known is None:
             return None
         names, positions = known
@@ -105,7 +107,7 @@ def _names(server: EditorSession) -> None:
 
     @server.feature(lsp.TEXT_DOCUMENT_DEFINITION)
     def definition(params: lsp.DefinitionParams) -> lsp.Location | None:
-        known = server.names(params.text_document.uri)
+        known = server.names_around(params)
         if known is None:
             return None
         names, positions = known
@@ -164,7 +166,7 @@ def _writing(server: EditorSession) -> None:
         lsp.TEXT_DOCUMENT_COMPLETION, lsp.CompletionOptions(trigger_characters=["(", " ", ","])
     )
     def completion(params: lsp.CompletionParams) -> list[lsp.CompletionItem]:
-        known = server.names(params.text_document.uri)
+        known = server.names_around(params)
         if known is None:
             return []
         names, positions = known
@@ -174,7 +176,7 @@ def _writing(server: EditorSession) -> None:
         lsp.TEXT_DOCUMENT_SIGNATURE_HELP, lsp.SignatureHelpOptions(trigger_characters=["(", ","])
     )
     def signature_help(params: lsp.SignatureHelpParams) -> lsp.SignatureHelp | None:
-        known = server.names(params.text_document.uri)
+        known = server.names_around(params)
         if known is None:
             return None
         names, positions = known

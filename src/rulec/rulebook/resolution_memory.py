@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from operator import is_
 
+from rulec.cancellation import step
 from rulec.diagnostics import Diagnostic
 from rulec.rulebook.loader import Trees, day_of, in_order
 from rulec.rulebook.names.referenced_names import names_in_examples, names_used
@@ -87,6 +88,7 @@ class ResolutionMemory:
         kept: dict[str, _Known] = {}
 
         def translate(entry: RuleEntry, names: BookNames, confirmed: bool) -> TranslatedRule:
+            step()
             name = entry.item.name.text
             kept[name] = self._translated(entry, names, tuple(changes[name]), confirmed=confirmed)
             return kept[name].result

@@ -8,6 +8,7 @@ from itertools import islice, takewhile
 from types import ModuleType
 from typing import TypeVar, cast
 
+from rulec.cancellation import step
 from rulec.diagnostics import Diagnostic, RulecError, Source, Span
 from rulec.files.source_detection import is_foreign
 from rulec.syntax import tree
@@ -170,6 +171,7 @@ class PieceReader:
 
     def part(self, part: Piece | RulePieces) -> Part:
         """A header line, an item or a rule."""
+        step()
         return self.rule(part) if isinstance(part, RulePieces) else self.item(part)
 
     def item(self, piece: Piece) -> Part:

@@ -55,6 +55,8 @@ class Document:
     version: int | None = None
     parsed: ParsedText | None = None
     memory: ResolutionMemory = field(default_factory=ResolutionMemory)
+    checked: CheckedDocument | None = None
+    """The result of the last check of a large document."""
 
     @property
     def path(self) -> Path | None:
@@ -132,7 +134,7 @@ class EditorWorkspace:
         """Read files as they are in the editor."""
         texts = {
             os.path.realpath(document.path): document.text.encode("utf-8", "surrogatepass")
-            for document in self.documents.values()
+            for document in list(self.documents.values())
             if document.path is not None
         }
         with shown(texts):
