@@ -62,6 +62,8 @@ def pytest_configure(config):
     kept = Path(os.environ[FOLDER])
     own = kept / os.environ.get("PYTEST_XDIST_WORKER", "alone")
     os.environ["RULEC_CACHE_DIR"] = str(own)
+    # How long something takes, on a busy machine, is no part of what a test sees.
+    os.environ["RULEC_QUIET"] = "1"
     if hidden_spot.VARIABLE in os.environ:
         hidden_spot.hide(kept / "hidden")
     if os.environ.get("RULEC_TEST_PROFILE") != "long":

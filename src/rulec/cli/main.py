@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from importlib import import_module
 
 import click
@@ -16,6 +16,7 @@ from rulec.cli.interruption import is_interrupted
 from rulec.cli.verb_table import VERB_GROUPS, VERBS, WITH_COMPILED
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.argument_names import naming_options
+from rulec.report.text.patience import patience
 from rulec.version import __version__
 
 
@@ -53,7 +54,14 @@ COLOR = click.Option(
     is_eager=True,
     callback=_color,
 )
-"""Options of every verb, which may also be given before the verb."""
+"""An option of every verb, which may also be given before the verb."""
+
+_QUIET = click.Option(
+    ["-q", "--quiet"],
+    is_flag=True,
+    expose_value=False,
+    help="Do not say on standard error what long work is doing.  [default: RULEC_QUIET]",
+)
 
 
 class _Verbs(click.Group):
@@ -75,7 +83,7 @@ class _Verbs(click.Group):
                 if _REQUIRE_SIGNED not in verb.params:
                     verb.params.append(_REQUIRE_SIGNED)
         if COLOR not in command.params:
-            command.params.append(COLOR)
+            command.params += [COLOR, _QUIET]
         return command
 
     def resolve_command(
@@ -99,7 +107,7 @@ class _Verbs(click.Group):
     cls=_Verbs,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
-    params=[COLOR],
+    params=[COLOR, _QUIET],
     epilog="`rulec help COMMAND` describes a command.  Exit status: 0 success, 1 a hard rule is "
     "violated or a mistake was found, 2 no answer was possible, 70 a bug in rulec.",
 )
@@ -128,7 +136,9 @@ def rulec(context: click.Context, limits: Sequence[str]) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and return its exit status."""
     given = sys.argv[1:] if arguments is None else arguments
-    with naming_options():
+    # Whoever calls this in a program of its own has the say over signals and standard error.
+    long_work = patience(given) if arguments is None else nullcontext()
+    with naming_options(), long_work:
         try:
             outcome = rulec.main(
                 args=list(given),

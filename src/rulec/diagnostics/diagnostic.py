@@ -115,7 +115,8 @@ class RulecError(Rows, Exception):
         return tuple(map(_for_caller, self._given))
 
     def __repr__(self) -> str:
-        return f"RulecError({'; '.join(d.code for d in self.diagnostics[:20])}: {self.args[0].splitlines()[0]:.80})"
+        codes = "; ".join(d.code for d in self.diagnostics[:20])
+        return f"RulecError({codes}: {self.args[0].partition(chr(10))[0]:.80})"
 
     def rows(self) -> list[dict[str, Any]]:
         """One row per diagnostic."""

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable
 from dataclasses import asdict
 from functools import partial
-from math import inf
-from time import monotonic
 
 import click
 
@@ -24,12 +20,9 @@ from rulec.cli.output import (
     sources_of_rulebooks,
 )
 from rulec.diagnostics import Diagnostic
-from rulec.report.text.console import print_remark, progress
+from rulec.report.text.console import progress
 from rulec.report.text.terminal_text import counted
 from rulec.settings import search_path
-
-_LONG_S = 20
-"""Without a terminal, a message says after this many seconds that the analysis goes on."""
 
 
 @click.command(cls=Verb)
@@ -74,8 +67,7 @@ def command(
                 continue
             with progress(f"analyzing {rulebook}", None) as tell:
                 spread = spreading(jobs, rulebook, partial(print_lost, "analyzed", rulebook))
-                tells = _patience(rulebook, tell)
-                diagnostics = open_session(at).analyze(rulebook, on_progress=tells, spread=spread)
+                diagnostics = open_session(at).analyze(rulebook, on_progress=tell, spread=spread)
             findings += diagnostics
             read = read_rulebook(rulebook, search_path(), at)
             question.remember([asdict(finding) for finding in diagnostics], read.paths)
@@ -88,18 +80,3 @@ def command(
     )
     undecided = any(finding.code == NOT_DECIDED.code for finding in findings)
     return ExitStatus.NOT_ANSWERED if undecided else status
-
-
-def _patience(rulebook: str, tell: Callable[[float], object]) -> Callable[[float], object]:
-    """A listener that shows progress on a terminal, elsewhere one message if it takes long."""
-    if sys.stderr.isatty():
-        return tell
-    until = monotonic() + _LONG_S
-
-    def say(done: float) -> None:
-        nonlocal until
-        if monotonic() > until:
-            until = inf
-            print_remark(f"analyzing {rulebook}: {done:,.0f} questions answered, and it goes on")
-
-    return say

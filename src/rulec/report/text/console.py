@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TextIO
 import click
 
 from rulec.report.text.outgoing import outgoing
+from rulec.report.text.patience import doing
 from rulec.report.text.terminal_text import visible, wants_color
 
 if TYPE_CHECKING:
@@ -99,14 +100,15 @@ _bar: _Bar | None = None
 
 @contextmanager
 def progress(task: str, total: float | None) -> Iterator[Callable[[float], None]]:
-    """A progress bar on a terminal, nothing elsewhere.
+    """A progress bar on a terminal, elsewhere a line now and then.
 
     ``total`` is None if unknown; then the bar shows a count. Yields a function to be called with
     the amount done so far.
     """
     global _bar
     if not sys.stderr.isatty():
-        yield lambda _: None
+        with doing(task, total) as tell:
+            yield tell
         return
     # rich takes 40 ms, and is only needed on terminals.
     from rich.console import Console

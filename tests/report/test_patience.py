@@ -1,0 +1,53 @@
+"""What long work says of itself on standard error."""
+
+import signal
+
+import pytest
+
+from rulec.cli.main import main
+from rulec.report.text import patience as module
+from rulec.report.text.console import progress
+from rulec.report.text.patience import patience
+
+
+@pytest.fixture
+def soon(monkeypatch):
+    monkeypatch.delenv(module.QUIET)
+    monkeypatch.setattr(module, "_FIRST_S", 0.01)
+    monkeypatch.setattr(module, "_AGAIN_S", 0.01)
+
+
+def said(capfd, text):
+    """Wait until a line says this; the test would end by its time limit if none did."""
+    heard = ""
+    while text not in heard:
+        heard += capfd.readouterr().err
+    return heard
+
+
+def test_it_says_what_it_is_doing_until_it_is_done(soon, capfd):
+    with patience(["diff", "de", "fr\x1b[1m"]):
+        assert "\x1b" not in said(capfd, "rulec: at work on `rulec diff de fr")
+        with progress("comparing", 8) as tell:
+            said(capfd, "rulec: comparing, for ")
+            tell(2)
+            said(capfd, "rulec: comparing: 25%, for ")
+        with progress("analyzing de", None) as tell:
+            tell(1234)
+            said(capfd, "rulec: analyzing de: 1,234 so far, for ")
+        said(capfd, "rulec: at work on")
+    assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+    capfd.readouterr()
+    sum(range(10**6))
+    assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize("words", [["diff", "-q"], ["test", "--quiet"], ["lsp"], ["monitor", "de"]])
+def test_who_is_quiet_or_waits_says_nothing(words, soon):
+    with patience(words):
+        assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+
+
+def test_a_program_of_its_own_keeps_its_signals(soon, capsys):
+    assert main(["list", "--quiet"]) == main(["--quiet", "list"]) == 0
+    assert signal.getsignal(signal.SIGALRM) == signal.SIG_DFL
