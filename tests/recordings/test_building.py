@@ -1,5 +1,7 @@
 """Recordings that programs build: what is right is judged, what is wrong is said at once."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,7 @@ from rulec import (
     build_recording,
 )
 
+ROOT = Path(__file__).parents[2]
 STREET = [(0.0, 0.0), (100.0, 0.0)]
 T = [0.0, 0.1, 0.2]
 
@@ -176,6 +179,28 @@ def test_a_track_of_another_time_step_is_refused():
     assert "0.1 s apart, it drives 65.0 m/s, and by its speeds 13.0 m/s" in said
     assert "the time step of the recording" in said
     build_recording([build_lanelet("s", STREET)], [ego], step_s=0.5)
+
+
+def test_who_stops_and_goes_has_speeds_that_fit():
+    """Speeds change much from state to state; the middle of each two is what places show."""
+    t = 0.5 * np.arange(12)
+    speeds = np.array([4.19, 4.19, 3.85, 2.38, 0.92, 0, 0, 0.11, 1.57, 3.04, 4.19, 4.19])
+    x = np.append(0.0, ((speeds[1:] + speeds[:-1]) / 4).cumsum())
+    own = build_participant("a", "car", t, x * 0.9, 0 * t, step_s=0.5, speed=speeds)
+    assert build_recording([build_lanelet("b", STREET)], [own], step_s=0.5).participants == (own,)
+
+
+def test_what_a_map_and_a_world_call_complete_is_taken():
+    road = rulec.read_map(ROOT / "docs/samples/passing.net.xml", 0.1)
+    assert "junctions" in road.complete
+    found = build_recording(
+        road.lanelets.values(), [car()], step_s=0.1, complete=road.complete, side=road.side
+    )
+    live = rulec.TrafficWorld(found, "a").recording_of([(13.0, 0.0, 0.0, 10.0)])
+    again = build_recording(
+        live.lanelets.values(), live.participants, step_s=0.1, complete=live.complete
+    )
+    assert again.complete == live.complete > road.complete
 
 
 def test_columns_and_pieces_say_the_same():

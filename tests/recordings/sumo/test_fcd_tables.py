@@ -78,6 +78,17 @@ def test_the_same_as_in_xml(tmp_path, write, as_xml2csv):
     assert {name: what for name, (what, _) in found.on.items()} == {"e_0": "lane", "e": "edge"}
 
 
+@pytest.mark.parametrize("write", [as_csv, as_parquet])
+def test_speeds_may_be_left_out(tmp_path, write):
+    lines = [{name: x for name, x in row.items() if name != "vehicle_speed"} for row in rows()]
+    found = read_fcd_table(write(tmp_path / f"fcd.{write.__name__[3:]}", lines))
+    assert [repr(own.rows[3]) for own in found.tracks.values()] == ["nan", "nan"]
+    lines = rows()
+    lines[0]["vehicle_speed"] = ""
+    found = read_fcd_table(write(tmp_path / f"some.{write.__name__[3:]}", lines))
+    assert [repr(x) for x in found.tracks["a"].rows[3::4]] == ["nan", "3.0"]
+
+
 @pytest.mark.parametrize(
     ("change", "line", "said"),
     [

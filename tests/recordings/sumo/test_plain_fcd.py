@@ -67,6 +67,15 @@ def test_plain_data(tmp_path, monkeypatch, size):
     assert plain.on["in_2"] == ("lane", PLAIN[: PLAIN.index('"in_2"')].count("\n") + 1)
 
 
+def test_speeds_may_be_left_out(tmp_path):
+    file = written(tmp_path, PLAIN.replace(' speed="9.25"', ""))
+    plain = read_plain_fcd(file)
+    assert plain is not None
+    assert repr(plain) == repr(read_fcd_as_xml(file))
+    assert list(map(repr, plain.tracks["b"].rows)) == ["-100.0", "-4.8", "90.0", "nan"]
+    assert list(plain.tracks["w"].rows)[3] == 1.2
+
+
 FIRST = CAR.format("a", "5.10", "in_1", "0.00")
 
 

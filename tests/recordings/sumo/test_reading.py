@@ -1,6 +1,7 @@
 """SUMO's floating-car data become recordings: places, sizes, times, and who they are."""
 
 import random
+import re
 from math import pi
 
 import numpy as np
@@ -9,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec import read_recording
+from rulec.extraction.tracks.source_tolerances import tolerances_of
 from rulec.recordings.sumo.vehicle_types import CLASSES, read_vehicle_types, vehicle_type
 from rulec.recordings.track import rectangles
 from rulec.scenario.recorded.junction_lanelets import junction_lanelets
@@ -83,6 +85,35 @@ def test_speed_and_acceleration(tmp_path):
     assert [x.acceleration for x in first.states.values()] == [-1.5, -1.5]
     assert [x.acceleration for x in second.states.values()] == [0.0, 2.0]
     assert [x.speed for x in second.states.values()] == [10.0, 11.0]
+
+
+def test_speeds_that_are_left_out_follow_from_places(tmp_path):
+    """As SUMO leaves them out with --fcd-output.attributes; one that is alone has none."""
+
+    def rows(*places):
+        return [moment(k / 2, without_speed(body(x=x))) for k, x in enumerate(places)]
+
+    one = only(read(tmp_path, *rows(20, 25, 30, 30, 30)))
+    assert [x.speed for x in one.states.values()] == [10, 10, 5, 0, 0]
+    assert only(read(tmp_path, *rows(20))).states[0].speed == 0
+    # Across a hole none is faster
+    there = [*rows(20, 25), moment(4, without_speed(body(x=90))), moment(4.5, body(x=95, speed=7))]
+    speeds = [[x.speed for x in one.states.values()] for one in read(tmp_path, *there).participants]
+    assert speeds == [[10, 10], [10, 7]]
+
+
+def test_where_speeds_are_left_out_places_tell_them_to_within_their_rounding(tmp_path):
+    steps = [moment(k / 2, body(x=20 + 5 * k)) for k in range(9)]
+    told, derived = (
+        read(tmp_path, *own) for own in (steps, [without_speed(step) for step in steps])
+    )
+    assert told.rounding.speed_mps is not None
+    assert derived.rounding.speed_mps is None
+    assert tolerances_of(derived).stated_mps is None
+
+
+def without_speed(text):
+    return re.sub(' speed="[^"]*"', "", text)
 
 
 def test_who_stands_keeps_its_heading(tmp_path):
