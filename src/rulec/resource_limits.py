@@ -175,6 +175,20 @@ LOOKBACK: Final = ResourceLimit(
     "give it bounds no longer than drives last",
 )
 
+MEMORY: Final = ResourceLimit(
+    "memory",
+    1 << 30,
+    "bytes of memory",
+    "give it less at once, such as fewer files, or a part of the recording",
+)
+
+SECONDS: Final = ResourceLimit(
+    "seconds",
+    10**9,
+    "seconds of processor time for the whole call",
+    "give it less at once, such as fewer files, or a part of the recording",
+)
+
 LIMITS: Final = {
     limit.name: limit
     for limit in (
@@ -192,9 +206,16 @@ LIMITS: Final = {
         SEARCH,
         CITES,
         LOOKBACK,
+        MEMORY,
+        SECONDS,
     )
 }
 """All limits that can be changed."""
+
+
+def is_set(limit: ResourceLimit) -> bool:
+    """Whether a limit has been set, to whatever number. Raises RulecError R0719."""
+    return limit.name in settings_in(os.environ.get(VARIABLE, "").split())
 
 
 def settings_in(texts: Iterable[str]) -> dict[str, int]:

@@ -18,6 +18,8 @@ if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
 # Matrix products are small here, and worker processes occupy the processors: NumPy's threads for
 # them would add 20 ms to each start, and later only wait for each other.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Arrow's own pools of memory reserve a gigabyte, whatever is read.
+os.environ.setdefault("ARROW_DEFAULT_MEMORY_POOL", "system")
 
 # ruff: noqa: E402 - what is above comes first
 import atexit

@@ -129,6 +129,11 @@ def rulec(context: click.Context, limits: Sequence[str]) -> None:
         from rulec.resource_limits import in_force
 
         context.with_resource(in_force(limits))
+    if context.invoked_subcommand is not None:
+        # Late import, not for `rulec --help` (2 ms).
+        from rulec.enforced_limits import enforced
+
+        context.with_resource(enforced())
     if context.invoked_subcommand is None:
         click.echo(context.get_help())
 
@@ -157,6 +162,7 @@ def _status_after(problem: BaseException) -> int:
     if is_interrupted() or isinstance(problem, click.Abort | KeyboardInterrupt):
         _say("interrupted")
         return ExitStatus.INTERRUPTED
+    problem = _limit_error(problem) or problem
     match problem:
         case click.ClickException():
             _say_misuse(problem)
@@ -175,6 +181,13 @@ def _status_after(problem: BaseException) -> int:
         case Exception():
             return _bug(problem)
     raise problem
+
+
+def _limit_error(problem: BaseException) -> RulecError | None:
+    # Late import, only after an error (2 ms).
+    from rulec.enforced_limits import limit_error
+
+    return limit_error(problem)
 
 
 def _bug(problem: Exception) -> int:

@@ -13,6 +13,7 @@ from typing import IO, Any, Final, cast
 from unicodedata import normalize
 
 from rulec.diagnostics import Label, RulecError, Source, SourceLocation, Span, nearest_name
+from rulec.enforced_limits import allow_for
 from rulec.files.file_messages import (
     NOT_UTF8,
     TOO_LONG_TO_READ,
@@ -115,6 +116,7 @@ def opened(
         place = SourceLocation(str(path))
         raise UNREADABLE_FILE.error(place, message, help=way_out, labels=labels) from None
     note_read(path)
+    allow_for(str(path), os.fstat(stream.fileno()).st_size)
     with stream:
         if is_packed:
             with BufferedReader(_Unpacking(stream, path)) as unpacked:
@@ -185,6 +187,7 @@ class _Unpacking(RawIOBase):
             raise self._refused("it is packed, and ends too soon") from None
         except self._damaged:
             raise self._refused("it is packed, and damaged") from None
+        allow_for(str(self._path), self._gzip.tell())
         if self._gzip.tell() > LARGEST_UNPACKED:
             raise self._refused(
                 f"it is packed, and larger than {LARGEST_UNPACKED:,} bytes when unpacked"

@@ -55,6 +55,7 @@ _NAMES: Mapping[str, str] = MappingProxyType(
         "_codecs encode": "bytes of text",
     }
 )
+_ORDERS = frozenset("<>|=")
 _DTYPE = re.compile(r"[<>|=]?(?:b1|[iu][1248]|f[248]|[US][0-9]{1,4})")
 
 
@@ -188,9 +189,12 @@ def _get(form: str) -> Callable[[PickleMachine], None]:
 
 
 def _named(machine: PickleMachine, module: Any, name: Any) -> None:
+    # The text of nested tuples that share their parts doubles with each level: types come first
+    if not isinstance(module, str) or not isinstance(name, str):
+        raise machine.wrong(f"it asks for something by {called(module)} and {called(name)}")
     full = f"{module} {name}"
-    if not isinstance(module, str) or not isinstance(name, str) or full not in _NAMES:
-        import_name = f"{short(str(module))}.{short(str(name))}"
+    if full not in _NAMES:
+        import_name = f"{short(module)}.{short(name)}"
         raise machine.wrong(
             f"it asks for `{import_name}`, which is none of what a scenario is made of"
         )
@@ -224,7 +228,7 @@ def _reduce(machine: PickleMachine) -> None:
             bytes() as raw,
             np.dtype() as kind,
             tuple() as shape,
-            order,
+            str() as order,
         ):
             machine.push(_array(machine, shape, kind, raw, order == "F"))
         case "dtype", (str() as text, *_) if _DTYPE.fullmatch(text):
@@ -242,7 +246,7 @@ def _reduce(machine: PickleMachine) -> None:
             machine.push(b"")
         case "set", ():
             machine.push(set())
-        case "bytes of text", (str() as text, "latin1"):
+        case "bytes of text", (str() as text, str() as encoding) if encoding == "latin1":
             machine.copy(len(text))
             machine.push(text.encode("latin1", "replace"))
         case _:
@@ -254,10 +258,10 @@ def _build(machine: PickleMachine) -> None:
     if not isinstance(target, PickledArray) or not isinstance(state, tuple):
         raise machine.wrong(f"it gives {called(target)} a state")
     match target.value, state:
-        case np.dtype() as kind, (_, "<" | ">" | "|" | "=" as order, None, None, None, *_):
+        case np.dtype() as kind, (_, str() as order, None, None, None, *_) if order in _ORDERS:
             target.value = kind.newbyteorder(order) if order in "<>" else kind
-        case None, (_, tuple() as shape, np.dtype() as kind, is_fortran, bytes() as raw):
-            target.value = _array(machine, shape, kind, raw, bool(is_fortran))
+        case None, (_, tuple() as shape, np.dtype() as kind, bool() as is_fortran, bytes() as raw):
+            target.value = _array(machine, shape, kind, raw, is_fortran)
         case _:
             raise machine.wrong("it gives an array a state that none has")
     machine.push(target)
