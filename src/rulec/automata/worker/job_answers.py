@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -19,11 +20,12 @@ from rulec.automata.compiler_jobs import (
     SizeError,
     Translated,
 )
-from rulec.automata.mealy_monitor import MealyMonitor
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
 from rulec.automata.tables import build_machine
-from rulec.automata.worker.random_words import agrees
+from rulec.automata.worker.random_words import agrees, outlined
 from rulec.logic.bounds import operations_of
 from rulec.logic.codec import from_data, to_data
+from rulec.logic.fold import bit_sets, fold
 from rulec.logic.formula import Formula
 from rulec.rulebook.rules.axiom_instances import AxiomInstance
 from rulec.validation.table_proof import prove_words
@@ -100,14 +102,28 @@ def _is_right(machine: MealyMonitor, job: Job, translated: Translated) -> bool:
 
 def _prove(machine: MealyMonitor, job: Job) -> None:
     """Raise UnprovableError unless a machine judges all words as its formula does."""
-    # Looked up by an atom's meaning: the same limit may be written in two units.
-    true_in: dict[Formula, int] = {}
-    true_in.update(letters_with(machine.reads, propositions_of(job.formula)).items())
+    everything = (1 << len(machine.letters)) - 1
+    of_letters = bit_sets(letters_with(machine.reads, propositions_of(job.formula)), everything)
+    outline, parts = outlined(job.formula)
+    true_in = {atom: fold(part, of_letters) for part, atom in parts.items()}
+    # Letters that neither the formula nor the table tells apart count as one: these are few.
+    groups = list(enumerate(_classes_of(machine.letters)))
+    for letters in true_in.values():
+        halves = [
+            (number, members & side)
+            for number, members in groups
+            for side in (letters, everything ^ letters)
+        ]
+        groups = [half for half in halves if half[1]]
+    places = {
+        atom: sum([1 << place for place, (_, members) in enumerate(groups) if members & letters])
+        for atom, letters in true_in.items()
+    }
     prove_words(
-        to_data(job.formula),
-        lambda atom: true_in[from_data(atom)],
+        to_data(outline),
+        lambda atom: places[from_data(atom)],
         {
-            "letters": machine.letters,
+            "letters": [number for number, _ in groups],
             "following": machine.successors,
             "accepting": machine.outputs,
             "dead": machine.rejecting_sink,
@@ -115,3 +131,12 @@ def _prove(machine: MealyMonitor, job: Job) -> None:
         },
         ends=job.semantics == "finite",
     )
+
+
+def _classes_of(letters: Sequence[int]) -> list[int]:
+    """The letters of each class, as bits."""
+    rows = [bytearray(len(letters) // 8 + 1) for _ in range(max(letters) + 1)]
+    for letter, number in enumerate(letters):
+        if number != IMPOSSIBLE:
+            rows[number][letter // 8] |= 1 << letter % 8
+    return [int.from_bytes(row, "little") for row in rows]

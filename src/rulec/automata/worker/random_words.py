@@ -10,7 +10,7 @@ from rulec.automata.alphabet import letters_with, propositions_of
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
 from rulec.logic.bounds import BOOLEAN, operations_of, range_of
 from rulec.logic.formula import Atom, Binary, Formula, Unary, with_operands
-from rulec.logic.semantics import Letter, Semantics, holds, truth_values
+from rulec.logic.semantics import Semantics, holds, truth_values
 
 MOST_WORDS, FEWEST_WORDS = 300, 40
 _EFFORT = 200_000
@@ -34,34 +34,30 @@ def agrees(machine: MealyMonitor, formula: Formula, semantics: Semantics) -> boo
         number: frozenset([each for each, true_in in sets.items() if true_in >> number & 1])
         for number in {number for word in words for number in word}
     }
-    outline, phases = _outlined(formula, letters)
+    outline, parts = outlined(formula)
+    phases: dict[int, set[Atom]] = {number: set() for number in letters}
+    for part, atom in parts.items():
+        values = truth_values(part, list(letters.values()))
+        for true, value in zip(phases.values(), values, strict=True):
+            true.update([atom] if value else [])
     return all(
-        verdict(machine, word) == holds(outline, [phases[number] for number in word], semantics)
+        verdict(machine, word)
+        == holds(outline, [frozenset(phases[number]) for number in word], semantics)
         for word in words
     )
 
 
-def _outlined(
-    formula: Formula, letters: Mapping[int, Letter]
-) -> tuple[Formula, Mapping[int, Letter]]:
-    """The formula with each part about the present state replaced by an atom, and its letters.
-
-    Such a part is evaluated once for all letters, not in every word.
-    """
+def outlined(formula: Formula) -> tuple[Formula, Mapping[Formula, Atom]]:
+    """The formula with each part about the present state alone replaced by an atom, and these."""
     atoms: dict[Formula, Atom] = {}
-    true_in: dict[int, set[Atom]] = {number: set() for number in letters}
 
-    def outlined(part: Formula) -> Formula:
+    def outline(part: Formula) -> Formula:
         is_timed = any(operation.operator not in BOOLEAN for operation in operations_of(part))
         if is_timed and isinstance(part, Unary | Binary):
-            return with_operands(part, outlined)
-        atom = atoms.setdefault(part, Atom(f"part {len(atoms)}"))
-        values = truth_values(part, list(letters.values()))
-        for true, value in zip(true_in.values(), values, strict=True):
-            true.update([atom] if value else [])
-        return atom
+            return with_operands(part, outline)
+        return atoms.setdefault(part, Atom(f"part {len(atoms)}"))
 
-    return outlined(formula), true_in
+    return outline(formula), atoms
 
 
 def _bounds(formula: Formula) -> list[int]:
