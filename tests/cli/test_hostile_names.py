@@ -68,9 +68,8 @@ RUNS = [
     *(["verify", TRACES, "-r", SAFE, "--output-format", f] for f in ("json", "csv", "jsonl")),
     *(
         ["verify", TRACES, "-r", SAFE, "-o", f"{FILE}.{form}"]
-        for form in ("xml", "sarif", "txt", "xqar")
+        for form in ("xml", "sarif", "txt")
     ),
-    ["verify", TRACES, "-r", SAFE, "--output-format", "xqar"],
     ["verify", TRACES, "-r", SAFE, HOSTILE],
     [HOSTILE],
     ["check", f"--{HOSTILE}"],

@@ -91,7 +91,7 @@ def test_output_does_not_depend_on_the_number_of_processes(verify):
 
 
 def test_several_files_at_once(verify):
-    outputs = [f"found.{end}" for end in ("jsonl", "csv", "parquet", "xml", "sarif", "xqar")]
+    outputs = [f"found.{end}" for end in ("jsonl", "csv", "parquet", "xml", "sarif")]
     options = [word for name in outputs for word in ("-o", name)]
     status, out, _ = verify("drives", *options)
     assert status == 2

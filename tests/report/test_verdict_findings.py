@@ -196,45 +196,6 @@ def test_sarif_without_findings(rules):
     assert run["invocations"][0]["executionSuccessful"] is True
 
 
-UID = re.compile(r"(\w+(\.\w+)+):([a-z]+):([0-9]+(\.[0-9]+)+):(([^\W\d_]\w*)\.)*([^\W\d_]\w*)")
-"""A rule's UID, as doc/manual/rule_uid_schema.md of the framework has it."""
-
-IN_ORDER = ["Param", "Issue", "AddressedRule", "Metadata"]
-"""The elements of a checker, in the order of xqar_result_format.xsd."""
-
-
-def test_the_quality_checkers_results(rules):
-    root = ElementTree.fromstring(written(rules, "xqar", FOUND, BROKEN))
-    assert root.tag == "CheckerResults"
-    first, second = root.findall("CheckerBundle")
-    assert set(first.attrib) == {"build_date", "description", "name", "version", "summary"}
-    assert [(one.get("name"), one.get("value")) for one in first.findall("Param")] == [
-        ("InputFile", "a b.xml"),
-        ("Recording", "A"),
-    ]
-    slow, distance, quiet = first.findall("Checker")
-    assert [one.get("status") for one in (slow, distance, quiet)] == [
-        "completed",
-        "completed",
-        "skipped",
-    ]
-    (issue,) = slow.findall("Issue")
-    assert (issue.get("level"), issue.get("ruleUID")) == (
-        "1",
-        slow.find("AddressedRule").get("ruleUID"),
-    )
-    assert issue.find("Locations/TimeLocation").get("time") == "0.75"
-    assert issue.find("Locations/InertialLocation").attrib == {"x": "2.0", "y": "-1.5", "z": "0.0"}
-    assert [one.get("level") for one in distance.findall("Issue")] == ["2", "3"]
-    assert {one.get("status") for one in second.findall("Checker")} == {"error"}
-    for checker in root.iter("Checker"):
-        order = [IN_ORDER.index(child.tag) for child in checker]
-        assert order == sorted(order)
-        assert UID.fullmatch(checker.find("AddressedRule").get("ruleUID"))
-    numbers = [one.get("issueId") for one in root.iter("Issue")]
-    assert len(set(numbers)) == len(numbers) == 3
-
-
 def messages(content):
     reader = make_reader(io.BytesIO(content))
     found = {}
@@ -318,7 +279,7 @@ def test_hostile_names_do_no_harm(rules, form):
     text = content.decode("utf-8")
     # No control character, and nothing that is taken for an element of XML.
     assert not re.search("[\x00-\x08\x0b\x0c\x0e-\x1f]", text)
-    if form in ("junit", "xqar"):
+    if form == "junit":
         tags = {one.tag for one in ElementTree.fromstring(text).iter()}
         assert "b" not in tags
     if form == "csv":

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from rulec.rulebook.files.source_walk import LeftAlone
 
 
-_REPORTS = ("html", "junit", "sarif", "svg", "xqar")
+_REPORTS = ("html", "junit", "sarif", "svg")
 """Formats for people and for display in other programs."""
 
 _DATA = ("csv", "jsonl")

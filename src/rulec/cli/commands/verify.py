@@ -127,8 +127,8 @@ def command(
     a table compares the results.
 
     -o FILE writes findings: one per violation, open verdict or rule that could not be judged, as
-    .jsonl, .csv, .parquet, .xml (JUnit), .sarif, .xqar (ASAM Quality Checker) or .mcap (events for
-    playback beside the recording). With .json it writes verdicts, like --json; with .txt the text.
+    .jsonl, .csv, .parquet, .xml (JUnit), .sarif or .mcap (events for playback beside the
+    recording). With .json it writes verdicts, like --json; with .txt the text.
 
     Exit status: 0 no hard rule is violated, 1 some are, 2 a trace, or every rule, could not be
     judged.

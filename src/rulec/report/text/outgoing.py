@@ -22,7 +22,7 @@ _AT_START: Final = re.compile(r"^([^\S\n]*):(?=:(?!: ))", re.MULTILINE)
 A diagnostic's `::: FILE` is no command, because no command's name begins with a colon.
 """
 
-MARKUP: Final = frozenset({"html", "svg", "junit", "xqar"})
+MARKUP: Final = frozenset({"html", "svg", "junit"})
 JSON: Final = frozenset({"json", "jsonl", "sarif"})
 _FORMULA: Final = ("=", "+", "-", "@", "\t", "\r", "'")
 """The first character of a cell that a spreadsheet evaluates (OWASP), or reads as a text marker."""

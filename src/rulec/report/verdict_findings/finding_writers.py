@@ -15,7 +15,6 @@ ENDINGS: Mapping[str, tuple[str, ...]] = {
     "parquet": (".parquet", ".pq"),
     "junit": (".xml",),
     "sarif": (".sarif", ".sarif.json"),
-    "xqar": (".xqar",),
     "mcap": (".mcap",),
 }
 """Name of a format -> the endings of its files."""
@@ -53,10 +52,6 @@ def finding_writer(form: str, stream: IO[bytes], about: FindingContext, name: st
             from rulec.report.verdict_findings.finding_sarif import SarifWriter
 
             return SarifWriter(stream, about)
-        case "xqar":
-            from rulec.report.verdict_findings.quality_checker import QualityCheckerWriter
-
-            return QualityCheckerWriter(stream, about)
         case "mcap":
             from rulec.report.verdict_findings.finding_mcap import McapWriter
 
