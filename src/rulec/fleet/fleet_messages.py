@@ -7,6 +7,7 @@ from pathlib import Path
 from rulec.diagnostics import RulecError, SourceLocation, first_of, named
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.missing_package import missing_package
+from rulec.files.own_kinds import what_reads
 from rulec.recordings.recording_messages import NET_MISSING
 
 CUT_DRIVE = Code(
@@ -110,7 +111,8 @@ def no_fleet_input(path: str, why: str = "") -> RulecError:
         SourceLocation(path),
         "the file is neither a table of drives in Parquet nor recorded traffic"
         + (f": {why}" if why else ""),
-        help="write traces as Parquet, with the columns that docs/traces.md has, or give a "
+        help=what_reads(path)
+        or "write traces as Parquet, with the columns that docs/traces.md has, or give a "
         "recording; `rulec formats` lists what is read",
     )
 

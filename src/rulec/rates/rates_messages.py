@@ -5,6 +5,7 @@ from __future__ import annotations
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.missing_package import missing_package
+from rulec.files.own_kinds import what_reads
 
 JUDGED_OTHERWISE = Code(
     "R0715",
@@ -48,10 +49,12 @@ RATES_UNAVAILABLE = Code(
 
 
 def no_findings(file: str, why: str) -> RulecError:
+    traffic = file if what_reads(file)[:13] in ("", "it has traces") else "TRAFFIC"
     return NO_FINDINGS.error(
         SourceLocation(file),
         why,
-        help="write findings with `rulec verify --exposure -o FILE`, as .jsonl, .csv or .parquet",
+        help=f"judge first, then count: `rulec verify {traffic} -r de --exposure -o found.csv`, "
+        "and `rulec rates found.csv`",
     )
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, first_of, named
+from rulec.files.own_kinds import what_reads
 from rulec.files.read_files import is_folder, opened
 from rulec.recordings.encodings.csv_head import PARQUET
 from rulec.recordings.encodings.safe_xml import is_xml
@@ -162,7 +163,9 @@ def _format_of(source: RecordingSource) -> RecordingFormat:
         expected = "expected `commonRoad` or `fcd-export`"
         raise RECORDING.refused(source.path, why, expected=expected, help_text=way_out)
     check_readable(source.path)
-    raise RECORDING.refused(source.path, "it is of no known format")
+    raise RECORDING.refused(
+        source.path, "it is of no known format", help_text=what_reads(str(source.path))
+    )
 
 
 def check_readable(path: Path) -> None:

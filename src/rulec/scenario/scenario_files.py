@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Source, SourceLocation, did_you_mean, named
+from rulec.files.own_kinds import what_reads
 from rulec.files.read_files import decoded, opened
 from rulec.recordings.recording_files import is_recording, read_recording
 from rulec.recordings.recording_format import RECORDING, RecordingSource
@@ -92,12 +93,12 @@ def read_scenario(path: Path, choice: Choice | None = None) -> Scenario:
             help="leave out the options for recorded scenes, or edit the scenario's file",
         )
     source = _text(path)
-    if path.suffix in _OF_TRACES or source.text.startswith("{"):
+    reads = what_reads(str(path))
+    if (reads and "scenario" not in reads) or path.suffix in _OF_TRACES:
         raise NOT_A_SCENARIO.error(
             SourceLocation(str(path)),
-            "this is not a scenario: it looks like traces",
-            help="`rulec verify` judges traces; maneuvers need a scenario, such as `s2`, "
-            "or recorded traffic",
+            "this is not a scenario",
+            help=reads or "maneuvers need a scenario, such as `s2`, or recorded traffic",
         )
     return to_scenario(parsed_toml(source, NOT_A_SCENARIO, _HOW), path.stem, TomlFile(source))
 

@@ -12,6 +12,7 @@ from typing import Literal
 
 from rulec.diagnostics import Label, RulecError, Span, did_you_mean, named, nearest_name
 from rulec.diagnostics.ways_out import offering
+from rulec.files.own_kinds import what_reads
 from rulec.files.read_files import MAX_SOURCE_BYTES, opened
 from rulec.files.source_detection import LEAD_BYTES, beginning_of, first_word_at
 from rulec.files.work_trees import refuse_no_source
@@ -73,7 +74,8 @@ def meant_by(name: str, known: Sequence[str], search_path: Sequence[Path]) -> st
             shorter = name[: -len(".gz")]
             return f"a compiled rulebook's name ends in `.json`, packed or not: call it `{shorter}`"
         if _lead(Path(name)) not in ("rulebook", "vocabulary"):
-            return f"this file is no rulebook; `rulec verify {name} -r de` judges traffic by one"
+            otherwise = f"`rulec verify {name} -r de` judges traffic by one"
+            return f"this file is no rulebook; {what_reads(name) or otherwise}"
         renamed = Path(name).with_suffix(SUFFIX).name
         return f"the name of a rulebook's file ends in `{SUFFIX}`: call it `{renamed}`"
     if locate_vocabulary(name, None, search_path) is not None:
