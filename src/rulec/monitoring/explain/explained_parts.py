@@ -47,7 +47,8 @@ class Part:
     ``changed``: its value in the decisive state differs from the one before. ``decides``: at some
     instant it is one of the parts that determine the outcome of the formula. ``margins`` are a
     comparison's by state; ``measured`` is that of the last state up to the decisive one, shown or
-    not, in which it decides, with the number of that state.
+    not, in which it decides, with the number of that state. A comparison ``turns`` if the rule
+    would have been kept there, had its margin been closed; ``measured`` is then of that state.
     """
 
     formula: ltl.Formula
@@ -57,6 +58,7 @@ class Part:
     decides: bool
     margins: tuple[Margin | None, ...] = ()
     measured: Measured | None = None
+    turns: bool = False
 
     @property
     def text(self) -> str:
@@ -127,6 +129,7 @@ def parts_of(
     formulas: tuple[ltl.Formula, ltl.Formula],
     truths: Mapping[ltl.Formula, list[bool]],
     deciding: Mapping[ltl.Formula, int],
+    turned: Mapping[ltl.Formula, int],
     observed: ObservedStates,
     numbers: Sequence[int],
     depth: int = 0,
@@ -134,22 +137,24 @@ def parts_of(
     """A formula and its parts, as written and with bounds in steps, each before its operands.
 
     For parts that decide, ``deciding`` has the index of the last state in which they do, among the
-    states with these ``numbers``.
+    states with these ``numbers``. ``turned`` has the same for a comparison that ``turns``.
     """
     written, stepped = formulas
     margins: tuple[Margin | None, ...] = ()
     measured: Measured | None = None
     if isinstance(written, ltl.Comparison):
         margins = observed.margins(written)
-        if margins and stepped in deciding:
-            margin = observed.margin(written, deciding[stepped])
-            measured = None if margin is None else (margin, numbers[deciding[stepped]])
+        index = turned.get(stepped, deciding.get(stepped))
+        if margins and index is not None:
+            margin = observed.margin(written, index)
+            measured = None if margin is None else (margin, numbers[index])
     yield Part(
         formula=written,
         depth=depth,
         values=tuple(truths[stepped][n] for n in observed.shown),
         changed=observed.changes(truths[stepped]),
         decides=stepped in deciding,
+        turns=stepped in turned,
         margins=margins,
         measured=measured,
     )
@@ -161,7 +166,7 @@ def parts_of(
         case _:
             operands = []
     for both in operands:
-        yield from parts_of(both, truths, deciding, observed, numbers, depth=depth + 1)
+        yield from parts_of(both, truths, deciding, turned, observed, numbers, depth=depth + 1)
 
 
 def with_margins(

@@ -29,6 +29,7 @@ from rulec.monitoring.explain.explained_states import shown_states, states_to_ex
 from rulec.monitoring.explain.margins import Margin, choosing_comparisons
 from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
 from rulec.monitoring.explain.observed_states import ObservedStates
+from rulec.monitoring.explain.turning_margins import turning
 from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import has_partial_values
@@ -90,6 +91,7 @@ class Explanation:
         choosing = choosing_comparisons(self.rule.formula)
         compared = [part for part in decisive if part.margins]
         asks = [part for part in compared if part.formula not in choosing] or compared
+        asks = [part for part in self.parts if part.turns][:1] or asks
         margins += [part.measured for part in asks]
         # Of one margin in several states, the first
         return list({own[0]: own for own in reversed(margins) if own is not None}.values())[::-1]
@@ -204,6 +206,8 @@ def explanation_of(
     early = is_broken_before(first, formula, values) and _is_violated_before(rule.machine, observed)
     instants = instants_among(known, formula, n_states, semantics, first if early else 0)
     deciding = {part: _last_until(place, at) for part, at in instants.items() if True in at}
+    when = set() if rule.trigger is None else set(ltl.atoms_of(rule.trigger))
+    turned = turning(formula, truths, instants, observed, semantics, when)
     states = tuple([numbers[index] for index in observed.shown])
     decided_at = {
         part.name: numbers[index] for part, index in deciding.items() if isinstance(part, ltl.Atom)
@@ -217,7 +221,7 @@ def explanation_of(
             with_margins(fact, decided_by, states, decided_at)
             for fact in facts_of(truths, deciding.keys(), observed)
         ),
-        parts=tuple(parts_of((rule.formula, formula), values, deciding, observed, numbers)),
+        parts=tuple(parts_of((rule.formula, formula), values, deciding, turned, observed, numbers)),
         repair=None,
         vocabulary=subject.vocabulary,
         lasts=(numbers[first], numbers[last]),
