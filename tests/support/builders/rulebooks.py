@@ -59,7 +59,7 @@ def compile_here(rulebook, step_s=None):
 
     compiled = []
     for formula in compiler.lower(rulebook, step_s).rules:
-        job = compiler._job(rulebook, formula, cpu_limit_s=5)
+        job = compiler._job(rulebook, formula)
         answer = answer_to(job, usual)
         if answer in (Failed("reach"), Failed("sets")):
             reject()
