@@ -126,14 +126,22 @@ def test_the_map(scene):
     assert len(scene.marks) == 4
 
 
+GAP = "gap(9) 20.00±0.05 m < 21.5±0.4 m, by at least 1.1 m"
+
+
 def test_a_violation_is_measured(scene):
     (violation,) = scene.violations
     assert (violation.rule, violation.state, violation.time_s) == ("following_distance", 3, 1.5)
-    assert violation.measured == ("gap(9) 20.00±0.05 m < 21.5±0.4 m, by at least 1.1 m",)
+    assert violation.measured == (f"at {violation.time_s:g} s: {GAP}",)
     assert violation.deciding_values == ("station(9) behind", "lateral(9) same_lane")
     assert violation.against == ("9",)
     assert violation.short == "hard, § 4(1), for 9"
-    assert violation.gap_text(3) == "20.0 m"
+    # The number of the picture is that of the explanation, in each state in which both are shown
+    assert violation.gap_text(3) == "20.00±0.05 m"
+    (sides,) = violation.narrowly.values()
+    shown = [(violation.gap_text(state), text) for state, text in enumerate(sides) if text]
+    assert len(shown) > 1
+    assert not [both for both in shown if both[0].split()[0] != both[1].split()[0]]
     # 3 m to the side, 4 m along the road: the line is 5 m long, whatever the gap.
     aside = violation.links.copy()
     aside[3] = (0, 0, 4, 3)
@@ -169,8 +177,8 @@ def test_a_picture_is_right_side_up(scene):
     crossing = areas["zebra"].rings[0]
     assert max(y for _, y in crossing) < tops["road"]
     texts = [mark.text for mark in picture.marks if isinstance(mark, LabelText)]
-    assert {"1.5 s", "20.0 m", "1 · 54 km/h", "9 · 40 km/h"} <= set(texts)
-    assert "measured: gap(9) 20.00±0.05 m < 21.5±0.4 m, by at least 1.1 m" in texts
+    assert {"1.5 s", "20.00±0.05 m", "1 · 54 km/h", "9 · 40 km/h"} <= set(texts)
+    assert any(text.startswith("measured at ") and text.endswith(GAP) for text in texts)
     # Nothing is drawn outside of the map but words.
     for mark in picture.marks:
         if isinstance(mark, Area):
@@ -315,7 +323,7 @@ def test_the_page_has_every_moment(scene):
     assert other["turn"] == [0] * STATES
     assert len(other["shapes"]) == 1
     (violation,) = data["violations"]
-    assert violation["gaps"][:4] == ["26.0 m", "24.0 m", "22.0 m", "20.0 m"]
+    assert violation["gaps"][:2] == ["26.00±0.05 m", "24.00±0.05 m"]
     rows = {row["title"]: (row["decides"], row["runs"]) for row in violation["rows"]}
     assert rows["safe_gap(9)"] == (True, [[2, "true", "true"], [8, "false", "off"]])
     # What stands still is there once.

@@ -260,7 +260,7 @@ def _words(
     if violation is not None:
         when = f"{violation.time_s:g} s"
         lines += [("strong", f"{when}  {violation.title}"), ("ink", violation.says)]
-        lines += [("strong", f"measured: {text}") for text in violation.measured]
+        lines += [("strong", f"measured {text}") for text in violation.measured]
         lines += (
             [("ink", f"with {', '.join(violation.deciding_values)}")]
             if violation.deciding_values

@@ -109,7 +109,7 @@ class SceneViolation:
     """A violation at the ``state`` that decides it; the last state if only the end decides.
 
     ``short`` has the rule's strength, its article and the objects; ``against`` are the ids of these
-    objects' participants. ``measured`` has a line for each comparison with its margin,
+    objects' participants. ``measured`` has a line for each comparison with its time and its margin,
     ``deciding_values`` the other values that decide; ``read`` is the ribbon of what the rule reads
     about the objects, ``decides`` the rows of it that decide, and ``narrowly`` maps a row to the
     margin of its signal by state, where known.

@@ -194,7 +194,9 @@ def _violation(
         short=", ".join(filter(None, (rule.strength, rule.cite, _objects_of(violation)))),
         says=rule.says,
         against=against,
-        measured=tuple(map(str, explanation.margins())),
+        measured=tuple(
+            f"at {drive.time_s(at):g} s: {margin}" for margin, at in explanation.measured()
+        ),
         deciding_values=tuple(_deciding_values(explanation)),
         read=ribbon(trace, only, Verdict(trace.id, (violation,)), objects),
         decides=frozenset(fact.text for fact in explanation.facts if fact.decides),
@@ -230,7 +232,16 @@ def _sides(numbers: Deciding, item: str, states: int) -> Iterator[str]:
 
 
 def _gaps(drive: Drive, objects: Sequence[str]) -> Iterator[float | Interval | None]:
-    for state in drive.trace.states:
+    """The gap to the first object by state: the one that decided a signal, if one did.
+
+    Its error is less than that of the gap alone, whose bounds hold for every rule.
+    """
+    for number, state in enumerate(drive.trace.states):
+        decided = (by.margin(objects[0], number) for by in drive.decided_by.values() if objects)
+        own = next((by for by in decided if by and by.text == f"gap({objects[0]})"), None)
+        if own is not None:
+            yield Interval(own.value - own.value_error, own.value + own.value_error)
+            continue
         gaps = state.get("gap")
         gap = gaps.get(objects[0]) if objects and isinstance(gaps, Mapping) else None
         yield gap if isinstance(gap, float | Interval) else None
