@@ -122,8 +122,7 @@ def test_an_error_says_what_was_expected_and_each_way_out_once():
     ]
     error = pickle.loads(pickle.dumps(RulecError(said)))
     assert str(error).splitlines() == [
-        "there is no `DE` [R0703]; there is no `de ` [R0703]; it cannot be read [R0701]; "
-        "`side` is `up` [R0617]",
+        "; ".join(f"{one.message} [{one.code}]" for one in said),
         "help: did you mean `de`?",
         "expected `left`, `right`",
     ]
