@@ -137,3 +137,16 @@ def test_the_light_that_ego_passed_before_it_was_seen_is_unknown():
     part = cut(whole, at - 1, 23)
     assert words(part, "crosses_light_line")[at] in {True, UNKNOWN}
     assert words(part, "light")[at] is UNKNOWN
+
+
+def test_who_comes_is_unknown_where_the_drive_ends_as_ego_gets_to_the_junction():
+    """Its front is in it, and its middle in none of its ways yet."""
+    ego = driver("ego", -40 + 4.0 * np.arange(24), 0)
+    other = driver("other", 10, -68 + 5.0 * np.arange(24), np.pi / 2)
+    whole = world([ego, other], complete={"arrivals"})
+    told, enters = words(whole, "conflict_from_right"), words(whole, "enters_junction")
+    (at,) = [step for step, value in enters.items() if value is True]
+    assert told[at] is True
+    part = cut(whole, 0, at)
+    assert words(part, "enters_junction")[at] is True
+    assert words(part, "conflict_from_right")[at] is UNKNOWN

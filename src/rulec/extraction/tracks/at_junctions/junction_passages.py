@@ -30,7 +30,7 @@ from rulec.extraction.tracks.at_junctions.junctions import (
 from rulec.extraction.tracks.matching.junction_stays import Stay, body_length, junction_stays
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.polylines import line_length
-from rulec.recordings.recording import Recording
+from rulec.recordings.recording import Points, Recording
 from rulec.recordings.track import TrackOutlines, outlines_on_track
 from rulec.scenario.recorded.reference_line import turn
 
@@ -138,6 +138,13 @@ class JunctionPassages:
         """Whether a straight line leads through a junction."""
         line = shapely.LineString([start, end])
         return len(self._areas.query(line, predicate="intersects")) > 0
+
+    def touched_by(self, outline: Points | None) -> list[int]:
+        """The numbers of the junctions that a body touches."""
+        if outline is None:
+            return []
+        found: list[int] = self._areas.query(shapely.Polygon(outline), "intersects").tolist()
+        return found
 
     @cached_property
     def _first_meetings(self) -> dict[str, float]:

@@ -23,16 +23,25 @@ _NEVER = np.iinfo(np.intp).max
 
 @once
 def strays(context: DriveContext) -> tuple[tuple[int, int, int], ...]:
-    """Ego's stays in junctions on none of their ways: the junction, first and last column."""
-    rows, tracks = context.ego.rows.tolist(), context.own.tracks
+    """Ego's stays in junctions on none of their ways: the junction, first and last column.
+
+    And where its drive ends as it gets there.
+    """
+    rows, passages, tracks = context.ego.rows.tolist(), context.own.passages, context.own.tracks
     steps = [context.steps[own] - tracks.first for own in context.spans.slices]
-    return tuple(
+    found = [
         (junction, first, last)
-        for junction, found in context.own.passages.astray.items()
-        for row, first, last in found
+        for junction, stays in passages.astray.items()
+        for row, first, last in stays
         for own, columns in zip(rows, steps, strict=True)
         if row == own and last >= columns[0] and first <= columns[-1]
-    )
+    ]
+    for row, columns in zip(rows, steps, strict=True):
+        begin, end = columns[[0, -1]].tolist()
+        driven = {x.junction for x in passages.of_row.get(row, ()) if x.last >= begin}
+        at_end = passages.touched_by(tracks.outline(row, end))
+        found += [(junction, end, end) for junction in at_end if junction not in driven]
+    return tuple(found)
 
 
 def astray(context: DriveContext) -> Flags:
@@ -42,9 +51,10 @@ def astray(context: DriveContext) -> Flags:
     over others on a bridge.
     """
     found, along = np.zeros(context.states, dtype=bool), context.ego_extents.s[0]
+    front = context.ego_extents.s_max[0]
     for _, *stay in strays(context):
         first, last = np.clip(np.array(stay) - context.first_column, 0, context.states - 1)
-        low, high = along[first : last + 1].min(), along[first : last + 1].max()
+        low, high = along[first : last + 1].min(), front[first : last + 1].max()
         if any(low < end and start < high for start, end in context.road.junctions):
             near = (along >= low - context.thresholds.approach_m) & (along <= high)
             found |= near & (context.spans.columns <= last)
