@@ -175,6 +175,13 @@ LOOKBACK: Final = ResourceLimit(
     "give it bounds no longer than drives last",
 )
 
+CROWD: Final = ResourceLimit(
+    "crowd",
+    400,
+    "others in the same square of 100 m as a participant, on average",
+    "look at its places: no road has room for so many; or take a part of the recording",
+)
+
 MEMORY: Final = ResourceLimit(
     "memory",
     1 << 30,
@@ -206,6 +213,7 @@ LIMITS: Final = {
         SEARCH,
         CITES,
         LOOKBACK,
+        CROWD,
         MEMORY,
         SECONDS,
     )

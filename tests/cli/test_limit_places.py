@@ -1,11 +1,13 @@
 """Whatever is beyond a limit that can be lifted is shown where it stands."""
 
 import json
+from pathlib import Path
 
 import pytest
 
 from rulec.automata import compiler
 from rulec.cli.main import main
+from rulec.extraction import crowds
 from rulec.resource_limits import LIMITS
 from support import remembered_machines
 
@@ -37,6 +39,10 @@ FILES = {
     "refused.jsonl": "{}\n" * 3,
     "law.md": "# Act\n\n## Article 1\n\nDrive.\n",
 }
+FOLLOWING = str(Path(__file__).parents[2] / "docs/samples/following.xml")
+OF_THE_CALL = {"memory", "seconds"}
+"""Limits of a whole call, which has no place: ``test_enforced_limits``."""
+
 OF_A_RULE = "small.rules:6"
 ASKED = {
     "choices": (0, ["verify", "t.jsonl", "-r", "./small.rules"], "t.jsonl:1"),
@@ -56,12 +62,13 @@ ASKED = {
         ["find", "once[<= 10 s] p", "t.jsonl", "-r", "./small.rules"],
         "t.jsonl:1",
     ),
+    "crowd": (0, ["verify", FOLLOWING, "-r", "de"], FOLLOWING),
     "search": (0, ["analyze", "./small.rules"], "small.rules:"),
 }
 
 
 def test_each_limit_is_asked_for():
-    assert ASKED.keys() == LIMITS.keys()
+    assert ASKED.keys() | OF_THE_CALL == LIMITS.keys()
 
 
 @pytest.mark.parametrize("limit", ASKED)
@@ -70,6 +77,8 @@ def test_the_place_is_told(limit, tmp_path, monkeypatch, capsys):
     if limit == "compiling":  # what is remembered takes no time
         monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path / "cache"))
         monkeypatch.setattr(compiler, "answers_to", remembered_machines.ASKED)
+    if limit == "crowd":  # pairs of few participants are never counted
+        monkeypatch.setattr(crowds, "_FEW_PAIRS", 0)
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)
     number, words, place = ASKED[limit]

@@ -39,7 +39,7 @@ from rulec.trace.end_to_end import UnlikeDrivesError
 
 FEWEST_STATES = 2
 
-MOST_CELLS = 1 << 16
+MOST_CELLS = 1 << 18
 """Most cells (participants × states) of several drives that are processed together."""
 
 FEWEST_TOGETHER = 2

@@ -10,6 +10,7 @@ from functools import partial
 
 from rulec.diagnostics import SourceLocation, did_you_mean, first_of, named
 from rulec.diagnostics.argument_kinds import expected
+from rulec.extraction.crowds import refuse_crowd
 from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.possible_types import PossibleTypes
 from rulec.extraction.recording_parts import RecordingPart, egos_of, recording_parts
@@ -190,6 +191,7 @@ def selected_drives(
                 f"there is no vehicle `{ego}` that drives",
                 help=did_you_mean(ego, known) or _examples(known),
             )
+    refuse_crowd(recording, file)
     egos = tuple(ego for ego in known if not request.egos or ego in request.egos)
     parts = recording_parts(recording, egos, request.thresholds)
     drives_of = partial(Drives, side=side, thresholds=request.thresholds, writer=writer)

@@ -130,6 +130,12 @@ def shaped(*sizes, raw=b""):
     return EMPTY + b"(K\x01(" + numbers + b"t" + FLOATS + b"\x89" + content + b"tb"
 
 
+SHARED = b")\x94" + b"".join(b"h%ch%c\x86\x94" % (k, k) for k in range(200))
+"""Nested tuples whose text has 2 to the power of 200 characters."""
+
+ARRAY = shaped(2, raw=bytes(16))
+
+
 @pytest.mark.parametrize(
     ("program", "why"),
     [
@@ -168,7 +174,15 @@ def shaped(*sizes, raw=b""):
         (b"cos\nsystem\n", "it asks for `os.system`"),
         (b"c" + b"x" * 500, "something with a long name"),
         (asked("os", "system"), "it asks for `os.system`"),
-        (b"K\x01K\x02\x93", "it asks for `1.2`"),
+        (b"K\x01K\x02\x93", "it asks for something by a int and a int"),
+        (SHARED + b"\x8c\x01x\x93", "it asks for something by a tuple and a str"),
+        (SHARED + b"N\x86R", "it calls "),
+        (SHARED + b"}b", "it gives a tuple a state"),
+        (SHARED + b"}h\xc8Ns", "a tuple is a key"),
+        (SHARED + SET + b"]h\xc8a\x85R", "a tuple is a key"),
+        (FLOATS + b"(K\x03" + ARRAY + b"NNNtb", "a state that none has"),
+        (EMPTY + b"(K\x01)" + FLOATS + ARRAY + b"C\x00tb", "a state that none has"),
+        (asked("_codecs", "encode") + text("a") + ARRAY + b"\x86R", "does not take"),
         (b"(cos\nsystem\no", "it asks for `os.system`"),
         (b"(ios\nsystem\n", "the opcode b'i'"),
         (b"Pharm\n", "the opcode b'P'"),
