@@ -45,7 +45,7 @@ def enforced() -> Iterator[None]:
         return
     if is_set(MEMORY):
         # What it lacks when it is loaded ends the process, with the status of a violation
-        import numpy  # noqa: ICN001, F401
+        import numpy  # noqa: F401
     before = resource.getrlimit(resource.RLIMIT_DATA)
     handler, seconds = signal.getsignal(signal.SIGALRM), SECONDS.value()
     is_timed = is_set(SECONDS)

@@ -20,7 +20,8 @@ def refuse_crowd(recording: Recording, file: str) -> None:
     """Refuse more participants at one place than can be there. Raises RulecError R0718."""
     moving = [body for body in recording.participants if body.states and not body.standing]
     there = sum(len(body.states) for body in moving)
-    standing = [next(iter(body.states.values())) for body in recording.participants if body.standing]
+    stand = [body for body in recording.participants if body.standing and body.states]
+    standing = [next(iter(body.states.values())) for body in stand]
     if (len(moving) + len(standing)) * there <= _FEW_PAIRS:
         return
     busiest = max(moving, key=lambda body: len(body.states)).states

@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 import gzip
+import io
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
+import pyarrow
+from pyarrow import parquet
 
 from support.builders import mcap_files, track_tables
 from support.builders import osi_traces as osi
-from support.builders.recordings import ROAD_XML, SAMPLES
+from support.builders.recordings import SAMPLES
 from support.builders.waymo_files import record
-from support.mutations.format_samples import MAPS, RECORDINGS
+from support.mutations.format_samples import RECORDINGS
 
 Files = Mapping[str, bytes]
 """Files by name; the first is judged, with the map that is called ``roads.…``, if there is one."""
 
 
 def _parquet(columns, **options) -> bytes:
-    import pyarrow
-    from pyarrow import parquet
-
     sink = pyarrow.BufferOutputStream()
     parquet.write_table(pyarrow.table(columns), sink, compression="zstd", **options)
     return sink.getvalue().to_pybytes()
@@ -53,7 +53,8 @@ def _commonroad(inner: str) -> dict[str, bytes]:
 def _fcd(moments: str) -> dict[str, bytes]:
     files = dict(next(RECORDINGS["sumo"]()).files)
     net = files["road.net.xml"]
-    return {"fcd.xml": f"<fcd-export>{moments}</fcd-export>".encode(), "roads.net.xml": net.encode()}
+    fcd = f"<fcd-export>{moments}</fcd-export>"
+    return {"fcd.xml": fcd.encode(), "roads.net.xml": net.encode()}
 
 
 def _person(name: int) -> str:
@@ -96,10 +97,6 @@ def _other(name: str, entry: str, content: bytes) -> dict[str, bytes]:
 
 def _argoverse(rows: int) -> dict[str, bytes]:
     sample = next(RECORDINGS["argoverse-motion"]())
-    import io
-
-    from pyarrow import parquet
-
     content = sample.packed()[sample.entry].whole()
     table = parquet.read_table(io.BytesIO(content))
     one = table.slice(0, 1).take([0] * rows)
@@ -193,14 +190,7 @@ def unpacked_bytes(files: Files) -> int:
             content = gzip.decompress(content)
         total += len(content)
         if Path(name).suffix == ".parquet":
-            import io
-
-            from pyarrow import parquet
-
             total += parquet.read_table(io.BytesIO(content)).nbytes
         if name.endswith(".mcap"):
             total += 1_000_000
     return total
-
-
-__all__ = ["MAPS", "ROAD_XML", "WORST", "unpacked_bytes"]

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from math import prod
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -259,7 +259,8 @@ def _build(machine: PickleMachine) -> None:
         raise machine.wrong(f"it gives {called(target)} a state")
     match target.value, state:
         case np.dtype() as kind, (_, str() as order, None, None, None, *_) if order in _ORDERS:
-            target.value = kind.newbyteorder(order) if order in "<>" else kind
+            way: Literal["<", ">", "="] = "<" if order == "<" else ">" if order == ">" else "="
+            target.value = kind if way == "=" else kind.newbyteorder(way)
         case None, (_, tuple() as shape, np.dtype() as kind, bool() as is_fortran, bytes() as raw):
             target.value = _array(machine, shape, kind, raw, is_fortran)
         case _:
