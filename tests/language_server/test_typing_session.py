@@ -1,6 +1,6 @@
 """A stored session of typing: what is shown after its keys is what `rulec check` says.
 
-Of a text that is too large to be read piece by piece, only the newest version is checked.
+Of a text that is too large to be read piece by piece, only the newest version is shown.
 """
 
 import asyncio
@@ -51,50 +51,53 @@ TEXT = "rulebook large\nsignal p default false\nhard rule r {{ require never p }
 
 @pytest.fixture
 def large_texts(monkeypatch):
-    """A session in which every text is large, with the versions that it has checked."""
+    """A session in which every text is large, with the versions whose findings it published."""
     monkeypatch.setattr(editor_session, "MOST_CHARACTERS", 10)
-    monkeypatch.setattr(editor_session, "_IDLE_S", 0.01)
-    session, checked = EditorSession(), []
-    monkeypatch.setattr(session, "publish", lambda uri: None)
-    monkeypatch.setattr(session, "_ask_again", lambda: checked.append("asked again"))
-    check = session.check
-    monkeypatch.setattr(
-        session, "check", lambda document: (checked.append(document.version), check(document))
-    )
-    return session, checked
+    session, published = EditorSession(), []
+    versions = session.editor.documents
+    monkeypatch.setattr(session, "publish", lambda uri: published.append(versions[uri].version))
+    monkeypatch.setattr(session, "_ask_again", lambda: published.append("asked again"))
+    return session, published
 
 
-def test_only_the_newest_version_is_checked(large_texts):
-    session, checked = large_texts
+async def until_checked(session):
+    while session.checks_due:
+        await asyncio.sleep(0.01)
+
+
+def test_only_the_newest_version_is_shown(large_texts):
+    session, published = large_texts
 
     async def typing():
         for version in range(2, 7):
-            session.check_changed(session.editor.open(LARGE, TEXT.format(version), version))
+            session.check(session.editor.open(LARGE, TEXT.format(version), version))
             assert session.names(LARGE) is None
-            session.check_others("")
-        assert checked == []
+            session.check_others(LARGE)
+        assert published == []
+        await until_checked(session)
         await asyncio.sleep(0.1)
 
     asyncio.run(typing())
-    assert checked == [6, "asked again"]
+    assert published == [6, "asked again"]
     assert session.names(LARGE) is not None
 
 
-def test_what_is_closed_meanwhile_is_not_checked(large_texts):
-    session, checked = large_texts
+def test_what_is_closed_meanwhile_is_not_shown(large_texts):
+    session, published = large_texts
 
     async def typing():
-        session.check_changed(session.editor.open(LARGE, TEXT.format(2), 2))
+        session.check(session.editor.open(LARGE, TEXT.format(2), 2))
         session.editor.close(LARGE)
+        session.give_up(LARGE)
         await asyncio.sleep(0.1)
 
     asyncio.run(typing())
-    assert checked == []
+    assert published == []
 
 
 def test_a_text_that_is_not_large_is_checked_at_once(large_texts, monkeypatch):
-    session, checked = large_texts
+    session, published = large_texts
     monkeypatch.setattr(editor_session, "MOST_CHARACTERS", 1000)
-    session.check_changed(session.editor.open(LARGE, TEXT.format(2), 2))
-    assert checked == [2]
+    session.check(session.editor.open(LARGE, TEXT.format(2), 2))
+    assert published == [2]
     assert isinstance(session.names(LARGE)[1].whole(), lsp.Range)

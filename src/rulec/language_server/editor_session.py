@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import gc
 from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 from lsprotocol import types as lsp
@@ -17,11 +19,7 @@ from rulec.language_server.names.document_names import DocumentNames, names_in_d
 from rulec.language_server.strict_protocol import UNREADABLE, StrictProtocol
 from rulec.language_server.workspace import published_diagnostics as published
 from rulec.language_server.workspace.background_check import LARGE, BackgroundCheck, view_around
-from rulec.language_server.workspace.editor_workspace import (
-    CheckedDocument,
-    Document,
-    EditorWorkspace,
-)
+from rulec.language_server.workspace.editor_workspace import Document, EditorWorkspace
 from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.syntax.incremental.parsed_text import MOST_CHARACTERS
 from rulec.version import __version__
@@ -46,7 +44,7 @@ class EditorSession(LanguageServer):
         self.findings: dict[str, dict[str, list[Diagnostic]]] = {}
         self.answers = KnownAnswers()
         self.waiting: list[asyncio.TimerHandle] = []
-        self.checks_due: dict[str, asyncio.TimerHandle | BackgroundCheck] = {}
+        self.checks_due: dict[str, BackgroundCheck] = {}
 
     def report_server_error(self, error: Exception, source: Any) -> None:
         """Report an error in a message: to the client that sent it, or else to the log."""
@@ -58,18 +56,14 @@ class EditorSession(LanguageServer):
             super().report_server_error(error, source)
 
     def check(self, document: Document) -> None:
-        """Check a document and publish its findings: at once, or behind the scenes.
-
-        The latter if it is large and has to be read as a whole.
-        """
-        if waiting := self.checks_due.pop(document.uri, None):
-            waiting.cancel()
+        """Check a document and publish its findings: in the background if it is read as a whole."""
+        self.give_up(document.uri)
         size = len(document.text)
         if size > MOST_CHARACTERS or (size > LARGE and document.parsed is None):
             loop = asyncio.get_running_loop()
-            behind = BackgroundCheck(document, self.editor, loop, self._large_checked)
-            self.checks_due[document.uri] = behind
-            behind.start()
+            due = BackgroundCheck(document, self.editor, loop, self._checked)
+            self.checks_due[document.uri] = due
+            due.start()
             return
         try:
             findings = self.editor.check(document).findings
@@ -77,9 +71,12 @@ class EditorSession(LanguageServer):
             findings = error.diagnostics
         self._found(document.uri, findings)
 
-    def _large_checked(
-        self, document: Document, _: CheckedDocument | None, findings: Iterable[Diagnostic]
-    ) -> None:
+    def give_up(self, uri: str) -> None:
+        """Give up the check that is under way for a document, if there is one."""
+        if due := self.checks_due.pop(uri, None):
+            due.is_cancelled = True
+
+    def _checked(self, document: Document, findings: Iterable[Diagnostic]) -> None:
         self.checks_due.pop(document.uri, None)
         self._found(document.uri, findings)
         self._ask_again()
@@ -90,23 +87,6 @@ class EditorSession(LanguageServer):
         self.findings[uri] = published.by_file(findings, uri)
         for file in dict.fromkeys((uri, *before, *self.findings[uri])):
             self.publish(file)
-
-    def check_changed(self, document: Document) -> None:
-        """Check a document that has changed: at once, or if it is very large, once typing pauses.
-
-        Such a text is always read as a whole. What is under way for an older version is given up.
-        """
-        if waiting := self.checks_due.pop(document.uri, None):
-            waiting.cancel()
-        if len(document.text) <= MOST_CHARACTERS:
-            self.check(document)
-            return
-        loop = asyncio.get_running_loop()
-        self.checks_due[document.uri] = loop.call_later(_IDLE_S, self._check_open, document.uri)
-
-    def _check_open(self, uri: str) -> None:
-        if document := self.editor.documents.get(uri):
-            self.check(document)
 
     def _ask_again(self) -> None:
         """Have the editor ask for what it got no answer to while a check was waited for."""
@@ -161,33 +141,28 @@ class EditorSession(LanguageServer):
         document = self.editor.document(uri)
         if document is None or uri in self.checks_due:
             return None
-        known = document.checked
-        if known is not None and known.text == document.text and len(known.text) > MOST_CHARACTERS:
-            return self._names_of(known, document)
+        known = document.checked if len(document.text) > MOST_CHARACTERS else None
         try:
-            return self._names_of(self.editor.check(document), document)
+            names = names_in_document(known or self.editor.check(document))
         except RulecError:
             return None
+        return None if names is None else (names, self.editor.positions(document.text))
 
     def names_around(
-        self, params: lsp.TextDocumentPositionParams
+        self, uri: str, position: lsp.Position
     ) -> tuple[DocumentNames, TextPositions] | None:
         """The same, for a place in the document; while a check is due, from a view around it."""
-        document = self.editor.document(params.text_document.uri)
-        if document is None or document.uri not in self.checks_due:
-            return self.names(params.text_document.uri)
-        offset = self.editor.positions(document.text).offset(params.position)
-        view = Document(document.uri, view_around(document.text, offset))
-        try:
-            return self._names_of(self.editor.check(view), document)
-        except RulecError:
-            return None
-
-    def _names_of(
-        self, checked: CheckedDocument, document: Document
-    ) -> tuple[DocumentNames, TextPositions] | None:
-        names = names_in_document(checked)
-        return None if names is None else (names, self.editor.positions(document.text))
+        document = self.editor.document(uri)
+        if document is None or uri not in self.checks_due:
+            return self.names(uri)
+        positions = self.editor.positions(document.text)
+        view = Document(uri, view_around(document.text, positions.offset(position)))
+        with self.checks_due[uri].pause, suppress(RulecError):
+            checked = self.editor.check(view)
+            parsed = replace(checked.parsed, text=document.text)
+            names = names_in_document(replace(checked, parsed=parsed))
+            return None if names is None else (names, positions)
+        return None
 
 
 def collect_in_pauses() -> None:

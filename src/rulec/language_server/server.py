@@ -74,14 +74,13 @@ def _documents(server: EditorSession) -> None:
     def changed(params: lsp.DidChangeTextDocumentParams) -> None:
         uri = params.text_document.uri
         text = server.workspace.get_text_document(uri).source
-        server.check_changed(server.editor.open(uri, text, params.text_document.version))
+        server.check(server.editor.open(uri, text, params.text_document.version))
         server.check_others_later(uri)
 
     @server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)
     def closed(params: lsp.DidCloseTextDocumentParams) -> None:
         uri = params.text_document.uri
-        if waiting := server.checks_due.pop(uri, None):
-            waiting.cancel()
+        server.give_up(uri)
         server.editor.close(uri)
         for file in dict.fromkeys((uri, *server.findings.pop(uri, {}))):
             server.publish(file)
@@ -95,7 +94,7 @@ def _documents(server: EditorSession) -> None:
 def _names(server: EditorSession) -> None:
     @server.feature(lsp.TEXT_DOCUMENT_HOVER)
     def hover(params: lsp.HoverParams) -> lsp.Hover | None:
-        known = server.names_around(params)
+        known = server.names_around(params.text_document.uri, params.position)
         if known is None:
             return None
         names, positions = known
@@ -107,7 +106,7 @@ def _names(server: EditorSession) -> None:
 
     @server.feature(lsp.TEXT_DOCUMENT_DEFINITION)
     def definition(params: lsp.DefinitionParams) -> lsp.Location | None:
-        known = server.names_around(params)
+        known = server.names_around(params.text_document.uri, params.position)
         if known is None:
             return None
         names, positions = known
@@ -166,7 +165,7 @@ def _writing(server: EditorSession) -> None:
         lsp.TEXT_DOCUMENT_COMPLETION, lsp.CompletionOptions(trigger_characters=["(", " ", ","])
     )
     def completion(params: lsp.CompletionParams) -> list[lsp.CompletionItem]:
-        known = server.names_around(params)
+        known = server.names_around(params.text_document.uri, params.position)
         if known is None:
             return []
         names, positions = known
@@ -176,7 +175,7 @@ def _writing(server: EditorSession) -> None:
         lsp.TEXT_DOCUMENT_SIGNATURE_HELP, lsp.SignatureHelpOptions(trigger_characters=["(", ","])
     )
     def signature_help(params: lsp.SignatureHelpParams) -> lsp.SignatureHelp | None:
-        known = server.names_around(params)
+        known = server.names_around(params.text_document.uri, params.position)
         if known is None:
             return None
         names, positions = known

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from itertools import islice
 from typing import NamedTuple
 
+from rulec.cancellation import step
 from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, Span
 from rulec.diagnostics.diagnostic import unquoted
 from rulec.files.file_messages import FILE_TOO_LARGE
@@ -102,7 +103,9 @@ def tokens_of(source: Source) -> Iterator[Token]:
         assert match_ is not None, "the last alternative takes any character"
         kind, end = match_.lastgroup or "", match_.end()
         if kind == "skip":
-            first = first or "\n" in match_.group()
+            if "\n" in match_.group():
+                step()
+                first = True
         else:
             if kind == "run_on":
                 kind = "unterminated"

@@ -10,7 +10,12 @@ _DATA_BLOCKS = ("application/json",)
 class _Elements(HTMLParser):
     def __init__(self, page):
         super().__init__()
-        self.policy, self.texts, self.attributes, self._open = "", {"style": [], "script": []}, [], ""
+        self.policy, self.texts, self.attributes, self._open = (
+            "",
+            {"style": [], "script": []},
+            [],
+            "",
+        )
         self.feed(page)
 
     def handle_starttag(self, tag, attributes):

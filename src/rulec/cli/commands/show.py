@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import fields, replace
+from functools import partial
 from glob import has_magic
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -126,28 +127,18 @@ def _is_rulebook(argument: str) -> bool:
     return is_path or argument in available_rulebooks(search_path())
 
 
-def _known(
-    reference: str,
-    name: str | None,
-    patterns: Sequence[str],
-    to: Output,
-    at: str,
-    *,
-    several: bool,
-) -> str:
+def _known(reference: str, *asked: Any, several: bool) -> str:
     """A rule as text or JSON, or all that match in brief; one JSON line each if ``several``."""
     # Late import, not for --help: files and the cache (10 ms).
     from rulec.automata.bundle.required_signature import refuse_source
     from rulec.rulebook.batch.answer_cache import AnswerQuestion
 
+    shown = partial(_shown, reference, *asked, several=several)
     if Path(reference).suffix == ".json":
-        return _shown(reference, name, patterns, to, at, several=several)[0]
+        return shown()[0]
     refuse_source(reference)
-    words = ("show", reference, repr((name, patterns, to.form, width_of(to), at, several)))
-    shown: str = AnswerQuestion(words, search_path()).answer(
-        lambda: _shown(reference, name, patterns, to, at, several=several)
-    )
-    return shown
+    words = ("show", reference, repr((asked, width_of(asked[2]), several)))
+    return str(AnswerQuestion(words, search_path()).answer(shown))
 
 
 def _shown(

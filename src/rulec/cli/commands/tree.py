@@ -35,50 +35,35 @@ def command(rulebooks: tuple[str, ...], patterns: tuple[str, ...], to: Output, a
     if patterns and len(rulebooks) != 1:
         raise click.UsageError("--rule chooses among the rules of one RULEBOOK; give one")
     width, color = width_of(to), wants_color(sys.stdout)
-    if len(rulebooks) == 1:
-        words = ("tree", at, to.form, str(width), str(color), *rulebooks, *patterns)
-        question = AnswerQuestion(words, search_path())
-        shown = question.answer(lambda: _lineage(rulebooks[0], patterns, to, at))
-    else:
-        shown = _forest(rulebooks, to, at)
-    put_answer(shown, to)
+    words = ("tree", *rulebooks, repr((patterns, to.form, width, color, at)))
 
+    def made() -> tuple[str, Sequence[str]]:
+        """What to show, and its sources; none if it comes from several rulebooks, or with warnings."""
+        # Late import, not for cached answers: rulebooks and their colours (80 ms).
+        from rulec.analysis.lineage.book_lineage import book_header, read_with_lineage
+        from rulec.analysis.lineage.rule_lineage import extension_forest
+        from rulec.report.rulebooks import lineage_tree
+        from rulec.rulebook.files.catalogue import rulebook_heads
 
-def _lineage(
-    rulebook: str, patterns: Sequence[str], to: Output, at: str
-) -> tuple[str, Sequence[str]]:
-    """The lineage of a rulebook, and its files; none if there are warnings, which are printed."""
-    # Late import, not for cached results: rulebooks and their colours (80 ms).
-    from rulec.analysis.lineage.book_lineage import read_with_lineage
-    from rulec.report.rulebooks import lineage_tree
-
-    loaded, lineage = read_with_lineage(rulebook, search_path(), at)
-    if loaded.warnings:
-        print_diagnostics(loaded.warnings)
-    inherited = lineage_tree.chosen(lineage, patterns)
-    if patterns and not inherited.rules:
-        raise click.UsageError(f"{inherited.book} has no rule like {named(patterns)}")
-    if to.form == "text":
-        shown = lineage_tree.as_text(inherited, width_of(to), color=wants_color(sys.stdout))
-    else:
-        shown = lineage_tree.as_json(inherited)
-    return shown, () if loaded.warnings else loaded.paths
-
-
-def _forest(rulebooks: Sequence[str], to: Output, at: str) -> str:
-    """Which of these rulebooks, or of all, extends which."""
-    # Late import, as above.
-    from rulec.analysis.lineage.book_lineage import book_header
-    from rulec.analysis.lineage.rule_lineage import extension_forest
-    from rulec.report.rulebooks import lineage_tree
-    from rulec.rulebook.files.catalogue import rulebook_heads
-
-    if rulebooks:
+        if len(rulebooks) == 1:
+            loaded, lineage = read_with_lineage(rulebooks[0], search_path(), at)
+            if loaded.warnings:
+                print_diagnostics(loaded.warnings)
+            inherited = lineage_tree.chosen(lineage, patterns)
+            if patterns and not inherited.rules:
+                raise click.UsageError(f"{inherited.book} has no rule like {named(patterns)}")
+            sources = () if loaded.warnings else loaded.paths
+            if to.form == "text":
+                return lineage_tree.as_text(inherited, width, color=color), sources
+            return lineage_tree.as_json(inherited), sources
         session = open_session(at)
-        books = [book for name in rulebooks for book in session.tree(name).books]
-    else:
-        books = [book_header(tree) for tree in rulebook_heads(search_path())]
-    branches = extension_forest(books)
-    if to.form == "text":
-        return lineage_tree.forest_as_text(branches, width_of(to), color=wants_color(sys.stdout))
-    return lineage_tree.forest_as_json(branches)
+        if rulebooks:
+            books = [book for name in rulebooks for book in session.tree(name).books]
+        else:
+            books = [book_header(tree) for tree in rulebook_heads(search_path())]
+        branches = extension_forest(books)
+        if to.form == "text":
+            return lineage_tree.forest_as_text(branches, width, color=color), ()
+        return lineage_tree.forest_as_json(branches), ()
+
+    put_answer(AnswerQuestion(words, search_path()).answer(made), to)

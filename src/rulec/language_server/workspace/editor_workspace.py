@@ -98,6 +98,7 @@ class EditorWorkspace:
     encoding: lsp.PositionEncodingKind | str = lsp.PositionEncodingKind.Utf16
     documents: dict[str, Document] = field(default_factory=dict)
     _files: dict[str, Document] = field(default_factory=dict)
+    _positions: TextPositions | None = None
 
     def open(self, uri: str, text: str, version: int | None = None) -> Document:
         """Open a document, or replace the text of an open one."""
@@ -106,7 +107,7 @@ class EditorWorkspace:
         known = self.documents.get(uri)
         if known is None:
             known = self.documents[uri] = self._files.pop(uri, Document(uri, text))
-        known.text, known.version = text, version
+        known.text, known.version, known.checked = text, version, None
         return known
 
     def close(self, uri: str) -> None:
@@ -175,7 +176,9 @@ class EditorWorkspace:
 
     def positions(self, text: str) -> TextPositions:
         """The positions of a text as this editor counts them."""
-        return TextPositions(text, self.encoding)
+        if self._positions is None or self._positions.text is not text:
+            self._positions = TextPositions(text, self.encoding)
+        return self._positions
 
     def sources(self) -> list[str]:
         """The addresses of all sources in the workspace's folders, and of open documents."""
