@@ -38,7 +38,7 @@ def command(rulebooks: tuple[str, ...], patterns: tuple[str, ...], to: Output, a
     words = ("tree", *rulebooks, repr((patterns, to.form, width, color, at)))
 
     def made() -> tuple[str, Sequence[str]]:
-        """What to show, and its sources; none if it comes from several rulebooks, or with warnings."""
+        """What to show, and its sources; none with warnings, or of several rulebooks."""
         # Late import, not for cached answers: rulebooks and their colours (80 ms).
         from rulec.analysis.lineage.book_lineage import book_header, read_with_lineage
         from rulec.analysis.lineage.rule_lineage import extension_forest
