@@ -7,7 +7,9 @@ import pytest
 
 from rulec import Session
 from rulec.analysis.diff import comparison_matrix
+from rulec.analysis.lineage import book_lineage
 from rulec.cache.cache_folder import cache_folder
+from rulec.cli.commands import show
 from rulec.cli.main import main
 from rulec.rulebook.batch import answer_cache
 from support.builders.rulebook_projects import project_in
@@ -43,6 +45,8 @@ def answered(monkeypatch):
         return answer
 
     monkeypatch.setattr(Session, "analyze", counting(Session.analyze))
+    monkeypatch.setattr(show, "_shown", counting(show._shown))
+    monkeypatch.setattr(book_lineage, "read_with_lineage", counting(book_lineage.read_with_lineage))
     matrix = comparison_matrix.comparison_matrix
     monkeypatch.setattr(comparison_matrix, "comparison_matrix", counting(matrix))
     return times
@@ -50,6 +54,8 @@ def answered(monkeypatch):
 
 QUESTIONS = {
     "analyze": ["analyze", "./book.rules"],
+    "show": ["show", "./book.rules", "r"],
+    "tree": ["tree", "./book.rules"],
     "diff": ["diff", "--all", "./book.rules", "./other.rules"],
 }
 
@@ -114,10 +120,16 @@ def test_every_change_counts(folder, answered, ask, monkeypatch, change):
     assert len(answered) == 2
 
 
-@pytest.mark.parametrize("options", [("--at", "2020-01-01"), ("--no-cache",)])
-def test_another_question_is_answered_anew(answered, ask, options):
+def test_another_question_is_answered_anew(answered, ask):
     ask()
-    ask(*options)
+    ask("--at", "2020-01-01")
+    assert len(answered) == 2
+
+
+@pytest.mark.parametrize("verb", ["analyze", "diff"])
+def test_an_answer_is_made_anew_without_the_cache(folder, answered, verb):
+    for options in ([], ["--no-cache"]):
+        assert main([*QUESTIONS[verb], *options]) in (0, 1)
     assert len(answered) == 2
 
 
