@@ -40,7 +40,7 @@ RULEBOOKS = Path(__file__).parents[2] / "rulebooks"
 
 def job(formula, semantics="stutter"):
     reads = reads_of(formula, TIMED_VOCABULARY)
-    return Job("rule", formula, reads, ("a rule",), semantics, (), cpu_s=5)
+    return Job("rule", formula, reads, ("a rule",), semantics, ())
 
 
 def in_reach(formula, semantics):
@@ -95,7 +95,7 @@ def test_shipped_rules_have_the_monitors_and_languages_of_spot(name, step_s):
     spot = pytest.importorskip("spot")
     rulebook = read_rulebook(name).rulebook
     lowered = compiler.lower(rulebook, Fraction(step_s))
-    jobs = [compiler._job(rulebook, each, cpu_limit_s=5) for each in lowered.rules]
+    jobs = [compiler._job(rulebook, each) for each in lowered.rules]
     answers, _ = compiler.answers_to(jobs)
     for each, other in zip(jobs, answers, strict=True):
         own = answer_to(each, COMPILER)

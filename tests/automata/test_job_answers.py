@@ -20,7 +20,7 @@ def once(steps):
 
 def job(formula, semantics="stutter"):
     reads = reads_of(formula, TIMED_VOCABULARY)
-    return Job("rule", formula, reads, (), semantics, (), cpu_s=5)
+    return Job("rule", formula, reads, (), semantics, ())
 
 
 def answer(formula, other, semantics="stutter", **more):

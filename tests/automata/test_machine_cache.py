@@ -87,7 +87,6 @@ def changed(name):
         "remarks": ("by another rulec",),
         "semantics": "finite",
         "groups": job().groups[1:],
-        "cpu_s": 6,
         "most_letters": 1 << 17,
     }[name]
     assert value != getattr(job(), name)

@@ -73,7 +73,7 @@ def book_of(formula, axioms, vocabulary=VOCABULARY, semantics="stutter"):
 
 def answer(book):
     return answer_to(
-        compiler._job(book, compiler.lower(book).rules[0], cpu_limit_s=5), spot_bridge.COMPILER
+        compiler._job(book, compiler.lower(book).rules[0]), spot_bridge.COMPILER
     )
 
 

@@ -62,7 +62,7 @@ def test_ten_thousand_formulas_have_one_table(seed, record_property):
         one = formula(chance, chance.choice([1, 1, 2, 2, 3]))
         reads = reads_of(one, TIMED_VOCABULARY)
         meaning = chance.choice(["stutter", "finite"])
-        job = Job("rule", one, reads, ("a rule",), meaning, (), cpu_s=5)
+        job = Job("rule", one, reads, ("a rule",), meaning, ())
         try:
             own = machine_of(COMPILER, job)
         except BeyondReachError:

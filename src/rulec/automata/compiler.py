@@ -307,9 +307,16 @@ def _ask(
         process.stdin.flush()
         answer: tuple[Done | Failed, float] = pickle.load(process.stdout)
     except (EOFError, BrokenPipeError, pickle.UnpicklingError):
+        before_s = _children_s()
         is_late = process.wait() == -signal.SIGXCPU
-        return (Failed("time"), most_s) if is_late else (None, 0.0)
+        return Failed("time") if is_late else None, _children_s() - before_s
     return answer
+
+
+def _children_s() -> float:
+    """The processor time (s) of all processes that this one started and that have ended."""
+    used = os.times()
+    return used.children_user + used.children_system
 
 
 def _job(rulebook: Rulebook, lowered: RuleFormula) -> Job:

@@ -21,12 +21,16 @@ MOST_STATES, MOST_EDGES = 20_000, 200_000
 """The most of an automaton while it is built, whatever it is reduced to: sizes, not times, so that
 the same rules can be compiled on every machine."""
 
+MOST_OPERATORS = 1_000_000
+"""The most of a formula in which each `then` is written out, which says its left operand twice."""
+
 
 @dataclass(frozen=True, slots=True)
 class Job:
     """One rule to translate, with its bounds in steps.
 
-    ``groups`` are the axioms about its variables.
+    ``groups`` are the axioms about its variables. Without ``remarks`` no text of the automaton is
+    wanted.
     """
 
     name: str
@@ -46,7 +50,7 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class Done:
-    """A rule's machine, and its automaton in HOA."""
+    """A rule's machine, and its automaton in HOA if that is wanted."""
 
     machine: MealyMonitor
     hoa: str
@@ -56,7 +60,7 @@ class Done:
 class Failed:
     """The reason why there is no monitor.
 
-    ``letters``, ``steps``, ``size`` (states or edges), ``sets`` (of acceptance) or ``memory``: too
+    ``letters``, ``steps``, ``size`` (states, edges, operators), ``sets`` (of acceptance) or ``memory``: too
     many or too much is needed. ``check``: the result was wrong. ``facts``: those in
     ``contradiction`` cannot hold together.
     ``reach``: Spot is needed. ``time``: the rulebook's time is used up. ``bug``: any unforeseen

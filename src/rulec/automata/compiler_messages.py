@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from rulec.automata.bundle.bundle_messages import AUTOMATON_TOO_LARGE
-from rulec.automata.compiler_jobs import MOST_EDGES, MOST_STATES, Failed
+from rulec.automata.compiler_jobs import MOST_EDGES, MOST_OPERATORS, MOST_STATES, Failed
 from rulec.automata.worker.confinement import Confinement
 from rulec.diagnostics import Diagnostic, SourceLocation
 from rulec.diagnostics.code import Code
@@ -90,7 +90,10 @@ def no_machine(rule: Rule, failed: Failed | None, step_s: Fraction | None = None
         case Failed("letters"):
             why = "it reads too many signals, enumerations and numbers at once"
         case Failed("size"):
-            why = f"it gets more than {MOST_STATES:,} states or {MOST_EDGES:,} edges"
+            why = (
+                f"it gets more than {MOST_STATES:,} states, {MOST_EDGES:,} edges, or "
+                f"{MOST_OPERATORS:,} operators with each `then` written out"
+            )
         case Failed("sets"):
             why = "it needs more acceptance sets than Spot supports"
         case Failed("steps"):

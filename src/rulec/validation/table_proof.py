@@ -14,7 +14,7 @@ from rulec.validation.unprovable import UnprovableError, require
 MOST_STATES = 1 << 13
 """Formulas with more states, as this checker counts them, are not proved."""
 
-QUICK_WORK = 1 << 17
+QUICK_WORK = 1 << 18
 """The limit of work where a table has to be proved at once or not at all."""
 
 MOST_CLASS_BITS = 1 << 28

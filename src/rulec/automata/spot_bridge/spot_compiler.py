@@ -27,7 +27,9 @@ def _translated(job: Job) -> Translated:
     return Translated(
         explore(translation, job.reads),
         possible_letters(job.reads, joined(AND, axioms)) if axioms else None,
-        in_hoa(translation.automaton, job.name, job.remarks_on(translation.alive)),
+        in_hoa(translation.automaton, job.name, job.remarks_on(translation.alive))
+        if job.remarks
+        else "",
         translation.is_checked,
         translation.compare,
     )

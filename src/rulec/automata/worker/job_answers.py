@@ -9,6 +9,7 @@ from fractions import Fraction
 from rulec.automata.alphabet import count_letters, letters_with, propositions_of
 from rulec.automata.axiom_groups import AxiomGroup
 from rulec.automata.compiler_jobs import (
+    MOST_OPERATORS,
     MOST_STEPS_AHEAD,
     AcceptanceError,
     BeyondReachError,
@@ -26,7 +27,7 @@ from rulec.automata.worker.random_words import agrees, outlined
 from rulec.logic.bounds import operations_of
 from rulec.logic.codec import from_data, to_data
 from rulec.logic.fold import bit_sets, fold
-from rulec.logic.formula import Formula
+from rulec.logic.formula import Binary, BinaryOperator, Formula, Unary
 from rulec.rulebook.rules.axiom_instances import AxiomInstance
 from rulec.validation.table_proof import prove_words
 from rulec.validation.unprovable import UnprovableError
@@ -38,6 +39,8 @@ def answer_to(job: Job, compiler: Compiler) -> Done | Failed:
         return Failed("letters")
     if _farthest_step(job.formula) > MOST_STEPS_AHEAD:
         return Failed("steps")
+    if _written_out(job.formula) > MOST_OPERATORS:
+        return Failed("size")
     for group in job.groups:
         if compiler.contradicts(group.known):
             return Failed("facts", contradiction=_contradiction(group, compiler))
@@ -67,6 +70,17 @@ def _farthest_step(formula: Formula) -> Fraction:
     bounds = [operation.bound for operation in operations_of(formula)]
     ends = [bound.high or bound.low for bound in bounds if bound is not None]
     return max(ends, default=Fraction(0))
+
+
+def _written_out(formula: Formula) -> int:
+    """The number of operators and propositions of a formula with each `then` written out."""
+    match formula:
+        case Unary(_, operand):
+            return 1 + _written_out(operand)
+        case Binary(operator, left, right):
+            times = 2 if operator is BinaryOperator.THEN else 1
+            return 1 + times * _written_out(left) + _written_out(right)
+    return 1
 
 
 def _contradiction(group: AxiomGroup, compiler: Compiler) -> tuple[AxiomInstance, ...]:
