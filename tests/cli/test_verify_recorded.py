@@ -132,6 +132,7 @@ def test_a_line_of_json_for_each_drive(verify):
         "start_s": 0.0,
         "step_s": 0.1,
         "by_default": ["built_up"],
+        "judged": ["slow", "distance"],
     }
     slow, distance = first["violations"]
     assert (slow["rule"], slow["step"], slow["time_s"], slow["by_default"]) == (

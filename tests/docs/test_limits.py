@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from rulec.automata import compiler, compiler_jobs
+from rulec.automata import compiler_jobs
 from rulec.automata.worker import compiler_worker
 from rulec.cli.main import main
 from rulec.extraction import traffic_thresholds
@@ -41,7 +41,9 @@ FIXED = {
     "rulebooks that one builds upon, one upon another": referenced_files.MOST_BASES,
     "levels of priority": priorities.MOST_LEVELS,
     "digits of a number in compiled files and saved monitors": MOST_DIGITS,
-    "seconds of processor time for a rule's automaton": compiler.CPU_LIMIT_S,
+    "states of a rule's automaton while it is built": compiler_jobs.MOST_STATES,
+    "edges of it": compiler_jobs.MOST_EDGES,
+    "operators of a rule with each `then` written out": compiler_jobs.MOST_OPERATORS,
     "bytes of memory for it": compiler_worker.MEMORY_LIMIT_BYTES,
     "steps of a bound, which are states of it": compiler_jobs.MOST_STEPS_AHEAD,
     "bytes of a packed file, unpacked": read_files.LARGEST_UNPACKED,

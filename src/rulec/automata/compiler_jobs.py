@@ -60,9 +60,9 @@ class Done:
 class Failed:
     """The reason why there is no monitor.
 
-    ``letters``, ``steps``, ``size`` (states, edges, operators), ``sets`` (of acceptance) or ``memory``: too
-    many or too much is needed. ``check``: the result was wrong. ``facts``: those in
-    ``contradiction`` cannot hold together.
+    ``letters``, ``steps``, ``size`` (states, edges, operators), ``sets`` (of acceptance) or
+    ``memory``: too many or too much is needed. ``check``: the result was wrong. ``facts``: those
+    in ``contradiction`` cannot hold together.
     ``reach``: Spot is needed. ``time``: the rulebook's time is used up. ``bug``: any unforeseen
     error, with its traceback.
     """

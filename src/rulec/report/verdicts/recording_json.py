@@ -22,7 +22,10 @@ from rulec.report.verdicts.recording_table import defaulted_names
 
 
 class RecordedVerdict(verdict_json.TraceVerdict, frozen=True, kw_only=True):
-    """The verdict on the drive of vehicle ``trace``, in the recording's times."""
+    """The verdict on the drive of vehicle ``trace``, in the recording's times.
+
+    ``judged`` are the rules that are neither open nor not judged.
+    """
 
     recording: str
     mirrored: bool
@@ -30,6 +33,7 @@ class RecordedVerdict(verdict_json.TraceVerdict, frozen=True, kw_only=True):
     start_s: float
     step_s: float
     by_default: Sequence[str]
+    judged: Sequence[str]
 
 
 class RecordedNotJudged(verdict_json.TraceNotJudged, frozen=True, kw_only=True):
@@ -103,6 +107,7 @@ def as_json(
         error = verdict_json.error_data(answer.error)
         return as_line(RecordedNotJudged(trace=answer.trace, error=error, **recorded))
     by_rule = verdicts.by_default(drive.words)
+    doubtful = {one.rule for one in (*answer.open, *answer.not_judged)}
     data = verdict_json.violations_data(answer, verdicts.rules, explained)
     violations = [
         replace(
@@ -121,6 +126,7 @@ def as_json(
             answer,
             law=filled(verdict_json.LawData, edition_of(verdicts.rules)),
             violations=violations,
+            judged=[rule.name for rule in verdicts.rules.rules if rule.name not in doubtful],
             **verdict_json.doubts(answer, verdicts.rules),
             **recorded,
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import shorten, wrap
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, TooLargeRule
 from rulec.diagnostics import first_of
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
@@ -53,7 +53,7 @@ def _rule_counts(verdicts: RecordingVerdicts, tally: ViolationTally, width: int)
     """The number of rules judged, open and not judged, and the words that are missing."""
     if not tally.judged:
         return
-    rules = verdicts.rules.rules
+    rules = [*verdicts.rules.rules, *verdicts.rules.too_large]
     vocabulary = verdicts.rules.vocabulary
     # It may also depend on the types that participants of unknown type have
     order = [*vocabulary.declarations, *vocabulary.types]
@@ -65,7 +65,9 @@ def _rule_counts(verdicts: RecordingVerdicts, tally: ViolationTally, width: int)
     yield from _unjudged([rule for rule in rules if rule.name not in with_any], tally, width)
 
 
-def _unjudged(rules: Sequence[CompiledRule], tally: ViolationTally, width: int) -> Iterator[str]:
+def _unjudged(
+    rules: Sequence[CompiledRule | TooLargeRule], tally: ViolationTally, width: int
+) -> Iterator[str]:
     """The rules that cannot be judged, hard ones first, grouped by the words that are missing."""
     by_words: dict[tuple[str, tuple[str, ...]], list[str]] = {}
     for rule in sorted(rules, key=lambda compiled_rule: compiled_rule.strength != "hard")[
