@@ -297,8 +297,10 @@ def test_a_past_that_explodes_is_an_error():
 def test_a_failed_check_is_an_error_of_its_own(monkeypatch):
     failing = """
 from rulec.automata.spot_bridge import CheckError, translation
-def fail(*_): raise CheckError
-translation.check = fail
+from rulec.automata.worker import job_answers
+def fail(*_, **__): raise CheckError
+def unproved(*_): raise job_answers.UnprovableError("too long")
+job_answers._prove, translation.check = unproved, fail
 main(confined, choice)
 """
     worker = compiler._WORKER.replace("\nmain(confined, choice)\n", failing)

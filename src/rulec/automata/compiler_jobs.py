@@ -17,7 +17,7 @@ MOST_LETTERS = 1 << 16
 MOST_STEPS_AHEAD = 10_000
 """An automaton has at least one state per step of a bound; more steps cannot be built in time."""
 
-MOST_STATES, MOST_EDGES = 20_000, 200_000
+MOST_STATES, MOST_EDGES = 20_000, 1_000_000
 """The most of an automaton while it is built, whatever it is reduced to: sizes, not times, so that
 the same rules can be compiled on every machine."""
 

@@ -14,6 +14,9 @@ from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
 from rulec.logic.formula import Formula, atoms_of
 from rulec.logic.past_registers import Register
 
+MOST_CHOICES = 200_000
+"""The most ways to take an edge, by what the registers hold for a letter and their operands."""
+
 _Bits = tuple[int, ...]
 _Sides = tuple[tuple[bool, bool], ...]
 """For each register the values of its left and its right operand."""
@@ -49,6 +52,7 @@ def with_registers(
     numbers = {(automaton.get_init_state_number(), empty): 0}
     reached = list(numbers)
     known: dict[tuple[int, _Bits], list[tuple[Any, _Sides | None, int, Any]]] = {}
+    n_choices = 0
     for state, values in reached:
         source = numbers[state, values]
         if never_left[state]:
@@ -65,6 +69,9 @@ def with_registers(
                 for cube, letters, sides in (*choices, (operands.nothing, over, None))
                 if (both := buddy.bdd_restrict(edge.cond, cube) & letters) != buddy.bddfalse
             ]
+            n_choices += len(known[state, due])
+            if n_choices > MOST_CHOICES:
+                raise SizeError
         after = [
             {sides: register.after(value, *sides) for sides in _EVERY}
             for register, value in zip(registers, values, strict=True)
