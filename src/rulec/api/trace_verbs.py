@@ -192,7 +192,8 @@ class TraceVerbs(SessionSettings):
         if isinstance(recording, str | Path):
             recording = self.read_recording(recording, map_path)
         compiled = self._compiled(rules)
-        return RecordingVerdicts(recording, compiled, wanted or RequestedDrives(), str(file))
+        request = wanted or RequestedDrives()
+        return RecordingVerdicts(recording, compiled, request, str(file), says_law=True)
 
     judge_recording = verify_recording
 

@@ -93,12 +93,20 @@ class RecordingVerdicts(Rows):
     """The verdicts of a rulebook on a recording's drives, computed on demand.
 
     Bounds that are no multiples of the recording's step are rounded down and up. Raises RulecError
-    R0507 if the rulebook was compiled for another step, R0612 for a vehicle that is not there.
+    R0507 if the rulebook was compiled for another step, R0612 for a vehicle that is not there. With
+    ``says_law`` each verdict has the text that it is by, which takes the rulebook's hash.
     """
 
     def __init__(
-        self, recording: Recording, rulebook: CompiledRulebook, request: RequestedDrives, file: str
+        self,
+        recording: Recording,
+        rulebook: CompiledRulebook,
+        request: RequestedDrives,
+        file: str,
+        *,
+        says_law: bool = False,
     ) -> None:
+        self._says_law = says_law
         self.request = request
         self._roundings = rounded_rulebooks(rulebook, recording.step_s)
         self.rules = self._roundings[0]
@@ -133,7 +141,7 @@ class RecordingVerdicts(Rows):
 
     def _verified(self, drives: Sequence[Drive | NoDrive]) -> Iterator[DriveVerdict | NoDrive]:
         for found in verified(drives, self._roundings):
-            if isinstance(found, DriveVerdict):
+            if self._says_law and isinstance(found, DriveVerdict):
                 found = replace(found, answer=with_law(found.answer, edition_of(self.rules)))
             yield found
 

@@ -6,9 +6,6 @@ import json
 from hashlib import sha256
 from typing import Any, NamedTuple
 
-import msgspec
-
-from rulec.automata.bundle.bundle_schema import ENTRY_OF
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.logic.printing import formula_text
 
@@ -38,6 +35,11 @@ def rulebook_hash(rules: CompiledRulebook) -> str:
     That is the rules, facts and vocabulary. The hash is the same for a rulebook's source and its
     compiled file, at any step: texts for people and automata do not count.
     """
+    # Late import: the schema of compiled files (20 ms), which verdicts without a hash do not need.
+    import msgspec
+
+    from rulec.automata.bundle.bundle_schema import ENTRY_OF
+
     vocabulary = rules.vocabulary
     content = [
         rules.name,

@@ -27,7 +27,6 @@ from rulec.cli.output import read_machines, rulebooks_named
 from rulec.cli.verdict_outputs import FORMATS, VerdictOutputs, verdict_outputs
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import page_width, print_remark
-from rulec.report.verdicts.verdict_report import headline
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -177,6 +176,9 @@ def command(
         results = []
         for rules, rows_of in zip(books, own, strict=True):
             if rules.law or len(books) > 1:
+                # Late import, only where it is said: verdicts, and the hash of rulebooks (30 ms).
+                from rulec.report.verdicts.verdict_report import headline
+
                 outputs.text(f"{'' if rules is books[0] else chr(10)}{headline(rules)}")
             if exposure:
                 outputs.to_rows = _to_rows(rows_of, rules.name, egos, options, ends)
