@@ -7,7 +7,7 @@ import pytest
 
 from rulec.automata import compiler
 from rulec.cli.main import main
-from rulec.extraction import crowds
+from rulec.recordings.doubts import crowds
 from rulec.resource_limits import LIMITS
 from support import remembered_machines
 

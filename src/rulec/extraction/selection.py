@@ -10,7 +10,6 @@ from functools import partial
 
 from rulec.diagnostics import SourceLocation, did_you_mean, first_of, named
 from rulec.diagnostics.argument_kinds import expected
-from rulec.extraction.crowds import refuse_crowd
 from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.possible_types import PossibleTypes
 from rulec.extraction.recording_parts import RecordingPart, egos_of, recording_parts
@@ -18,6 +17,7 @@ from rulec.extraction.traces.recorded_drive import Drive, DrivePlaces
 from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds, hinted, pair_of
+from rulec.recordings.doubts.crowds import refuse_crowd
 from rulec.recordings.mending.mended_recording import mended
 from rulec.recordings.recording import Recording, Side
 from rulec.recordings.recording_messages import NOT_IN_RECORDING

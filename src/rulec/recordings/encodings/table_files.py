@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import csv
-import gzip
 import io
 import re
-import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import islice
@@ -21,7 +19,6 @@ from rulec.diagnostics import RulecError
 from rulec.files.read_files import opened
 from rulec.recordings.encodings.csv_head import (
     LONGEST_LINE,
-    PACKED,
     is_number,
     is_parquet,
     separator_of,
@@ -113,17 +110,12 @@ def _checked_names(names: tuple[str, ...], refused: Any) -> tuple[str, ...]:
 def _lines(path: Path, form: FileFormat, refused: Any) -> Iterator[io.TextIOWrapper]:
     """The lines of a text file, possibly packed, read within limits."""
     with opened(path) as stream:
-        packed = stream.read(2) == PACKED
-        stream.seek(0)
-        raw = gzip.GzipFile(fileobj=stream) if packed else stream
-        bounded = io.BufferedReader(_Bounded(raw, form.largest_bytes, refused), 1 << 20)
+        bounded = io.BufferedReader(_Bounded(stream, form.largest_bytes, refused), 1 << 20)
         try:
             yield io.TextIOWrapper(bounded, encoding="utf-8-sig", newline="")
         except UnicodeDecodeError:
             stream.seek(0)
-            raise _foreign(b"" if packed else stream.read(_BEGINNING), refused) from None
-        except (OSError, EOFError, zlib.error) as reason:
-            raise refused(f"it cannot be unpacked ({reason})") from None
+            raise _foreign(stream.read(_BEGINNING), refused) from None
 
 
 def _foreign(beginning: bytes, refused: Refused) -> RulecError:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rulec.diagnostics import RulecError
-from rulec.extraction.crowds import refuse_crowd
+from rulec.recordings.doubts.crowds import refuse_crowd
 from rulec.recordings.tracks.track_table import recording_from_columns
 from rulec.resource_limits import CROWD
 
