@@ -1,4 +1,4 @@
-"""Where a drive begins or ends amid something, what that will be or was is unknown, and no error."""
+"""Where a drive begins or ends amid something, what that was or will be is unknown."""
 
 from dataclasses import replace
 
@@ -78,9 +78,7 @@ def on_the_bend(places):
 def test_what_stands_beside_a_turn_has_one_outline_for_all_states(kind, y):
     """Cones and barriers of nuScenes do."""
     ego = driver("ego", *on_the_bend(-40 + 4 * np.arange(22)))
-    still = replace(
-        driver("still", [-3.0], [y], kind=kind, length=1.7, width=0.5), standing=True
-    )
+    still = replace(driver("still", [-3.0], [y], kind=kind, length=1.7, width=0.5), standing=True)
     found = world([ego, still])
     assert all(words(found, "enters_junction")[k] in {True, False} for k in range(22))
     # For an hour or for a second: it is the same thing

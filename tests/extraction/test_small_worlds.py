@@ -50,7 +50,9 @@ def whole(seed):
 
 
 def drivers(found):
-    return sorted({ego for (ego, rule), said in found.items() if not rule and not isinstance(said, str)})
+    return sorted(
+        {ego for (ego, rule), said in found.items() if not rule and not isinstance(said, str)}
+    )
 
 
 @pytest.mark.parametrize("seed", [*SEEDS, *MET])

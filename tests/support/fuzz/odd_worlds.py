@@ -98,8 +98,7 @@ def drawn(recording, pick):
 
 
 VERBS = {
-    verb.__name__: verb
-    for verb in (in_every_word, verified, scored, maneuvered, monitored, drawn)
+    verb.__name__: verb for verb in (in_every_word, verified, scored, maneuvered, monitored, drawn)
 }
 _TRIED = (in_every_word, in_every_word, verified, scored, scored, maneuvered, monitored, drawn)
 
@@ -136,8 +135,7 @@ def in_python(verb, recording, pick):
         try:
             verb(recording, pick)
         except rulec.RulecError as error:
-            print(error)
-            return 2
+            return 2 if str(error) else 70
         return 0
 
     tried.__qualname__ = f"{verb.__name__}({recording.name}, {recording.step_s:g} s)"

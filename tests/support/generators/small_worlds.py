@@ -84,7 +84,8 @@ def _driven(pick, t, meets, at_m, speed):
         case 0:  # brakes to a stand, waits, and goes on
             down = speed / pick.uniform(1.5, 4)
             speeds = np.interp(
-                t, [begin, begin + down, begin + down + lasts, begin + 2 * down + lasts],
+                t,
+                [begin, begin + down, begin + down + lasts, begin + 2 * down + lasts],
                 [speed, 0, 0, speed],
             )
         case 1:
@@ -101,7 +102,10 @@ def _kept(aside):
     return lambda places: aside + 0 * places
 
 
-def _body(pick, name, kind, t, way, motion, aside=_kept(0.0)):
+_MIDDLE = _kept(0.0)
+
+
+def _body(pick, name, kind, t, way, motion, aside=_MIDDLE):
     """A participant on a way; some are there only for a part of the time."""
     places, _ = motion
     x, y, heading = way.at(places, aside)

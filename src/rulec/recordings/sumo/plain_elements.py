@@ -88,8 +88,8 @@ class Elements:
 
     ``named`` are indices into ``names``, and ``owners`` into ``keys``. Keys are in the order of
     their first element, whose type is in ``types``. ``rows`` are the numbers, NaN for a missing
-    speed or acceleration. ``on`` maps each lane or edge to which of the two it is, and its first element;
-    ``lamps`` maps elements to bits.
+    speed or acceleration. ``on`` maps each lane or edge to which of the two it is, and its first
+    element; ``lamps`` maps elements to bits.
     """
 
     names: Sequence[str]

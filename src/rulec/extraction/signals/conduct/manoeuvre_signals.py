@@ -286,9 +286,7 @@ def _on_map(context: DriveContext) -> Flags:
 
 
 def _u_turn(context: DriveContext) -> SignalColumns:
-    return SignalColumns(
-        {"u_turn": u_turns(context)}, unknown={"u_turn": may_turn_round(context)}
-    )
+    return SignalColumns({"u_turn": u_turns(context)}, unknown={"u_turn": may_turn_round(context)})
 
 
 def _joins_road(context: DriveContext) -> SignalColumns:

@@ -126,8 +126,8 @@ def _crosses_side_road(context: DriveContext) -> SignalColumns:
     """Pedestrians that use the road into which ego turns without being let across by ego.
 
     An ego that waits in the junction until they are across has entered it lawfully. Who drives into
-    it and then takes the way of one that steps onto the road meanwhile does so from then on. Unknown
-    of those about a junction where the drive does not show which way ego takes.
+    it and then takes the way of one that steps onto the road meanwhile does so from then on.
+    Unknown of those about a junction where the drive does not show which way ego takes.
     """
     rows, (crosses, unsure) = _pedestrians(context), np.zeros((2, *context.relevant.shape), bool)
     start, end = side_road(context)

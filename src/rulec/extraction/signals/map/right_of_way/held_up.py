@@ -128,6 +128,7 @@ def _held_up_until(
     waits_longer = late_s >= limits.held_up_s
     before = max(decides - round(SEES_S / step_s), 0)
     seen = first + before, first + decides
+    braked: bool | None
     if waits_longer or not (soon[decides] and soon[-1]):
         braked = bool(soon[before]) and _brakes_for(
             context, other, (seen[0], int(until)), comes, may_turn=not waits_longer
