@@ -129,7 +129,7 @@ def _prove(machine: MealyMonitor, job: Job) -> None:
             for side in (letters, everything ^ letters)
         ]
         groups = [half for half in halves if half[1]]
-    places = {
+    places: dict[Formula, int] = {
         atom: sum([1 << place for place, (_, members) in enumerate(groups) if members & letters])
         for atom, letters in true_in.items()
     }

@@ -107,7 +107,7 @@ def as_json(
         error = verdict_json.error_data(answer.error)
         return as_line(RecordedNotJudged(trace=answer.trace, error=error, **recorded))
     by_rule = verdicts.by_default(drive.words)
-    doubtful = {one.rule for one in (*answer.open, *answer.not_judged)}
+    doubtful = {one.rule for one in answer.open} | {one.rule for one in answer.not_judged}
     data = verdict_json.violations_data(answer, verdicts.rules, explained)
     violations = [
         replace(

@@ -53,7 +53,10 @@ def _rule_counts(verdicts: RecordingVerdicts, tally: ViolationTally, width: int)
     """The number of rules judged, open and not judged, and the words that are missing."""
     if not tally.judged:
         return
-    rules = [*verdicts.rules.rules, *verdicts.rules.too_large]
+    rules: list[CompiledRule | TooLargeRule] = [
+        *verdicts.rules.rules,
+        *verdicts.rules.too_large,
+    ]
     vocabulary = verdicts.rules.vocabulary
     # It may also depend on the types that participants of unknown type have
     order = [*vocabulary.declarations, *vocabulary.types]

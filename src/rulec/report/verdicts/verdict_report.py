@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterator, Mapping, Sequence, Set
 from typing import TYPE_CHECKING
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, TooLargeRule
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
@@ -79,7 +79,7 @@ _WORDS: dict[bool | None, tuple[str, str]] = {
 
 
 def rule_counts(
-    rules: Sequence[CompiledRule],
+    rules: Sequence[CompiledRule | TooLargeRule],
     judged: Set[str],
     open_in: Container[str],
     source: str,
