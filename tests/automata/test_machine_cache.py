@@ -41,7 +41,7 @@ def asked(tmp_path, monkeypatch):
     def worker(*_, **__):
         yield None, "2.13"
 
-    def answer(_, job):
+    def answer(_, job, __):
         given.append(job)
         return answer_to(job, diagram_compiler.COMPILER), 0.0
 
@@ -124,10 +124,12 @@ def test_another_rulec_asks_anew(asked, monkeypatch, name):
 
 
 def test_what_is_no_machine_is_not_kept(asked, monkeypatch):
-    monkeypatch.setattr(compiler, "_ask", lambda _, one: (asked.append(one) or Failed("memory"), 0))
+    monkeypatch.setattr(
+        compiler, "_ask", lambda _, one, __: (asked.append(one) or Failed("memory"), 0)
+    )
     assert ASKED([job()]) == ASKED([job()]) == ([Failed("memory")], "2.13")
     assert len(asked) == 2
-    monkeypatch.setattr(compiler, "_ask", lambda _, one: (asked.append(one), 0))
+    monkeypatch.setattr(compiler, "_ask", lambda _, one, __: (asked.append(one), 0))
     assert ASKED([job(), job()]) == ([None, None], "2.13")
     assert len(asked) == 4
     assert not cache_folder().exists()

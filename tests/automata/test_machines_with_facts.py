@@ -72,9 +72,7 @@ def book_of(formula, axioms, vocabulary=VOCABULARY, semantics="stutter"):
 
 
 def answer(book):
-    return answer_to(
-        compiler._job(book, compiler.lower(book).rules[0]), spot_bridge.COMPILER
-    )
+    return answer_to(compiler._job(book, compiler.lower(book).rules[0]), spot_bridge.COMPILER)
 
 
 def compiled(book):

@@ -1,4 +1,4 @@
-"""Machines for words that are cut come from decision diagrams, and what these cannot from Spot."""
+"""Machines for words that are cut, from one compiler within one time."""
 
 from dataclasses import replace
 
@@ -10,6 +10,7 @@ from rulec.automata.decision_diagrams import diagram_compiler
 from rulec.automata.step_compilation import StepCompiler
 from rulec.automata.worker import compiler_choice
 from rulec.automata.worker.job_answers import answer_to
+from rulec.resource_limits import BudgetSpentError
 from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.rulebook.loader import load_rulebook, parse_rulebook
 from support.builders.rulebooks import compile_here
@@ -25,49 +26,31 @@ def compiled(spot):
     return replace(compile_here(parse_rulebook(text)), spot=spot)
 
 
-@pytest.fixture
-def asked(monkeypatch):
-    """Who was asked for which rules; the diagrams have no way for the second."""
-    questions = []
+def test_one_compiler_is_asked_once_for_all_rules(monkeypatch):
+    asked = []
 
-    def answers_to(jobs, *, choice=None):
-        questions.append((choice, [job.name for job in jobs]))
-        has_no_way = choice == compiler_choice.DIAGRAMS
-        return [
-            Failed("reach")
-            if has_no_way and job.name == "second"
-            else answer_to(job, diagram_compiler.COMPILER)
-            for job in jobs
-        ], ""
+    def answers_to(jobs, *, time):
+        asked.append([job.name for job in jobs])
+        return [answer_to(job, diagram_compiler.COMPILER) for job in jobs], ""
 
     monkeypatch.setattr(prefix_machines, "_KNOWN", {})
     monkeypatch.setattr(prefix_machines, "answers_to", answers_to)
-    return questions
-
-
-FIRST = ["first", "first", "second"]
-
-
-def test_what_diagrams_have_no_way_for_is_spots(asked):
     machines = prefix_machines.prefix_machines(compiled("2.13"))
-    assert asked == [(compiler_choice.DIAGRAMS, FIRST), (None, ["second"])]
-    assert None not in machines.values()
+    assert asked == [["first", "first", "second"]]
     assert list(machines) == ["first", "second"]
     # Before a speed of 30 is seen all is open, whatever was before.
     assert [len(machine.starts) for machine in machines.values()] == [2, 1]
+    assert prefix_machines.prefix_machines(compiled("2.13")) == machines
+    assert len(asked) == 1
 
 
-def test_where_spot_has_made_nothing_it_is_not_asked(asked):
-    machines = prefix_machines.prefix_machines(compiled(""))
-    assert asked == [(compiler_choice.DIAGRAMS, FIRST)]
-    assert machines["second"] is None
-    assert machines["first"] is not None
-
-
-def test_who_asks_for_a_compiler_gets_it(asked, monkeypatch):
-    monkeypatch.setenv(compiler_choice.VARIABLE, compiler_choice.SPOT)
-    assert None not in prefix_machines.prefix_machines(compiled("2.13")).values()
-    assert asked == [(None, FIRST)]
+def test_time_that_is_spent_is_an_error_and_no_rule_is_too_large(monkeypatch):
+    monkeypatch.setattr(prefix_machines, "_KNOWN", {})
+    monkeypatch.setattr(
+        prefix_machines, "answers_to", lambda jobs, **_: ([Failed("time")] * len(jobs), "")
+    )
+    with pytest.raises(BudgetSpentError, match="R0718"):
+        prefix_machines.prefix_machines(compiled("2.13"))
 
 
 @pytest.mark.parametrize("name", available_rulebooks(()))

@@ -306,9 +306,9 @@ def test_a_step_that_fits_no_bound_starts_no_process(monkeypatch):
 def test_there_is_a_limit_on_the_time_that_all_rules_take(monkeypatch, tmp_path):
     asked, ask = [], compiler._ask
 
-    def slowly(process, job):
+    def slowly(process, job, most_s):
         asked.append(job.name)
-        return ask(process, job)[0], 0.6 * COMPILING.usual
+        return ask(process, job, most_s)[0], 0.6 * COMPILING.usual
 
     monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path))
     monkeypatch.setattr(compiler, "answers_to", ASKED)

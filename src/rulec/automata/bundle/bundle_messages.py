@@ -12,9 +12,9 @@ AUTOMATON_TOO_LARGE = Code(
     "R0401",
     title="the automaton of a rule would be too large",
     why="An automaton can be far larger than its formula. While it is built it may have 20,000 "
-    "states and 1,000,000 edges and take 2 GiB of memory; the rule may need as many acceptance sets "
-    "as Spot has, 32, and read 65,536 different letters (16 signals). Requirements joined by `and` can be put "
-    "into separate rules, whose automata are not multiplied.",
+    "states and 1,000,000 edges and take 2 GiB of memory; the rule may need as many acceptance "
+    "sets as Spot has, 32, and read 65,536 different letters (16 signals). Requirements joined by "
+    "`and` can be put into separate rules, whose automata are not multiplied.",
     bad=f"rulebook example\nsignal {_SIGNALS}\nhard rule all_off {{\n"
     f"  require always ({' and '.join(_EACH[:9])}\n"
     f"                  and {' and '.join(_EACH[9:])})\n}}\n",
