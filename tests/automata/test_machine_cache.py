@@ -28,7 +28,7 @@ hard rule second { require never (speed > 30 km/h and built_up) }
 
 def jobs_of(text):
     book = parse_rulebook(text)
-    return [compiler._job(book, one, 5) for one in compiler.lower(book).rules]
+    return [compiler._job(book, one) for one in compiler.lower(book).rules]
 
 
 @pytest.fixture
