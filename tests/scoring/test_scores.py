@@ -9,6 +9,7 @@ from rulec.diagnostics import RulecError
 from rulec.extraction.tracks import tracks
 from rulec.extraction.tracks.matching import lanelet_graph
 from rulec.monitoring.verdict import OpenVerdict, Violation
+from rulec.scoring.judged_anew import verdicts_of
 from rulec.scoring.score import score
 from rulec.scoring.scores import CandidateScore, Scores
 from rulec.scoring.traffic_world import TrafficWorld
@@ -401,3 +402,78 @@ def test_what_is_known_of_a_world_is_not_found_again(monkeypatch):
     ):
         monkeypatch.setattr(module, name, again)
     assert score(future, world, GERMAN).rows() == before
+
+
+def test_what_the_past_leaves_open_is_charged_to_no_candidate():
+    # As fast as the limit: that it was not above is open
+    world = street(speed=50 / 3.6)
+    slower, as_fast = [speeding(np.full(8, mps), world.past[-1]) for mps in (10.0, 50 / 3.6)]
+    found = score(np.array([slower, as_fast]), world, GERMAN, world.past)
+    charged, before = (
+        [[own.rule for own in results] for results in zip_of]
+        for zip_of in (
+            [one.open for one in found.candidates],
+            [one.open_before for one in found.candidates],
+        )
+    )
+    assert "speed_limit" not in charged[0]
+    assert "speed_limit" in before[0]
+    assert "speed_limit" in charged[1]
+    assert "speed_limit" not in before[1]
+    assert found.allowed.tolist() == [True, False]
+    # With and without a past, both are as `verify_recording` says together
+    (_, verdict), *_ = verdicts_of(found.candidates[0].drives)
+    assert sorted(charged[0] + before[0]) == sorted(own.rule for own in verdict.open)
+
+
+def test_a_duty_that_waits_for_its_end_is_not_left_to_the_past(tmp_path):
+    book = tmp_path / "slow.rules"
+    book.write_text(
+        'rulebook slow\nuse road\n\nhard rule slow_down {\n  says "Slow down."\n'
+        "  require always (speed > 40 km/h implies eventually speed < 20 km/h)\n}\n"
+    )
+    world = street(speed=12.0)
+    steady_on = speeding(np.full(8, 8.0), world.past[-1])
+    stops = speeding(np.full(8, 2.0), world.past[-1])
+    found = score(np.array([steady_on, stops]), world, machines(str(book)), world.past)
+    assert [len(one.open) for one in found.candidates] == [1, 0]
+    assert found.allowed.tolist() == [False, True]
+
+
+def test_a_past_left_open_is_no_licence_for_what_depends_on_it(tmp_path):
+    # Whether it was too fast is open; if it was, it must not be fast again
+    book = tmp_path / "once.rules"
+    book.write_text(
+        'rulebook once\nuse road\n\nhard rule only_once {\n  says "Be fast once."\n'
+        "  require never (speed > 50 km/h and next (speed < 45 km/h and next eventually"
+        " speed > 60 km/h))\n}\n"
+    )
+    world = street(speed=50 / 3.6)
+    again = speeding([10.0] * 4 + [25.0] * 4, world.past[-1])
+    never = speeding([10.0] * 8, world.past[-1])
+    found = score(np.array([again, never]), world, machines(str(book)), world.past)
+    assert found.allowed.tolist() == [False, True]
+
+
+@pytest.mark.parametrize("later", [[16.0] * 20, [20.0, *[16.0] * 8]])
+def test_a_candidate_in_two_drives_has_the_margins_of_each(later):
+    urban = {"types": ["urban"], "limit_mps": 50 / 3.6}
+    lanes = [
+        rulec.build_lanelet("a", [(0, 0), (100, 0)], **urban),
+        rulec.build_lanelet("b", [(160, 0), (500, 0)], **urban),
+    ]
+    t = STEP_S * np.arange(3)
+    ego = rulec.build_participant("ego", "car", t, 5 + 10 * t, 0 * t, step_s=STEP_S)
+    recording = rulec.build_recording(lanes, [ego], step_s=STEP_S, side="right")
+    world = TrafficWorld(recording, "ego")
+    candidate = speeding(np.array([20.0] * 10 + later), world.past[-1])
+    found = score(candidate[None], world, GERMAN, world.past)
+    own = found.candidates[0]
+    assert len(list(verdicts_of(own.drives))) == 2
+    told = [one for one in found.margins(0) if one.rule == "speed_limit"]
+    steps = [violation.step for violation in own.violations if violation.rule == "speed_limit"]
+    assert [(one.violated, one.state) for one in told] == [(True, step) for step in steps]
+    assert [round(one.margin.value) for one in told] == [72, 58]
+    # And what is kept in both has one
+    kept = [one.rule for one in found.margins(0) if not one.violated]
+    assert len(kept) == len(set(kept))

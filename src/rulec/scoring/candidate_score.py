@@ -24,7 +24,8 @@ class CandidateScore:
     computed on demand. ``late`` is the number of states until everything that the past violated is
     kept for good. ``is_judged``: whether any of its states is in a judged drive. ``judged_from``
     has, for a violation of what the past had violated, too, the state of the candidate from which
-    it is judged anew.
+    it is judged anew. ``open_before`` are the open verdicts that the past alone leaves open, and
+    the candidate's own states keep; they are charged to no candidate.
     """
 
     __repr__ = short_repr
@@ -39,12 +40,14 @@ class CandidateScore:
     late: int = 0
     is_judged: bool = True
     judged_from: Mapping[RuleFor, int] = field(default_factory=dict)
+    open_before: tuple[OpenVerdict, ...] = ()
 
     @property
     def satisfied(self) -> bool | None:
         """Whether no hard rule is violated; None if one is open or not judged, or ego off the road.
 
-        As in the verdict of ``verify_recording``, unless the past has violated something.
+        As in the verdict of ``verify_recording``, unless the past has violated something or left it
+        open.
         """
         if self.satisfied_as_judged and any(rule.strength == "hard" for rule in self.not_judged):
             return None

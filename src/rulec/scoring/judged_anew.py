@@ -8,13 +8,24 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import (
+    CompiledRule,
+    CompiledRulebook,
+    PrefixCompiler,
+)
+from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.extraction.drives import NoDrive
-from rulec.extraction.recording_verdicts import DriveVerdict, agreed_answers, some_rules
+from rulec.extraction.recording_verdicts import (
+    DriveVerdict,
+    SomeRules,
+    agreed_answers,
+    some_rules,
+)
 from rulec.extraction.traces.recorded_drive import Drive
 from rulec.monitoring.verdict import (
     NotJudged,
@@ -65,6 +76,83 @@ def judged_anew(
             for own, other, kinds in zip(found, anew, types, strict=True)
         ]
     return found
+
+
+def opened_by(drives: Sequence[DriveVerdict | NoDrive]) -> frozenset[RuleFor]:
+    """What the drives of a past alone leave open."""
+    return frozenset(
+        rule_for(result) for _, verdict in verdicts_of(drives) for result in verdict.open
+    )
+
+
+def apart_from_past(
+    scores: Sequence[CandidateScore],
+    known: Collection[RuleFor],
+    roundings: Sequence[CompiledRulebook],
+    first: int,
+) -> list[CandidateScore]:
+    """The scores, in which ``known`` rules that are open count only if the future leaves them so.
+
+    They are those that the past alone leaves open. The future is what begins at step ``first``; it
+    is judged after any past that is not lost yet, with each type that participants may have.
+    """
+    if not known:
+        return list(scores)
+    books, names = _after_any_past(frozenset(rule for rule, _ in known), roundings)
+    doubtful = [{rule_for(result) for result in score.open} & set(known) for score in scores]
+    futures = [
+        _Future(number, drive.first_step, trace.said_by(names))
+        for number, score in enumerate(scores)
+        if doubtful[number]
+        for drive, _ in verdicts_of(score.drives)
+        if drive.first_step + drive.arrays.n_states > first
+        for trace in (drive.arrays, *drive.otherwise)
+    ]
+    answers = agreed_answers([future.since(first) for future in futures], books)
+    for future, answer in zip(futures, answers, strict=True):
+        own = doubtful[future.number]
+        if isinstance(answer, Verdict):
+            untold = {result.rule for result in answer.not_judged}
+            own -= {about for about in own if about[0] in untold or not _keeps(answer, {about})}
+        else:
+            own.clear()
+    return [
+        replace(
+            score,
+            open=tuple([result for result in score.open if rule_for(result) not in own]),
+            open_before=tuple([result for result in score.open if rule_for(result) in own]),
+        )
+        for score, own in zip(scores, doubtful, strict=True)
+    ]
+
+
+def _after_any_past(names: frozenset[str], roundings: Sequence[CompiledRulebook]) -> SomeRules:
+    """Some rules for traces that begin after any states that have not lost the rule for good.
+
+    Duties of those states may be left, too, which ``since`` takes to be none.
+    """
+    known: dict[frozenset[str], SomeRules] = roundings[0].prepared.setdefault(_after_any_past, {})
+    if names not in known:
+        known.clear()  # mostly the same ones are open in each past
+        books, read = some_rules(names, roundings)
+        begun = [
+            replace(book, prefixes=partial(_begun_anywhere, book.prefixes))
+            for book in books
+            if book.prefixes is not None
+        ]
+        known[names] = SomeRules(begun or books, read)
+    return known[names]
+
+
+def _begun_anywhere(
+    prefixes: PrefixCompiler, rulebook: CompiledRulebook
+) -> dict[str, OutcomeMachine | None]:
+    def begun(machine: OutcomeMachine) -> OutcomeMachine:
+        left = frozenset(range(len(machine.successors))) - machine.lost
+        return replace(machine, starts=left or machine.starts)
+
+    machines = prefixes(rulebook).items()
+    return {name: None if machine is None else begun(machine) for name, machine in machines}
 
 
 def _with_types(score: CandidateScore, number: int) -> tuple[CandidateScore, list[str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -21,18 +21,26 @@ from rulec.extraction.recording_verdicts import (
 from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_participant
 from rulec.garbage_collection import no_garbage_collection
-from rulec.monitoring.verdict import NotJudged, Violation
+from rulec.monitoring.verdict import NotJudged, RuleFor, Violation
 from rulec.recordings.recording import Participant
 from rulec.scoring.candidate_score import CandidateScore
 from rulec.scoring.charges import CandidateCharges, CandidateScores, forget_reasons
-from rulec.scoring.judged_anew import judged_anew, verdicts_of
+from rulec.scoring.judged_anew import apart_from_past, judged_anew, opened_by, verdicts_of
 from rulec.scoring.scored_again import without_drives
 from rulec.scoring.scores import Scores
 from rulec.scoring.scoring_messages import BAD_CANDIDATES
 from rulec.scoring.traffic_world import TrafficWorld
 
-_Pasts: TypeAlias = "WeakKeyDictionary[TrafficWorld, tuple[Any, tuple[Violation, ...]]]"
-"""For each world the last past asked about, and the violations of that past alone."""
+
+class _Past(NamedTuple):
+    """What a past alone violates, and what it leaves open whatever follows."""
+
+    violated: tuple[Violation, ...] = ()
+    opened: frozenset[RuleFor] = frozenset()
+
+
+_Pasts: TypeAlias = "WeakKeyDictionary[TrafficWorld, tuple[Any, _Past]]"
+"""For each world the last past asked about, and what it did."""
 
 
 def score(
@@ -70,8 +78,8 @@ def _scored(
     steps = first - len(past), first + n_states - 1
     about = past.tobytes(), steps
     known: _Pasts = rules.prepared.setdefault(score, WeakKeyDictionary())
-    key, before = known.get(world, (None, ()))
-    before = before if key == about else ()
+    key, before = known.get(world, (None, _Past()))
+    before = before if key == about else _Past()
     is_asked = key != about and len(past) > 0
     if is_asked:
         # The past alone, first, to find what it violates whatever follows
@@ -86,16 +94,17 @@ def _scored(
         # Of many candidates, most are never looked at again
         is_kept = len(block) == len(bodies)
         if is_awaited:
-            before, is_awaited = _violated(block.pop(0)[1]), False
+            before, is_awaited = _past(block.pop(0)[1]), False
         block = [(number - is_asked, own) for number, own in block]
         charges = _charges(block, first, (beside, back))
-        if before:
+        if any(before):
             scores = judged_anew(
                 [candidate_charges.score() for candidate_charges in charges],
-                before,
+                before.violated,
                 roundings,
                 (first, half),
             )
+            scores = apart_from_past(scores, before.opened, roundings, first)
             if not is_kept:
                 scores = [
                     without_drives(
@@ -114,7 +123,7 @@ def _scored(
     # The next candidates mostly have the same past.
     known[world] = about, before
     ordered = CandidateScores([candidates[number] for number in range(len(paths))])
-    return Scores(roundings[0], ordered, before, paths, first)
+    return Scores(roundings[0], ordered, before.violated, paths, first)
 
 
 def _roundings(rules: CompiledRulebook, step_s: float) -> tuple[CompiledRulebook, ...]:
@@ -137,11 +146,10 @@ def _by_itself(
     return found
 
 
-def _violated(drives: Sequence[JudgedDrive | NoDrive]) -> tuple[Violation, ...]:
+def _past(drives: Sequence[JudgedDrive | NoDrive]) -> _Past:
     made = [drive.with_verdict() for drive in drives if isinstance(drive, JudgedDrive)]
-    return tuple(
-        [violation for _, verdict in verdicts_of(made) for violation in verdict.violations]
-    )
+    violated = [violation for _, verdict in verdicts_of(made) for violation in verdict.violations]
+    return _Past(tuple(violated), opened_by(made))
 
 
 def _judged(

@@ -6,7 +6,6 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.extraction.traces.recorded_drive import Drive
 from rulec.logic import formula as ltl
 from rulec.logic.formula import atoms_of
@@ -17,9 +16,10 @@ from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.explain.margins import Margin, choosing_comparisons, margin_in
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.state_view import StateView
-from rulec.monitoring.verdict import RuleFor, Verdict, Violation, rule_for
+from rulec.monitoring.verdict import RuleFor, Violation, rule_for
 from rulec.scoring.candidate_score import CandidateScore
 from rulec.scoring.charges import at
+from rulec.scoring.judged_anew import verdicts_of
 from rulec.value_display import short_repr
 
 
@@ -50,25 +50,28 @@ def margins_of(
     what ends in time the least one from then on.
     """
     violated_before = {rule_for(violation) for violation in before}
-    for drive in candidate.drives:
-        if not isinstance(drive, DriveVerdict) or not isinstance(drive.answer, Verdict):
-            continue
-        begins = drive.drive.first_step - first
-        last = begins + drive.drive.arrays.n_states - 1
-        violated = {rule_for(violation) for violation in drive.answer.violations}
-        violated -= violated_before
+    violated = {rule_for(violation) for violation in candidate.violations}
+    nearest: dict[RuleFor, RuleMargin] = {}
+    for drive, verdict in verdicts_of(candidate.drives):
+        begins = drive.first_step - first
+        last = begins + drive.arrays.n_states - 1
+        for violation in verdict.violations:
+            if rule_for(violation) not in violated_before:
+                yield from _deciding(at(violation, begins), drive, rules, begins, None)
         for violation in candidate.violations:
-            about = rule_for(violation)
-            since = candidate.judged_from.get(about)
-            is_here = about in violated if since is None else begins <= since <= last
-            if is_here:
-                violated.add(about)
-                yield from _deciding(violation, drive.drive, rules, begins, since)
-        untold = {not_judged.rule for not_judged in drive.answer.not_judged}
+            since = candidate.judged_from.get(rule_for(violation))
+            if since is not None and begins <= since <= last:
+                yield from _deciding(violation, drive, rules, begins, since)
+        untold = {not_judged.rule for not_judged in verdict.not_judged}
         for rule in rules.rules:
             if len(rule.variables) <= 1 and rule.name not in untold:
                 late = {about: candidate.late for about in violated_before if about[0] == rule.name}
-                yield from _nearest(rule, drive.drive, rules, violated, (begins, late))
+                for margin in _nearest(rule, drive, rules, violated, (begins, late)):
+                    about = rule.name, tuple(margin.binding.values())
+                    known = nearest.setdefault(about, margin)
+                    if margin.margin.share < known.margin.share:
+                        nearest[about] = margin
+    yield from nearest.values()
 
 
 def _deciding(

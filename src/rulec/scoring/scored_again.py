@@ -26,8 +26,8 @@ class _Again:
         return self._scored()
 
     def reasons(self, place: int) -> OpenReasons:
-        """The reasons of the open verdict at an index."""
-        own = self.found.open[place]
+        """The reasons of the open verdict at an index, those of the past counted last."""
+        own = (*self.found.open, *self.found.open_before)[place]
         return OpenReasons(own.because, own.depends_on, own.outcomes, own.exact)
 
 
@@ -72,7 +72,9 @@ def without_drives(
             open_verdict.binding,
             partial(again.reasons, place),
         )
-        for place, open_verdict in enumerate(found.open)
+        for place, open_verdict in enumerate((*found.open, *found.open_before))
     ]
-    drives = _LaterDrives(again, n_drives)
-    return replace(found, open=tuple(doubtful), drives=drives)
+    drives, n_own = _LaterDrives(again, n_drives), len(found.open)
+    return replace(
+        found, open=tuple(doubtful[:n_own]), open_before=tuple(doubtful[n_own:]), drives=drives
+    )

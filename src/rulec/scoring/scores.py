@@ -74,7 +74,8 @@ class Scores(Rows):
         """Mask of the candidates that stay on the road, with no hard rule violated or open.
 
         An open rule may be violated: straddling two lanes must not be an advantage. Rules that
-        cannot be judged in this world, for any candidate, do not count.
+        cannot be judged in this world, for any candidate, and what the past leaves open do not
+        count.
         """
         return self.perhaps_allowed & ~self._are_hard(self._columns.open)
 
