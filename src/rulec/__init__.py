@@ -54,12 +54,12 @@ if TYPE_CHECKING:
     from rulec.diagnostics import RulecError as RulecError
     from rulec.diagnostics import SourceLocation as SourceLocation
     from rulec.diagnostics.code import Code as Code
-    from rulec.extraction.drives import NoDrive as NoDrive
     from rulec.extraction.moment_search import DriveMoments as DriveMoments
     from rulec.extraction.recording_verdicts import DriveVerdict as DriveVerdict
     from rulec.extraction.recording_verdicts import RecordingVerdicts as RecordingVerdicts
     from rulec.extraction.selection import RequestedDrives as RequestedDrives
     from rulec.extraction.traces.recorded_drive import Drive as Drive
+    from rulec.extraction.traces.recorded_drive import NoDrive as NoDrive
     from rulec.extraction.traffic_thresholds import Thresholds as Thresholds
     from rulec.monitoring.assumptions import Assumptions as Assumptions
     from rulec.monitoring.batch.verdict_columns import VerdictColumns as VerdictColumns
@@ -154,11 +154,10 @@ _HOME = {
     "rulec.book_tests.proposed_examples": "UncoveredEdge UntouchedLimit",
     "rulec.diagnostics": "Diagnostic Fix Label Offer RulecError SourceLocation",
     "rulec.diagnostics.code": "Code",
-    "rulec.extraction.drives": "NoDrive",
     "rulec.extraction.moment_search": "DriveMoments",
     "rulec.extraction.recording_verdicts": "DriveVerdict RecordingVerdicts",
     "rulec.extraction.selection": "RequestedDrives",
-    "rulec.extraction.traces.recorded_drive": "Drive",
+    "rulec.extraction.traces.recorded_drive": "Drive NoDrive",
     "rulec.extraction.traffic_thresholds": "Thresholds",
     "rulec.monitoring.assumptions": "Assumptions",
     "rulec.monitoring.batch.verdict_columns": "VerdictColumns",

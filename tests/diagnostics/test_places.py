@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from rulec.cli.main import main
-from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, placed_at
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
+from rulec.diagnostics.fault_messages import contained
 
 SOURCES = Path(__file__).parents[2] / "src" / "rulec"
 
@@ -140,6 +141,6 @@ def test_where_it_is_known_it_is_told(what, tmp_path, monkeypatch, capsys):
 
 def test_a_place_is_given_to_what_has_none():
     own, other = SourceLocation("own"), SourceLocation("other")
-    with pytest.raises(RulecError) as caught, placed_at(other):
+    with pytest.raises(RulecError) as caught, contained(place=other):
         raise RulecError([Diagnostic("R0000", "a", own), Diagnostic("R0000", "b")])
     assert [one.place for one in caught.value.diagnostics] == [own, other]

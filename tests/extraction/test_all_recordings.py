@@ -5,10 +5,10 @@ import pytest
 from rulec import read_recording
 from rulec.api.rulebook_compilation import machines
 from rulec.diagnostics import RulecError
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_parts import egos_of
 from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
 from rulec.extraction.selection import RequestedDrives
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.monitoring.verdict import Verdict
 from rulec.monitoring.verify import verify
 from support.builders.recorded_data import RECORDINGS

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from rulec.extraction.drives import Drives, NoDrive
+from rulec.extraction.drives import Drives
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
 from support.builders.drive_contexts import steady

@@ -9,9 +9,9 @@ import pytest
 
 from rulec import read_recording
 from rulec.api.rulebook_compilation import machines
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
+from rulec.extraction.traces.recorded_drive import NoDrive
 from support.builders.recorded_data import RECORDINGS
 
 FOLDER = RECORDINGS.parent / "commonroad_more"

@@ -1,9 +1,8 @@
 """The tally of violations over the drives of a recording."""
 
 from rulec.diagnostics import Diagnostic, RulecError
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, ViolationTally
-from rulec.extraction.traces.recorded_drive import Drive
+from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.monitoring.verdict import (
     NotJudged,
     OpenReasons,

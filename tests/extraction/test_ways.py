@@ -5,7 +5,8 @@ from math import cos, pi, sin
 
 import pytest
 
-from rulec.extraction.drives import Drive, Drives, NoDrive
+from rulec.extraction.drives import Drive, Drives
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.extraction.tracks.matching.driven_route import route_stretches
 from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.matching.map_matching import MapMatching

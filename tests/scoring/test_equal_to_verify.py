@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from rulec.api.rulebook_compilation import machines
 from rulec.diagnostics import RulecError
 from rulec.extraction import candidate_drives
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.monitoring.verdict import Verdict
 from rulec.recordings.building import build_lanelet, build_participant, build_recording
 from rulec.recordings.recording_files import read_recording

@@ -8,7 +8,7 @@ from itertools import combinations
 import pytest
 
 import rulec
-from rulec.extraction.drives import NoDrive
+from rulec.extraction.traces.recorded_drive import NoDrive
 from support.parity.street import cars
 from support.parity.writers import WRITERS
 

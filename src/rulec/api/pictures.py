@@ -9,9 +9,8 @@ from functools import partial
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
-from rulec.extraction.traces.recorded_drive import Drive
+from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify
 from rulec.partition import NavigationGraph

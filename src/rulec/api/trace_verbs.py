@@ -80,13 +80,13 @@ class TraceVerbs(SessionSettings):
         """
         from rulec.monitoring.assumptions import check_assumed
         from rulec.monitoring.rulebook_edition import edition_of
-        from rulec.monitoring.verify import verify
+        from rulec.monitoring.verify import verify_contained
 
         compiled = self._compiled(rules)
         if assumptions is not None:
             check_assumed(assumptions.values, compiled.vocabulary, "values")
             trace = assumptions.applied(trace)
-        return replace(verify(trace, compiled), law=edition_of(compiled))
+        return replace(verify_contained(trace, compiled), law=edition_of(compiled))
 
     def verify_many(
         self,

@@ -12,7 +12,8 @@ from rulec.batch.batch_messages import process_lost
 from rulec.batch.jobs import Jobs
 from rulec.book_tests.example_coverage import RuleCoverage, coverage
 from rulec.book_tests.example_runs import ExampleRun, is_chosen, run_rulebook_examples
-from rulec.diagnostics import RulecError
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics.fault_messages import contained
 from rulec.rulebook.loader import read_rulebook
 
 
@@ -69,7 +70,8 @@ def measured_runs(
 
 def _measured(request: ExampleRequest, rulebook: str) -> Iterator[MeasuredRun | RulecError]:
     try:
-        run = run_examples(request, rulebook)
-        yield run, coverage(run) if request.measured else ()
+        with contained("not tested", SourceLocation(rulebook)):
+            run = run_examples(request, rulebook)
+            yield run, coverage(run) if request.measured else ()
     except RulecError as error:
         yield error

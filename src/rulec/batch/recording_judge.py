@@ -11,11 +11,14 @@ from typing import TYPE_CHECKING, TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.batch.batch_messages import process_lost
 from rulec.batch.jobs import Jobs
-from rulec.diagnostics import RulecError
-from rulec.extraction.drives import NoDrive
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics.diagnostic import with_place
+from rulec.diagnostics.fault_messages import contained
 from rulec.extraction.recording_parts import RecordingPart
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, ViolationTally
 from rulec.extraction.selection import RequestedDrives
+from rulec.extraction.traces.lost_drives import lost_drive
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.monitoring.verdict import NotJudged
 from rulec.recordings.recording import Participant, Recording
 from rulec.recordings.recording_files import read_recordings
@@ -114,13 +117,14 @@ def judge_with_progress(
     left = settings.to_explain
     label = settings.labels.get(path, path)
     try:
-        for recording in read_recordings(replace(settings.source, path=Path(path))):
-            judged = _RecordingJudge(settings, recording, label, left)
-            if jobs.processes > 1 and len(judged.parts) > 1:
-                yield from judged.pieces_side_by_side(tell, jobs, lost)
-            else:
-                yield from judged.pieces(tell)
-            left = judged.left
+        with contained("not judged", SourceLocation(path)):
+            for recording in read_recordings(replace(settings.source, path=Path(path))):
+                judged = _RecordingJudge(settings, recording, label, left)
+                if jobs.processes > 1 and len(judged.parts) > 1:
+                    yield from judged.pieces_side_by_side(tell, jobs, lost)
+                else:
+                    yield from judged.pieces(tell)
+                left = judged.left
     except BudgetSpentError:
         raise
     except RulecError as error:
@@ -229,15 +233,26 @@ class _RecordingJudge:
         if self._findings is not None and later.findings is not None:
             self._findings.gathered.include(later.findings)
 
-    def _of_drive(self, answer: DriveVerdict | NoDrive) -> Iterator[Piece]:
+    def _of_drive(self, answer: DriveVerdict | NoDrive) -> list[Piece]:
+        try:
+            return list(self._reported(answer))
+        except Exception as problem:
+            if isinstance(answer, NoDrive):
+                raise
+            return list(self._reported(lost_drive(answer.drive.arrays.id, problem)))
+
+    def _reported(self, answer: DriveVerdict | NoDrive) -> Iterator[Piece]:
         verdicts, judged = self._verdicts, self._judged
-        judged.tally.add(answer, [rule.name for rule in verdicts.rules.rules])
         explained: list[Explanation] = []
-        if isinstance(answer, DriveVerdict):
-            if isinstance(answer.answer, NotJudged):
-                yield DriveProblem(answer.answer.error)
-            else:
-                explained = self._explained(answer)
+        if isinstance(answer, NoDrive):
+            if answer.fault is not None:
+                yield DriveProblem(with_place(answer.fault, SourceLocation(self._file)))
+        elif isinstance(answer.answer, NotJudged):
+            yield DriveProblem(answer.answer.error)
+        else:
+            for fault in answer.answer.faults:
+                yield DriveProblem(with_place(fault, SourceLocation(self._file)))
+            explained = self._explained(answer)
         own = None if self._findings is None else self._findings.add(answer, explained)
         if self._settings.to_rows is not None:
             judged.rows += self._settings.to_rows(answer, verdicts, self._file, own)
@@ -246,6 +261,7 @@ class _RecordingJudge:
             from rulec.report.verdicts import recording_json
 
             yield recording_json.as_json(answer, verdicts, explained)
+        judged.tally.add(answer, [rule.name for rule in verdicts.rules.rules])
 
     def _whole(self) -> JudgedRecording:
         verdicts, judged = self._verdicts, self._judged

@@ -17,6 +17,8 @@ from typing import Generic, NoReturn, TypeVar
 
 from rulec.batch.jobs import Jobs
 from rulec.cache.keeping import is_keeping, keeping
+from rulec.diagnostics import RulecError
+from rulec.diagnostics.fault_messages import fault_of
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -39,9 +41,9 @@ class LostTask:
 
 @dataclass(frozen=True, slots=True)
 class _Raised:
-    """The exception raised by a task, which is a bug."""
+    """The exception raised by a task; one that is a fault of rulec has become R0790."""
 
-    error: Exception
+    error: RulecError
 
 
 class _Done:
@@ -265,7 +267,7 @@ def _do_tasks(connection: Connection, work: Callable[[object], Iterator[object]]
         except OSError:
             raise
         except Exception as error:
-            connection.send(_Raised(error))
+            connection.send(_Raised(error if isinstance(error, RulecError) else fault_of(error)))
         connection.send(_Done())
 
 

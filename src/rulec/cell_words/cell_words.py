@@ -30,6 +30,7 @@ from rulec.cell_words.place_words import (
 from rulec.cell_words.probe_drives import ProbeDrives, probe_drives
 from rulec.cell_words.relation_words import FLOWS, RELATIONS, Relations
 from rulec.cell_words.road_frame import RoadFrame
+from rulec.diagnostics import RulecError
 from rulec.extraction.recording_verdicts import names_read
 from rulec.extraction.selection import RequestedDrives, chosen_side
 from rulec.extraction.traffic_thresholds import USUAL
@@ -50,14 +51,16 @@ class CellWords:
     """The words in each cell of a graph.
 
     ``states[p][i]`` is the state of cell ``i`` of layer ``p``; ``told`` are the names that the
-    recording supplies. ``types`` are all participants' types, the most specific first, by their ids
-    in the recording; ``present`` are their first and last layers.
+    recording supplies, and ``faults`` those that a fault of rulec has cost. ``types`` are all
+    participants' types, the most specific first, by their ids in the recording; ``present`` are
+    their first and last layers.
     """
 
     states: tuple[tuple[State, ...], ...]
     told: frozenset[str]
     types: Mapping[str, tuple[str, ...]]
     present: Mapping[str, tuple[int, int]]
+    faults: Mapping[str, RulecError]
 
 
 def cell_words(graph: NavigationGraph, rules: CompiledRulebook) -> CellWords | None:
@@ -129,6 +132,7 @@ class _Words:
             self._probes.told,
             {item: self._bodies[self._rows[item]].object_types for item in self._present},
             self._present,
+            self._probes.faults,
         )
 
     def _scene_words(self) -> SceneWords:

@@ -13,10 +13,11 @@ import numpy as np
 from rulec.array_types import Floats
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.cell_words.ego_boxes import body_size
+from rulec.diagnostics import RulecError
 from rulec.extraction.candidate_drives import CandidateDrives
 from rulec.extraction.presences import participant_called
 from rulec.extraction.recording_verdicts import names_read
-from rulec.extraction.traces.recorded_drive import Drive
+from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.partition import NavigationGraph
@@ -67,7 +68,8 @@ class TimedProbe:
 class ProbeDrives:
     """The drives of a scene, and what they are made in.
 
-    ``told`` are the names that the recording supplies. ``stretches`` are those of the lanes that
+    ``told`` are the names that the recording supplies, ``faults`` those that a fault of rulec has
+    cost. ``stretches`` are those of the lanes that
     were probed: the lane, and from where to where (m) it exists.
     """
 
@@ -76,6 +78,7 @@ class ProbeDrives:
     lanes: tuple[LaneProbe, ...]
     timed: tuple[TimedProbe, ...]
     told: frozenset[str]
+    faults: Mapping[str, RulecError]
     stretches: tuple[tuple[int, float, float], ...]
 
     @property
@@ -166,10 +169,15 @@ def probe_drives(
     writer = TraceWriter(rules.vocabulary, names_read(rules))
     found = among.of(bodies, writer)
     lane_probes, timed, told = [], [], set[str]()
+    faults: dict[str, RulecError] = {}
     ids = among.recording.ids
     for number, drives in enumerate(found):
         own = [drive for drive in drives if isinstance(drive, Drive)]
+        for lost in drives:
+            if isinstance(lost, NoDrive) and lost.fault is not None:
+                raise lost.fault  # nobody knows what its words would have said
         for drive in own:
+            faults |= drive.arrays.faults
             told |= drive.arrays.told or drive.words
             begins = drive.first_step - origin.start.step
             if number < len(lanes):
@@ -192,7 +200,8 @@ def probe_drives(
         origin=origin,
         lanes=tuple(lane_probes),
         timed=tuple(timed),
-        told=frozenset(told),
+        told=frozenset(told.difference(faults)),
+        faults=faults,
         stretches=tuple((lane, float(row[0][0]), float(row[0][-1])) for lane, row in rows),
     )
 

@@ -16,6 +16,7 @@ from rulec.cli.interruption import is_interrupted
 from rulec.cli.verb_table import VERB_GROUPS, VERBS, WITH_COMPILED
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.argument_names import naming_options
+from rulec.diagnostics.fault_messages import faults_found
 from rulec.report.text.patience import patience
 from rulec.version import __version__
 
@@ -141,6 +142,7 @@ def rulec(context: click.Context, limits: Sequence[str]) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and return its exit status."""
     given = sys.argv[1:] if arguments is None else arguments
+    faults_found()
     # Whoever calls this in a program of its own has the say over signals and standard error.
     long_work = patience(given) if arguments is None else nullcontext()
     with naming_options(), long_work:
@@ -154,7 +156,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
             sys.stdout.flush()
         except BaseException as problem:
             return _status_after(problem)
-    return outcome if isinstance(outcome, int) else ExitStatus.OK
+    status = outcome if isinstance(outcome, int) else ExitStatus.OK
+    if found := faults_found():
+        # Late import, only after a fault: its text and colours (7 ms).
+        from rulec.report.findings.diagnostics_text import print_diagnostics, printed
+
+        print_diagnostics([fault for fault in found if fault.message not in printed])
+        return ExitStatus.NOT_ANSWERED
+    return status
 
 
 def _status_after(problem: BaseException) -> int:
@@ -192,7 +201,11 @@ def _limit_error(problem: BaseException) -> RulecError | None:
 
 def _bug(problem: Exception) -> int:
     if os.environ.get("RULEC_TRACEBACK"):
-        raise problem
+        # Late import, only after an error (50 ms).
+        from traceback import print_exception
+
+        print_exception(problem)
+        return ExitStatus.BUG
     _say(
         f"this is a bug in rulec {__version__}: "
         f"{_visible(f'{type(problem).__name__}: {problem}')}\n"

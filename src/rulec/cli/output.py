@@ -18,6 +18,7 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.output_options import Output
 from rulec.cli.options.shared_options import only_sources
 from rulec.diagnostics import Diagnostic, RulecError
+from rulec.diagnostics.fault_messages import fault_of
 from rulec.files.written_files import written_whole
 from rulec.report.findings.diagnostics_text import excerpt_width, print_diagnostics
 from rulec.report.findings.finding_formats import render
@@ -66,6 +67,10 @@ def errors_told(
         yield
     except RulecError as error:
         tell(error.diagnostics)
+    except (click.ClickException, click.exceptions.Exit, click.Abort):
+        raise
+    except Exception as problem:
+        tell(fault_of(problem).diagnostics)
 
 
 @contextmanager

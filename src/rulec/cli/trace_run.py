@@ -14,7 +14,9 @@ from typing import IO, TYPE_CHECKING, Any, cast
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.cli.standard_input import standard_input
 from rulec.cli.verdict_outputs import VerdictOutputs
-from rulec.diagnostics import RulecError
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics.diagnostic import with_place
+from rulec.diagnostics.fault_messages import contained, fault_of
 from rulec.files.read_files import opened
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.batch.batch_verify import Items, rulebook_for, step_of, verify_items
@@ -58,6 +60,7 @@ class TraceRun:
     engine: CEngine | None = None
     total: BatchTally = field(default_factory=BatchTally)
     judged: bool = False
+    complete: bool = True
     opened: bool = False
     open_hard: bool = False
 
@@ -75,10 +78,15 @@ class TraceRun:
                 ids = self._ids(ids, file, judged)
                 answer = judged[-1]
                 before = len(findings)
-                if isinstance(answer, NotJudged):
+                try:
+                    if isinstance(answer, NotJudged):
+                        self._not_judged(file, answer, findings)
+                    else:
+                        left -= self._judged(file, judged, left, findings)
+                except Exception as problem:
+                    fault = fault_of(problem, "not judged", SourceLocation(file))
+                    answer = NotJudged(answer.trace, fault)
                     self._not_judged(file, answer, findings)
-                else:
-                    left -= self._judged(file, judged, left, findings)
                 rows += self._rows(file, answer, facts, findings[before:])
             if self.to.wants_findings:
                 drives = self.total.judged - traces_before
@@ -140,6 +148,9 @@ class TraceRun:
         """Print a verdict; returns the number of violations explained."""
         traces, place, verdict = answer
         self.total.add_trace(verdict, self._names)
+        for fault in verdict.faults:
+            self.complete = False
+            self.complaints.add(with_place(fault, SourceLocation(file)))
         self.open_hard |= any(result.strength == "hard" for result in verdict.open)
         self.judged |= len(verdict.not_judged) < max(len(self._names), 1)
         says = bool(verdict.violations or verdict.open or verdict.not_judged)
@@ -186,7 +197,7 @@ class TraceRun:
                 self.opened = True
                 yield from self._in_stream(stream, "standard input", form or "jsonl", assumed)
                 return
-            with opened(Path(file)) as stream:
+            with opened(Path(file)) as stream, contained("not judged", SourceLocation(file)):
                 self.opened = True
                 yield from self._in_stream(stream, file, form or format_of(file), assumed)
         except BudgetSpentError:

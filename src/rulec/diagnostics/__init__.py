@@ -3,7 +3,7 @@
 Nothing here prints; ``rulec.report`` turns diagnostics into text.
 """
 
-from rulec.diagnostics.diagnostic import Diagnostic, Fix, Label, Offer, RulecError, placed_at
+from rulec.diagnostics.diagnostic import Diagnostic, Fix, Label, Offer, RulecError
 from rulec.diagnostics.phrases import any_of, did_you_mean, first_of, named, nearest_name
 from rulec.diagnostics.source_text import Source, SourceLocation, Span
 
@@ -21,5 +21,4 @@ __all__ = [
     "first_of",
     "named",
     "nearest_name",
-    "placed_at",
 ]

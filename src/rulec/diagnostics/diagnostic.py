@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any, Literal, TypeAlias
@@ -133,15 +132,6 @@ def as_answer(error: RulecError) -> RulecError:
     """
     error.__traceback__ = error.__cause__ = error.__context__ = None
     return error
-
-
-@contextmanager
-def placed_at(place: SourceLocation) -> Iterator[None]:
-    """Run a block; diagnostics raised in it without a place get this one."""
-    try:
-        yield
-    except RulecError as error:
-        raise with_place(error, place) from error.__cause__
 
 
 def with_place(error: RulecError, place: SourceLocation | None) -> RulecError:

@@ -12,8 +12,9 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.context_arrays import EgosOnRoad, drives_context
-from rulec.extraction.drives import Drives, NoDrive
-from rulec.extraction.traces.recorded_drive import Drive
+from rulec.extraction.drives import Drives
+from rulec.extraction.traces.lost_drives import made_apart
+from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.extraction.traces.to_trace import TraceWriter, to_traces
 from rulec.extraction.tracks.at_junctions.junction_passages import junction_passages
 from rulec.extraction.tracks.driven_road import DrivenRoad
@@ -175,7 +176,7 @@ class _Batch:
                 continue
             for road, stretch in ready:
                 together[road].append(stretch)
-        drives: dict[tuple[int, int], Drive] = {}
+        drives: dict[tuple[int, int], Drive | NoDrive] = {}
         for road, waiting in together.items():
             drives |= self._end_to_end(road, waiting, writer)
         found: Block = []
@@ -212,7 +213,7 @@ class _Batch:
 
     def _end_to_end(
         self, road: DrivenRoad, stretches: Sequence[_Stretch], writer: TraceWriter
-    ) -> dict[tuple[int, int], Drive]:
+    ) -> dict[tuple[int, int], Drive | NoDrive]:
         """Drives along one road by candidate and number; empty if their traces' names differ."""
         among = self._among
         egos = EgosOnRoad(
@@ -224,13 +225,22 @@ class _Batch:
         )
         context = drives_context(among.surroundings, among.places(road), among.side, egos)
         ids = [self.surroundings.tracks.participants[stretch.row].id for stretch in stretches]
+        names = [stretch.name for stretch in stretches]
+        drives: Sequence[Drive | NoDrive]
         try:
-            drives = to_traces(context, ids, [stretch.name for stretch in stretches], writer)
+            drives = to_traces(context, ids, names, writer)
         except UnlikeDrivesError:
             return {}
+        except Exception as problem:
+            drives = made_apart(names, lambda number: self._alone(stretches[number]), problem)
         return {
             (stretch.row, stretch.number): x for stretch, x in zip(stretches, drives, strict=True)
         }
+
+    def _alone(self, stretch: _Stretch) -> Drive | NoDrive:
+        n_others = len(self._among.surroundings.tracks.participants)
+        own = self.stretches[stretch.row][stretch.number]
+        return _DrivesOfOne(self._among, self, stretch.row).drive(n_others, stretch.name, own)
 
     def _surroundings_of(self, row: int) -> tuple[Surroundings, int]:
         """The surroundings with a candidate as last participant, and its row in them."""

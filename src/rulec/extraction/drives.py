@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol, TypeAlias
@@ -15,7 +16,8 @@ from numpy.typing import NDArray
 from rulec.array_types import Flags
 from rulec.extraction.context_arrays import EgosOnRoad, drive_context, drives_context
 from rulec.extraction.recording_parts import egos_of
-from rulec.extraction.traces.recorded_drive import Drive
+from rulec.extraction.traces.lost_drives import lost_drive, made_apart
+from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.extraction.traces.to_trace import ALL_SIGNALS, TraceWriter, to_traces
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.laid_out_map import LaidOutMap
@@ -62,14 +64,6 @@ _Key: TypeAlias = tuple[int, int]
 
 _LONGEST_M = 50.0
 """Upper bound (m) on the length of bodies whose ends count."""
-
-
-@dataclass(frozen=True, slots=True)
-class NoDrive:
-    """A vehicle ``ego`` that has no drive, and why."""
-
-    ego: str
-    why: str
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -122,7 +116,7 @@ class Drives:
         self._first = self._tracks.present.argmax(axis=1)
         self._parts: dict[DrivenRoad, _PlacesInPart] = {}
         self._expected = expected
-        self._ready: dict[_Key, Drive] = {}
+        self._ready: dict[_Key, Drive | NoDrive] = {}
         self._routes: dict[MatchedStretch, tuple[RouteStretch, ...]] = {}
 
     def egos(self) -> tuple[str, ...]:
@@ -132,11 +126,16 @@ class Drives:
     def kinds(self) -> dict[str, type]:
         """The Python type of each signal, the same for all drives; empty if there is no drive."""
         drives = (x for ego in self.egos() for x in self.of(ego) if isinstance(x, Drive))
-        first = next(drives, None)
-        return {} if first is None else dict(first.kinds)
+        return next((dict(drive.kinds) for drive in drives), {})
 
     def of(self, ego: str) -> Iterator[Drive | NoDrive]:
         """The drives of one vehicle: several if it leaves its road or the recording jumps."""
+        try:
+            yield from self._of(ego)
+        except Exception as problem:
+            yield lost_drive(ego, problem)
+
+    def _of(self, ego: str) -> Iterator[Drive | NoDrive]:
         row = next(k for k, body in enumerate(self._tracks.participants) if body.id == ego)
         body = self._tracks.participants[row]
         if 2 * len(body.states) < len(body.outlines):
@@ -191,11 +190,15 @@ class Drives:
             yield NoDrive(ego, f"it is {why}")
         for number, stretch in enumerate(stretches, 1):
             name = ego if number == 1 else f"{ego}#{number}"
-            yield self._drive(row, name, stretch)
+            try:
+                yield self.drive(row, name, stretch)
+            except Exception as problem:
+                yield lost_drive(name, problem)
 
     # Tens of thousands of objects are created for several drives, none of which is garbage
     @no_garbage_collection()
-    def _drive(self, row: int, name: str, stretch: RouteStretch) -> Drive | NoDrive:
+    def drive(self, row: int, name: str, stretch: RouteStretch) -> Drive | NoDrive:
+        """The drive of a participant along a stretch of road."""
         ego = self._tracks.participants[row].id
         laid_out = self._map.road(stretch.route)
         if isinstance(laid_out, str):
@@ -212,16 +215,25 @@ class Drives:
         found = self._there(places, row, columns)
         if found is None:
             return NoDrive(ego, "it is far from its road for a while")
-        context = drive_context(self._surroundings, places, self._side, *found)
-        context = replace(context, wrong_way=stretch.against)
-        (drive,) = to_traces(context, [ego], [name], self._writer)
+        return self._made_alone(places, name, *found, against=stretch.against)
+
+    def _made_alone(
+        self, places: RoadPlaces, name: str, row: int, columns: slice, *, against: bool = False
+    ) -> Drive:
+        context = drive_context(self._surroundings, places, self._side, row, columns)
+        ego = places.tracks.participants[row].id
+        (drive,) = to_traces(replace(context, wrong_way=against), [ego], [name], self._writer)
         return drive
 
     @cached_property
     def _planned(self) -> dict[int, list[RouteStretch]]:
         """The stretches of the expected egos by row, in their order."""
         rows = {body.id: row for row, body in enumerate(self._tracks.participants)}
-        return {rows[ego]: self.stretches(rows[ego]) for ego in self._expected}
+        planned = {}
+        for ego in self._expected:
+            with suppress(Exception):  # a fault is found again when this ego is asked for
+                planned[rows[ego]] = self.stretches(rows[ego])
+        return planned
 
     @cached_property
     def _plans(self) -> dict[DrivenRoad, list[tuple[int, str, slice]]]:
@@ -233,8 +245,7 @@ class Drives:
                 road = self._map.road(stretch.route)
                 if not stretch.against and not isinstance(road, str):
                     name = ego if number == 1 else f"{ego}#{number}"
-                    columns = slice(stretch.first, stretch.last + 1)
-                    plans[road[0]].append((row, name, columns))
+                    plans[road[0]].append((row, name, slice(stretch.first, stretch.last + 1)))
         return plans
 
     def _look_ahead(self, road: DrivenRoad, places: RoadPlaces, asked: _Key) -> None:
@@ -258,16 +269,22 @@ class Drives:
 
     def _made_together(
         self, places: RoadPlaces, members: Mapping[_Key, tuple[str, int, slice]]
-    ) -> dict[_Key, Drive]:
+    ) -> dict[_Key, Drive | NoDrive]:
         """Drives along one road, from names, rows and columns; empty if their signals differ."""
         names, rows, columns = zip(*members.values(), strict=True)
-        egos = EgosOnRoad(places, rows, columns, own=self._surroundings)
-        context = drives_context(self._surroundings, places, self._side, egos)
-        ids = [self._tracks.participants[row].id for row, _ in members]
+        drives: Sequence[Drive | NoDrive]
         try:
-            return dict(zip(members, to_traces(context, ids, names, self._writer), strict=True))
+            egos = EgosOnRoad(places, rows, columns, own=self._surroundings)
+            context = drives_context(self._surroundings, places, self._side, egos)
+            ids = [self._tracks.participants[row].id for row, _ in members]
+            drives = to_traces(context, ids, names, self._writer)
         except UnlikeDrivesError:
             return {}
+        except Exception as problem:
+            drives = made_apart(
+                names, lambda k: self._made_alone(places, names[k], rows[k], columns[k]), problem
+            )
+        return dict(zip(members, drives, strict=True))
 
     def _there(self, places: RoadPlaces, row: int, columns: slice) -> tuple[int, slice] | None:
         """A drive's row and columns in ``places``; None if they lack it or it leaves the road."""
@@ -311,12 +328,10 @@ class Drives:
             self._parts[road] = _PlacesInPart(places, awaited)
         # Drop the newest: drives alternate between their roads, so the road that was used longest
         # ago is the one that is needed next.
-        if len(self._parts) > 1 and self._n_kept() > MOST_KEPT:
+        n_kept = sum(part.places.tracks.present.size for part in self._parts.values())
+        if len(self._parts) > 1 and n_kept > MOST_KEPT:
             self._parts.pop(road, None)
         return places
-
-    def _n_kept(self) -> int:
-        return sum(part.places.tracks.present.size for part in self._parts.values())
 
     def _places_during(self, road: DrivenRoad, egos: Sequence[tuple[int, slice]]) -> RoadPlaces:
         """The places on a road, during drives along it, of all that may count for them."""
@@ -383,9 +398,5 @@ class Drives:
         return flags[:, columns.start - first :]
 
     def _numbers_along(self, road: DrivenRoad) -> list[int]:
-        return [
-            self._map.numbers[lanelet.id]
-            for row in road.rows
-            for lanelet in row
-            if lanelet is not None
-        ]
+        lanelets = [lanelet for row in road.rows for lanelet in row if lanelet is not None]
+        return [self._map.numbers[lanelet.id] for lanelet in lanelets]

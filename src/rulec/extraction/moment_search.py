@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from rulec.diagnostics import RulecError
-from rulec.extraction.drives import NoDrive
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics.fault_messages import contained, fault_of
 from rulec.extraction.selection import RequestedDrives, selected_drives
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.logic.free_names import names_in
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.moments.formula_moments import Moment, moments
@@ -42,7 +43,7 @@ class DriveMoments:
 
 def in_recordings(
     recordings: Iterable[Recording], query: FormulaQuery, wanted: RequestedDrives, file: str
-) -> Iterator[DriveMoments]:
+) -> Iterator[DriveMoments | RulecError]:
     """The moments of each drive of several recordings; see ``in_recording``."""
     for recording in recordings:
         yield from in_recording(recording, query, wanted, file)
@@ -50,8 +51,10 @@ def in_recordings(
 
 def in_recording(
     recording: Recording, query: FormulaQuery, request: RequestedDrives, file: str
-) -> Iterator[DriveMoments]:
+) -> Iterator[DriveMoments | RulecError]:
     """The moments of each drive, with each requested vehicle as ego in turn.
+
+    A fault of rulec takes the place of a drive that it has cost.
 
     Raises RulecError R0612 for a vehicle that the recording does not contain.
     """
@@ -66,9 +69,18 @@ def in_recording(
     for ego in selected.egos:
         for drive in selected.of(ego):
             if isinstance(drive, NoDrive):
+                if drive.fault is not None:
+                    yield drive.fault
                 continue
             arrays = drive.arrays
-            found = moments(arrays, query)
+            yield from dict.fromkeys(arrays.faults.values())
+            if any(arrays.faults):
+                continue  # it reads a word that was lost
+            try:
+                found = moments(arrays, query)
+            except Exception as problem:
+                yield fault_of(problem, f"drive of `{arrays.id}`")
+                continue
             yield DriveMoments(
                 file=file,
                 recording=recording.name,
@@ -88,7 +100,8 @@ def in_traces(
             yield item
             continue
         try:
-            yield in_trace(item, query, assumed, file)
+            with contained(f"trace `{item.id}`", SourceLocation(file)):
+                yield in_trace(item, query, assumed, file)
         except RulecError as error:
             yield error
 

@@ -10,23 +10,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rulec.automata.bundle.bundle_messages import OTHER_STEP
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
-from rulec.extraction.drives import NoDrive
+from rulec.diagnostics.fault_messages import fault_of
 from rulec.extraction.selection import RequestedDrives, selected_drives
-from rulec.extraction.traces.recorded_drive import Drive
-from rulec.garbage_collection import no_garbage_collection
+from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.findings import JudgedTrace
-from rulec.monitoring.batch.stacked.verify_arrays import answer_to, judge_arrays, verify_arrays
+from rulec.monitoring.batch.rounded_verify import judge_rounded
+from rulec.monitoring.batch.stacked.verify_arrays import answer_to
+from rulec.monitoring.faulty_rules import without
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
-from rulec.monitoring.verdict import (
-    NotJudged,
-    Verdict,
-    Violation,
-    agreed,
-    agreed_by_type,
-    with_law,
-)
+from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed_by_type, with_law
 from rulec.recordings.recording import Recording
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import Rows, short_repr
@@ -86,7 +80,12 @@ class JudgedDrive:
 
     def with_verdict(self) -> DriveVerdict:
         """The drive and its verdict."""
-        return DriveVerdict(self.drive, answer_to(self.judged, self.drive.arrays))
+        name = self.drive.arrays.id
+        try:
+            answer = answer_to(self.judged, self.drive.arrays)
+        except Exception as problem:
+            answer = NotJudged(name, fault_of(problem, f"verdict on `{name}`"))
+        return DriveVerdict(self.drive, answer)
 
 
 class RecordingVerdicts(Rows):
@@ -216,7 +215,7 @@ def judged_drives(
     """The judged drives, whose verdicts are built on demand, in the same order."""
     known = [drive for drive in drives if isinstance(drive, Drive)]
     traces = [trace for drive in known for trace in (drive.arrays, *drive.otherwise)]
-    judged = iter(_judged(traces, roundings))
+    judged = iter(judge_rounded(traces, roundings))
     for drive in drives:
         if isinstance(drive, Drive):
             own = next(judged)
@@ -244,30 +243,18 @@ def _of_any_type(
         if isinstance(answer, Verdict):
             types = dict.fromkeys(kind for _, kind in trace.objects.items() - objects)
             verdicts.append((sorted(types), answer))
-    return agreed_by_type(known, verdicts)
+    agreed_on = agreed_by_type(known, verdicts)
+    faults = [fault for _, verdict in verdicts for fault in verdict.faults]
+    lost = [x for _, verdict in verdicts for x in verdict.not_judged if x.by_fault]
+    return without(agreed_on, lost, faults) if faults else agreed_on
 
 
 def agreed_answers(
     traces: Sequence[TraceArrays], roundings: Sequence[CompiledRulebook]
 ) -> list[Verdict | NotJudged]:
     """The answer of a rulebook, rounded to the traces' step, to each trace."""
-    judged = _judged(traces, roundings)
+    judged = judge_rounded(traces, roundings)
     return [answer_to(own, trace) for own, trace in zip(judged, traces, strict=True)]
-
-
-@no_garbage_collection()
-def _judged(
-    traces: Sequence[TraceArrays], roundings: Sequence[CompiledRulebook]
-) -> list[JudgedTrace | Verdict | NotJudged]:
-    if len(roundings) == 1:
-        return judge_arrays(traces, roundings[0])
-    every = zip(*(verify_arrays(traces, rules) for rules in roundings), strict=True)
-    return [_agreed(answers) for answers in every]
-
-
-def _agreed(answers: Sequence[Verdict | NotJudged]) -> Verdict | NotJudged:
-    verdicts = [answer for answer in answers if isinstance(answer, Verdict)]
-    return agreed(verdicts) if len(verdicts) == len(answers) else answers[0]
 
 
 def _row(answer: DriveVerdict | NoDrive) -> dict[str, Any]:
@@ -293,7 +280,7 @@ class ViolationTally:
     another reason. ``causes``: rule -> the objects that its violation is about -> the drives, so
     that many drives past one standing car are one finding. ``judged_in``: rule -> the number of
     drives in which it is neither open nor not judged. ``words`` are the names of the signals that
-    every drive supplies.
+    every drive supplies. ``faults`` of rulec cost rules in some drives, or drives.
     """
 
     satisfied: list[str] = field(default_factory=list)
@@ -309,6 +296,7 @@ class ViolationTally:
     judged_in: Counter[str] = field(default_factory=Counter)
     open_hard: int = 0
     words: frozenset[str] | None = None
+    faults: dict[str, None] = field(default_factory=dict)
 
     @property
     def judged(self) -> int:
@@ -334,6 +322,7 @@ class ViolationTally:
                 about.setdefault(objects, []).extend(drives)
         self.judged_in.update(later.judged_in)
         self.open_hard += later.open_hard
+        self.faults.update(later.faults)
         if later.words is not None:
             self.words = later.words if self.words is None else self.words & later.words
 
@@ -347,6 +336,7 @@ class ViolationTally:
             self.not_judged.append(NoDrive(drive.ego, answer.error.diagnostics[0].message))
             return
         self.words = drive.words if self.words is None else self.words & drive.words
+        self.faults.update({fault.diagnostics[0].message: None for fault in answer.faults})
         by_outcome = {True: self.satisfied, False: self.violated, None: self.doubtful}
         by_outcome[answer.satisfied].append(drive.arrays.id)
         for violation in answer.violations:

@@ -10,10 +10,10 @@ from functools import partial
 
 from rulec.diagnostics import SourceLocation, did_you_mean, first_of, named
 from rulec.diagnostics.argument_kinds import expected
-from rulec.extraction.drives import Drives, NoDrive
+from rulec.extraction.drives import Drives
 from rulec.extraction.possible_types import PossibleTypes
 from rulec.extraction.recording_parts import RecordingPart, egos_of, recording_parts
-from rulec.extraction.traces.recorded_drive import Drive, DrivePlaces
+from rulec.extraction.traces.recorded_drive import Drive, DrivePlaces, NoDrive
 from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds, hinted, pair_of
@@ -78,11 +78,16 @@ def with_drives_otherwise(
     drives: Iterable[Drive | NoDrive], others: Iterable[Iterable[Drive | NoDrive]]
 ) -> Iterator[Drive | NoDrive]:
     """The drives with the traces of each of the ``others`` that are as long."""
-    traces = [{x.arrays.id: x.arrays for x in other if isinstance(x, Drive)} for other in others]
-    return (
-        replace(drive, otherwise=_like(drive, traces)) if isinstance(drive, Drive) else drive
-        for drive in drives
-    )
+    every = [list(other) for other in others]
+    traces = [{x.arrays.id: x.arrays for x in other if isinstance(x, Drive)} for other in every]
+    # A drive is known only if it is known with each of the types
+    lost = {x.ego: x for other in every for x in other if isinstance(x, NoDrive) and x.fault}
+    for drive in drives:
+        if isinstance(drive, Drive):
+            otherwise = replace(drive, otherwise=_like(drive, traces))
+            yield lost.get(drive.arrays.id) or lost.get(drive.ego) or otherwise
+        else:
+            yield drive
 
 
 def _like(drive: Drive, others: Sequence[Mapping[str, TraceArrays]]) -> tuple[TraceArrays, ...]:

@@ -8,9 +8,9 @@ from math import hypot
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
-from rulec.extraction.traces.recorded_drive import Drive
+from rulec.extraction.traces.lost_drives import lost_drive
+from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.fleet.finding_columns import COLUMNS, Cell, Row
 from rulec.fleet.judged_by import JudgedBy
 from rulec.monitoring.moments.drive_facts import DriveFacts, facts_of
@@ -53,7 +53,12 @@ class DriveRows:
     def of_recording(self, verdicts: RecordingVerdicts, file: str) -> Iterator[Row]:
         """The rows of all drives of a recording, and of vehicles that have none."""
         for answer in verdicts.answers():
-            yield from self.of_answer(answer, verdicts, file)
+            try:
+                rows = list(self.of_answer(answer, verdicts, file))
+            except Exception as problem:
+                drive = answer.drive.arrays.id if isinstance(answer, DriveVerdict) else answer.ego
+                rows = list(self.of_answer(lost_drive(drive, problem), verdicts, file))
+            yield from rows
 
     def of_answer(
         self,
@@ -117,9 +122,11 @@ class DriveRows:
     def _judged(
         self, own: Row, verdict: Verdict, facts: DriveFacts, times: tuple[float, float]
     ) -> dict[str, Cell]:
+        faults = [fault.diagnostics[0].message for fault in verdict.faults]
         return {
             **self.shared,
             **own,
+            **({"because": "; ".join(dict.fromkeys(faults))} if faults else {}),
             "kind": "drive",
             "outcome": OUTCOMES[verdict.satisfied],
             "from_s": times[0],

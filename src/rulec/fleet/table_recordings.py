@@ -9,6 +9,7 @@ from pathlib import Path, PurePath
 from typing import Any
 
 from rulec.diagnostics import RulecError
+from rulec.diagnostics.fault_messages import contained
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.files.read_files import FileState, note_read
@@ -71,9 +72,11 @@ class TrackTableJudge:
     def _of_recording(self, rows: Any, own: Mapping[str, str]) -> Iterator[Row]:
         name, file = own[RECORDING], own.get(FILE, "")
         try:
-            recording = recording_of(rows, name, self.roads, self.frame_rate)
-            verdicts = RecordingVerdicts(recording, self.to_rows.rules, self.request, file or name)
-            yield from self.to_rows.of_recording(verdicts, file)
+            with contained():
+                recording = recording_of(rows, name, self.roads, self.frame_rate)
+                rules = self.to_rows.rules
+                verdicts = RecordingVerdicts(recording, rules, self.request, file or name)
+                yield from self.to_rows.of_recording(verdicts, file)
         except RulecError as error:
             yield self.to_rows.of_nothing(own, reason_of(error, own))
 

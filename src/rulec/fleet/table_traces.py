@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rulec.diagnostics import RulecError
+from rulec.diagnostics.fault_messages import contained
 from rulec.fleet.drive_rows import DriveRows
 from rulec.fleet.finding_columns import Row
 from rulec.fleet.fleet_messages import cut_drive
@@ -76,21 +77,27 @@ class TraceTableJudge:
 
         to_rows, waiting = self.to_rows, iter(outlines)
         try:
-            chunks = traces_of_table(rows, own.get(FILE, "") or "the table") if outlines else ()
+            with contained():
+                chunks = traces_of_table(rows, own.get(FILE, "") or "the table") if outlines else ()
+                for chunk in chunks:
+                    yield from self._of_chunk(chunk, waiting, own)
         except RulecError as error:
             for outline in waiting:
                 yield to_rows.of_nothing({**own, "vehicle": outline.name}, _why(error))
-            return
-        for chunk in chunks:
-            for traces, answers in verify_items(self.assumed.of(chunk), to_rows.rules):
-                for place, row in enumerate(self._with_facts(traces, answers)):
-                    named = {**own, "vehicle": next(waiting).name}
-                    if isinstance(row, str):
-                        yield to_rows.of_nothing(named, row)
-                        continue
-                    verdict, facts = row
-                    findings = self._findings(traces, place, verdict, own)
-                    yield from to_rows.of_trace(facts, verdict, named, findings)
+
+    def _of_chunk(
+        self, chunk: Items, waiting: Iterator[Any], own: Mapping[str, str]
+    ) -> Iterator[Row]:
+        to_rows = self.to_rows
+        for traces, answers in verify_items(self.assumed.of(chunk), to_rows.rules):
+            for place, row in enumerate(self._with_facts(traces, answers)):
+                named = {**own, "vehicle": next(waiting).name}
+                if isinstance(row, str):
+                    yield to_rows.of_nothing(named, row)
+                    continue
+                verdict, facts = row
+                findings = self._findings(traces, place, verdict, own)
+                yield from to_rows.of_trace(facts, verdict, named, findings)
 
     def _with_facts(
         self, traces: Items, answers: Iterable[Answer]

@@ -125,13 +125,14 @@ class OpenVerdict:
 class RuleNotJudged:
     """A rule that no trace from this source can be known to violate, for lack of ``untold``.
 
-    ``why`` is another reason, if there is one.
+    ``why`` is another reason, if there is one; ``by_fault``: it is a fault of rulec.
     """
 
     rule: str
     strength: Strength
     untold: tuple[str, ...]
     why: str = ""
+    by_fault: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,6 +142,8 @@ class Verdict(Rows):
     ``open`` depends on something unknown, ``not_judged`` lists rules for which this source lacks
     values. ``presumed`` are names that have their default because no source provides them.
     ``engine`` is what judged: Python, or the monitor in C. ``law`` is the text that was judged by.
+    ``faults`` are those of rulec that came meanwhile; the rules that they cost are among the
+    ``not_judged``.
     """
 
     __repr__ = short_repr
@@ -152,6 +155,7 @@ class Verdict(Rows):
     presumed: tuple[str, ...] = ()
     engine: EngineName = field(default="python", compare=False, repr=False)
     law: Edition | None = field(default=None, compare=False, repr=False)
+    faults: tuple[RulecError, ...] = field(default=(), compare=False, repr=False)
 
     @property
     def satisfied(self) -> bool | None:

@@ -132,6 +132,26 @@ def _at(place: SourceLocation | None, problem: Diagnostic) -> Diagnostic:
     return replace(problem, place=place, labels=(*here, *problem.labels))
 
 
+def verify_contained(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
+    """``verify``; a fault of rulec costs only the rules that it is in."""
+    try:
+        return verify(trace, rulebook)
+    except Exception as problem:
+        if isinstance(problem, RulecError) or not isinstance(trace, Trace):
+            raise
+        # Judging apart, 1 ms: only after a fault.
+        from rulec.monitoring.faulty_rules import judged_apart
+
+        (answer,) = judged_apart(_verified, [trace], rulebook.rounded_to(trace.step_s))
+    if isinstance(answer, NotJudged):
+        raise answer.error
+    return answer
+
+
+def _verified(traces: Sequence[Trace], roundings: Sequence[CompiledRulebook]) -> list[Verdict]:
+    return [agreed([verify(trace, rounded) for rounded in roundings]) for trace in traces]
+
+
 def verify_or_reason(item: Trace | RulecError, rulebook: CompiledRulebook) -> Verdict | NotJudged:
     """Verify one trace of many, and return an error instead of raising it.
 
@@ -140,7 +160,7 @@ def verify_or_reason(item: Trace | RulecError, rulebook: CompiledRulebook) -> Ve
     if isinstance(item, RulecError):
         return NotJudged(None, item)
     try:
-        return verify(item, rulebook)
+        return verify_contained(item, rulebook)
     except BudgetSpentError:
         raise
     except RulecError as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.monitoring.faulty_rules import without_words
 from rulec.monitoring.verdict import CarriedState, RuleNotJudged
 from rulec.planning.maneuvers import AS_WRITTEN, Maneuvers
 from rulec.planning.product.graph_instances import HARD
@@ -39,7 +40,7 @@ def evaluate(
     Raises RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a
     hard rule was compiled for another step; R0501 to R0511 if ``after`` is not a valid past.
     """
-    rules = rules.fitted_to(graph.step)
+    rules, lost = without_words(rules.fitted_to(graph.step), words.faults if words else {})
     traces = graph.trace_graph()
     paths = in_rule_words(graph, traces, graph.objects, rules.vocabulary, reading, words=words)
     past = past_for(graph, paths, rules, HARD, after)
@@ -65,7 +66,7 @@ def evaluate(
         past=past,
         after=after,
         violated_before=None if after is None else past.violations,
-        not_judged=_not_judged(paths, rules, past),
+        not_judged=(*_not_judged(paths, rules, past), *lost),
         reading=reading,
         words=words,
     )

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rulec.diagnostics import SourceLocation
 from rulec.diagnostics.argument_kinds import checked_kinds
+from rulec.diagnostics.fault_messages import contained
 from rulec.files.read_files import opened
 from rulec.recordings import table_heads as heads
 from rulec.recordings.argoverse.argoverse_files import MAP as MAP_ARCHIVES
@@ -130,6 +132,11 @@ def read_map(path: str | Path, step_s: float) -> RoadMap:
     Raises RulecError R0610 for a file that is no map, R0701 if it cannot be opened.
     """
     path = Path(path)
+    with contained("not read", SourceLocation(str(path))):
+        return _read_map(path, step_s)
+
+
+def _read_map(path: Path, step_s: float) -> RoadMap:
     glance = Glance(path)
     for form in MAP_FORMATS:
         if form.recognises(glance):

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, first_of, named
+from rulec.diagnostics.fault_messages import contained
 from rulec.files.own_kinds import what_reads
 from rulec.files.read_files import is_folder, opened
 from rulec.recordings.encodings.csv_head import PARQUET
@@ -41,7 +42,8 @@ def is_recording(file: str) -> bool:
     """
     glance = Glance(Path(file))
     try:
-        known = any(form.recognises(glance) for form in (*FORMATS, *MAP_FORMATS))
+        with contained():
+            known = any(form.recognises(glance) for form in (*FORMATS, *MAP_FORMATS))
     except RulecError:
         return not glance.path.is_dir()
     return known or is_xml(glance.path)
@@ -57,7 +59,7 @@ def is_beside_recordings(file: str) -> bool:
     False for a file that cannot be opened.
     """
     glance = Glance(Path(file))
-    with suppress(RulecError):
+    with suppress(RulecError), contained():
         is_read_along = any(
             form.recognises(glance) and form.is_companion(glance) for form in FORMATS
         )
@@ -71,8 +73,16 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
 
     Raises RulecError R0610 for a file that is not valid in its apparent format, R0612 for a
     scenario that is not in it, R0613 for a map where none is needed, R0614 and R0615 for a missing
-    or wrong map, R0701 if a file cannot be opened.
+    or wrong map, R0701 if a file cannot be opened, R0790 for a fault of rulec.
     """
+    names = [form.name for form in FORMATS]
+    if source.form is not None and source.form not in names:
+        raise ValueError(f"`form` is one of {', '.join(names)}, not {source.form!r}")
+    with contained("not read", SourceLocation(str(source.path))):
+        yield from _recordings(source)
+
+
+def _recordings(source: RecordingSource) -> Iterator[Recording]:
     # NumPy, only for those who have recordings.
     from rulec.recordings.adjacency import with_side
     from rulec.recordings.doubts.motion_doubts import with_doubts
@@ -145,9 +155,6 @@ def _format_of(source: RecordingSource) -> RecordingFormat:
         # Such as of too long a name, of which many questions end in an OSError
         with opened(source.path):
             pass
-    names = [form.name for form in FORMATS]
-    if source.form is not None and source.form not in names:
-        raise ValueError(f"`form` is one of {', '.join(names)}, not {source.form!r}")
     glance = Glance(source.path)
     for form in FORMATS:
         if source.form == form.name or (source.form is None and form.recognises(glance)):

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Source, SourceLocation, did_you_mean, named
+from rulec.diagnostics.fault_messages import contained
 from rulec.files.own_kinds import what_reads
 from rulec.files.read_files import decoded, opened
 from rulec.recordings.recording_files import is_recording, read_recording
@@ -84,6 +85,11 @@ def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = 
 
 def read_scenario(path: Path, choice: Choice | None = None) -> Scenario:
     """The scenario in a file. Raises RulecError like ``load_scenario``."""
+    with contained("not read", SourceLocation(str(path))):
+        return _read_scenario(path, choice)
+
+
+def _read_scenario(path: Path, choice: Choice | None) -> Scenario:
     if is_recording(str(path)):
         return read_scene(path, choice or Choice())
     if choice not in (None, Choice()):

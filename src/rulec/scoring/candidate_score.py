@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from rulec.extraction.drives import NoDrive
+from rulec.diagnostics import RulecError
+from rulec.diagnostics.fault_messages import fault_of
 from rulec.extraction.recording_verdicts import DriveVerdict
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.monitoring.verdict import OpenVerdict, RuleFor, RuleNotJudged, Violation
 from rulec.value_display import short_repr
 
@@ -25,7 +27,8 @@ class CandidateScore:
     kept for good. ``is_judged``: whether any of its states is in a judged drive. ``judged_from``
     has, for a violation of what the past had violated, too, the state of the candidate from which
     it is judged anew. ``open_before`` are the open verdicts that the past alone leaves open, and
-    the candidate's own states keep; they are charged to no candidate.
+    the candidate's own states keep; they are charged to no candidate. ``faults`` are those of rulec
+    that came meanwhile; rules that they cost are ``not_judged``.
     """
 
     __repr__ = short_repr
@@ -41,6 +44,7 @@ class CandidateScore:
     is_judged: bool = True
     judged_from: Mapping[RuleFor, int] = field(default_factory=dict)
     open_before: tuple[OpenVerdict, ...] = ()
+    faults: tuple[RulecError, ...] = field(default=(), compare=False)
 
     @property
     def satisfied(self) -> bool | None:
@@ -58,5 +62,28 @@ class CandidateScore:
         """``satisfied`` by the rules that can be judged in this world, whatever the others say."""
         if any(violation.strength == "hard" for violation in self.violations):
             return False
-        is_open = any(result.strength == "hard" for result in self.open)
+        doubtful: tuple[OpenVerdict | RuleNotJudged, ...] = (*self.open, *self.lost)
+        is_open = any(result.strength == "hard" for result in doubtful)
         return None if is_open or self.off_road else True
+
+    @property
+    def lost(self) -> tuple[RuleNotJudged, ...]:
+        """The rules that a fault of rulec has cost; they are charged as if they were open."""
+        return tuple([rule for rule in self.not_judged if rule.by_fault])
+
+
+def lost_candidate(number: int, n_states: int, problem: Exception) -> CandidateScore:
+    """A candidate that an exception has cost: no state is judged. Raises what is no fault."""
+    fault = fault_of(problem, f"candidate {number}")
+    why = fault.diagnostics[0].message
+    return CandidateScore(
+        number,
+        violations=(),
+        open=(),
+        not_judged=(),
+        off_road=n_states,
+        why=why,
+        drives=(NoDrive("", why, fault),),
+        is_judged=False,
+        faults=(fault,),
+    )

@@ -13,11 +13,13 @@ from numpy import bool_, intp
 from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.extraction.drives import NoDrive
+from rulec.diagnostics import RulecError
+from rulec.diagnostics.fault_messages import is_fault
 from rulec.extraction.recording_verdicts import DriveVerdict, JudgedDrive
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.monitoring.batch.findings import Findings, JudgedTrace
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
-from rulec.scoring.candidate_score import CandidateScore
+from rulec.scoring.candidate_score import CandidateScore, lost_candidate
 from rulec.scoring.scored_again import without_drives
 
 _NOBODY = -1
@@ -54,6 +56,7 @@ class CandidateCharges:
         violations: list[Violation] = []
         doubtful: list[OpenVerdict] = []
         not_judged = {}
+        faults: dict[RulecError, None] = {}
         for begins, drive in zip(self.begins, drives, strict=True):
             answer = drive.answer if isinstance(drive, DriveVerdict) else drive
             if isinstance(answer, JudgedTrace):
@@ -62,6 +65,11 @@ class CandidateCharges:
                 violations += [at(violation, begins) for violation in answer.violations]
                 doubtful += answer.open
                 not_judged.update({rule.rule: rule for rule in answer.not_judged})
+                faults.update(dict.fromkeys(answer.faults))
+            elif isinstance(answer, NoDrive) and answer.fault is not None:
+                faults[answer.fault] = None
+            elif isinstance(answer, NotJudged) and is_fault(answer.error):
+                faults[answer.error] = None
         found = CandidateScore(
             self.number,
             violations=tuple(violations),
@@ -71,6 +79,7 @@ class CandidateCharges:
             why=self.why,
             is_judged=self.is_judged,
             drives=tuple([x for x in drives if isinstance(x, DriveVerdict | NoDrive)]),
+            faults=tuple(faults),
         )
         if self.again is None:
             return found
@@ -107,7 +116,11 @@ class CandidateScores(Sequence[CandidateScore]):
             return tuple([self[k] for k in range(*number.indices(len(self)))])
         candidate = self.charges[number]
         if isinstance(candidate, CandidateCharges):
-            candidate = self.charges[number] = candidate.score()
+            try:
+                candidate = candidate.score()
+            except Exception as problem:
+                candidate = lost_candidate(candidate.number, candidate.off_road or 1, problem)
+            self.charges[number] = candidate
         return candidate
 
     def __eq__(self, other: object) -> bool:
@@ -192,6 +205,7 @@ def _rows(
             elif isinstance(own, Verdict | CandidateScore):
                 told += [(number, places[violation.rule], True) for violation in own.violations]
                 told += [(number, places[open_verdict.rule], False) for open_verdict in own.open]
+                told += [(number, places[x.rule], False) for x in own.not_judged if x.by_fault]
     whose, which, are_violated = np.array(told, dtype=intp).reshape(-1, 3).T
     yield whose, which, are_violated.astype(bool)
     for findings, numbers in judged.items():

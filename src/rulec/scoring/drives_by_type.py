@@ -7,10 +7,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from rulec.extraction.candidate_drives import Block, CandidateDrives
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.possible_types import PossibleTypes
 from rulec.extraction.selection import with_drives_otherwise
-from rulec.extraction.traces.recorded_drive import Drive
+from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.recordings.recording import Participant
 

@@ -19,14 +19,13 @@ from rulec.automata.bundle.compiled_rulebook import (
     PrefixCompiler,
 )
 from rulec.automata.outcome_machine import OutcomeMachine
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import (
     DriveVerdict,
     SomeRules,
     agreed_answers,
     some_rules,
 )
-from rulec.extraction.traces.recorded_drive import Drive
+from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.monitoring.verdict import (
     NotJudged,
     OpenVerdict,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple, TypeAlias
 from weakref import WeakKeyDictionary
@@ -12,18 +13,20 @@ from numpy.typing import ArrayLike, NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
-from rulec.extraction.drives import FEWEST_STATES, NoDrive
+from rulec.diagnostics.fault_messages import fault_of
+from rulec.extraction.drives import FEWEST_STATES
 from rulec.extraction.recording_verdicts import (
     JudgedDrive,
     judged_drives,
     names_read,
 )
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_participant
 from rulec.garbage_collection import no_garbage_collection
 from rulec.monitoring.verdict import NotJudged, RuleFor, Violation
 from rulec.recordings.recording import Participant
-from rulec.scoring.candidate_score import CandidateScore
+from rulec.scoring.candidate_score import CandidateScore, lost_candidate
 from rulec.scoring.charges import CandidateCharges, CandidateScores, forget_reasons
 from rulec.scoring.judged_anew import apart_from_past, judged_anew, opened_by, verdicts_of
 from rulec.scoring.scored_again import without_drives
@@ -64,7 +67,33 @@ def score(
         raise BAD_CANDIDATES.error(None, message, help=way_out)
     # Many candidates create tens of thousands of objects, none of which is garbage
     with no_garbage_collection():
-        return _scored(paths, past, world, rules)
+        try:
+            return _scored(paths, past, world, rules)
+        except Exception as problem:
+            return _scored_apart(paths, past, world, rules, problem)
+
+
+def _scored_apart(
+    paths: NDArray[np.float64],
+    past: NDArray[np.float64],
+    world: TrafficWorld,
+    rules: CompiledRulebook,
+    problem: Exception,
+) -> Scores:
+    """The scores after a fault of rulec: it costs the candidates that have it by themselves."""
+    candidates: list[CandidateScore] = []
+    before: tuple[Violation, ...] = ()
+    for number in range(len(paths)):
+        try:
+            alone = _scored(paths[number : number + 1], past, world, rules)
+            (found,), before = alone.candidates, alone.violated_before
+        except Exception as own:
+            found = lost_candidate(number, paths.shape[1], own)
+        candidates.append(replace(found, number=number))
+    if not any(candidate.faults for candidate in candidates):
+        candidates[0] = replace(candidates[0], faults=(fault_of(problem, "candidates"),))
+    rounded = _roundings(rules, world.recording.step_s)[0]
+    return Scores(rounded, CandidateScores(candidates), before, paths, world.now + 1)
 
 
 def _scored(

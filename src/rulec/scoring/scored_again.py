@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import TypeAlias, overload
 
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.monitoring.verdict import OpenReasons, OpenVerdict
 from rulec.scoring.candidate_score import CandidateScore
 

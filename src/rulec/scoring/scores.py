@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import did_you_mean
 from rulec.diagnostics.argument_kinds import expected, finite
+from rulec.diagnostics.fault_messages import contained
 from rulec.monitoring.verdict import Violation
 from rulec.planning.ranking.penalties import PenaltyOrder, PenaltyRank, ranks_of
 from rulec.scoring.candidate_score import CandidateScore
@@ -151,7 +152,8 @@ class Scores(Rows):
         Raises IndexError for an unknown number.
         """
         score = self.candidates[self._known(number)]
-        return tuple(margins_of(score, self.violated_before, self.rules, self._first))
+        with contained(f"margins of candidate {number}"):
+            return tuple(margins_of(score, self.violated_before, self.rules, self._first))
 
     def _known(self, number: int) -> int:
         """A candidate's number, checked; a negative one would be a bug in a planner's loop."""

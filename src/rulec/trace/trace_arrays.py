@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
+from rulec.diagnostics import RulecError
 from rulec.trace.trace_columns import Array
 from rulec.trace.trace_model import Ending, Trace
 from rulec.value_display import short_repr
@@ -30,7 +31,8 @@ class TraceArrays:
     These have the shape of their name's values: ``unknown`` marks unknown values, ``absent`` those
     that are not given; ``bounds`` are the least and the greatest value that a number can have, used
     instead of its values. ``only`` marks the objects that a name is given for; without it, all.
-    ``ends`` and ``told`` are as in a ``Trace``.
+    ``ends`` and ``told`` are as in a ``Trace``. ``faults`` are the names that a fault of rulec has
+    cost, and it; the name of one that has cost nothing is empty.
     """
 
     __repr__ = short_repr
@@ -49,6 +51,7 @@ class TraceArrays:
     only: Mapping[str, Flags] = field(default_factory=dict)
     ends: Ending = "complete"
     told: frozenset[str] | None = None
+    faults: Mapping[str, RulecError] = field(default_factory=dict, repr=False)
 
     @property
     def starts(self) -> NDArray[np.intp]:

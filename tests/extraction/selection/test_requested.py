@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from rulec.diagnostics import RulecError
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection import RequestedDrives, selected_drives
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.recordings.recording import TrackState
 from rulec.rulebook.loader import load_vocabulary

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.drives import Drives, NoDrive
+from rulec.extraction.drives import Drives
+from rulec.extraction.traces.recorded_drive import NoDrive
 from support.builders.recordings import recording, straight, vehicle
 
 

@@ -7,9 +7,9 @@ import pytest
 
 from rulec import compile_rulebook, read_recording
 from rulec.diagnostics import RulecError
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.extraction.tracks.source_tolerances import tolerances_of
 from rulec.recordings.recording import Participant, Recording, StatedError, TrackState
 from support.builders.argoverse_files import SCENARIO_ID, rows_of, town, write_map, write_motion

@@ -5,10 +5,10 @@ import pytest
 from pyarrow import feather, parquet
 
 from rulec import compile_rulebook, read_recording
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
+from rulec.extraction.traces.recorded_drive import NoDrive
 from support.builders.recorded_data import RECORDINGS
 
 FOLDER = RECORDINGS.parent / "argoverse2"

@@ -1,8 +1,8 @@
 """Recordings before a rulebook, as mappings that tests can look into."""
 
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.monitoring.verdict import Verdict
 
 

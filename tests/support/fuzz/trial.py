@@ -16,6 +16,7 @@ from pathlib import Path
 from random import Random
 
 from rulec.cli.main import main
+from rulec.diagnostics.fault_messages import FAULT
 from support.fuzz.targets import STANDARD_INPUT, TARGETS, Workplace
 
 STATUSES = {0, 1, 2}
@@ -117,6 +118,8 @@ def _try_one(trial, place, seed):
         trial.statuses[status] = trial.statuses.get(status, 0) + 1
     if not problem and status not in STATUSES:
         problem = f"status {status}: {said[-300:]}"
+    if not problem and f"[{FAULT.code}]" in streams[1].getvalue():
+        problem = f"a fault of rulec: {said[-300:]}"
     if not problem and "Traceback" in said:
         problem = f"a traceback: {said[-300:]}"
     if not problem and (found := WARNINGS.search(streams[1].getvalue())):

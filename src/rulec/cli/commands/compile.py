@@ -16,7 +16,8 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, refuse_overwriting, refuse_standard_output
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, open_session, rulebooks_named, told_apart
-from rulec.diagnostics import SourceLocation, named, placed_at
+from rulec.diagnostics import SourceLocation, named
+from rulec.diagnostics.fault_messages import contained
 from rulec.files.written_files import refuse_unwritable
 from rulec.report.text.console import print_line, print_remark
 
@@ -154,7 +155,7 @@ def command(
                 _tell_others(folder, paths)
             else:
                 compiled = session.compile_rulebook(book, step_s=steps_s or None)
-                with placed_at(SourceLocation(book)):
+                with contained("no answer", SourceLocation(book)):
                     paths = session.write_monitor(
                         compiled, folder, objects, prove=prove, language=emit
                     )

@@ -31,7 +31,8 @@ from rulec.cli.options.scenario_options import (
 from rulec.cli.options.verb_class import VerbGroup
 from rulec.cli.output import output_stream, print_written, read_machines
 from rulec.cli.standard_input import file_named
-from rulec.diagnostics import RulecError, SourceLocation, named, placed_at
+from rulec.diagnostics import RulecError, SourceLocation, named
+from rulec.diagnostics.fault_messages import contained
 from rulec.report.text.terminal_text import shown_count
 
 if TYPE_CHECKING:
@@ -192,7 +193,9 @@ def drive(
     kept = frozenset(rule.name for rule in _only(rules, patterns).rules) if patterns else None
     recording = read_recording(recording_source(file_named(file), options))
     verdicts = rulec.verify_recording(recording, rules, wanted)
-    _write(drive_drawing(verdicts, ego if part else "", kept, at_s), to, theme)
+    with contained("not drawn", SourceLocation(file)):
+        drawing = drive_drawing(verdicts, ego if part else "", kept, at_s)
+    _write(drawing, to, theme)
 
 
 @command.command()
@@ -269,12 +272,12 @@ def _judged(
         scene_reading(options, None)
         scene = read_scene(scenario, options)
         options["partition"] = options["partition"] or "paper"
-        with placed_at(SourceLocation(scenario)):
+        with contained("not drawn", SourceLocation(scenario)):
             return rulec.navigation_graph(scene, **options), None, None
     rules = read_machines(rulebook, at)
     reading = scene_reading(options, rules.vocabulary)
     scene = read_scene(scenario, options)
-    with placed_at(SourceLocation(scenario)):
+    with contained("not drawn", SourceLocation(scenario)):
         maneuvers = rulec.find_maneuvers(scene, rules, **reading, **options)
     place = number or 1
     maneuver = None

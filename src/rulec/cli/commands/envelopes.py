@@ -18,7 +18,8 @@ from rulec.cli.options.scenario_options import (
 )
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_written, read_machines
-from rulec.diagnostics import SourceLocation, placed_at
+from rulec.diagnostics import SourceLocation
+from rulec.diagnostics.fault_messages import contained
 from rulec.report.text.console import print_remark
 from rulec.report.text.terminal_text import shown_count
 
@@ -60,7 +61,7 @@ def command(
     rules = read_machines(rulebook, at)
     reading = scene_reading(options, rules.vocabulary)
     scene = read_scene(scenario, options)
-    with placed_at(SourceLocation(scenario)):
+    with contained("no answer", SourceLocation(scenario)):
         maneuvers = rulec.find_maneuvers(scene, rules, **reading, **options)
         cheapest = maneuvers.cheapest(number, perhaps=True)
     with output_stream(to) as (stream, name):

@@ -25,7 +25,8 @@ from rulec.cli.options.output_options import (
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import answer_lines, output_stream, print_written
 from rulec.cli.standard_input import not_standard_input, standard_input
-from rulec.diagnostics import RulecError
+from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics.fault_messages import contained
 from rulec.files.read_files import opened
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.settings import search_path
@@ -165,16 +166,17 @@ def _moments(
     for path in paths:
         is_stream = path == STANDARD_OUTPUT
         try:
-            if form is None and (named or (not is_stream and is_recording(path))):
-                recordings = read_recordings(replace(source, path=Path(path)))
-                yield from in_recordings(recordings, query, wanted, path)
-                continue
-            if is_stream:
-                chunks = read_chunks(standard_input(), "standard input", form or "jsonl")
-                yield from in_traces(chain.from_iterable(chunks), query, assumed, path)
-                continue
-            with opened(Path(path)) as stream:
-                chunks = read_chunks(stream, path, form or format_of(path))
-                yield from in_traces(chain.from_iterable(chunks), query, assumed, path)
+            with contained("not searched", SourceLocation(path)):
+                if form is None and (named or (not is_stream and is_recording(path))):
+                    recordings = read_recordings(replace(source, path=Path(path)))
+                    yield from in_recordings(recordings, query, wanted, path)
+                    continue
+                if is_stream:
+                    chunks = read_chunks(standard_input(), "standard input", form or "jsonl")
+                    yield from in_traces(chain.from_iterable(chunks), query, assumed, path)
+                    continue
+                with opened(Path(path)) as stream:
+                    chunks = read_chunks(stream, path, form or format_of(path))
+                    yield from in_traces(chain.from_iterable(chunks), query, assumed, path)
         except RulecError as error:
             yield error

@@ -25,7 +25,8 @@ from rulec.cli.output import (
     read_machines,
     rulebooks_named,
 )
-from rulec.diagnostics import SourceLocation, placed_at
+from rulec.diagnostics import SourceLocation
+from rulec.diagnostics.fault_messages import contained
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_remark
 
@@ -125,13 +126,13 @@ def command(
         print_diagnostics(problem.diagnostics)
     with answer_lines(to) as write:
         for path, rules in product(inputs.paths, machines):
-            with errors_told() if several else nullcontext():
+            place = SourceLocation(path)
+            with errors_told() if several else nullcontext(), contained("not evaluated", place):
                 own = dict(options)
                 reading = scenario_options.scene_reading(own, rules.vocabulary)
                 scene = scenario_options.read_scene(path, own)
-                with placed_at(SourceLocation(path)):
-                    maneuvers = rulec.find_maneuvers(scene, rules, after=past, **reading, **own)
-                    shown = questions.answered(maneuvers, to.form)
+                maneuvers = rulec.find_maneuvers(scene, rules, after=past, **reading, **own)
+                shown = questions.answered(maneuvers, to.form)
                 seconds = time.perf_counter() - begin
                 begin += seconds
                 write(_shown(maneuvers, shown, seconds, to.form, several=several))
@@ -236,7 +237,8 @@ def _driven(maneuvers: Maneuvers, shown: Sequence[Maneuver]) -> TrajectoryScores
     from rulec.scoring.maneuver_trajectories import trajectory_scores
 
     try:
-        return trajectory_scores(maneuvers, shown)
+        with contained("verdicts on trajectories"):
+            return trajectory_scores(maneuvers, shown)
     except rulec.RulecError as error:
         print_diagnostics(error.diagnostics)
         return None

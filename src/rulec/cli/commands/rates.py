@@ -11,6 +11,7 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_written, put_answer
 from rulec.cli.standard_input import not_standard_input
+from rulec.diagnostics.fault_messages import contained
 
 if TYPE_CHECKING:
     from rulec.rates.drive_counts import GroupKey
@@ -84,7 +85,8 @@ def command(
     from rulec.report.rates import rates_json, rates_table
     from rulec.report.rates.rates_picture import rates_drawing
 
-    rates = rates_of_findings(files, by, confidence=confidence, seed=seed)
+    with contained("no rates"):
+        rates = rates_of_findings(files, by, confidence=confidence, seed=seed)
     if to.form in PICTURES:
         data = as_bytes(rates_drawing(rates, f"per_{per}"), to.form, to.path)
         with output_stream(to) as (stream, _):

@@ -20,7 +20,8 @@ from rulec.cli.options.output_options import TABLES, Output, output_options
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_lost, print_written, read_machines
 from rulec.cli.standard_input import file_named
-from rulec.diagnostics import SourceLocation, placed_at
+from rulec.diagnostics import SourceLocation
+from rulec.diagnostics.fault_messages import contained
 from rulec.report.text.console import progress
 from rulec.report.text.terminal_text import shown_count
 
@@ -90,7 +91,7 @@ def command(
 
     scene = scenario_options.read_scene(scenario, options)
     rules = None if rulebook is None else read_machines(rulebook)
-    with placed_at(SourceLocation(scenario)):
+    with contained("no answer", SourceLocation(scenario)):
         if rules is None:
             options["partition"] = options["partition"] or "paper"
             graph = rulec.navigation_graph(scene, **options).trace_graph()

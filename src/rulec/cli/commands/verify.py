@@ -297,7 +297,7 @@ def _judge(
     if request.traces:
         traced = _judge_traces(request, rules, outputs, complaints)
         _include(result, traced, strict=request.strict)
-        result.complete &= not traced.total.not_judged
+        result.complete &= traced.complete and not traced.total.not_judged
     return result
 
 

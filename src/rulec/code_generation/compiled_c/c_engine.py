@@ -18,8 +18,14 @@ from rulec.diagnostics import RulecError
 from rulec.diagnostics.diagnostic import as_answer
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding, Cast
+from rulec.monitoring.faulty_rules import said
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.monitoring.verify import letter_reader_of, rulebook_for_checked, verify
+from rulec.monitoring.verify import (
+    letter_reader_of,
+    rulebook_for_checked,
+    verify,
+    verify_or_reason,
+)
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_trace
 
@@ -62,6 +68,8 @@ class CEngine:
             if error.diagnostics[0].code == MONITOR_COMPILER_FAILED.code:
                 raise  # concerns all traces
             return NotJudged(item.id, as_answer(error))
+        except Exception as problem:
+            return said([verify_or_reason(item, self.rulebook)], problem)[0]
         self.judged[verdict.engine] += 1
         return verdict
 

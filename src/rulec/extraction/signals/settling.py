@@ -62,7 +62,11 @@ def agreeing(signals: SignalColumns) -> SignalColumns:
     Each may have been settled by itself, or found by a measure of its own.
     """
     world, about, unknown = dict(signals.world), dict(signals.about), dict(signals.unknown)
+    faults = dict(signals.faults)
     for name, stronger in _IMPLIED.items():
+        # It may hold where what implies it would be true
+        for other in faults.keys() & stronger if name in world or name in about else ():
+            faults[name] = faults[other]
         for columns in (world, about):
             for other in stronger if name in columns else ():
                 if other in columns:
@@ -70,7 +74,7 @@ def agreeing(signals: SignalColumns) -> SignalColumns:
                     columns[name] = columns[name] | sure
                     if name in unknown:
                         unknown[name] = unknown[name] & ~sure
-    return signals._replace(world=world, about=about, unknown=unknown)
+    return signals._replace(world=world, about=about, unknown=unknown, faults=faults)
 
 
 def _changed(

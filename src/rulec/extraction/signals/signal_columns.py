@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
+from rulec.diagnostics import RulecError
 from rulec.trace.plain_arrays import are_new
 
 SignalColumn = NDArray[Any]
@@ -32,7 +33,8 @@ class SignalColumns(NamedTuple):
     participants that a signal about objects applies to. ``bounds``: the least and the greatest
     possible value of a measured number, by the tolerances of its source, in the shape of its own
     array. ``texts``: the texts that a signal's values index. ``whom``: the ids of the participants
-    that cause the value of a signal of the world, a tuple per state.
+    that cause the value of a signal of the world, a tuple per state. ``faults``: the signals that a
+    fault of rulec has cost.
     """
 
     world: Mapping[str, SignalColumn] = _NONE
@@ -42,6 +44,7 @@ class SignalColumns(NamedTuple):
     bounds: Mapping[str, Bounds] = _NONE
     texts: Mapping[str, Sequence[str]] = _NONE
     whom: Mapping[str, SignalColumn] = _NONE
+    faults: Mapping[str, RulecError] = _NONE
 
     def values(self, name: str) -> SignalColumn:
         """The values of a signal, as texts if they are indices of texts."""
@@ -122,6 +125,7 @@ def unknown_where_unlike(signals: SignalColumns, others: SignalColumns) -> Signa
     """The signals, unknown where others have another value or none."""
     columns, theirs = {**signals.world, **signals.about}, {**others.world, **others.about}
     unknown = dict(signals.unknown)
+    signals = signals._replace(faults={**signals.faults, **others.faults})
     for name, column in columns.items():
         if name not in theirs or theirs[name].shape != column.shape:
             continue

@@ -6,10 +6,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import wraps
 from typing import Any, TypeAlias, TypeVar
 
+from rulec.diagnostics import named
+from rulec.diagnostics.fault_messages import fault_of
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, together
 
-Passes: TypeAlias = Mapping[tuple[str, ...], Callable[[DriveContext], SignalColumns]]
+_Pass: TypeAlias = Callable[[DriveContext], SignalColumns]
+
+Passes: TypeAlias = Mapping[tuple[str, ...], _Pass]
 """Names of signals -> the function that provides exactly these."""
 
 _Value = TypeVar("_Value")
@@ -23,26 +27,41 @@ class SignalPasses:
 
     def __init__(self, passes: Passes) -> None:
         self._passes = passes
-        self._read: dict[SignalNames, Sequence[Callable[[DriveContext], SignalColumns]]] = {}
+        self._read: dict[SignalNames, Sequence[tuple[Sequence[str], _Pass]]] = {}
 
     def __call__(self, context: DriveContext, names: SignalNames = None) -> SignalColumns:
-        """The signals of a drive that have these names."""
+        """The signals of a drive that have these names.
+
+        An exception in a function costs a single drive that function's signals. If there are
+        several drives it is raised, so that each of them can be made by itself.
+        """
         if names not in self._read:
             if len(self._read) >= _MOST_READERS:
                 self._read.clear()
             self._read[names] = tuple(
                 [
-                    signals_of
+                    (given, signals_of)
                     for given, signals_of in self._passes.items()
                     if names is None or not names.isdisjoint(given)
                 ]
             )
-        return together([signals_of(context) for signals_of in self._read[names]], names)
+        return together([_contained(*own, context) for own in self._read[names]], names)
 
     @staticmethod
     def joined(several: Iterable[SignalPasses]) -> SignalPasses:
         """The functions of several passes, in their order."""
         return SignalPasses({given: x for own in several for given, x in own._passes.items()})
+
+
+def _contained(given: Sequence[str], signals_of: _Pass, context: DriveContext) -> SignalColumns:
+    try:
+        return signals_of(context)
+    except Exception as problem:
+        if context.spans.n_drives > 1:
+            raise
+        ego = context.ego.participants[0].id
+        fault = fault_of(problem, f"{named(given)} in the drive of `{ego}`")
+        return SignalColumns(faults=dict.fromkeys(given, fault))
 
 
 def once_a_recording(

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.array_types import Floats
+from rulec.diagnostics import RulecError
 from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
 from rulec.trace import Trace
@@ -140,8 +141,8 @@ class Drive:
 
     @property
     def words(self) -> frozenset[str]:
-        """The names of the signals that the recording supplies."""
-        return frozenset(self.kinds)
+        """The names of the signals that the recording supplies, whatever faults may have cost."""
+        return frozenset(self.kinds).union(self.arrays.faults)
 
     @property
     def first_step(self) -> int:
@@ -152,3 +153,12 @@ class Drive:
         """The time (s of the recording) of a state; None means the last state."""
         number = self.arrays.n_states - 1 if state is None else state
         return round(self.start_s + number * self.arrays.step_s, 9)
+
+
+@dataclass(frozen=True, slots=True)
+class NoDrive:
+    """A vehicle ``ego`` that has no drive, and why; ``fault`` is the one of rulec that cost it."""
+
+    ego: str
+    why: str
+    fault: RulecError | None = None

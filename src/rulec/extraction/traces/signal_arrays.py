@@ -197,6 +197,7 @@ def with_assumed(
         world={**columns.world, **values},
         unknown={name: own for name, own in columns.unknown.items() if name not in assumed},
         bounds={name: own for name, own in columns.bounds.items() if name not in assumed},
+        faults={name: own for name, own in columns.faults.items() if name not in assumed},
     )
     return WrittenSignals(known, texts)
 
@@ -263,6 +264,7 @@ def signal_parts(
             "absent": part(unknown, k) if defaults else nothing,
             "bounds": {} if defaults else part(intervals, k),
             "only": only if is_one else SharedColumns(only, about_names, own, own),
+            "faults": columns.faults,
         }
         for k, own in enumerate(own_objects)
     ]

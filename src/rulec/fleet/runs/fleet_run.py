@@ -74,7 +74,8 @@ class FleetRun:
     @property
     def is_complete(self) -> bool:
         """Whether all inputs were judged, and at least one drive."""
-        unread = self.tally.unread or self.tally.lost or self.problems
+        tally = self.tally
+        unread = tally.unread or tally.lost or tally.faults or self.problems
         return bool(self.tally.judged) and not unread
 
 

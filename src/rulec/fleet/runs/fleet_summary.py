@@ -87,6 +87,10 @@ def _rules(run: FleetRun) -> Iterator[str]:
 
 
 def _files(run: FleetRun) -> Iterator[str]:
+    for fault, _ in run.tally.faults.most_common(_MOST_REASONS):
+        yield f"fault       {fault}"
+    if len(run.tally.faults) > _MOST_REASONS:
+        yield f"fault       and {len(run.tally.faults) - _MOST_REASONS:,} more"
     for lost in run.tally.lost:
         yield f"lost        {lost}: its process was stopped twice, perhaps for lack of memory"
     for path in run.leftovers:

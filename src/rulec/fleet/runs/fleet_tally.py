@@ -6,6 +6,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from rulec.diagnostics.fault_messages import SAYS
 from rulec.trace.formats.arrow.parquet import arrow
 
 _NAMES = ("file", "recording", "vehicle")
@@ -27,7 +28,7 @@ class FleetTally:
     with such a drive; in a table without file names, its recording or trace. ``remarks``: what is
     odd about a recording -> the number of its drives; ``examples`` has these, too. ``unread``:
     number of files, recordings and traces (not vehicles) that could not be judged. ``lost``: units
-    whose process was killed twice.
+    whose process was killed twice. ``faults`` of rulec -> how many rows they cost.
     """
 
     drives: Counter[str] = field(default_factory=Counter)
@@ -39,6 +40,7 @@ class FleetTally:
     hours: float = 0.0
     km: float = 0.0
     lost: list[str] = field(default_factory=list)
+    faults: Counter[str] = field(default_factory=Counter)
 
     def add(self, other: FleetTally) -> None:
         """Add the sums of other drives."""
@@ -52,6 +54,7 @@ class FleetTally:
         self.hours += other.hours
         self.km += other.km
         self.lost += other.lost
+        self.faults.update(other.faults)
 
     @property
     def judged(self) -> int:
@@ -68,6 +71,8 @@ def tally_of(path: Path) -> FleetTally:
             for row in zip(*(batch.column(name).to_pylist() for name in _COLUMNS), strict=True):
                 kind, outcome, rule, ego, because, *names, duration_s, distance_m, remarks = row
                 where = next(filter(None, names), "")
+                if because and SAYS in because:
+                    tally.faults[because] += 1
                 if kind == "rule":
                     tally.rules[rule, outcome] += 1
                 elif kind == "drive":

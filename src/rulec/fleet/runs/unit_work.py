@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 
 from rulec.diagnostics import RulecError
+from rulec.diagnostics.fault_messages import contained, fault_of
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.files.read_files import files_read
@@ -53,10 +55,14 @@ class UnitWorker:
         The file appears whole, and has the same content however often it is written.
         """
         path = self.folder.part(unit)
-        with memory_given_back():
-            if not self.folder.is_done(unit):
-                self._write(unit, path)
-            return tally_of(path)
+        try:
+            with memory_given_back():
+                if not self.folder.is_done(unit):
+                    self._write(unit, path)
+                return tally_of(path)
+        except Exception as problem:
+            fault = fault_of(problem, unit.path).diagnostics[0].message
+            return FleetTally(faults=Counter([fault]))
 
     def _write(self, unit: WorkUnit, path: Path) -> None:
         _, parquet = arrow(str(path))
@@ -75,26 +81,30 @@ class UnitWorker:
 
     def rows(self, unit: WorkUnit) -> Iterator[Row]:
         """The rows of a unit; for what cannot be read, a row with the reason."""
-        rules = self.rules.read()
-        to_rows = DriveRows(rules, self.folder.by)
+        to_rows = DriveRows(self.rules.read(), self.folder.by)
         try:
-            if unit.piece is not None:
-                yield from self._of_table(unit, to_rows)
-                return
-            for recording in read_recordings(replace(self.source, path=Path(unit.path))):
-                own = {"file": unit.path, "recording": recording.name}
-                try:
-                    verdicts = RecordingVerdicts(recording, rules, self.request, unit.path)
-                    yield from to_rows.of_recording(verdicts, unit.path)
-                except BudgetSpentError:
-                    raise
-                except RulecError as error:
-                    yield to_rows.of_nothing(own, reason_of(error, own))
+            with contained():
+                yield from self._rows(unit, to_rows)
         except BudgetSpentError:
             raise
         except RulecError as error:
             own = {"file": unit.path}
             yield to_rows.of_nothing(own, reason_of(error, own))
+
+    def _rows(self, unit: WorkUnit, to_rows: DriveRows) -> Iterator[Row]:
+        if unit.piece is not None:
+            yield from self._of_table(unit, to_rows)
+            return
+        for recording in read_recordings(replace(self.source, path=Path(unit.path))):
+            own = {"file": unit.path, "recording": recording.name}
+            try:
+                with contained():
+                    verdicts = RecordingVerdicts(recording, to_rows.rules, self.request, unit.path)
+                    yield from to_rows.of_recording(verdicts, unit.path)
+            except BudgetSpentError:
+                raise
+            except RulecError as error:
+                yield to_rows.of_nothing(own, reason_of(error, own))
 
     def _of_table(self, unit: WorkUnit, to_rows: DriveRows) -> Iterator[Row]:
         roads = None if self.source.map_path is None else str(self.source.map_path)

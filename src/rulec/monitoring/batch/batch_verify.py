@@ -23,6 +23,7 @@ from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.bindings import Cast, types_of
+from rulec.monitoring.faulty_rules import said
 from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import (
@@ -98,6 +99,15 @@ def verify_chunk(
     items: Sequence[Trace | RulecError], rulebook: CompiledRulebook, fewest: int = FEWEST
 ) -> list[Answer]:
     """Answers for some traces; at least ``fewest`` of one shape are judged together."""
+    try:
+        return _verify_chunk(items, rulebook, fewest)
+    except Exception as problem:
+        return said([verify_or_reason(item, rulebook) for item in items], problem)
+
+
+def _verify_chunk(
+    items: Sequence[Trace | RulecError], rulebook: CompiledRulebook, fewest: int
+) -> list[Answer]:
     answers: list[Answer | None] = [None] * len(items)
     shapes: dict[trace_groups.Shape, list[_Placed]] = {}
     for place, item in enumerate(items):
@@ -283,16 +293,22 @@ def verify_items(
     An irregular block is yielded in parts. Answers for traces that are judged one by one are
     computed on demand.
     """
-    if isinstance(items, LineBlock):
-        yield items, _verify_lines(items, rulebook)
-        return
-    judged = _verify_block(items, rulebook) if isinstance(items, Block) else None
+    judged: tuple[Items, Iterable[Answer]] | None = None
+    failed = None
+    try:
+        if isinstance(items, LineBlock):
+            judged = items, _verify_lines(items, rulebook)
+        elif isinstance(items, Block):
+            judged = _verify_block(items, rulebook)
+    except Exception as problem:
+        failed = problem
     if judged is not None:
         yield judged
         return
     rest = iter(items)
     while some := list(islice(rest, _MADE_TOGETHER)):
-        yield some, verify_chunk(some, rulebook)
+        yield some, said(verify_chunk(some, rulebook), failed)
+        failed = None
 
 
 def _with_others(

@@ -12,6 +12,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.argument_kinds import expected, finite
+from rulec.diagnostics.fault_messages import contained
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.four_valued import MonitorEdge, without_sink, worst_of
 from rulec.monitoring.online.monitor_state import (
@@ -166,8 +167,8 @@ class Monitor:
             place: where the state was read, for messages.
 
         Returns the verdicts as of this state, and what has changed. Raises RulecError R0501 to
-        R0505 or R0508 if the state does not fit the rulebook, as in ``verify``; the monitor then
-        ignores the state.
+        R0505 or R0508 if the state does not fit the rulebook, as in ``verify``, and R0790 for a
+        fault of rulec; the monitor then ignores the state.
         """
         current, number, _, cache = self._now
         same_objects = objects == current.bound_rules.objects
@@ -194,8 +195,7 @@ class Monitor:
     ) -> SoFar:
         """Take the next state without the cache of earlier steps."""
         expected("place", "SourceLocation | None", place)
-        current, number, _, cache = self._now
-        number += 1
+        current, number = self._now[0], self._now[1] + 1
         bound_rules = current.bound_rules
         if same_objects is True:  # and no array of such answers
             # The objects may be given in another order.
@@ -204,13 +204,25 @@ class Monitor:
             if not isinstance(objects, Mapping):
                 raise _no_object("what is given as objects", "names and types", place)
             check_objects(objects, self._judged.vocabulary, place)
+        if type(state) is not dict and not isinstance(state, Mapping):
+            raise _no_object(f"state {number}", "names and values", place)
+        with contained(f"state {number}", place):
+            return self._taken(state, objects, place, same_objects)
+
+    def _taken(
+        self,
+        state: State,
+        objects: Mapping[str, str],
+        place: SourceLocation | None,
+        same_objects: bool,
+    ) -> SoFar:
+        current, number, _, cache = self._now
+        number, bound_rules = number + 1, current.bound_rules
         is_full = bound_rules.groups.cache_size.n > MOST_CACHED
         if is_full or not same_objects:
             groups = bound_rules.groups.without_cache() if is_full else bound_rules.groups
             bound_rules = BoundRules(self._judged, groups, objects, awake(current, objects))
             cache = TransitionCache()
-        if type(state) is not dict and not isinstance(state, Mapping):
-            raise _no_object(f"state {number}", "names and values", place)
         constants = current.constants
         if self._judged.vocabulary.constants:
             arrival = Arrival(number, objects, current.bound_rules.objects, place)

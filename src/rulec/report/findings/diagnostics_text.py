@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TextIO
 
 from rulec.diagnostics import Diagnostic, RulecError
+from rulec.diagnostics.fault_messages import FAULT
 from rulec.diagnostics.source_text import SourceLocation, address
 from rulec.files.work_trees import leads_out
 from rulec.report.text.console import page_width, print_aside
@@ -96,12 +97,16 @@ def _window(excerpt: str, place: SourceLocation, columns: int) -> tuple[list[str
 _FRAME = "bold blue"
 _STYLES = {"error": "bold red", "warning": "bold yellow"}
 
+printed: set[str] = set()
+"""The faults that this process has printed."""
+
 _Paint = Callable[[str, str], str]
 """Text and style -> styled text."""
 
 
 def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True) -> None:
     """Print errors and warnings on standard error, with their numbers."""
+    printed.update([one.message for one in diagnostics if one.code == FAULT.code])
     if diagnostics:
         columns = excerpt_width(sys.stderr)
         text = render_diagnostics(diagnostics, wants_color(sys.stderr), summary, columns)

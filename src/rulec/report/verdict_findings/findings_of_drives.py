@@ -8,9 +8,8 @@ from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.diagnostics import RulecError
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
-from rulec.extraction.traces.recorded_drive import Drive
+from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.extraction.violation_evidence import evidence_of
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged, RuleNotJudged, Violation

@@ -9,8 +9,8 @@ from typing import Any
 from msgspec import UNSET, UnsetType
 from msgspec.structs import replace
 
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.extraction.violation_evidence import ViolationEvidence, evidence_of
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.explain.margins import Margin

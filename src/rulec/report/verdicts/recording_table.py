@@ -7,8 +7,8 @@ from textwrap import shorten, wrap
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, TooLargeRule
 from rulec.diagnostics import first_of
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.report.text.terminal_text import counted, mirrored_line, table_lines, visible
 from rulec.report.verdicts import verdict_report
 
@@ -44,6 +44,10 @@ def as_text(verdicts: RecordingVerdicts, tally: ViolationTally, width: int) -> s
     if verdicts.defaults:
         lines.append("assumed     defaults, and that nothing comes after the recording's end")
     lines += _rule_counts(verdicts, tally, width)
+    for fault in [*tally.faults][:MOST_CAUSES]:
+        lines += _folded("fault", fault, width)
+    if len(tally.faults) > MOST_CAUSES:
+        lines += _folded("", f"and {len(tally.faults) - MOST_CAUSES:,} more", width)
     lines += [f"note        {remark}" for remark in recording.remarks]
     lines += _table(verdicts, tally)
     return "\n".join(visible(line) for line in lines)

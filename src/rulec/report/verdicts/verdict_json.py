@@ -206,6 +206,7 @@ class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
 
     ``satisfied`` is null if no hard rule is violated, but one is open or not judged. ``presumed``
     names hold by presumption, as no source supplies them. ``engine`` judged, if requested.
+    ``faults`` of rulec came meanwhile; rules that they cost are ``not_judged``.
     """
 
     trace: str
@@ -217,6 +218,7 @@ class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
     not_judged: Sequence[NotJudgedRule] = ()
     presumed: Sequence[str] = ()
     engine: Literal["python", "c"] | UnsetType = UNSET
+    faults: Sequence[ErrorData] | UnsetType = UNSET
 
 
 class TraceNotJudged(JsonDocument, frozen=True, kw_only=True):
@@ -246,11 +248,12 @@ def as_json(
 
 
 def doubts(verdict: Verdict, rulebook: CompiledRulebook) -> dict[str, Any]:
-    """The fields about rules that are open, not judged or presumed."""
+    """The fields about rules that are open, not judged or presumed, and about faults."""
     return {
         "open": open_data(verdict.open, rulebook),
         "not_judged": not_judged_data(verdict.not_judged, rulebook),
         "presumed": verdict.presumed,
+        "faults": [error_data(fault) for fault in verdict.faults] or UNSET,
     }
 
 

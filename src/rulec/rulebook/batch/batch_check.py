@@ -13,6 +13,7 @@ from typing import Any
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import diagnostic_rows
+from rulec.diagnostics.fault_messages import contained
 from rulec.files.file_messages import NOTHING_LEFT
 from rulec.files.source_detection import beginning_of, first_word_at
 from rulec.rulebook.batch.bare_rules import bare_rules
@@ -83,12 +84,16 @@ def check(
         if identity in files:
             continue
         files[identity] = str(path)
-        for names, bare in zip(
-            (uncited, untested), bare_rules(data.decode(errors="replace")), strict=True
-        ):
-            names += bare
-        for finding in _findings(path, data, search_path, at, recalls=recalls):
-            findings.setdefault(_identity(finding), finding)
+        try:
+            with contained("not checked", SourceLocation(str(path))):
+                for names, bare in zip(
+                    (uncited, untested), bare_rules(data.decode(errors="replace")), strict=True
+                ):
+                    names += bare
+                for finding in _findings(path, data, search_path, at, recalls=recalls):
+                    findings.setdefault(_identity(finding), finding)
+        except RulecError as error:
+            unread += error.diagnostics
     return Checked(
         tuple(files.values()),
         tuple(findings.values()),

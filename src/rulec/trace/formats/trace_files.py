@@ -8,6 +8,7 @@ from pathlib import Path, PurePath
 from typing import IO, Any, Literal
 
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics.fault_messages import contained
 from rulec.files.read_files import opened
 from rulec.trace.formats import json_lines
 from rulec.trace.formats.arrow.parquet import read_parquet, write_parquet
@@ -55,10 +56,11 @@ def read_chunks(
     If they are to be judged ``together``, chunks of JSON may be a ``LineBlock``. A bad trace is
     replaced by the RulecError that says why. Raises RulecError R0706 if Parquet cannot be read.
     """
-    if form == "jsonl":
-        yield from json_lines.read_chunks(stream, file, together=together)
-    else:
-        yield from (read_csv if form == "csv" else read_parquet)(stream, file)
+    with contained("not read", SourceLocation(file)):
+        if form == "jsonl":
+            yield from json_lines.read_chunks(stream, file, together=together)
+        else:
+            yield from (read_csv if form == "csv" else read_parquet)(stream, file)
 
 
 def write_traces(

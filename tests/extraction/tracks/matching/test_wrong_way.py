@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from rulec.api.rulebook_compilation import machines
-from rulec.extraction.drives import Drive, Drives, NoDrive
+from rulec.extraction.drives import Drive, Drives
+from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL

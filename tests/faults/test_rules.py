@@ -1,0 +1,124 @@
+"""Judging a rule raises: it costs that rule, on the traces on which it does."""
+
+import json
+
+import pytest
+
+import rulec
+from rulec.api.rulebook_compilation import machines
+from rulec.cli.main import main
+from rulec.diagnostics import RulecError
+from rulec.monitoring.batch.stacked import verify_arrays
+from rulec.monitoring.online import running_monitor
+
+GERMAN = machines("de")
+PAPER = machines("esterle2019")
+RECORDING = rulec.read_recording("docs/samples/following.xml")
+SAMPLE = "docs/samples/traces.jsonl"
+
+
+def said(verdict, but=()):
+    found = (*verdict.violations, *verdict.open, *verdict.not_judged)
+    return [own for own in found if own.rule not in but]
+
+
+@pytest.mark.parametrize("rule", ["following_distance", "speed_limit", "give_way_to_pedestrians"])
+def test_on_arrays(monkeypatch, rule):
+    before = list(rulec.verify_recording(RECORDING, GERMAN))
+    outcomes = verify_arrays.outcomes
+
+    def broken(own, *others):
+        if own.rule.name == rule:
+            raise ValueError("planted")
+        return outcomes(own, *others)
+
+    monkeypatch.setattr(verify_arrays, "outcomes", broken)
+    for known, after in zip(before, rulec.verify_recording(RECORDING, GERMAN), strict=True):
+        lost = [own.rule for own in after.answer.not_judged if own.by_fault]
+        assert lost in ([], [rule])
+        assert said(after.answer, lost) == said(known.answer, lost)
+        assert bool(lost) == bool(after.answer.faults)
+
+
+def planted_in_runs(monkeypatch, book, rule):
+    """Every engine for traces raises for a rule."""
+    machine = next(own.machine for own in book.rules if own.name == rule)
+    for module in ("rulec.monitoring.verify", "rulec.monitoring.batch.engine"):
+        home = __import__(module, fromlist=["run"])
+        for name in ("run", "_task_verdict", "verify_cells", "verify_columns"):
+            if not hasattr(home, name):
+                continue
+            run = getattr(home, name)
+
+            def broken(first, *others, run=run, **more):
+                if first is machine or not hasattr(first, "rejecting_sink"):
+                    raise RecursionError("planted")
+                return run(first, *others, **more)
+
+            monkeypatch.setattr(home, name, broken)
+    for name in ("verify_cells", "verify_columns"):
+        monkeypatch.setattr(
+            f"rulec.monitoring.batch.batch_verify.{name}",
+            lambda *_, **__: (_ for _ in ()).throw(RecursionError("planted")),
+        )
+
+
+def test_on_traces(monkeypatch):
+    traces = list(rulec.read_traces(SAMPLE))
+    before = list(rulec.verify_many(traces, PAPER))
+    rule = PAPER.rules[0].name
+    planted_in_runs(monkeypatch, PAPER, rule)
+    for known, after in zip(before, rulec.verify_many(traces, PAPER), strict=True):
+        assert {own.rule for own in after.not_judged if own.by_fault} == {rule}
+        assert said(after, [rule]) == said(known, [rule])
+    one = rulec.verify(traces[0], PAPER)
+    assert [own.rule for own in one.not_judged] == [rule]
+    assert one.satisfied in (None, False)
+
+
+def test_the_command_names_it_and_ends_with_2(monkeypatch, capsys):
+    rule = PAPER.rules[0].name
+    planted_in_runs(monkeypatch, PAPER, rule)
+    monkeypatch.setattr("rulec.cli.commands.verify.read_machines", lambda *_: PAPER)
+    assert main(["verify", SAMPLE, "-r", "esterle2019", "--json"]) == 2
+    out, err = capsys.readouterr()
+    for line in map(json.loads, out.splitlines()):
+        assert [own["rule"] for own in line["not_judged"]] == [rule]
+        assert line["faults"][0]["code"] == "R0790"
+    assert f"`{rule}` in `t1`: a fault of rulec" in err
+    assert "RecursionError planted" in err
+    assert "Traceback" not in err
+
+
+def test_the_traceback_is_there_on_request(monkeypatch, capsys):
+    planted_in_runs(monkeypatch, PAPER, PAPER.rules[0].name)
+    monkeypatch.setattr("rulec.cli.commands.verify.read_machines", lambda *_: PAPER)
+    monkeypatch.setenv("RULEC_TRACEBACK", "1")
+    assert main(["verify", SAMPLE, "-r", "esterle2019"]) == 2
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_a_monitor_refuses_the_state_and_stays_as_it_was(monkeypatch):
+    monitor = rulec.Monitor(PAPER)
+    trace = next(iter(rulec.read_traces(SAMPLE)))
+    monitor.step(trace.states[0], trace.objects)
+    before = monitor.snapshot()
+    with monkeypatch.context() as patched:
+        patched.setattr(running_monitor, "take_step", lambda *_: {}["planted"])
+        with pytest.raises(RulecError) as caught:
+            monitor.step(trace.states[1], trace.objects)
+    assert caught.value.diagnostics[0].code == "R0790"
+    assert monitor.snapshot() == before
+    assert monitor.step(trace.states[1], trace.objects).state == 1
+
+
+def test_what_is_no_fault_stays_what_it_is(monkeypatch):
+    trace = next(iter(rulec.read_traces(SAMPLE)))
+    for problem in (KeyboardInterrupt(), BrokenPipeError()):
+
+        def broken(*_, problem=problem):
+            raise problem
+
+        monkeypatch.setattr("rulec.monitoring.verify.run", broken)
+        with pytest.raises(type(problem)):
+            rulec.verify(trace, PAPER)
