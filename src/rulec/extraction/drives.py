@@ -195,7 +195,6 @@ class Drives:
             except Exception as problem:
                 yield lost_drive(name, problem)
 
-    # Tens of thousands of objects are created for several drives, none of which is garbage
     @no_garbage_collection()
     def drive(self, row: int, name: str, stretch: RouteStretch) -> Drive | NoDrive:
         """The drive of a participant along a stretch of road."""
@@ -228,8 +227,7 @@ class Drives:
     @cached_property
     def _planned(self) -> dict[int, list[RouteStretch]]:
         """The stretches of the expected egos by row, in their order."""
-        rows = {body.id: row for row, body in enumerate(self._tracks.participants)}
-        planned = {}
+        rows, planned = {body.id: k for k, body in enumerate(self._tracks.participants)}, {}
         for ego in self._expected:
             with suppress(Exception):  # a fault is found again when this ego is asked for
                 planned[rows[ego]] = self.stretches(rows[ego])
@@ -272,18 +270,17 @@ class Drives:
     ) -> dict[_Key, Drive | NoDrive]:
         """Drives along one road, from names, rows and columns; empty if their signals differ."""
         names, rows, columns = zip(*members.values(), strict=True)
+        ids = [self._tracks.participants[row].id for row, _ in members]
         drives: Sequence[Drive | NoDrive]
         try:
             egos = EgosOnRoad(places, rows, columns, own=self._surroundings)
             context = drives_context(self._surroundings, places, self._side, egos)
-            ids = [self._tracks.participants[row].id for row, _ in members]
             drives = to_traces(context, ids, names, self._writer)
         except UnlikeDrivesError:
             return {}
         except Exception as problem:
-            drives = made_apart(
-                names, lambda k: self._made_alone(places, names[k], rows[k], columns[k]), problem
-            )
+            own = [*members.values()]
+            drives = made_apart(names, lambda k: self._made_alone(places, *own[k]), problem)
         return dict(zip(members, drives, strict=True))
 
     def _there(self, places: RoadPlaces, row: int, columns: slice) -> tuple[int, slice] | None:

@@ -17,10 +17,10 @@ from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.findings import JudgedTrace
 from rulec.monitoring.batch.rounded_verify import judge_rounded
 from rulec.monitoring.batch.stacked.verify_arrays import answer_to
-from rulec.monitoring.faulty_rules import without
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed_by_type, with_law
+from rulec.monitoring.verify import without
 from rulec.recordings.recording import Recording
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import Rows, short_repr

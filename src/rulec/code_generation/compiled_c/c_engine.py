@@ -18,11 +18,11 @@ from rulec.diagnostics import RulecError
 from rulec.diagnostics.diagnostic import as_answer
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding, Cast
-from rulec.monitoring.faulty_rules import said
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import (
     letter_reader_of,
     rulebook_for_checked,
+    said,
     verify,
     verify_or_reason,
 )

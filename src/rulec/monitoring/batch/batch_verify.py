@@ -23,7 +23,6 @@ from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.bindings import Cast, types_of
-from rulec.monitoring.faulty_rules import said
 from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import (
@@ -36,7 +35,7 @@ from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.monitoring.verify import rulebook_for_trace, verify_or_reason
+from rulec.monitoring.verify import rulebook_for_trace, said, verify_or_reason
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import LineBlock
