@@ -66,10 +66,7 @@ RUNS = [
     ["verify-compiled", f"a{FILE}.json", "a/good.json"],
     ["verify", TRACES, f"none{FILE}", "-r", SAFE, "--every-part"],
     *(["verify", TRACES, "-r", SAFE, "--output-format", f] for f in ("json", "csv", "jsonl")),
-    *(
-        ["verify", TRACES, "-r", SAFE, "-o", f"{FILE}.{form}"]
-        for form in ("xml", "sarif", "txt")
-    ),
+    *(["verify", TRACES, "-r", SAFE, "-o", f"{FILE}.{form}"] for form in ("xml", "sarif", "txt")),
     ["verify", TRACES, "-r", SAFE, HOSTILE],
     [HOSTILE],
     ["check", f"--{HOSTILE}"],

@@ -13,6 +13,7 @@ import click
 from rulec.cache.keeping import keeping
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.interruption import is_interrupted
+from rulec.cli.invocation import Invocation, invocation_of
 from rulec.cli.verb_table import VERB_GROUPS, VERBS, WITH_COMPILED
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.argument_names import naming_options
@@ -130,7 +131,7 @@ def rulec(context: click.Context, limits: Sequence[str]) -> None:
         from rulec.resource_limits import in_force
 
         context.with_resource(in_force(limits))
-    if context.invoked_subcommand is not None:
+    if context.invoked_subcommand is not None and invocation_of(context).is_program:
         # Late import, not for `rulec --help` (2 ms).
         from rulec.enforced_limits import enforced
 
@@ -150,7 +151,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             outcome = rulec.main(
                 args=list(given),
                 prog_name="rulec",
-                obj=tuple(given),
+                obj=Invocation(tuple(given), is_program=arguments is None),
                 standalone_mode=False,
             )
             sys.stdout.flush()

@@ -5,13 +5,14 @@ from __future__ import annotations
 import io
 import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import IO, Any, cast
 
 import click
 
+from rulec.cli.invocation import invocation_of
 from rulec.files.file_messages import no_input
 from rulec.files.read_files import STANDARD_INPUT_COPY, opened
 from rulec.files.written_files import TEMPORARY, temporary_files
@@ -96,7 +97,7 @@ def refuse_twice(context: click.Context) -> None:
     Raises:
         click.UsageError: it would.
     """
-    arguments: Sequence[str] = context.find_root().obj or ()
+    arguments = invocation_of(context).arguments
     readers = [
         own
         for before, own in zip(("", *arguments), arguments, strict=False)

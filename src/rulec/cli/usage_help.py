@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import click
 
+from rulec.cli.invocation import invocation_of
 from rulec.cli.verb_table import VERBS
 from rulec.diagnostics import nearest_name
 
@@ -158,7 +159,7 @@ def reworded(problem: click.ClickException) -> str:
 def _as_typed(param: click.Parameter, problem: click.ClickException) -> str:
     """The name of an option as it was typed, among its names."""
     context = getattr(problem, "ctx", None)
-    given: tuple[str, ...] = () if context is None else context.find_root().obj or ()
+    given = invocation_of(context).arguments
     typed = {word.partition("=")[0] for word in given}
     names = [*param.opts[-1:], *getattr(param, "former", ())]
     return next((name for name in names if name in typed), param.opts[-1])
@@ -194,7 +195,7 @@ def _rulebook_hint(context: click.Context) -> tuple[str, ...]:
     # Late import, only after an error: file search and its messages (3 ms).
     from rulec.rulebook.files.search_path import available_rulebooks
 
-    given: tuple[str, ...] = context.find_root().obj or ()
+    given = invocation_of(context).arguments
     names = [word for word in given[1:] if word.endswith(".rules") or word in available_rulebooks()]
     return tuple(f"a rulebook is given by `-r {name}`" for name in names[:1])
 

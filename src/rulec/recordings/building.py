@@ -24,6 +24,7 @@ from rulec.recordings.lanes.lanes_along import (
     lanelet_along,
     linked,
 )
+from rulec.recordings.mending import derived_motion as motion
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import (
     HEADINGS,
@@ -41,7 +42,6 @@ from rulec.recordings.recording import (
     Side,
 )
 from rulec.recordings.track import Track, tracked
-from rulec.recordings.tracks import derived_motion as motion
 from rulec.recordings.tracks.road_user_types import usual_size
 from rulec.recordings.tracks.track_rows import LONGEST_BODY_M
 

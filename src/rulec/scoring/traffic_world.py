@@ -19,11 +19,11 @@ from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.source_tolerances import tolerances_of
 from rulec.recordings.encodings.speed_units import MPS_PER_KMH
 from rulec.recordings.encodings.xml_element import LARGEST
+from rulec.recordings.mending.derived_motion import accelerations_of
 from rulec.recordings.mending.mended_recording import mended
 from rulec.recordings.recording import HEADINGS, Participant, Recording, is_lane
 from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.recordings.track import Track, TrackOutlines, TrackStates, rectangles
-from rulec.recordings.tracks.derived_motion import accelerations_of
 from rulec.rulebook.rulebook_model import Traffic
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.scoring.drives_by_type import DrivesByType

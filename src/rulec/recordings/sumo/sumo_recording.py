@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import SourceLocation, first_of
 from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.mending.derived_motion import velocities_of
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import (
     MOST_STEPS,
@@ -40,7 +41,6 @@ from rulec.recordings.sumo.net import SumoNet, read_net
 from rulec.recordings.sumo.vehicle_types import VehicleType, read_vehicle_types, vehicle_type
 from rulec.recordings.table_heads import head_of, is_fcd_head
 from rulec.recordings.track import Track, tracked
-from rulec.recordings.tracks.derived_motion import velocities_of
 
 ON_NETS = frozenset({"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout"})
 ON_NETS |= {"lanes", "junctions"}

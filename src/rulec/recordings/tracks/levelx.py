@@ -20,8 +20,8 @@ from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.table_columns import ColumnKind, NamedColumns, Texts, named_columns
 from rulec.recordings.encodings.table_files import open_table
 from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.mending.derived_motion import along
 from rulec.recordings.recording import Recording
-from rulec.recordings.tracks.derived_motion import along
 from rulec.recordings.tracks.even_times import EvenTimes, framed_times
 from rulec.recordings.tracks.highd_roads import highd_roads
 from rulec.recordings.tracks.roads_of_tracks import roads_of, shifted_to_roads, track_recording

@@ -16,10 +16,10 @@ from numpy import int64
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.table_columns import ColumnKind, NamedColumns, Texts, named_columns
 from rulec.recordings.encodings.table_files import open_table
+from rulec.recordings.mending.derived_motion import along
 from rulec.recordings.osi.moving_objects import kind_of
 from rulec.recordings.osi.osi_tables import OBJECTS, ROLES, VEHICLES
 from rulec.recordings.recording import Recording
-from rulec.recordings.tracks.derived_motion import along
 from rulec.recordings.tracks.even_times import even_times
 from rulec.recordings.tracks.roads_of_tracks import lanes_beside, roads_of, track_recording
 from rulec.recordings.tracks.track_rows import TrackRows

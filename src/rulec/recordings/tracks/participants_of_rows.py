@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from rulec.array_types import Floats
 from rulec.diagnostics import RulecError, did_you_mean, first_of
 from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.mending import derived_motion as motion
 from rulec.recordings.mending.cut_tracks import cut_remark
 from rulec.recordings.mending.short_holes import HOLES_WHY, LONGEST_HOLE_S, most_steps
 from rulec.recordings.mending.track_jumps import CUT_WHY, DRIVERS, jumps, parts_between
@@ -27,7 +28,6 @@ from rulec.recordings.mending.wrong_places import (
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import OBSTACLE_TYPES, Lamp, Participant, id_order
 from rulec.recordings.track import Track, tracked
-from rulec.recordings.tracks import derived_motion as motion
 from rulec.recordings.tracks.motions_of_rows import MOVING_MPS
 from rulec.recordings.tracks.road_user_types import TYPES, USUAL_TYPE, type_of, usual_size
 from rulec.recordings.tracks.track_rows import TrackRows, check_rows, speeds_that_differ
