@@ -38,6 +38,7 @@ def rulebook_hash(rules: CompiledRulebook) -> str:
     # Late import: the schema of compiled files (20 ms), which verdicts without a hash do not need.
     import msgspec
 
+    # Late import, as above.
     from rulec.automata.bundle.bundle_schema import ENTRY_OF
 
     vocabulary = rules.vocabulary

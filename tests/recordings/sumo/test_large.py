@@ -11,7 +11,7 @@ STEPS, VEHICLES = 400, 50
 def test_a_state_takes_little_memory(tmp_path):
     """Ten numbers or so; as objects with outlines of their own it would be ten times as much."""
     steps = [
-        moment(k / 10, *(body(f"f.{n}", x=k / 3, y=-4.8 + n / 99) for n in range(VEHICLES)))
+        moment(k / 10, *(body(f"f.{n}", x=float(k), y=-4.8 + n / 99) for n in range(VEHICLES)))
         for k in range(STEPS)
     ]
     file = written(tmp_path, data(*steps))

@@ -129,9 +129,10 @@ def parts_of(
     formulas: tuple[ltl.Formula, ltl.Formula],
     truths: Mapping[ltl.Formula, list[bool]],
     deciding: Mapping[ltl.Formula, int],
-    turned: Mapping[ltl.Formula, int],
     observed: ObservedStates,
     numbers: Sequence[int],
+    *,
+    turned: Mapping[ltl.Formula, int],
     depth: int = 0,
 ) -> Iterator[Part]:
     """A formula and its parts, as written and with bounds in steps, each before its operands.
@@ -166,7 +167,9 @@ def parts_of(
         case _:
             operands = []
     for both in operands:
-        yield from parts_of(both, truths, deciding, turned, observed, numbers, depth=depth + 1)
+        yield from parts_of(
+            both, truths, deciding, observed, numbers, turned=turned, depth=depth + 1
+        )
 
 
 def with_margins(

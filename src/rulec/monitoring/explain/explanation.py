@@ -207,7 +207,7 @@ def explanation_of(
     instants = instants_among(known, formula, n_states, semantics, first if early else 0)
     deciding = {part: _last_until(place, at) for part, at in instants.items() if True in at}
     when = set() if rule.trigger is None else set(ltl.atoms_of(rule.trigger))
-    turned = turning(formula, truths, instants, observed, semantics, when)
+    turned = turning(formula, truths, instants, observed, semantics=semantics, when=when)
     states = tuple([numbers[index] for index in observed.shown])
     decided_at = {
         part.name: numbers[index] for part, index in deciding.items() if isinstance(part, ltl.Atom)
@@ -221,7 +221,9 @@ def explanation_of(
             with_margins(fact, decided_by, states, decided_at)
             for fact in facts_of(truths, deciding.keys(), observed)
         ),
-        parts=tuple(parts_of((rule.formula, formula), values, deciding, turned, observed, numbers)),
+        parts=tuple(
+            parts_of((rule.formula, formula), values, deciding, observed, numbers, turned=turned)
+        ),
         repair=None,
         vocabulary=subject.vocabulary,
         lasts=(numbers[first], numbers[last]),

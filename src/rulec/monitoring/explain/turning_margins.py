@@ -22,6 +22,7 @@ def turning(
     truths: Mapping[ltl.Proposition, Sequence[bool]],
     instants: Mapping[ltl.Formula, Sequence[bool]],
     observed: ObservedStates,
+    *,
     semantics: Semantics,
     when: Set[ltl.Formula],
 ) -> dict[ltl.Formula, int]:
