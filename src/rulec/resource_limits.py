@@ -106,7 +106,7 @@ PLACES: Final = ResourceLimit(
 
 COMPILING: Final = ResourceLimit(
     "compiling",
-    30,
+    120,
     "seconds of processor time for the automata of a rulebook",
     "split large rules into several, or use shorter bounds, or longer or fewer steps; a rulebook "
     "that a program compiles anew has this time anew",
