@@ -52,7 +52,6 @@ FIELDS = {
 """Names that programs know by several words, with the reason."""
 
 KINDS = FIELDS | {
-    "--engine": "python and c",
     "--input-format": "traces have other formats than recordings",
     "--output-format": "each verb has its formats",
     "--format": "each verb has its formats",

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, get_args
 
 from rulec.api.session_settings import SessionSettings
 from rulec.diagnostics.argument_kinds import expected_fields, finite
@@ -93,15 +93,10 @@ class TraceVerbs(SessionSettings):
         traces: Iterable[Trace | RulecError],
         rules: Rules,
         assumptions: Assumptions | None = None,
-        *,
-        engine: Literal["python", "c"] = "python",
     ) -> Iterator[Verdict | NotJudged]:
         """Judge many traces fast, and yield their verdicts in order.
 
-        A ``NotJudged`` takes the place of a verdict that cannot be given. With the ``engine``
-        ``"c"`` a monitor in C, built by your own compiler, judges them; traces that it cannot judge
-        because of unknown values are judged in Python, and ``engine`` of each verdict says which of
-        them judged it. Raises RulecError R0751 if there is no compiler.
+        A ``NotJudged`` takes the place of a verdict that cannot be given.
         """
         from rulec.monitoring.assumptions import check_assumed
         from rulec.monitoring.batch.batch_verify import verify_many
@@ -113,11 +108,6 @@ class TraceVerbs(SessionSettings):
         if assumptions is not None:
             check_assumed(assumptions.values, compiled.vocabulary, "values")
             traces = (assumptions.of([item])[0] for item in traces)
-        if engine == "c":
-            from rulec.code_generation.compiled_c.c_engine import CEngine
-
-            in_c = CEngine(compiled)
-            return (with_law(in_c.answer(item), law) for item in traces)
         return (with_law(answer, law) for answer in verify_many(traces, compiled))
 
     def verify_columns(self, columns: TraceColumns, rules: Rules) -> list[VerdictColumns]:

@@ -33,7 +33,6 @@ from rulec.trace.formats.trace_files import Format, format_of, read_chunks
 from rulec.trace.trace_messages import SAME_ID
 
 if TYPE_CHECKING:
-    from rulec.code_generation.compiled_c.c_engine import CEngine
     from rulec.monitoring.explain.explanation import Explanation
     from rulec.monitoring.moments.drive_facts import DriveFacts
 
@@ -48,8 +47,7 @@ AnswerWithFacts = tuple[Answer, "DriveFacts | None"]
 class TraceRun:
     """Judges the traces of files, and sums up the results.
 
-    The first ``to_explain`` violations of each file are explained. ``engine`` replaces Python's
-    engines; each verdict names the one that judged it.
+    The first ``to_explain`` violations of each file are explained.
     """
 
     rules: CompiledRulebook
@@ -57,7 +55,6 @@ class TraceRun:
     complaints: Complaints
     to_explain: int
     every_part: bool
-    engine: CEngine | None = None
     total: BatchTally = field(default_factory=BatchTally)
     judged: bool = False
     complete: bool = True
@@ -93,8 +90,6 @@ class TraceRun:
                 self.to.add(RecordingFindings(file, "", drives, tuple(findings), tuple(rows)))
         if self.total.judged or self.opened:
             self.to.text(verdict_report.summary(self.total.counts, self.total.not_judged))
-        if self.engine is not None:
-            self.to.text(verdict_report.judged_by(self.engine.judged, self.engine.compiled_by))
 
     def _ids(self, ids: set[str] | None, file: str, answer: Answer) -> set[str] | None:
         """A file's ids so far; None once a duplicate has been reported."""
@@ -169,8 +164,7 @@ class TraceRun:
             # Late import, as above.
             from rulec.report.verdicts import verdict_json
 
-            says_engine = self.engine is not None
-            self.to.line(verdict_json.as_json(verdict, used, explained, says_engine=says_engine))
+            self.to.line(verdict_json.as_json(verdict, used, explained))
         if says and self.to.wants_text:
             text = verdict_report.as_text(
                 verdict,
@@ -212,7 +206,7 @@ class TraceRun:
         size = None if name == "standard input" else _size(stream)
         refused = 0
         with progress(f"judging {name}", size) as tell:
-            for chunk in read_chunks(stream, name, form, together=self.engine is None):
+            for chunk in read_chunks(stream, name, form, together=True):
                 for judged, facts in self._in_chunk(assumed.of(chunk)):
                     answer = judged[-1]
                     refused = refused + 1 if isinstance(answer, NotJudged) else 0
@@ -224,7 +218,7 @@ class TraceRun:
 
     def _in_chunk(self, items: Items) -> Iterator[AnswerWithFacts]:
         judge = partial(verify_items, rulebook=self.rules)
-        for traces, answers in (judge if self.engine is None else self.engine.verify_items)(items):
+        for traces, answers in judge(items):
             facts: Iterator[DriveFacts] = iter(())
             if self.to.to_rows is not None:
                 # Late import, only for rows of drives: counting opportunities (10 ms).

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from rulec.diagnostics import RulecError, SourceLocation
@@ -32,20 +31,11 @@ def too_large(excess: str, way_out: str = "") -> RulecError:
     )
 
 
-def no_engine_in_c(error: RulecError, place: SourceLocation | None) -> RulecError:
-    """The same error for a trace that was to be judged in C."""
-    way_out = "judge it with `--engine python`"
-    return RulecError(
-        [replace(diagnostic, place=place, help=way_out) for diagnostic in error.diagnostics]
-    )
-
-
 NO_MONITOR_COMPILER = Code(
     "R0751",
     title="there is no compiler for the monitor",
-    why="Proving a monitor, or judging by the engine `c`, needs a compiler: for C the one named "
-    "by the environment variable `CC`, or `cc`; for Rust `rustc`. rulec does not include one, and "
-    "does not fall back to another engine. Writing a monitor needs no compiler.",
+    why="Proving a monitor needs a compiler: for C the one named by the environment variable "
+    "`CC`, or `cc`; for Rust `rustc`. rulec does not include one. Writing a monitor needs none.",
     kind="circumstance",
 )
 

@@ -28,8 +28,6 @@ class Violation:
     step: int | None
 
 
-EngineName: TypeAlias = Literal["python", "c"]
-
 OutcomeName: TypeAlias = Literal["kept", "violated", "open"]
 
 Reason: TypeAlias = Literal["not told", "tolerance", "not over", "began before", "step"]
@@ -141,7 +139,7 @@ class Verdict(Rows):
 
     ``open`` depends on something unknown, ``not_judged`` lists rules for which this source lacks
     values. ``presumed`` are names that have their default because no source provides them.
-    ``engine`` is what judged: Python, or the monitor in C. ``law`` is the text that was judged by.
+    ``law`` is the text that was judged by.
     ``faults`` are those of rulec that came meanwhile; the rules that they cost are among the
     ``not_judged``.
     """
@@ -153,7 +151,6 @@ class Verdict(Rows):
     open: tuple[OpenVerdict, ...] = ()
     not_judged: tuple[RuleNotJudged, ...] = ()
     presumed: tuple[str, ...] = ()
-    engine: EngineName = field(default="python", compare=False, repr=False)
     law: Edition | None = field(default=None, compare=False, repr=False)
     faults: tuple[RulecError, ...] = field(default=(), compare=False, repr=False)
 

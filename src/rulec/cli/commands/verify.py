@@ -32,9 +32,7 @@ if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.cli.recording_run import RecordingRun
     from rulec.cli.trace_run import TraceRun
-    from rulec.code_generation.compiled_c.c_engine import CEngine
     from rulec.fleet.drive_rows import DriveRows
-    from rulec.monitoring.verdict import EngineName
     from rulec.recordings.recording_inputs import InputFiles
     from rulec.report.verdicts.batch_table import BatchTally
     from rulec.trace.formats.trace_files import Format
@@ -75,11 +73,6 @@ _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
 @scenario_options.egos_option
 @scenario_options.drives_options
 @scenario_options.recording_or_trace_options
-@shared.choice_option(
-    "--engine",
-    ["python", "c"],
-    "What judges traces: Python, or a C monitor built with your C compiler.",
-)
 @shared.jobs_option("Judge N recordings, or parts of a long one, in parallel")
 @output_options(
     FORMATS,
@@ -107,7 +100,6 @@ def command(
     at: str,
     egos: tuple[str, ...],
     jobs: Jobs,
-    engine: EngineName,
     *,
     exposure: bool,
     **options: Any,
@@ -157,7 +149,6 @@ def command(
         step_s=step_s,
         egos=egos,
         options=options,
-        engine=engine,
         jobs=jobs,
         n_explained=usual if n_explained is None else n_explained,
         every_part=every_part,
@@ -218,7 +209,6 @@ class VerifyRequest:
     step_s: Fraction | None
     egos: tuple[str, ...]
     options: Mapping[str, Any]
-    engine: EngineName
     jobs: Jobs
     n_explained: int
     every_part: bool
@@ -258,10 +248,6 @@ def _check_inputs(request: VerifyRequest) -> None:
         )
     if request.ends is not None and request.recordings:
         raise click.UsageError("--end is for traces; a recording is always cut.")
-    if request.engine == "c" and request.recordings:
-        raise click.UsageError(
-            "--engine c is for traces; `rulec traces --recorded` writes drives as traces."
-        )
     step_s = request.step_s
     if step_s is not None and (request.recordings or Fraction(str(float(step_s))) != step_s):
         raise click.UsageError("--step is a decimal, and for traces; a recording has its own step.")
@@ -345,9 +331,8 @@ def _judge_traces(
         request.ends, request.options["assumed"], rules.vocabulary
     )
     step = None if request.step_s is None else float(request.step_s)
-    engine = None if request.engine == "python" else _c_engine(rules)
     n_explained, every_part = request.n_explained, request.every_part
-    run = TraceRun(rules, outputs, complaints, n_explained, every_part, engine=engine)
+    run = TraceRun(rules, outputs, complaints, n_explained, every_part)
     run.files(request.traces, request.form, replace(assumed, step_s=step))
     return run
 
@@ -356,14 +341,6 @@ def _include(result: VerifyResult, run: RecordingRun | TraceRun, *, strict: bool
     result.violated |= bool(run.total.violated) or (strict and run.open_hard)
     result.judged |= run.judged
     result.total.include(run.total)
-
-
-def _c_engine(rules: CompiledRulebook) -> CEngine:
-    """The engine in C. Raises RulecError R0751 if there is no compiler."""
-    # Late import, only if requested: NumPy and the writer of C (100 ms).
-    from rulec.code_generation.compiled_c.c_engine import CEngine
-
-    return CEngine(rules)
 
 
 def _to_rows(

@@ -26,7 +26,6 @@ from rulec.monitoring.online.four_valued import FourValued, RunningVerdict, with
 from rulec.trace import State
 from rulec.vocabulary import Declaration, Enumeration, Quantity
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES
-from rulec.vocabulary.vocabulary_model import fitting_objects
 
 FLAGS = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-pedantic")
 
@@ -201,21 +200,6 @@ class CMonitor:
         )
 
 
-def is_all_known(layout: MonitorLayout, state: State, objects: Mapping[str, str]) -> bool:
-    """Whether a state or the defaults provide all values that the rules read."""
-    vocabulary = layout.fields.vocabulary
-    for item in layout.fields.read:
-        if item.default is not None and type(item.default) not in UNKNOWN_TYPES:
-            continue
-        places: list[list[str]] = [[]]
-        for kind in item.parameters:
-            fitting = fitting_objects(kind, objects, vocabulary)
-            places = [[*before, name] for before in places for name in fitting]
-        if any(_given(state, item, place) is None for place in places):
-            return False
-    return True
-
-
 def _four(number: int) -> FourValued:
     return VERDICTS[number & 3]
 
@@ -233,15 +217,17 @@ def _input_of(
         seat.id = ids.setdefault(name, len(ids) + 1)
         seat.type = fields.types.index(objects[name])
         for item in fields.about(1):
-            setattr(seat, fields.identifiers[item.name], _code(item, _given(state, item, [name])))
+            setattr(
+                seat, fields.identifiers[item.name], _code(item, value_given(state, item, [name]))
+            )
     for item in fields.about(0):
-        setattr(given, fields.identifiers[item.name], _code(item, _given(state, item, [])))
+        setattr(given, fields.identifiers[item.name], _code(item, value_given(state, item, [])))
     for item in fields.about(2):
         places: list[list[str]] = [[]]
         for _ in item.parameters:
             places = [[*before, name] for before in places for name in names]
         kind: Any = _kind(item)
-        values = [_code(item, _given(state, item, place)) for place in places]
+        values = [_code(item, value_given(state, item, place)) for place in places]
         setattr(given, fields.identifiers[item.name], (kind * max(1, len(values)))(*values))
     return given  # type: ignore[no-any-return]
 
@@ -250,7 +236,8 @@ def _kind(item: Declaration) -> Any:
     return ctypes.c_double if isinstance(item, Quantity) else ctypes.c_uint8
 
 
-def _given(state: State, item: Declaration, names: Sequence[str]) -> Any:
+def value_given(state: State, item: Declaration, names: Sequence[str]) -> Any:
+    """The value that a state gives of some objects, else the default."""
     value: Any = state.get(item.name)
     for name in names:
         if value is None or value is UNKNOWN:

@@ -205,7 +205,7 @@ class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
     """The verdict on a trace: whether it keeps every hard rule.
 
     ``satisfied`` is null if no hard rule is violated, but one is open or not judged. ``presumed``
-    names hold by presumption, as no source supplies them. ``engine`` judged, if requested.
+    names hold by presumption, as no source supplies them.
     ``faults`` of rulec came meanwhile; rules that they cost are ``not_judged``.
     """
 
@@ -217,7 +217,6 @@ class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
     open: Sequence[OpenData] = ()
     not_judged: Sequence[NotJudgedRule] = ()
     presumed: Sequence[str] = ()
-    engine: Literal["python", "c"] | UnsetType = UNSET
     faults: Sequence[ErrorData] | UnsetType = UNSET
 
 
@@ -233,15 +232,12 @@ def as_json(
     verdict: Verdict,
     rulebook: CompiledRulebook,
     explained: Sequence[Explanation] = (),
-    *,
-    says_engine: bool = False,
 ) -> str:
     """Write a verdict; ``explained`` are explanations of its first violations."""
     own = {
         "rulebook": rulebook.name,
         "law": filled(LawData, edition_of(rulebook)),
         "violations": violations_data(verdict, rulebook, explained),
-        "engine": verdict.engine if says_engine else UNSET,
         **doubts(verdict, rulebook),
     }
     return as_line(filled(TraceVerdict, verdict, **own))

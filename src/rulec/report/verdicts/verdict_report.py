@@ -204,16 +204,6 @@ def _title(rule: CompiledRule, rulebook: str) -> str:
     return f"{title} [{place}]" if place else title
 
 
-def judged_by(judged: Mapping[str, int], compiled_by: str) -> str:
-    """The line with the numbers of traces judged in C and in Python."""
-    parts = [f"engine: {judged.get('c', 0):,} judged in C"]
-    if compiled_by:
-        parts.append(f"compiled by {compiled_by}")
-    if judged.get("python"):
-        parts.append(f"{judged['python']:,} in Python, where C gives no verdict")
-    return ", ".join(parts)
-
-
 def summary(counts: Mapping[bool | None, int], not_judged: int, noun: str = "trace") -> str:
     """The summary line of a run: the numbers of traces or drives by outcome."""
     total = sum(counts.values()) + not_judged

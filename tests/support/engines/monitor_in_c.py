@@ -1,33 +1,31 @@
-"""Judges traces with monitors in C, which the user's compiler compiles when first needed."""
+"""Judges traces with monitors in C, which the compiler of this machine compiles."""
 
 from __future__ import annotations
 
 import ctypes
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.code_generation.code_messages import MONITOR_COMPILER_FAILED, no_engine_in_c
-from rulec.code_generation.compiled_c.c_library import CLibrary, compiler, is_all_known
-from rulec.code_generation.monitor_layout import VERDICTS, RuleLayout, monitor_layout
-from rulec.diagnostics import RulecError
-from rulec.diagnostics.diagnostic import as_answer
+from rulec.code_generation.compiled_c.c_library import CLibrary, value_given
+from rulec.code_generation.monitor_layout import (
+    VERDICTS,
+    MonitorLayout,
+    RuleLayout,
+    monitor_layout,
+)
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding, Cast
-from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.monitoring.verify import (
-    letter_reader_of,
-    rulebook_for_checked,
-    said,
-    verify,
-    verify_or_reason,
-)
-from rulec.trace import Trace
+from rulec.monitoring.verdict import Verdict, Violation
+from rulec.monitoring.verify import letter_reader_of, rulebook_for_checked
+from rulec.trace import State, Trace
 from rulec.trace.trace_model import check_trace
+from rulec.vocabulary.partial_values import UNKNOWN_TYPES
+from rulec.vocabulary.vocabulary_model import fitting_objects
 
 LOST = VERDICTS.index("violated") * 5
 """The best and the worst verdict as one number, as in C: the best plus 4 times the worst."""
@@ -38,58 +36,21 @@ Bytes: TypeAlias = NDArray[np.uint8]
 
 
 class CEngine:
-    """Judges traces in C. If C leaves the verdict open or cannot judge a trace, Python judges it.
-
-    Each verdict has its ``engine``, and ``judged`` counts the traces per engine. Raises RulecError
-    R0751 immediately if there is no compiler.
-    """
+    """Judges traces in C."""
 
     def __init__(self, rulebook: CompiledRulebook) -> None:
-        compiler()
         self.rulebook = rulebook
-        self.judged = Counter[str]()
-        self.compiled_by = ""
         self._libraries: dict[tuple[float, tuple[int, ...]], CLibrary] = {}
 
-    def verify_items(
-        self, items: Iterable[Trace | RulecError]
-    ) -> Iterator[tuple[Sequence[Trace | RulecError], Iterable[Verdict | NotJudged]]]:
-        """Each trace, and its answer."""
-        for item in items:
-            yield [item], [self.answer(item)]
-
-    def answer(self, item: Trace | RulecError) -> Verdict | NotJudged:
-        """The answer for a trace, or for the error that prevented it from being read."""
-        if isinstance(item, RulecError):
-            return NotJudged(None, item)
-        try:
-            verdict = self.verify(item)
-        except RulecError as error:
-            if error.diagnostics[0].code == MONITOR_COMPILER_FAILED.code:
-                raise  # concerns all traces
-            return NotJudged(item.id, as_answer(error))
-        except Exception as problem:
-            return said([verify_or_reason(item, self.rulebook)], problem)[0]
-        self.judged[verdict.engine] += 1
-        return verdict
-
-    def verify(self, trace: Trace) -> Verdict:
-        """Judge a trace.
-
-        Raises RulecError as ``verify`` does; R0750 if it has too many objects for a monitor in C,
-        R0752 if the compiler fails.
-        """
-        violations = None
+    def verify(self, trace: Trace) -> Verdict | None:
+        """Judge a trace; None if C leaves it open, or has no states for a bound or an ending."""
         check_trace(trace)
-        # C has no states for a bound that is not a multiple of the step.
         fits = len(self.rulebook.rounded_to(trace.step_s)) == 1
-        if fits and trace.ends == "complete" and trace.told is None:
-            rulebook, is_partial = rulebook_for_checked(trace, self.rulebook)
-            if not is_partial:
-                violations = self._violations(trace, rulebook)
-        if violations is None:
-            return verify(trace, self.rulebook)
-        return Verdict(trace.id, tuple(violations), engine="c")
+        if not fits or trace.ends != "complete" or trace.told is not None:
+            return None
+        rulebook, is_partial = rulebook_for_checked(trace, self.rulebook)
+        violations = None if is_partial else self._violations(trace, rulebook)
+        return None if violations is None else Verdict(trace.id, tuple(violations))
 
     def _violations(self, trace: Trace, rulebook: CompiledRulebook) -> list[Violation] | None:
         """The violations of a trace; None if C does not determine them."""
@@ -131,12 +92,8 @@ class CEngine:
         steps = [rule.step_s for rule in rulebook.rules if rule.step_s is not None]
         key = float(steps[0]) if steps else 0.0, tuple(bounds.values())
         if key not in self._libraries:
-            try:
-                layout = monitor_layout(rulebook, bounds)
-            except RulecError as error:
-                raise no_engine_in_c(error, cast.place) from None
-            library = self._libraries[key] = CLibrary(layout, optimised=False)
-            self.compiled_by = library.compiler_version
+            layout = monitor_layout(rulebook, bounds)
+            self._libraries[key] = CLibrary(layout, optimised=False)
         return self._libraries[key]
 
 
@@ -147,6 +104,21 @@ def _items(cast: Cast, number: int) -> Iterator[str]:
         first, last = cast.present.get(item, always)
         if first <= number <= last:
             yield item
+
+
+def is_all_known(layout: MonitorLayout, state: State, objects: Mapping[str, str]) -> bool:
+    """Whether a state or the defaults provide all values that the rules read."""
+    vocabulary = layout.fields.vocabulary
+    for item in layout.fields.read:
+        if item.default is not None and type(item.default) not in UNKNOWN_TYPES:
+            continue
+        places: list[list[str]] = [[]]
+        for kind in item.parameters:
+            fitting = fitting_objects(kind, objects, vocabulary)
+            places = [[*before, name] for before in places for name in fitting]
+        if any(value_given(state, item, place) is None for place in places):
+            return False
+    return True
 
 
 class _Run:
