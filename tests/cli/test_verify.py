@@ -61,6 +61,7 @@ def test_the_documented_line_of_json(verify):
                 "weight": 1,
             }
         ],
+        "judged": ["R1", "R2", "R3"],
         "open": [],
         "not_judged": [],
         "presumed": [],
@@ -77,6 +78,7 @@ def test_satisfied(verify):
         "law": LAW,
         "satisfied": True,
         "violations": [],
+        "judged": ["R1", "R2", "R3"],
         "open": [],
         "not_judged": [],
         "presumed": [],

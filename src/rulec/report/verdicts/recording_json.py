@@ -22,10 +22,7 @@ from rulec.report.verdicts.recording_table import defaulted_names
 
 
 class RecordedVerdict(verdict_json.TraceVerdict, frozen=True, kw_only=True):
-    """The verdict on the drive of vehicle ``trace``, in the recording's times.
-
-    ``judged`` are the rules that are neither open nor not judged.
-    """
+    """The verdict on the drive of vehicle ``trace``, in the recording's times."""
 
     recording: str
     mirrored: bool
@@ -33,7 +30,6 @@ class RecordedVerdict(verdict_json.TraceVerdict, frozen=True, kw_only=True):
     start_s: float
     step_s: float
     by_default: Sequence[str]
-    judged: Sequence[str]
 
 
 class RecordedNotJudged(verdict_json.TraceNotJudged, frozen=True, kw_only=True):
@@ -107,7 +103,6 @@ def as_json(
         error = verdict_json.error_data(answer.error)
         return as_line(RecordedNotJudged(trace=answer.trace, error=error, **recorded))
     by_rule = verdicts.by_default(drive.words)
-    doubtful = {one.rule for one in answer.open} | {one.rule for one in answer.not_judged}
     data = verdict_json.violations_data(answer, verdicts.rules, explained)
     violations = [
         replace(
@@ -126,7 +121,6 @@ def as_json(
             answer,
             law=filled(verdict_json.LawData, edition_of(verdicts.rules)),
             violations=violations,
-            judged=[rule.name for rule in verdicts.rules.rules if rule.name not in doubtful],
             **verdict_json.doubts(answer, verdicts.rules),
             **recorded,
         )

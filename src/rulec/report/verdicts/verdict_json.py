@@ -204,8 +204,8 @@ class LawData(JsonPart, frozen=True, kw_only=True):
 class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
     """The verdict on a trace: whether it keeps every hard rule.
 
-    ``satisfied`` is null if no hard rule is violated, but one is open or not judged. ``presumed``
-    names hold by presumption, as no source supplies them.
+    ``satisfied`` is null if no hard rule is violated, but one is open or not judged. ``judged`` are
+    the rules that are neither. ``presumed`` names hold by presumption, as no source supplies them.
     ``faults`` of rulec came meanwhile; rules that they cost are ``not_judged``.
     """
 
@@ -214,6 +214,7 @@ class TraceVerdict(JsonDocument, frozen=True, kw_only=True):
     law: LawData
     satisfied: bool | None
     violations: Sequence[ViolationData]
+    judged: Sequence[str] = ()
     open: Sequence[OpenData] = ()
     not_judged: Sequence[NotJudgedRule] = ()
     presumed: Sequence[str] = ()
@@ -244,8 +245,10 @@ def as_json(
 
 
 def doubts(verdict: Verdict, rulebook: CompiledRulebook) -> dict[str, Any]:
-    """The fields about rules that are open, not judged or presumed, and about faults."""
+    """The fields that name each rule once, as judged, open or not judged, and those about faults."""
+    doubtful = {one.rule for one in verdict.open} | {one.rule for one in verdict.not_judged}
     return {
+        "judged": [rule.name for rule in rulebook.rules if rule.name not in doubtful],
         "open": open_data(verdict.open, rulebook),
         "not_judged": not_judged_data(verdict.not_judged, rulebook),
         "presumed": verdict.presumed,
