@@ -14,7 +14,7 @@ HUNGRY = (
     "import sys; from rulec.cli import main as door; from rulec.cli.commands import list as verb\n"
     "def eat(*_, **__): {}\n"
     "verb.command.callback = eat\n"
-    "raise SystemExit(door.main(sys.argv[1:]))"
+    "raise SystemExit(door.main())"
 )
 
 

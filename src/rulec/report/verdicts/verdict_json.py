@@ -245,7 +245,7 @@ def as_json(
 
 
 def doubts(verdict: Verdict, rulebook: CompiledRulebook) -> dict[str, Any]:
-    """The fields that name each rule once, as judged, open or not judged, and those about faults."""
+    """The fields that name each rule once, as judged, open or not judged, and faults."""
     doubtful = {one.rule for one in verdict.open} | {one.rule for one in verdict.not_judged}
     return {
         "judged": [rule.name for rule in rulebook.rules if rule.name not in doubtful],
