@@ -47,7 +47,6 @@ SLIPPED = rulec.RequestedDrives(assumed={"CONG": True})
         (lambda: rulec.draw_drive(FOLLOWING, "de", wanted="1"), TypeError, "RequestedDrives, not"),
         (lambda: rulec.draw("x"), TypeError, "Maneuvers or a Trace, not str: rulec.nav"),
         (lambda: rulec.draw_drive(FOLLOWING, "de", only=["nope"]), ValueError, "no such rule"),
-        (lambda: rulec.verify_many([], "esterle2019", engine="d"), ValueError, "'c', not 'd'"),
         (lambda: rulec.read_recording(FOLLOWING, form="xml"), ValueError, "tracks.*, not 'xml'"),
         (lambda: rulec.verify(TRACE, "esterle2019", SLIP), rulec.RulecError, "`values`.*`CONG`"),
         (lambda: rulec.verify_many([], "esterle2019", SLIP), rulec.RulecError, "`CONG`"),

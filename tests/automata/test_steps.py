@@ -317,7 +317,7 @@ def test_there_is_a_limit_on_the_time_that_all_rules_take(monkeypatch, tmp_path)
     every(ONE)
     every(HALF)
     for rounded in (every, every.rounded):
-        with pytest.raises(RulecError, match=r"30 seconds.*R0718"):
+        with pytest.raises(RulecError, match=r"120 seconds.*R0718"):
             rounded(Fraction(1, 4))
     assert len(asked) == 2
 

@@ -53,6 +53,8 @@ WITHOUT = {
     "UNKNOWN_SCENARIO": ARGUMENT,
     # Limits
     "CHOICES": LATER,
+    "MEMORY": ARGUMENT,
+    "SECONDS": ARGUMENT,
 }
 
 

@@ -20,7 +20,7 @@ def test_platform_without_wheel_does_without_spot(checkout, place):
     assert "--system-site-packages" not in checkout.calls("venv")[0]["arguments"]
     needed = checkout.calls("pip")[0]["requirements"]
     assert "spottl" not in needed
-    assert "\ndd==" in needed
+    assert "\nlark==" in needed
 
 
 def test_windows_is_refused(checkout):

@@ -13,6 +13,7 @@ from rulec.batch.batch_messages import process_lost
 from rulec.batch.jobs import Jobs, available_processors, chosen_jobs
 from rulec.batch.worker_pool import LostTask, in_order
 from rulec.cache.keeping import is_keeping, keeping
+from rulec.diagnostics import RulecError
 
 
 def squares(most, number):
@@ -134,7 +135,7 @@ def test_a_process_that_is_killed_before_it_reads_anything_is_replaced(monkeypat
 
 def test_a_mistake_is_raised_where_it_belongs():
     found = []
-    with pytest.raises(ValueError, match="a mistake of the program's"):
+    with pytest.raises(RulecError, match=r"ValueError a mistake of the program's.*R0790"):
         found += (one for one in in_order(fail, range(3), Jobs(2)))
 
 

@@ -35,6 +35,7 @@ class VerdictOutputs:
         self._lines: list[Callable[[str], None]] = []
         self._writers: list[tuple[FindingWriter, str]] = []
         self._findings = 0
+        self._heading = ""
 
     @property
     def wants_text(self) -> bool:
@@ -54,7 +55,14 @@ class VerdictOutputs:
     def text(self, text: str) -> None:
         """Take a part of the text."""
         for write in self._text:
+            if self._heading:
+                write(self._heading)
             write(text)
+        self._heading = ""
+
+    def heading(self, text: str) -> None:
+        """Take what stands above the next part of the text, if there is one."""
+        self._heading = text
 
     def line(self, line: str) -> None:
         """Take a line of JSON."""

@@ -22,7 +22,7 @@ from rulec.monitoring.state_validation import StateValidator, check_objects, che
 from rulec.monitoring.verdict import NotJudged, RuleNotJudged, Verdict, Violation, agreed
 from rulec.resource_limits import BudgetSpentError
 from rulec.trace import Trace
-from rulec.trace.trace_model import check_trace
+from rulec.trace.trace_model import check_frame, check_trace
 
 
 def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
@@ -142,6 +142,7 @@ def verify_contained(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     except Exception as problem:
         if isinstance(problem, RulecError) or not isinstance(trace, Trace):
             raise
+        check_frame(trace)  # a trace of wrong kinds is the caller's fault, and is said again
         (answer,) = judged_apart(_verified, [trace], rulebook.rounded_to(trace.step_s))
     if isinstance(answer, NotJudged):
         raise answer.error

@@ -82,13 +82,12 @@ def test_however_fast_ego_is(step_s, ego_mps):
 
 
 @pytest.mark.parametrize(
-    ("stood_s", "conflict"), [(1.5, "F"), (-0.5, "?"), (-2.0, "?")], ids=["long", "just", "not yet"]
+    ("stood_s", "conflict"), [(1.5, "F"), (-0.5, "?"), (-2.0, "T")], ids=["long", "just", "not yet"]
 )
 def test_who_stood_there_before_ego_came_near_may_be_in_a_queue(stood_s, conflict):
     """It stands in ego's way from so long before on as ego, seen 2 s earlier, drives in at 8 s.
 
-    Ego brakes no more than before; or the other one has just come to a stand; or its track ends
-    before it is told whether it brakes for ego.
+    Ego brakes no more than before; or the other one has just come to a stand.
     """
     stands_s = {1.5: 4.5, -0.5: 7.0, -2.0: 9.0}[stood_s]
     other = (10 * (stands_s - 2.0) + 10.0, [(stands_s - 2.0, 10.0), (stands_s, 0.0)])

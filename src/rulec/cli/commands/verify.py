@@ -170,7 +170,7 @@ def command(
                 # Late import, only where it is said: verdicts, and the hash of rulebooks (30 ms).
                 from rulec.report.verdicts.verdict_report import headline
 
-                outputs.text(f"{'' if rules is books[0] else chr(10)}{headline(rules)}")
+                outputs.heading(f"{'' if rules is books[0] else chr(10)}{headline(rules)}")
             if exposure:
                 outputs.to_rows = _to_rows(rows_of, rules.name, egos, options, ends)
             results.append(_judge(request, rules, outputs, complaints))

@@ -83,7 +83,7 @@ def in_conflict(
     if enters is None or (passed is not None and passed <= enters):
         return None
     if comes is not None and comes < enters:
-        return _runs_into(context, (own, enters), (other, passed))
+        return _runs_into(context, (own, enters, leaves), (other, passed))
     if _is_there_at_first(context, own, ego[1]) and _is_there_at_first(context, other, foe[1]):
         # It was not recorded which of the two got there first
         return enters, False
@@ -125,7 +125,7 @@ def _is_there_at_first(context: DriveContext, passage: Passage, when: float | No
 
 
 def _runs_into(
-    context: DriveContext, ego: tuple[Passage, int], foe: tuple[Passage, int | None]
+    context: DriveContext, ego: tuple[Passage, int, int | None], foe: tuple[Passage, int | None]
 ) -> tuple[int, bool] | None:
     """``in_conflict`` for a vehicle that got there first, into whose side ego drives.
 
@@ -137,7 +137,7 @@ def _runs_into(
     the place is longer than bodies.
     """
     passages = context.surroundings.passages
-    (own, enters), (other, passed) = ego, foe
+    (own, enters, leaves), (other, passed) = ego, foe
     ways = passages.way(own), passages.way(other)
     present = passages.tracks.present[other.row].nonzero()[0]
     first = max(int(present[0]), context.first_column)
@@ -166,7 +166,8 @@ def _runs_into(
             return first, False
     moved_mps = max(slowest[1], passages.tracks.speed[other.row, moved_in])
     sure = moved_mps > SLOWEST_MPS and slowest.max() > DRIVES_MPS
-    return first, bool(sure) and slows_down(context, own, enters, until) is False
+    meanwhile = until if leaves is None else min(until, leaves)
+    return first, bool(sure) and slows_down(context, own, enters, meanwhile) is False
 
 
 def _column(when: float | None) -> int | None:
