@@ -13,7 +13,7 @@ import click
 from rulec.cache.keeping import keeping
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.interruption import is_interrupted
-from rulec.cli.invocation import Invocation, invocation_of
+from rulec.cli.options.invocation import Invocation, invocation_of
 from rulec.cli.verb_table import VERB_GROUPS, VERBS, WITH_COMPILED
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.argument_names import naming_options

@@ -17,8 +17,8 @@ from rulec.batch.recording_judge import (
     in_a_line,
     judge_with_progress,
 )
+from rulec.cli.options.standard_input import copied
 from rulec.cli.output import print_lost
-from rulec.cli.standard_input import copied
 from rulec.cli.verdict_outputs import VerdictOutputs
 from rulec.diagnostics import RulecError
 from rulec.recordings.recording_inputs import STANDARD_INPUT

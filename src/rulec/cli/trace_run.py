@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, cast
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.cli.standard_input import standard_input
+from rulec.cli.options.standard_input import standard_input
 from rulec.cli.verdict_outputs import VerdictOutputs
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import with_place

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import click
 
-from rulec.cli.invocation import invocation_of
+from rulec.cli.options.invocation import invocation_of
 from rulec.cli.verb_table import VERBS
 from rulec.diagnostics import nearest_name
 

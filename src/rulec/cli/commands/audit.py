@@ -13,9 +13,9 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.scenario_options import recording_options, recording_source
 from rulec.cli.options.shell_completion import complete_rulebooks
+from rulec.cli.options.standard_input import read_as_file
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, open_session, put_answer, sources_of_rulebooks, width_of
-from rulec.cli.standard_input import read_as_file
 
 if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit

@@ -14,9 +14,9 @@ from rulec.cli.options.shared_options import (
     verbose_option,
 )
 from rulec.cli.options.shell_completion import complete_sources
+from rulec.cli.options.standard_input import standard_input
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import print_findings, print_left_alone
-from rulec.cli.standard_input import standard_input
 from rulec.cli.watching import watch as watch_sources
 from rulec.cli.watching import watch_option
 from rulec.diagnostics import named

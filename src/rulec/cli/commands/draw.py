@@ -28,9 +28,9 @@ from rulec.cli.options.scenario_options import (
     requested_drives,
     scene_reading,
 )
+from rulec.cli.options.standard_input import file_named
 from rulec.cli.options.verb_class import VerbGroup
 from rulec.cli.output import output_stream, print_written, read_machines
-from rulec.cli.standard_input import file_named
 from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.diagnostics.fault_messages import contained
 from rulec.report.text.terminal_text import shown_count

@@ -22,9 +22,9 @@ from rulec.cli.options.output_options import (
     output_options,
     refuse_overwriting,
 )
+from rulec.cli.options.standard_input import not_standard_input, standard_input
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import answer_lines, output_stream, print_written
-from rulec.cli.standard_input import not_standard_input, standard_input
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.fault_messages import contained
 from rulec.files.read_files import opened

@@ -11,9 +11,9 @@ from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
+from rulec.cli.options.standard_input import not_standard_input
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import read_machines, rulebooks_named, told_apart
-from rulec.cli.standard_input import not_standard_input
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_result, progress
 

@@ -10,9 +10,9 @@ import click
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.shared_options import verbose_option
+from rulec.cli.options.standard_input import standard_input
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import print_left_alone
-from rulec.cli.standard_input import standard_input
 from rulec.files.read_files import MAX_SOURCE_BYTES
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_line, print_remark, print_result

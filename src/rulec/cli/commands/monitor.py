@@ -18,9 +18,9 @@ from rulec.cli.options.output_options import (
     output_options,
 )
 from rulec.cli.options.shell_completion import complete_rulebooks
+from rulec.cli.options.standard_input import STANDARD_INPUT, standard_input
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import answer_lines, open_session, print_written
-from rulec.cli.standard_input import STANDARD_INPUT, standard_input
 from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_remark, print_result

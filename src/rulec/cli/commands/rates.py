@@ -8,9 +8,9 @@ import click
 
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.standard_input import not_standard_input
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_written, put_answer
-from rulec.cli.standard_input import not_standard_input
 from rulec.diagnostics.fault_messages import contained
 
 if TYPE_CHECKING:

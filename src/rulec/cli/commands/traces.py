@@ -17,9 +17,9 @@ from rulec.batch.jobs import Jobs
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import TABLES, Output, output_options
+from rulec.cli.options.standard_input import file_named
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_lost, print_written, read_machines
-from rulec.cli.standard_input import file_named
 from rulec.diagnostics import SourceLocation
 from rulec.diagnostics.fault_messages import contained
 from rulec.report.text.console import progress

@@ -9,9 +9,9 @@ import click
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.standard_input import read_as_file
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, put_answer
-from rulec.cli.standard_input import read_as_file
 from rulec.diagnostics import first_of
 from rulec.report.text.console import print_remark
 

@@ -13,7 +13,7 @@ import click
 from rulec.cli.options.output_options import RenamedOption, input_format_option
 from rulec.cli.options.shared_options import choice_option, combined, finite
 from rulec.cli.options.shell_completion import complete_scenarios
-from rulec.cli.standard_input import file_named
+from rulec.cli.options.standard_input import file_named
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.recording_format import RecordingSource
 

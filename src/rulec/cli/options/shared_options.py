@@ -18,7 +18,7 @@ from rulec.batch.jobs import Jobs, chosen_jobs
 from rulec.cache.keeping import keeping
 from rulec.cli.options.output_options import RenamedOption, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
-from rulec.cli.standard_input import read_as_file
+from rulec.cli.options.standard_input import read_as_file
 from rulec.report.findings.finding_formats import FORMATS
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
