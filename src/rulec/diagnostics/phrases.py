@@ -52,11 +52,9 @@ def _closest(name: str, known: tuple[str, ...], alike: float) -> list[str]:
     return get_close_matches(name, known, n=1, cutoff=alike)
 
 
-def did_you_mean(
-    name: str, known: Iterable[str], alike: float = 0.6, *, longer: bool = True
-) -> str:
+def did_you_mean(name: str, known: Iterable[str], alike: float = 0.6) -> str:
     """A question with the nearest known name, as above; empty if none is close."""
-    near = nearest_name(name, known, alike, longer=longer)
+    near = nearest_name(name, known, alike)
     return "" if near is None else f"did you mean `{near}`?"
 
 

@@ -28,7 +28,7 @@ def instants_among(
 ) -> dict[Formula, list[bool]]:
     """The instants at which a formula and its parts decide its value at the first instant.
 
-    They are found from the ``extended_values`` on a word of ``n_letters``. If an ``always`` or
+    They are found from its ``extended_by_columns`` on a word of ``n_letters``. If an ``always`` or
     ``never`` fails at several instants, the first one decides; with ``since``, the first one not
     before that instant, if there is one.
     """

@@ -9,7 +9,7 @@ lists the forms.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from functools import reduce
 
 from rulec.logic.bounds import BOOLEAN, operations_of
@@ -42,32 +42,18 @@ def breach_of(formula: Formula) -> Formula:
 
 
 def trigger_of(
-    required: Formula, *, apart: Sequence[Formula] = (), initially: Sequence[Formula] = ()
-) -> Formula | None:
-    """The condition for a breach in a state; None if the formula's form does not show one.
-
-    ``required`` is the rule's formula without its exceptions. ``apart`` are the negated exceptions
-    about a single state; they count only if ``guards_one_state(required)``, since a sequence's
-    exceptions are about later states. ``initially`` are those about the first state.
-    """
-    trigger = _trigger(required)
-    parts = [] if trigger is None else [trigger]
-    if guards_one_state(required):
-        parts += apart
-    parts += map(_at_first_once, initially)
-    formula = fold_constants(_all(parts)) if parts else None
-    return None if formula == _TRUE else formula
-
-
-def trigger_of_parts(
     required: Formula,
     exceptions: Iterable[tuple[Formula, bool]] = (),
     condition: Formula | None = None,
 ) -> Formula | None:
-    """``trigger_of`` a rule with these parts; an exception is paired with whether it is initial.
+    """The condition for a breach in a state; None if the formula's form does not show one.
 
-    The exceptions of a sequence are about states after its first phase, so they are left out.
+    ``required`` is the rule's formula without its exceptions; each of these is paired with whether
+    it is about the first state. Those about a single state count only if
+    ``guards_one_state(required)``: a sequence's are about states after its first phase.
     """
+    trigger = _trigger(required)
+    parts = [] if trigger is None else [trigger]
     apart: list[Formula] = []
     initially: list[Formula] = []
     for exception, is_initial in exceptions:
@@ -75,7 +61,11 @@ def trigger_of_parts(
     if condition is not None:
         guards = isinstance(required, Unary) and required.operator in _GUARDING
         (apart if guards else initially).append(condition)
-    return trigger_of(required, apart=apart, initially=initially)
+    if guards_one_state(required):
+        parts += apart
+    parts += map(_at_first_once, initially)
+    formula = fold_constants(_all(parts)) if parts else None
+    return None if formula == _TRUE else formula
 
 
 def guards_one_state(formula: Formula) -> bool:

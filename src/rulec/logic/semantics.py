@@ -41,22 +41,16 @@ def truth_values(
     return parts[id(formula)][1][: len(word)]
 
 
-def extended_values(
-    formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics
-) -> dict[ltl.Formula, list[bool]]:
-    """The truth values of all parts, operands first, extended beyond the word until they settle."""
-    return dict(_extended(formula, _spelled(word), len(word), semantics).values())
-
-
 def extended_by_columns(
     formula: ltl.Formula,
     truths: Mapping[ltl.Proposition, Sequence[bool]],
     n_letters: int,
     semantics: Semantics,
 ) -> dict[ltl.Formula, list[bool]]:
-    """As ``extended_values``, for a word given as each proposition's truth value at each instant.
+    """The truth values of all parts, operands first, extended beyond the word until they settle.
 
-    Raises ValueError as ``holds`` does.
+    The word is given as each proposition's truth value at each instant. Raises ValueError as
+    ``holds`` does.
     """
     return dict(_extended(formula, truths.__getitem__, n_letters, semantics).values())
 

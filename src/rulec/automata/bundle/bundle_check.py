@@ -25,7 +25,7 @@ from rulec.diagnostics import SourceLocation
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, has_seconds, in_steps, operations_of
 from rulec.logic.codec import from_data, number_from_data, terms_from_data
-from rulec.logic.opportunities import trigger_of_parts
+from rulec.logic.opportunities import trigger_of
 from rulec.logic.printing import formula_text, term_text
 from rulec.rulebook.rulebook_model import (
     Exemption,
@@ -284,7 +284,7 @@ def _rule(rule: schema.BundleRule, vocabulary: Vocabulary, levels: Container[str
         machine=monitors.MealyMonitor(reads, *astuple(rule.machine)[1:]),
         step_s=None if rule.step_s is None else number_from_data(rule.step_s),
         weight=number_from_data(rule.weight),
-        trigger=trigger_of_parts(formula) if parts is None else _trigger_of(parts),
+        trigger=trigger_of(formula) if parts is None else _trigger_of(parts),
         parts=parts,
         certificate=rule.certificate,
     )
@@ -324,7 +324,7 @@ def _rule_parts(read: schema.PartsEntry) -> RuleParts:
 
 def _trigger_of(parts: RuleParts) -> ltl.Formula | None:
     exceptions = [(part.formula, part.scope == "initially") for part in parts.exemptions]
-    return trigger_of_parts(parts.required, exceptions, parts.condition)
+    return trigger_of(parts.required, exceptions, parts.condition)
 
 
 def _check_machine(read: schema.MachineEntry, rule: str) -> None:

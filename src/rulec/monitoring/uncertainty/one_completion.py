@@ -31,9 +31,6 @@ class Supposed:
     ends: Mapping[str, End] = field(default_factory=dict)
 
 
-NOTHING_SUPPOSED = Supposed()
-
-
 def completed(trace: Trace, vocabulary: Vocabulary, supposed: Supposed) -> Trace:
     """The trace with unknown values replaced by the supposed ones."""
     declarations = vocabulary.declarations

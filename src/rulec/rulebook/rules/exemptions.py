@@ -17,7 +17,7 @@ from math import comb
 from typing import Literal
 
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Formula, Unary, UnaryOperator
-from rulec.logic.opportunities import trigger_of_parts
+from rulec.logic.opportunities import trigger_of
 from rulec.rulebook.arithmetic.linear_arithmetic import all_of, any_of, negated
 from rulec.rulebook.rulebook_model import Exemption, ExemptionScope, Rule
 
@@ -65,7 +65,7 @@ def rule_trigger(rule: Rule) -> Formula | None:
     None if its form has no trigger.
     """
     exceptions = [(part.formula, part.scope == "initially") for part in rule.exemptions]
-    return trigger_of_parts(rule.required or rule.formula, exceptions, rule.condition)
+    return trigger_of(rule.required or rule.formula, exceptions, rule.condition)
 
 
 @dataclass(frozen=True, slots=True)
