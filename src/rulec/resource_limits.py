@@ -9,16 +9,13 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, named
 from rulec.limit_messages import NO_LIMIT, OVER_LIMIT
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 VARIABLE: Final = "RULEC_LIMITS"
 """The environment variable: settings such as ``choices=5000000``, separated by spaces."""

@@ -11,12 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.bundle.required_signature import refuse_source
+from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.argument_kinds import finite
+from rulec.rulebook.rulebook_model import Rulebook
 
 if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
-    from rulec.rulebook.rulebook_model import Rulebook
 
     Rules: TypeAlias = str | Path | Rulebook | CompiledRulebook
     """A name, the path of a source or compiled file (.json), or a rulebook, compiled or not."""
@@ -56,8 +58,6 @@ def _of_source(
     any_step: bool,
     recalls: bool,
 ) -> CompiledRulebook:
-    from rulec.automata.bundle.required_signature import refuse_source
-
     refuse_source(reference)
     question = None
     if recalls:
@@ -102,8 +102,6 @@ def compile_rulebook(
     R0407 for a bound that is not a multiple of the step, R0507 if the rules have been compiled for
     another one.
     """
-    from rulec.automata.thresholds import exact_step
-
     if isinstance(step_s, Sequence):
         if step_s[MOST_STEPS:]:
             raise ValueError(
@@ -129,7 +127,6 @@ def compile_rulebook(
         return reference if step is None else reference.at_step(step)
     from rulec.automata.compiler import lower
     from rulec.automata.step_compilation import StepCompiler, build_automata
-    from rulec.rulebook.rulebook_model import Rulebook
 
     if not isinstance(reference, Rulebook):
         raise TypeError(

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from datetime import datetime
 from fractions import Fraction
 from pathlib import Path
@@ -12,7 +13,12 @@ from typing import TYPE_CHECKING, Literal, get_args, overload
 
 from rulec.api.rulebook_verbs import RulebookVerbs
 from rulec.api.session_settings import ignore
+from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.argument_kinds import finite
+from rulec.diagnostics.code import Code
+from rulec.resources import scenarios_folder
+from rulec.trace import Trace
+from rulec.trace.trace_model import check_trace
 
 if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit
@@ -21,15 +27,12 @@ if TYPE_CHECKING:
     from rulec.analysis.lineage.rule_lineage import BookLineage
     from rulec.analysis.lint.questions import Spread
     from rulec.api.rulebook_compilation import Rules
-    from rulec.diagnostics import Diagnostic
-    from rulec.diagnostics.code import Code
     from rulec.extraction.traces.recorded_drive import Drive
     from rulec.logic.sentences.language import LanguageCode
     from rulec.monitoring.explain.explanation import Explanation
     from rulec.monitoring.verdict import Violation
     from rulec.recordings.recording_format import RecordingSource
     from rulec.report.text.listing import Listed
-    from rulec.trace import Trace
 
 _NARROWEST = 10
 """The least number of columns for the text of a rule."""
@@ -67,8 +70,6 @@ class RulebookQuestions(RulebookVerbs):
                 raise KeyError(f"there is no code {subject}")
             return code
         from rulec.monitoring.explain.explanation import explain
-        from rulec.trace import Trace
-        from rulec.trace.trace_model import check_trace
 
         if trace is None or rules is None:
             raise TypeError("explaining a violation needs the trace and the rules")
@@ -100,8 +101,6 @@ class RulebookQuestions(RulebookVerbs):
         another name; ``on_progress`` is called with the number of rules compared. Raises
         RulecError.
         """
-        from dataclasses import replace
-
         from rulec.analysis.diff.rulebook_comparison import diff_rulebooks, setting_pairs
         from rulec.analysis.lineage.book_lineage import read_with_lineage
         from rulec.automata.thresholds import exact_step
@@ -224,8 +223,6 @@ class RulebookQuestions(RulebookVerbs):
         """
         if width < _NARROWEST:
             raise ValueError(f"`width` is {_NARROWEST} columns or more, not {width}")
-        from dataclasses import replace
-
         from rulec.report.rulebooks import rule_page
         from rulec.report.rulebooks.spoken_rules import spoken_book
 
@@ -292,7 +289,6 @@ class RulebookQuestions(RulebookVerbs):
 
             return tuple(Listed(text, code.title) for text, code in all_codes().items())
         if kind == "scenarios":
-            from rulec.resources import scenarios_folder
             from rulec.scenario import available_scenarios, load_scenario
 
             abouts = {name: load_scenario(name).about for name in available_scenarios()}

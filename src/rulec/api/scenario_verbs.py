@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Literal
 
 from rulec.api.session_settings import SessionSettings
 from rulec.garbage_collection import no_garbage_collection
+from rulec.trace import Trace
+from rulec.trace.trace_model import all_traces, check_trace
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -25,7 +27,6 @@ if TYPE_CHECKING:
     from rulec.recordings.recording import Recording
     from rulec.scenario import Choice, Scenario
     from rulec.scoring.scores import Scores
-    from rulec.trace import Trace
 
 PictureFormat = Literal["svg", "png", "html"]
 
@@ -138,7 +139,6 @@ class ScenarioVerbs(SessionSettings):
     ) -> Iterator[Trace]:
         """Generate a scenario's maneuvers lazily as traces, in the rules' vocabulary."""
         from rulec.trace.plain_unknowns import with_plain_unknowns
-        from rulec.trace.trace_model import all_traces
 
         if limit < 0:
             raise ValueError(f"`limit` is how many are wanted at most, not {limit}")
@@ -180,8 +180,6 @@ class ScenarioVerbs(SessionSettings):
         from rulec.api import pictures
         from rulec.partition import NavigationGraph
         from rulec.report.pictures.drawing.picture_formats import as_bytes
-        from rulec.trace import Trace
-        from rulec.trace.trace_model import check_trace
 
         if isinstance(subject, Trace):
             check_trace(subject)

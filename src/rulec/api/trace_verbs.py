@@ -10,13 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, get_args
 
 from rulec.api.session_settings import SessionSettings
+from rulec.diagnostics import RulecError
 from rulec.diagnostics.argument_kinds import expected_fields, finite
+from rulec.files.written_files import written_whole
+from rulec.trace.trace_model import check_trace
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from rulec.api.rulebook_compilation import Rules
-    from rulec.diagnostics import RulecError
     from rulec.extraction.moment_search import DriveMoments
     from rulec.extraction.recording_verdicts import RecordingVerdicts
     from rulec.extraction.selection import RequestedDrives
@@ -49,7 +51,6 @@ class TraceVerbs(SessionSettings):
 
     def write_traces(self, traces: Iterable[Trace], path: str | Path) -> None:
         """Write traces in the format given by the file's name. Raises RulecError."""
-        from rulec.files.written_files import written_whole
         from rulec.trace.formats.trace_files import (
             check_writable,
             format_of,
@@ -57,7 +58,6 @@ class TraceVerbs(SessionSettings):
             kinds_in,
             write_traces,
         )
-        from rulec.trace.trace_model import check_trace
 
         listed = list(traces)
         for trace in listed:
@@ -305,8 +305,6 @@ class TraceVerbs(SessionSettings):
             RulecError: R0612 for an unknown drive, R0707 for a file that cannot be made, and what
                 ``verify_recording`` raises.
         """
-        from dataclasses import replace
-
         from rulec.api.pictures import drive_drawing
         from rulec.extraction.selection import RequestedDrives
         from rulec.report.pictures.drawing.picture_formats import as_bytes

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from rulec.api.session import Session
 from rulec.api.session_settings import ignore
+from rulec.diagnostics import Diagnostic
 
 if TYPE_CHECKING:
     from rulec.api.rulebook_compilation import Rules
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.diagnostics import Diagnostic
     from rulec.rulebook.rulebook_model import Rulebook
 
 _USUAL = Session()

@@ -19,6 +19,7 @@ from rulec.diagnostics import RulecError
 from rulec.diagnostics.argument_names import naming_options
 from rulec.diagnostics.fault_messages import faults_found
 from rulec.report.text.patience import patience
+from rulec.report.text.terminal_text import colored, styled, visible, wants_color
 from rulec.version import __version__
 
 
@@ -42,9 +43,6 @@ _REQUIRE_SIGNED = click.Option(
 
 def _color(context: click.Context, _: click.Parameter, choice: str | None) -> None:
     if choice is not None:
-        # Late import, only if it is printed (7 ms).
-        from rulec.report.text.terminal_text import colored
-
         context.with_resource(colored(choice))
 
 
@@ -240,7 +238,6 @@ def _has_working_folder() -> bool:
 def _visible(text: str) -> str:
     # Late import, only after an error (3 ms).
     from rulec.report.text.outgoing import outgoing
-    from rulec.report.text.terminal_text import visible
 
     return outgoing(visible(text))
 
@@ -254,7 +251,6 @@ def _say_misuse(problem: click.ClickException) -> None:
     """Print a usage error in the format of other diagnostics, with advice."""
     # Late import, only after an error: colours and examples (9 ms).
     from rulec.cli.usage_help import reworded, ways_out
-    from rulec.report.text.terminal_text import styled, wants_color
 
     color = wants_color(sys.stderr)
     text = _visible(reworded(problem))

@@ -31,6 +31,7 @@ from rulec.report.text.console import (
 )
 from rulec.report.text.outgoing import OutgoingLines, outgoing
 from rulec.report.text.terminal_text import wants_color
+from rulec.rulebook.files.source_walk import in_words
 from rulec.settings import exclusion, search_path
 
 if TYPE_CHECKING:
@@ -154,9 +155,6 @@ def print_left_alone(left_alone: Sequence[LeftAlone], *, verbose: bool) -> None:
         for file in left_alone:
             print_remark(f"left alone: {file.path}: {file.why}")
     elif left_alone:
-        # Late import, only for verbs with folders: sources below folders (5 ms).
-        from rulec.rulebook.files.source_walk import in_words
-
         print_remark(f"left alone: {in_words(left_alone)}")
 
 

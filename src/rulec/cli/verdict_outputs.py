@@ -10,12 +10,11 @@ from rulec.cli.options.output_options import Endings, Output, endings_of
 from rulec.cli.output import answer_lines, output_stream
 from rulec.report.text.console import print_line, print_result
 from rulec.report.text.terminal_text import counted
-from rulec.report.verdict_findings.finding_writers import ENDINGS, finding_writer
+from rulec.report.verdict_findings.finding_writers import ENDINGS, FindingWriter, finding_writer
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.fleet.drive_rows import DriveRows
-    from rulec.report.verdict_findings.finding_writers import FindingWriter
     from rulec.report.verdict_findings.verdict_finding import RecordingFindings
 
 FORMATS: Endings = {**endings_of("text", "json"), **ENDINGS}

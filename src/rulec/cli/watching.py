@@ -15,6 +15,7 @@ from rulec.cli.output import errors_told
 from rulec.diagnostics import RulecError
 from rulec.report.text.console import print_remark
 from rulec.report.text.terminal_text import counted
+from rulec.rulebook.files.source_walk import rules_files
 from rulec.settings import FILE_NAME, exclusion, search_path
 
 _LOOK_EVERY_S = 0.5
@@ -62,7 +63,6 @@ def _files(references: Sequence[str]) -> Iterable[Path]:
     """The sources referred to, those beside them and on the search path, and the settings."""
     # Late import, not for --help: sources below folders (10 ms).
     from rulec.rulebook.batch.batch_check import find_sources
-    from rulec.rulebook.files.source_walk import rules_files
 
     folders: dict[Path, None] = {}
     excluded = None

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from rulec.diagnostics import did_you_mean, named
+from rulec.rulebook.vocabulary_phrases import synonyms_of_the_field
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 
@@ -113,9 +114,6 @@ def suggested(name: str, known: Iterable[str]) -> str:
 
 def similar_type(kind: str, types: Iterable[str]) -> str:
     """The type that a word of other tools means, such as a data set's; empty if none."""
-    # Synonyms are read from a file: only for this message.
-    from rulec.rulebook.vocabulary_phrases import synonyms_of_the_field
-
     others = synonyms_of_the_field()
     plain = kind.casefold()
     similar = (name for name in types if plain in others.get(name, ()))

@@ -7,12 +7,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rulec.partition.cell_graph import NavigationGraph
+from rulec.partition.cells.cell_model import Reach
 from rulec.partition.navigation_graph import COMFORTABLE, has_way_within
+from rulec.scenario import MotionBounds
 
 if TYPE_CHECKING:
-    from rulec.partition.cells.cell_model import Reach
     from rulec.partition.motion.others_beside import OthersBeside
-    from rulec.scenario import MotionBounds
 
 _WITHIN = 0.1
 """Precision (m/s²) of the result."""

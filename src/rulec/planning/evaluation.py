@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.monitoring.verdict import CarriedState, RuleNotJudged
 from rulec.monitoring.verify import without_words
+from rulec.partition import NavigationGraph
 from rulec.planning.maneuvers import AS_WRITTEN, Maneuvers
 from rulec.planning.product.graph_instances import HARD
 from rulec.planning.product.graph_product import count_paths, explore
@@ -22,7 +23,6 @@ from rulec.trace import TraceGraph
 
 if TYPE_CHECKING:
     from rulec.cell_words import CellWords
-    from rulec.partition import NavigationGraph
     from rulec.planning.trace_history import Before
 
 
@@ -77,7 +77,7 @@ def _not_judged(
 ) -> tuple[RuleNotJudged, ...]:
     if paths.told is None:
         return ()
-    # Imported late, as above: only if not everything is known.
+    # Imported late: only if not everything is known.
     from rulec.planning.product.possible_instances import not_judged
 
     return tuple(not_judged(paths, rules, past))

@@ -16,6 +16,8 @@ from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import partial_names
 from rulec.monitoring.uncertainty.untold_names import untold_names
 from rulec.monitoring.verdict import CarriedState, RuleNotJudged, Verdict, Violation
+from rulec.partition import NavigationGraph
+from rulec.partition.dead_ends import DeadEnd
 from rulec.planning.product.graph_instances import HARD, SOFT, violations
 from rulec.planning.product.graph_product import (
     Joint,
@@ -45,8 +47,6 @@ from rulec.value_display import Rows, short_count
 
 if TYPE_CHECKING:
     from rulec.cell_words import CellWords
-    from rulec.partition import NavigationGraph
-    from rulec.partition.dead_ends import DeadEnd
     from rulec.partition.motion.witness_trajectory import WitnessSearch
     from rulec.planning.trace_history import Before
 

@@ -16,10 +16,12 @@ from rulec.monitoring.constant_values import agreed_value, display
 from rulec.monitoring.monitoring_messages import UNDECLARED_NAME, UNFITTING_VALUE
 from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.monitoring.verdict import NO_PAST, CarriedState
+from rulec.partition import NavigationGraph, PartitionName
 from rulec.planning.planning_messages import TWO_PARTITIONS, UNFITTING_PAST
 from rulec.planning.product.graph_instance import GraphInstance
 from rulec.planning.product.graph_instances import instances
-from rulec.rulebook.rulebook_model import Strength
+from rulec.rulebook.rulebook_model import Rulebook, Strength
+from rulec.scenario import Obstacle, Scenario
 from rulec.trace import State, Trace, TraceGraph, Value
 from rulec.trace.trace_messages import UNKNOWN_OBJECT
 from rulec.trace.vocabulary_projection import project_graph
@@ -27,10 +29,7 @@ from rulec.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
     from rulec.cell_words import CellWords
-    from rulec.partition import NavigationGraph, PartitionName
     from rulec.planning.trace_history import Before
-    from rulec.rulebook.rulebook_model import Rulebook
-    from rulec.scenario import Obstacle, Scenario
 
 
 RELATIONS_OF: dict[PartitionName, tuple[str, ...]] = {

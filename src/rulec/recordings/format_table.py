@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from glob import escape
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.recordings import table_heads as heads
@@ -10,9 +12,6 @@ from rulec.recordings.argoverse.argoverse_files import ANNOTATIONS, SCENARIO, is
 from rulec.recordings.recording_format import Glance, RecordingFormat, RecordingSource
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
     from rulec.recordings.recording import Recording
 
 

@@ -7,6 +7,7 @@ from functools import partial
 
 import click
 
+from rulec.analysis.lint.finding_messages import NOT_DECIDED
 from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
@@ -22,6 +23,8 @@ from rulec.cli.output import (
 from rulec.diagnostics import Diagnostic
 from rulec.report.text.console import progress
 from rulec.report.text.terminal_text import counted
+from rulec.rulebook.batch.answer_cache import AnswerQuestion
+from rulec.rulebook.batch.check_cache import diagnostic_of
 from rulec.settings import search_path
 
 
@@ -49,10 +52,7 @@ def command(
     Exit status: 0 no mistakes found, 1 mistakes found, 2 a question could not be answered.
     """
     # Late import, not for --help: automata and their analysis (150 ms).
-    from rulec.analysis.lint.finding_messages import NOT_DECIDED
     from rulec.batch.spreading import spreading
-    from rulec.rulebook.batch.answer_cache import AnswerQuestion
-    from rulec.rulebook.batch.check_cache import diagnostic_of
     from rulec.rulebook.loader import read_rulebook
 
     rulebooks = sources_of_rulebooks(rulebooks, "cannot be analyzed")

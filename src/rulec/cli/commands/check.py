@@ -23,6 +23,8 @@ from rulec.diagnostics import named
 from rulec.files.read_files import MAX_SOURCE_BYTES
 from rulec.report.text.console import print_remark
 from rulec.report.text.terminal_text import counted
+from rulec.rulebook.batch.batch_check import check
+from rulec.rulebook.batch.shipped_lock import not_as_locked, write_lock
 from rulec.settings import exclusion, search_path
 
 if TYPE_CHECKING:
@@ -73,9 +75,6 @@ def command(
     if lock and "-" in sources:
         raise click.UsageError("`-` is standard input; a lock is of files")
 
-    # Late import, not for --help: rulebooks and the cache (10 ms).
-    from rulec.rulebook.batch.shipped_lock import not_as_locked, write_lock
-
     def run() -> int:
         done = _checked(sources, at, recalls=not no_cache)
         if fix and any(finding.fix for finding in done.findings):
@@ -118,9 +117,6 @@ def _nothing_found(done: Checked) -> str:
 
 
 def _checked(sources: tuple[str, ...], at: str, *, recalls: bool) -> Checked:
-    # Late import, not for --help: rulebooks and the cache (10 ms).
-    from rulec.rulebook.batch.batch_check import check
-
     return check(sources, _standard_input, search_path(), at, recalls=recalls, excluded=exclusion())
 
 

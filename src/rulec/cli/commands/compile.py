@@ -19,6 +19,7 @@ from rulec.cli.output import errors_told, open_session, rulebooks_named, told_ap
 from rulec.diagnostics import SourceLocation, named
 from rulec.diagnostics.fault_messages import contained
 from rulec.files.written_files import refuse_unwritable
+from rulec.logic.printing import number_in_words
 from rulec.report.text.console import print_line, print_remark
 
 if TYPE_CHECKING:
@@ -218,9 +219,6 @@ def _tell_replaced(folder: Path, before: Mapping[str, str]) -> None:
 
 def _tell_step(compiled: CompiledRulebook) -> None:
     """Name the step of a monitor if a rule depends on it and the user did not give it."""
-    # Late import, not for --help: rules (100 ms).
-    from rulec.logic.printing import number_in_words
-
     steps = [rule.step_s for rule in compiled.at_one_step().rules if rule.step_s is not None]
     if steps:
         rules = "1 rule has" if len(steps) == 1 else f"{len(steps):,} rules have"

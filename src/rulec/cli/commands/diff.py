@@ -27,6 +27,8 @@ from rulec.diagnostics import Diagnostic, did_you_mean
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_remark, progress
 from rulec.report.text.terminal_text import counted, wants_color
+from rulec.rulebook.batch.answer_cache import AnswerQuestion
+from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
@@ -108,9 +110,6 @@ def command(
             if len(rulebooks) > 2
             else f"with which rulebook is it to be compared? As in `rulec diff {books or 'de'} nl`"
         )
-    # Late import, not for --help: files and the cache (10 ms).
-    from rulec.rulebook.batch.answer_cache import AnswerQuestion
-
     two = TwoBooks(patterns, paired, step_s, n_witnesses)
     shown = (to.form, width_of(to), wants_color(sys.stdout))
     question_words = ("diff", at, *map(str, (*two, *shown)), *rulebooks)
@@ -196,10 +195,6 @@ class AllPairs(NamedTuple):
 
 def _compared(rulebooks: Sequence[str], pairs: AllPairs, to: Output, *, recalls: bool) -> int:
     """Write the overview of these rulebooks, or of all, and return the status."""
-    # Late import, not for two rulebooks: files and the cache (10 ms).
-    from rulec.rulebook.batch.answer_cache import AnswerQuestion
-    from rulec.rulebook.files.search_path import available_rulebooks
-
     folders = search_path()
     names = list(dict.fromkeys(rulebooks or available_rulebooks(folders)))
     every = "" if rulebooks else "all"

@@ -33,7 +33,10 @@ from rulec.cli.options.verb_class import VerbGroup
 from rulec.cli.output import output_stream, print_written, read_machines
 from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.diagnostics.fault_messages import contained
+from rulec.recordings.recording_files import read_recording
+from rulec.report.pictures.drawing.styles import Theme
 from rulec.report.text.terminal_text import shown_count
+from rulec.trace import Trace
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -41,8 +44,6 @@ if TYPE_CHECKING:
     from rulec.planning import Maneuvers
     from rulec.planning.ranking.cheapest import Maneuver
     from rulec.report.pictures.drawing.picture_formats import Drawing
-    from rulec.report.pictures.drawing.styles import Theme
-    from rulec.trace import Trace
     from rulec.trace.formats.trace_files import Format
 
     Judged = tuple[NavigationGraph, Maneuvers | None, Maneuver | None]
@@ -185,7 +186,6 @@ def drive(
     """
     # Late import, not for --help: recordings, verdicts and pictures (400 ms).
     from rulec.api.pictures import drive_drawing
-    from rulec.recordings.recording_files import read_recording
 
     rules = read_machines(rulebook, at)
     vehicle, part, _ = ego.partition("#")

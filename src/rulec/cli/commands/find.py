@@ -28,6 +28,8 @@ from rulec.cli.output import answer_lines, output_stream, print_written
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.fault_messages import contained
 from rulec.files.read_files import opened
+from rulec.recordings.recording_files import is_recording, read_recordings
+from rulec.recordings.recording_inputs import input_files
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.settings import search_path
 
@@ -92,7 +94,6 @@ def command(
     Exit status: 0, or 2 if a file or a trace could not be read.
     """
     # Late import, not for --help: formats, the language and display of moments (300 ms).
-    from rulec.recordings.recording_inputs import input_files
     from rulec.report.moments import moment_rows
     from rulec.report.verdict_findings.finding_tables import RowWriter
     from rulec.rulebook.query_reader import read_query
@@ -155,7 +156,6 @@ def _moments(
     """The moments of all drives of all files, and the errors of those that could not be read."""
     # Late import, as above.
     from rulec.extraction.moment_search import in_recordings, in_traces
-    from rulec.recordings.recording_files import is_recording, read_recordings
     from rulec.trace.formats.trace_files import format_of, read_chunks
 
     form: Format | None = scenario_options.trace_format(options)

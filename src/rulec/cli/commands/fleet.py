@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from rulec.automata.bundle.renamed_rulebook import with_distinct_names
 from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import scenario_options
@@ -16,11 +17,11 @@ from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import read_machines, rulebooks_named, told_apart
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_result, progress
+from rulec.trace.trace_model import Ending
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.fleet.runs.fleet_run import FleetRun
-    from rulec.trace.trace_model import Ending
 
 
 @click.command(cls=Verb)
@@ -103,9 +104,6 @@ def command(
     complaints.close()
     print_result("\n\n".join(as_text(run) for _, run in runs))
     if len(runs) > 1:
-        # Late import, only for several rulebooks: the tables of automata (20 ms).
-        from rulec.automata.bundle.renamed_rulebook import with_distinct_names
-
         distinct = with_distinct_names(list(books.values()), list(named.values()))
         columns = [(rules, run) for rules, (_, run) in zip(distinct, runs, strict=True)]
         print_result(f"\n{compared(columns)}")

@@ -18,6 +18,7 @@ from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_line, print_remark, print_result
 from rulec.report.text.terminal_text import counted
 from rulec.report.text.text_diff import as_diff, for_terminal
+from rulec.rulebook.batch.batch_format import format_files, formatted, replace_files
 from rulec.settings import exclusion, search_path
 
 if TYPE_CHECKING:
@@ -43,9 +44,6 @@ def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -
     Exit status: 0 done, 1 --check or --diff found something to change, 2 a file could not be
     formatted.
     """
-    # Late import, not for --help: the parser of rulebooks (75 ms).
-    from rulec.rulebook.batch.batch_format import format_files, formatted, replace_files
-
     writes = not (check or diff)
     if "-" in paths:
         if len(paths) > 1:

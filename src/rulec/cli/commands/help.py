@@ -10,6 +10,8 @@ from click.shell_completion import CompletionItem
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.verb_table import VERBS
 from rulec.diagnostics import nearest_name
+from rulec.report.findings.code_registry import code_named
+from rulec.settings import search_path
 
 
 def _verbs(_: click.Context, __: click.Parameter, incomplete: str) -> list[CompletionItem]:
@@ -42,10 +44,8 @@ def command(context: click.Context, words: tuple[str, ...]) -> None:
 def _way_out(word: str) -> str:
     """Where something else of this name is explained, or where commands are listed."""
     # Late import, only for what is no command: codes and file search (60 ms).
-    from rulec.report.findings.code_registry import code_named
     from rulec.rulebook.files.catalogue import rulebooks_with_rule
     from rulec.rulebook.word_search import find_word
-    from rulec.settings import search_path
 
     places = (*search_path(), Path())
     if code_named(word.upper()) or find_word(word, places):

@@ -7,6 +7,7 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.verb_class import Verb
 from rulec.language_server.editor_settings import EDITORS, editor_settings
+from rulec.language_server.language_server_messages import no_pygls
 
 
 @click.command(cls=Verb)
@@ -29,9 +30,6 @@ def command(*, editor: str | None, stdio: bool) -> int:  # noqa: ARG001 - it doe
     if editor is not None:
         click.echo(editor_settings(editor), nl=False)
         return ExitStatus.OK
-    # Late import, not for --help: the message (5 ms).
-    from rulec.language_server.language_server_messages import no_pygls
-
     try:
         # Late import, not for --help: the server and the protocol's types (200 ms).
         from rulec.language_server.server import serve

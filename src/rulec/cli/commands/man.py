@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from rulec.cli.manual_page import manual_page
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import put_answer
@@ -19,7 +20,4 @@ def command(context: click.Context, to: Output) -> None:
     rulec man -o ~/.local/share/man/man1/rulec.1    for `man rulec`
     rulec man | man -l -                            to read it at once
     """  # noqa: D301 - click reads the backspace
-    # Late import, only for the page itself.
-    from rulec.cli.manual_page import manual_page
-
     put_answer(manual_page(context.find_root()), to)

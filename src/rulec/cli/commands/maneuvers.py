@@ -27,6 +27,7 @@ from rulec.cli.output import (
 )
 from rulec.diagnostics import SourceLocation
 from rulec.diagnostics.fault_messages import contained
+from rulec.recordings.recording_inputs import InputFiles, input_files
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_remark
 
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from rulec.planning import Maneuvers
     from rulec.planning.probability.rule_probability import AlternativeCounts, RuleProbabilities
     from rulec.planning.ranking.cheapest import Maneuver
-    from rulec.recordings.recording_inputs import InputFiles
     from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
     from rulec.scoring.maneuver_trajectories import TrajectoryScores
 
@@ -153,7 +153,6 @@ def command(
 def _inputs(scenarios: Sequence[str]) -> InputFiles:
     """The scenarios given by names, files, folders and patterns."""
     # Late import, not for --help: scenarios' formats and those of recordings (80 ms).
-    from rulec.recordings.recording_inputs import InputFiles, input_files
     from rulec.scenario import available_scenarios
 
     known = available_scenarios()

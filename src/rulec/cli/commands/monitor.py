@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from fractions import Fraction
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, Any
 
 import click
 
@@ -22,11 +22,10 @@ from rulec.cli.options.standard_input import STANDARD_INPUT, standard_input
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import answer_lines, open_session, print_written
 from rulec.diagnostics import RulecError, SourceLocation, named
+from rulec.logic.printing import number_in_words
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_remark, print_result
-
-if TYPE_CHECKING:
-    from rulec.vocabulary.vocabulary_model import Vocabulary
+from rulec.vocabulary.vocabulary_model import Vocabulary
 
 
 def _no_states(_: click.Context, __: click.Parameter, value: str) -> str:
@@ -81,7 +80,6 @@ def command(
     """
     # Late import, not for --help: monitors and the reader of states (60 ms).
     from rulec.automata.bundle.stored_steps import StoredSteps
-    from rulec.logic.printing import number_in_words
     from rulec.monitoring.online import monitor_sources
     from rulec.monitoring.online.running_monitor import Monitor
     from rulec.report.verdicts import running_verdicts

@@ -14,6 +14,7 @@ from rulec.diagnostics import SourceLocation
 from rulec.files.file_messages import UNWRITABLE_FILE
 from rulec.files.written_files import make_folder, written_whole
 from rulec.report.text.console import print_line, print_remark
+from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.settings import search_path
 
 
@@ -48,9 +49,6 @@ def command(name: str, output: str, base: str | None) -> None:
         )
     folders = () if base is None else (Path(output), *search_path())
     text = rulec.Session(folders).new_rulebook(name, base)
-    # Late import, not for --help: file search and its messages (3 ms).
-    from rulec.rulebook.files.search_path import available_rulebooks
-
     if name in available_rulebooks():
         print_remark(
             f"rulec: a `{name}` ships with rulec, too: `{name}` alone is that one, unless "

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 import rulec
+from rulec.automata.bundle.required_signature import refuse_source
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
@@ -21,6 +22,8 @@ from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, put_answer, rulebooks_named, width_of
 from rulec.diagnostics import first_of, named, nearest_name
 from rulec.report.text.console import print_remark
+from rulec.rulebook.batch.answer_cache import AnswerQuestion
+from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
@@ -120,19 +123,12 @@ def _books_and_rule(arguments: Sequence[str]) -> tuple[tuple[str, ...], str | No
 
 
 def _is_rulebook(argument: str) -> bool:
-    # Late import, not for --help: file search and its messages (3 ms).
-    from rulec.rulebook.files.search_path import available_rulebooks
-
     is_path = "/" in argument or argument.endswith((".rules", ".json")) or has_magic(argument)
     return is_path or argument in available_rulebooks(search_path())
 
 
 def _known(reference: str, *asked: Any, several: bool) -> str:
     """A rule as text or JSON, or all that match in brief; one JSON line each if ``several``."""
-    # Late import, not for --help: files and the cache (10 ms).
-    from rulec.automata.bundle.required_signature import refuse_source
-    from rulec.rulebook.batch.answer_cache import AnswerQuestion
-
     shown = partial(_shown, reference, *asked, several=several)
     if Path(reference).suffix == ".json":
         return shown()[0]
@@ -219,7 +215,6 @@ def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None, S
     # Late import, not for --help: rulebooks (130 ms).
     from rulec.automata.bundle.bundle_file import read_compiled
     from rulec.automata.bundle.compiled_rulebook import CompiledRule
-    from rulec.automata.bundle.required_signature import refuse_source
     from rulec.rulebook.loader import read_rulebook
     from rulec.rulebook.rulebook_model import Rule, Rulebook
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rulec.batch.jobs import Jobs
+from rulec.book_tests.book_test_messages import nothing_to_run, untested
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, RenamedOption, endings_of, output_options
@@ -20,6 +21,7 @@ from rulec.cli.watching import watch_option
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_remark
+from rulec.rulebook.allowances import without_allowed
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
@@ -105,12 +107,10 @@ def _tested(
 ) -> int:
     # Late import, not for --help: rulebooks and their automata (130 ms).
     from rulec.batch.example_batch import ExampleRequest, measured_runs
-    from rulec.book_tests.book_test_messages import untested
     from rulec.book_tests.example_coverage import uncovered_verdicts
     from rulec.book_tests.example_runs import with_distinct_names
     from rulec.report.tests.example_formats import render
     from rulec.report.tests.example_text import Besides, shortcomings
-    from rulec.rulebook.allowances import without_allowed
 
     rulebooks = sources_of_rulebooks(references, "has no examples")
     runs: list[ExampleRun] = []
@@ -154,7 +154,6 @@ def _refuse_unmatched(
     Rules that are not in force count as matched if anything else is; ``left_out`` tells of them.
     """
     # Late import, not for --help: rulebooks and their automata (130 ms).
-    from rulec.book_tests.book_test_messages import nothing_to_run, untested
     from rulec.book_tests.example_runs import is_chosen
 
     missing = [

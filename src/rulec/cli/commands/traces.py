@@ -22,8 +22,10 @@ from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_lost, print_written, read_machines
 from rulec.diagnostics import SourceLocation
 from rulec.diagnostics.fault_messages import contained
+from rulec.monitoring.state_validation import partial_names
 from rulec.report.text.console import progress
 from rulec.report.text.terminal_text import shown_count
+from rulec.trace.trace_model import all_traces
 
 if TYPE_CHECKING:
     from rulec.trace.formats.trace_files import Format
@@ -84,10 +86,8 @@ def command(
     if option:
         raise click.UsageError(f"{option} is for drives: add --recorded.")
     # Late import, not for --help and recordings: maneuvers and formats of traces (130 ms).
-    from rulec.monitoring.state_validation import partial_names
     from rulec.planning.product.graph_product import count_paths
     from rulec.trace.formats.trace_files import kinds_in, write_traces
-    from rulec.trace.trace_model import all_traces
 
     scene = scenario_options.read_scene(scenario, options)
     rules = None if rulebook is None else read_machines(rulebook)

@@ -14,6 +14,7 @@ from rulec.cli.output import open_session, put_answer, sources_of_rulebooks, wid
 from rulec.diagnostics import named
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.terminal_text import wants_color
+from rulec.rulebook.batch.answer_cache import AnswerQuestion
 from rulec.settings import search_path
 
 
@@ -28,9 +29,6 @@ def command(rulebooks: tuple[str, ...], patterns: tuple[str, ...], to: Output, a
     RULEBOOK is a name or the path of a source. With several RULEBOOKs, or none for all available
     ones, show which one extends which.
     """
-    # Late import, not for --help: files and the cache (10 ms).
-    from rulec.rulebook.batch.answer_cache import AnswerQuestion
-
     rulebooks = sources_of_rulebooks(rulebooks, "cannot be taken apart")
     if patterns and len(rulebooks) != 1:
         raise click.UsageError("--rule chooses among the rules of one RULEBOOK; give one")

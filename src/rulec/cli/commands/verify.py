@@ -25,8 +25,11 @@ from rulec.cli.options.rule_choice import refuse_unmatched, with_rules_like
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import read_machines, rulebooks_named
 from rulec.cli.verdict_outputs import FORMATS, VerdictOutputs, verdict_outputs
+from rulec.recordings.recording_files import check_readable, is_recording
+from rulec.recordings.recording_inputs import STANDARD_INPUT, input_files
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import page_width, print_remark
+from rulec.trace.trace_model import Ending
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -36,7 +39,6 @@ if TYPE_CHECKING:
     from rulec.recordings.recording_inputs import InputFiles
     from rulec.report.verdicts.batch_table import BatchTally
     from rulec.trace.formats.trace_files import Format
-    from rulec.trace.trace_model import Ending
 
 _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
 """The formats in which every line names its rulebook."""
@@ -124,9 +126,6 @@ def command(
     Exit status: 0 no hard rule is violated, 1 some are, 2 a trace, or every rule, could not be
     judged.
     """
-    # Late import, not for --help: formats of recordings (80 ms).
-    from rulec.recordings.recording_inputs import input_files
-
     inputs = input_files(files)
     refuse_overwriting(to, inputs.paths)
     scenario_options.check_thresholds(options["thresholds"])
@@ -235,10 +234,6 @@ def _check_inputs(request: VerifyRequest) -> None:
     about["input_format"] = None
     option = scenario_options.given_drives_option({"egos": request.egos, **about})
     if option and not request.recordings and not request.inputs.problems:
-        # Late import, not for --help: formats of recordings (80 ms).
-        from rulec.recordings.recording_files import check_readable
-        from rulec.recordings.recording_inputs import STANDARD_INPUT
-
         for path in request.inputs.paths:
             if path != STANDARD_INPUT:
                 check_readable(Path(path))
@@ -364,10 +359,6 @@ def _to_rows(
 
 def _recordings(inputs: InputFiles, form: Format | None, *, named: bool) -> list[str]:
     """The files that are recorded traffic; if the format is ``named``, all or none of them."""
-    # Late import, not for --help: formats of recordings (80 ms).
-    from rulec.recordings.recording_files import is_recording
-    from rulec.recordings.recording_inputs import STANDARD_INPUT
-
     if form is not None:
         return []
     if named:

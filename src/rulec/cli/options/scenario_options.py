@@ -14,17 +14,17 @@ from rulec.cli.options.output_options import RenamedOption, input_format_option
 from rulec.cli.options.shared_options import choice_option, combined, finite
 from rulec.cli.options.shell_completion import complete_scenarios
 from rulec.cli.options.standard_input import file_named
+from rulec.monitoring.assumptions import Assumptions
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.recording_format import RecordingSource
+from rulec.trace import Value
+from rulec.trace.trace_model import Ending
+from rulec.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
     from rulec.extraction.selection import RequestedDrives
-    from rulec.monitoring.assumptions import Assumptions
     from rulec.scenario import Scenario
-    from rulec.trace import Value
     from rulec.trace.formats.trace_files import Format
-    from rulec.trace.trace_model import Ending
-    from rulec.vocabulary import Vocabulary
 
 TRACE_FORMATS: tuple[Format, ...] = ("jsonl", "csv", "parquet")
 """The formats of traces, listed here to avoid an import for --help."""
@@ -363,9 +363,6 @@ def scene_reading(options: dict[str, Any], vocabulary: Vocabulary | None) -> dic
 
 def assumptions(ends: Ending | None, texts: Sequence[str], vocabulary: Vocabulary) -> Assumptions:
     """Assumptions about traces. Raises click.UsageError."""
-    # Late import, not for --help: tables of automata (160 ms).
-    from rulec.monitoring.assumptions import Assumptions
-
     values: Mapping[str, Value] = {}
     if named := [text for text in texts if text != "defaults"]:
         # Late import, only if values are assumed: NumPy and shapely (150 ms).

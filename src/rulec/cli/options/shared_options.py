@@ -20,6 +20,8 @@ from rulec.cli.options.output_options import RenamedOption, endings_of, output_o
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.options.standard_input import read_as_file
 from rulec.report.findings.finding_formats import FORMATS
+from rulec.rulebook.files.search_path import available_rulebooks
+from rulec.settings import search_path
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -176,10 +178,6 @@ def rulebook_option(
 def stands_for_several(reference: str) -> bool:
     """Whether a reference is a folder or pattern, not the name of a rulebook or file."""
     if "/" not in reference and os.path.isdir(reference):  # noqa: PTH112
-        # Late import: reading the names takes 10 ms
-        from rulec.rulebook.files.search_path import available_rulebooks
-        from rulec.settings import search_path
-
         return reference not in available_rulebooks(search_path())
     return os.path.isdir(reference) or (has_magic(reference) and not os.path.lexists(reference))  # noqa: PTH112 - Path raises on a null character
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rulec.diagnostics import RulecError
+from rulec.rulebook.files.search_path import available_rulebooks, available_vocabularies
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
@@ -85,9 +86,6 @@ def _folders() -> tuple[Path, ...]:
 
 
 def _book_names(*, vocabularies: bool = False) -> list[str]:
-    # Late import, not for --help: file search and its messages (3 ms).
-    from rulec.rulebook.files.search_path import available_rulebooks, available_vocabularies
-
     names = list(available_rulebooks(_folders()))
     if vocabularies:
         names += (path.stem for path in available_vocabularies(_folders()))

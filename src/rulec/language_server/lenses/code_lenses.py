@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from lsprotocol import types as lsp
 
+from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.language_server.lenses.rule_answers import COMMONROAD, ExampleAnswer, ParentAnswer
 from rulec.language_server.names.document_names import DocumentNames
 from rulec.language_server.names.renaming import TextChange
@@ -107,9 +108,6 @@ def _on_recordings(rule: Rule, answer: ExampleAnswer | None) -> Iterator[tuple[s
         if answer.lacking:
             yield f"not judgeable from CommonRoad: lacks {', '.join(answer.lacking)}", ""
         return
-    # Takes 100 ms to import: only when lenses are first requested.
-    from rulec.extraction.tellable_words import TELLABLE_WORDS
-
     untold = [
         name
         for name in dict.fromkeys(names_in(rule.formula))

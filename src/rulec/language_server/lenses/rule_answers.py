@@ -7,7 +7,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.rulebook.rulebook_model import Rule, Rulebook
+from rulec.trace.vocabulary_projection import with_told_values
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -61,9 +63,7 @@ def example_answer(book: Rulebook, rule: Rule) -> ExampleAnswer:
     from rulec.book_tests.example_coverage import coverage
     from rulec.book_tests.example_runs import run_rulebook_examples
     from rulec.extraction.tellable_types import told_types
-    from rulec.extraction.tellable_words import TELLABLE_WORDS
     from rulec.report.tests.example_text import missing_examples
-    from rulec.trace.vocabulary_projection import with_told_values
 
     compiled = _compiled(book, rule)
     run = run_rulebook_examples(replace(book, rules=(rule,)), compiled)

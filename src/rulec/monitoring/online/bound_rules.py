@@ -21,17 +21,20 @@ from rulec.monitoring.online.encoding.encoded_values import Encoded
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
 from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.online.group_letters import GroupLetters
+from rulec.monitoring.online.partial_states import PartialStateReader, rules_of_all
 from rulec.monitoring.online.prepared_rule import PreparedRule
 from rulec.monitoring.online.rule_group import GroupNode, RuleGroup, RuleGroups, RulesRead
+from rulec.monitoring.online.uncertain_steps import Edge
 from rulec.monitoring.state_validation import check_state, has_partial_values
+from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings, known_bits
+from rulec.monitoring.uncertainty.state_letters.possible_letters import bound_letters
 from rulec.resource_limits import CHOICES
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import State
 from rulec.vocabulary.vocabulary_model import choices
 
 if TYPE_CHECKING:
-    from rulec.monitoring.online.partial_states import PartialStateReader, RulesOfAll
-    from rulec.monitoring.online.uncertain_steps import Edge
+    from rulec.monitoring.online.partial_states import RulesOfAll
     from rulec.monitoring.uncertainty.state_letters.possible_letters import BoundLetters
 
 Awake: TypeAlias = Mapping[tuple[str, ...], Collection[Items]]
@@ -126,9 +129,6 @@ class BoundRules:
 
         Raises RulecError as ``read`` does, and R0718 if there are too many.
         """
-        # Loads NumPy, 100 ms: only if there are many choices.
-        from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings, known_bits
-
         name, rulebook = f"state {number}", self._rulebook
         check_state(state, self.objects, rulebook.vocabulary, name, place)
         state = with_implied_signals(state, rulebook.vocabulary)
@@ -198,10 +198,6 @@ class BoundRules:
     def _partial_state(
         self, state: State, where: tuple[str, SourceLocation | None]
     ) -> PartialStateReader:
-        # Loads NumPy, 100 ms: only if something is unknown.
-        from rulec.monitoring.online.partial_states import PartialStateReader
-        from rulec.monitoring.uncertainty.state_letters.possible_letters import bound_letters
-
         if self._letters is None:
             rulebook = self._rulebook
             self._letters = bound_letters(rulebook, self.objects, rulebook.vocabulary)
@@ -272,9 +268,6 @@ class BoundRules:
         if not has_holes:
             return letters
         if self._of_all is None:
-            # Loads NumPy, as above
-            from rulec.monitoring.online.partial_states import rules_of_all
-
             self._of_all = rules_of_all(self._rulebook, self.objects)
         of_all, number = self._of_all, where[0]
 

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.monitoring.online.encoding.encoded_values import PARTIAL_DIGITS
+from rulec.monitoring.online.four_valued import LetterClass
+from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
 from rulec.vocabulary.partial_values import Interval
 
 if TYPE_CHECKING:
-    from rulec.monitoring.online.four_valued import LetterClass
-    from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
     from rulec.monitoring.uncertainty.state_letters.read_digits import Cube
 
 MOST_NODES = 1 << 14

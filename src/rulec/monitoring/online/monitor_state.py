@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
 from operator import getitem
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import msgspec
 
@@ -27,10 +27,8 @@ from rulec.monitoring.online.rule_group import (
     RuleGroup,
 )
 from rulec.monitoring.online.running_constants import NO_CONSTANTS, KnownConstants
+from rulec.monitoring.online.uncertain_steps import Edge
 from rulec.value_display import short_repr
-
-if TYPE_CHECKING:
-    from rulec.monitoring.online.uncertain_steps import Edge
 
 
 class VerdictChange(NamedTuple):

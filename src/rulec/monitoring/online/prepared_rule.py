@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE
+from rulec.automata.outcome_machine import OutcomeMachine, of_running_words
 from rulec.logic.free_names import names_in
 from rulec.monitoring.online.encoding.digit_tables import DigitMasks, PartNumbers
 from rulec.monitoring.online.encoding.encoded_values import (
@@ -28,6 +29,8 @@ from rulec.monitoring.online.four_valued import (
     linked_edges,
 )
 from rulec.monitoring.online.letter_walk import LetterWalk, WalkedRead, WholeStateError
+from rulec.monitoring.online.uncertain_steps import Edge, UncertainSteps, cut_edges
+from rulec.monitoring.uncertainty.idle_letters import IdleLetters
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads, local_reads
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
     Letters,
@@ -40,11 +43,6 @@ MOST_CLASSES = 1 << 12
 
 BY_STATE = IMPOSSIBLE - 1
 """Replaces the class of a rule's letter that depends on the whole state."""
-
-if TYPE_CHECKING:
-    from rulec.automata.outcome_machine import OutcomeMachine
-    from rulec.monitoring.online.uncertain_steps import Edge, UncertainSteps
-    from rulec.monitoring.uncertainty.idle_letters import IdleLetters
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,18 +70,11 @@ class PreparedRule:
     @cached_property
     def uncertain(self) -> UncertainSteps:
         """The steps with unknown values."""
-        # Loads NumPy, 100 ms: only if something is unknown.
-        from rulec.automata.outcome_machine import of_running_words
-        from rulec.monitoring.online.uncertain_steps import UncertainSteps
-
         return UncertainSteps(of_running_words(self.rule.machine), self.edges)
 
     @cached_property
     def idle(self) -> IdleLetters:
         """The letters that leave the monitor in its start state and its verdict unchanged."""
-        # Loads NumPy, as above
-        from rulec.monitoring.uncertainty.idle_letters import IdleLetters
-
         steps = self.uncertain
 
         def are_idle(classes: int) -> bool:
@@ -350,8 +341,6 @@ def _prepared_rule(
     )
     if cut is None:
         return prepared
-    from rulec.monitoring.online.uncertain_steps import cut_edges  # numpy, as above
-
     first, cut_edges_, steps = cut_edges(cut)
     prepared = replace(prepared, start=first, edges=cut_edges_, letters=cut.letters, is_cut=True)
     vars(prepared)["uncertain"] = steps

@@ -7,9 +7,10 @@ in a state form one letter. The product is built lazily: nodes and letters are c
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence, Set
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.monitoring.online.encoding.encoded_values import (
     Breakpoints,
     MonitorInput,
@@ -21,12 +22,9 @@ from rulec.monitoring.online.four_valued import (
     RunningVerdict,
 )
 from rulec.monitoring.online.prepared_rule import BY_STATE, ClassTable, PreparedRule, prepared_rule
+from rulec.monitoring.online.uncertain_steps import Edge
 from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES
-
-if TYPE_CHECKING:
-    from rulec.automata.outcome_machine import OutcomeMachine
-    from rulec.monitoring.online.uncertain_steps import Edge
 
 MOST_CACHED = 1 << 18
 """How many nodes, letters and transitions are kept before all are discarded."""

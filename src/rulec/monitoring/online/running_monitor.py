@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
+from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.argument_kinds import expected, finite
@@ -39,9 +40,6 @@ from rulec.monitoring.verdict import CarriedState, RuleFor, Violation
 from rulec.trace import State
 from rulec.trace.trace_messages import NOT_A_TRACE
 from rulec.vocabulary.vocabulary_model import choices
-
-if TYPE_CHECKING:
-    from rulec.automata.outcome_machine import OutcomeMachine
 
 NO_OBJECTS: Mapping[str, str] = MappingProxyType({})
 

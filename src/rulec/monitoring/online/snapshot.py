@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence, Set
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import msgspec
 
@@ -32,11 +32,9 @@ from rulec.monitoring.online.monitor_state import (
 from rulec.monitoring.online.prepared_rule import PreparedRule
 from rulec.monitoring.online.rule_group import RuleGroups
 from rulec.monitoring.online.running_constants import SavedConstant
+from rulec.monitoring.online.uncertain_steps import Edge
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import Violation
-
-if TYPE_CHECKING:
-    from rulec.monitoring.online.uncertain_steps import Edge
 
 FORMAT = "rulec monitor"
 VERSION, PARTIAL_VERSION = 1, 2

@@ -13,11 +13,11 @@ from heapq import heapify, heappop, heappush
 from itertools import count
 from typing import TYPE_CHECKING, Generic, TypeAlias
 
+from rulec.partition import NavigationGraph
 from rulec.planning.product.graph_product import Memory, Product, ProductNode
 from rulec.planning.ranking.cheapest import Maneuver, maneuver
 
 if TYPE_CHECKING:
-    from rulec.partition import NavigationGraph
     from rulec.partition.motion.way_bounds import WayBound, WayBounds
 
 ALIKE = 0.01

@@ -12,13 +12,13 @@ from itertools import islice, pairwise
 from math import inf
 from typing import TYPE_CHECKING
 
+from rulec.partition import NavigationGraph
 from rulec.partition.navigation_graph import COMFORTABLE
 from rulec.planning.product.graph_product import Memory, Product
 from rulec.planning.ranking.cheapest import Maneuver, cheapest
 from rulec.planning.ranking.guided_ways import ALIKE, beam_ways, change_cost, guided_ways
 
 if TYPE_CHECKING:
-    from rulec.partition import NavigationGraph
     from rulec.partition.motion.way_bounds import WayBounds
     from rulec.partition.motion.witness_trajectory import WitnessSearch, WitnessTrajectory
 

@@ -31,6 +31,7 @@ from rulec.recordings.road_map import RoadMap
 from rulec.recordings.sumo.fcd import demand_beside, net_beside, read_fcd
 from rulec.recordings.sumo.fcd_content import FCD, MICROSECONDS, FcdTrack, FloatingCarData
 from rulec.recordings.sumo.fcd_holes import FcdGrid, FcdHoles, holes_of_rows, starts_of
+from rulec.recordings.sumo.fcd_table import read_fcd_table
 from rulec.recordings.sumo.lanelets import net_lanelets
 from rulec.recordings.sumo.light_states import (
     light_states_beside,
@@ -124,9 +125,6 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
 def _content(path: Path) -> FloatingCarData:
     if not is_fcd_head(head_of(Glance(path))):
         return read_fcd(path)
-    # Imported late: few files are tables.
-    from rulec.recordings.sumo.fcd_table import read_fcd_table
-
     return read_fcd_table(path)
 
 

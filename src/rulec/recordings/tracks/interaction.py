@@ -11,7 +11,6 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy import int64
@@ -21,13 +20,11 @@ from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.table_columns import ColumnKind, NamedColumns, Texts, named_columns
 from rulec.recordings.encodings.table_files import open_table
 from rulec.recordings.recording import Recording
+from rulec.recordings.recording_format import RecordingSource
 from rulec.recordings.road_map import RoadMap
 from rulec.recordings.tracks.even_times import framed_times
 from rulec.recordings.tracks.roads_of_tracks import roads_of, track_recording
 from rulec.recordings.tracks.track_rows import TrackRows
-
-if TYPE_CHECKING:
-    from rulec.recordings.recording_format import RecordingSource
 
 INTERACTION = FileFormat(
     "tracks of INTERACTION",

@@ -11,7 +11,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import pi
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy import int64
@@ -22,13 +21,11 @@ from rulec.recordings.encodings.table_files import open_table
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.mending.derived_motion import along
 from rulec.recordings.recording import Recording
+from rulec.recordings.recording_format import RecordingSource
 from rulec.recordings.tracks.even_times import EvenTimes, framed_times
 from rulec.recordings.tracks.highd_roads import highd_roads
 from rulec.recordings.tracks.roads_of_tracks import roads_of, shifted_to_roads, track_recording
 from rulec.recordings.tracks.track_rows import TrackRows
-
-if TYPE_CHECKING:
-    from rulec.recordings.recording_format import RecordingSource
 
 LEVELX = FileFormat(
     "tracks of levelXdata",

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy import int64
@@ -20,14 +19,11 @@ from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.table_columns import ColumnKind, NamedColumns, Texts, named_columns
 from rulec.recordings.encodings.table_files import open_table
 from rulec.recordings.recording import Recording
-from rulec.recordings.recording_format import Glance
+from rulec.recordings.recording_format import Glance, RecordingSource
 from rulec.recordings.table_heads import head_of
 from rulec.recordings.tracks.even_times import even_times
 from rulec.recordings.tracks.roads_of_tracks import lanes_beside, roads_of, track_recording
 from rulec.recordings.tracks.track_rows import TrackRows
-
-if TYPE_CHECKING:
-    from rulec.recordings.recording_format import RecordingSource
 
 NGSIM_TRACKS = FileFormat(
     "trajectories of NGSIM",

@@ -8,7 +8,6 @@ moment, ``total_nanos``, ``idx``, the middle of the body, velocities, ``yaw``, a
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy import int64
@@ -20,12 +19,10 @@ from rulec.recordings.mending.derived_motion import along
 from rulec.recordings.osi.moving_objects import kind_of
 from rulec.recordings.osi.osi_tables import OBJECTS, ROLES, VEHICLES
 from rulec.recordings.recording import Recording
+from rulec.recordings.recording_format import RecordingSource
 from rulec.recordings.tracks.even_times import even_times
 from rulec.recordings.tracks.roads_of_tracks import lanes_beside, roads_of, track_recording
 from rulec.recordings.tracks.track_rows import TrackRows
-
-if TYPE_CHECKING:
-    from rulec.recordings.recording_format import RecordingSource
 
 OMEGA_PRIME = FileFormat(
     "tracks in OMEGA-PRIME's columns", "see the specification of omega-prime", 4_000_000_000

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import pi
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast, get_args
+from typing import Any, cast, get_args
 
 import numpy as np
 
@@ -27,14 +27,12 @@ from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.lanes.lane_table import lane_map
 from rulec.recordings.map_files import read_map
 from rulec.recordings.recording import Lamp, Recording
+from rulec.recordings.recording_format import RecordingSource
 from rulec.recordings.road_map import RoadMap
 from rulec.recordings.table_heads import SAME_NAME
 from rulec.recordings.tracks.even_times import EvenTimes, even_times, framed_times
 from rulec.recordings.tracks.roads_of_tracks import lanes_beside, roads_of, track_recording
 from rulec.recordings.tracks.track_rows import TrackRows
-
-if TYPE_CHECKING:
-    from rulec.recordings.recording_format import RecordingSource
 
 TRACKS = FileFormat(
     "a table of tracks",

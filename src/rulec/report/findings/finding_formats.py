@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.source_text import address
 from rulec.files.read_files import from_here
+from rulec.report.findings.diagnostics_text import MAX_WIDTH, render_diagnostics
 from rulec.report.text.terminal_text import visible
 
 FORMATS = ("full", "concise", "json", "github", "sarif")
@@ -41,9 +42,6 @@ def render(
 
             return as_sarif(diagnostics, complete=complete)
         case _:
-            # Every verb imports this file for FORMATS, but few verbs write findings.
-            from rulec.report.findings.diagnostics_text import MAX_WIDTH, render_diagnostics
-
             shown = render_diagnostics(diagnostics, color, columns=columns or MAX_WIDTH)
             return shown.rstrip("\n")
 

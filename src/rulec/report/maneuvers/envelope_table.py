@@ -11,6 +11,7 @@ from rulec.planning.ranking.cheapest import Maneuver
 from rulec.report.json_document import JsonDocument, as_line
 from rulec.scenario.scenario_model import Surface
 from rulec.trace import Value
+from rulec.trace.formats.arrow.parquet import write_parquet
 from rulec.trace.formats.csv_table import write_csv
 from rulec.trace.formats.trace_files import Format
 
@@ -53,9 +54,6 @@ def write_envelopes(
     if form == "csv":
         write_csv(rows, list(COLUMNS), stream)
     elif form == "parquet":
-        # pyarrow takes 0.1 s and may be missing.
-        from rulec.trace.formats.arrow.parquet import write_parquet
-
         write_parquet(rows, list(COLUMNS.items()), stream, file)
     else:
         for row in rows:

@@ -9,6 +9,7 @@ from textwrap import wrap
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.diagnostics.diagnostic import at
+from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Constant, Unary, UnaryOperator
 from rulec.logic.free_names import names_in
@@ -161,9 +162,6 @@ def _facts(rule: Rule, rulebook: str) -> Iterator[tuple[str, str]]:
 
 def _untold(rule: Rule) -> str:
     """The words that no format of recordings provides; empty if that holds for none or for all."""
-    # Loads the table of recordings' words: only for a page about one rule.
-    from rulec.extraction.tellable_words import TELLABLE_WORDS
-
     tellable = frozenset[str]().union(*TELLABLE_WORDS.values())
     names = dict.fromkeys(names_in(rule.formula))
     untold = [name for name in names if name not in tellable]

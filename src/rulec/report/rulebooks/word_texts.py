@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from textwrap import fill, indent
 
 from rulec.diagnostics import Span
+from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.report.json_document import JsonDocument, as_indented
 from rulec.report.text import markdown
 from rulec.report.text.terminal_text import visible
@@ -186,9 +187,6 @@ def _default(value: float | str | bool | None) -> str:
 
 
 def _tellers(name: str) -> str:
-    # Loads the table of recordings' words, 100 ms: only for texts about a word.
-    from rulec.extraction.tellable_words import TELLABLE_WORDS
-
     formats = sorted(form for form, words in TELLABLE_WORDS.items() if name in words)
     if not formats:
         return "No format of recordings provides it."

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from rulec.book_tests.example_coverage import RuleCoverage
 from rulec.book_tests.example_runs import ExampleRun
 from rulec.report.tests.example_text import Besides, as_text
+from rulec.report.tests.junit import as_junit
 
 
 def render(
@@ -26,9 +27,6 @@ def render(
 
             return as_json(runs, covered)
         case "junit":
-            # ElementTree takes 4 ms.
-            from rulec.report.tests.junit import as_junit
-
             return as_junit(runs, covered, besides)
         case _:
             return as_text(runs, covered)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.ways_out import Help, offering
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.elaborate.elaboration_messages import hour_meant, kind_of, origins, short
+from rulec.rulebook.elaborate.scope import Scope
 from rulec.rulebook.names.atom_messages import (
     MIXED_DIMENSIONS,
     NOT_BOOLEAN,
@@ -30,9 +30,6 @@ from rulec.vocabulary.dimensions import (
     TIME,
     Dimension,
 )
-
-if TYPE_CHECKING:
-    from rulec.rulebook.elaborate.scope import Scope
 
 CIRCULAR_DEFINITION = Code(
     "R0316",

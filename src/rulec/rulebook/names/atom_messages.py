@@ -21,6 +21,7 @@ from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.names.word_meanings import described, in_other_letters, offer
 from rulec.syntax import tree
 from rulec.syntax.keywords import INFIX_LETTERS, PREFIX_LETTERS, UNARY_OPERATORS
+from rulec.syntax.messages.in_comparisons import ABSOLUTE, NO_ABSOLUTE_VALUE
 from rulec.vocabulary import Enumeration, Quantity, Signal
 from rulec.vocabulary.units import parse_unit
 
@@ -157,9 +158,6 @@ def _unknown(
     variables: Mapping[str, str | None],
     others: Collection[str],
 ) -> Diagnostic:
-    # Late import: these are the parser's messages, which no file without mistakes loads.
-    from rulec.syntax.messages.in_comparisons import ABSOLUTE, NO_ABSOLUTE_VALUE
-
     name = use.name.text
     atoms = symbols.atoms()
     quantities = [item.name for item in symbols.items.values() if isinstance(item, Quantity)]
