@@ -13,7 +13,7 @@ import numpy as np
 from rulec.array_types import Flags
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_passages
-from rulec.extraction.signals.map.right_of_way.conflicts import in_conflict
+from rulec.extraction.signals.map.right_of_way.conflicts import Passing, in_conflict
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 
@@ -57,5 +57,6 @@ def _in_way_of(context: DriveContext, own: Passage) -> Iterator[tuple[int, int]]
             continue
         ego, foe = passages.occupied(own, met[0]), passages.occupied(other, met[1])
         left_m = passages.left_to(other, met[1][0]) if foe[0] is None else 0.0
-        if ego[0] is not None and in_conflict(context, (own, *ego), (other, *foe), left_m):
+        ways = Passing(own, *ego), Passing(other, *foe)
+        if ego[0] is not None and in_conflict(context, *ways, left_m):
             yield other.row, int(np.ceil(ego[0]))

@@ -25,6 +25,7 @@ from rulec.extraction.signals.map.right_of_way.conflicts import (
     LONGEST_WAIT_S,
     ONCOMING,
     Encounter,
+    Passing,
     in_conflict,
     side_of,
 )
@@ -262,7 +263,7 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
             continue
         ego, foe = passages.occupied(own, met[0]), passages.occupied(other, met[1])
         left_m = passages.left_to(other, met[1][0]) if foe[0] is None else 0.0
-        verdict = in_conflict(context, (own, *ego), (other, *foe), left_m)
+        verdict = in_conflict(context, Passing(own, *ego), Passing(other, *foe), left_m)
         if verdict is None:
             continue
         begins, known = verdict

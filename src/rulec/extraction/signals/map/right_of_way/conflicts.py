@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil
-from typing import TypeAlias
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from rulec.extraction.signals.map.right_of_way.held_up import (
     BEHIND_S,
     DRIVES_MPS,
     SEES_S,
+    EgoThere,
     drives_in,
     held_up,
     slows_down,
@@ -42,8 +42,14 @@ _GRAZES_M = 0.15
 _CLEAR_M = 0.5
 """A body this far (m) from another one, beyond the tolerance of places, is clear of it."""
 
-Passing: TypeAlias = tuple[Passage, float | None, float | None]
-"""A passage, and when (in columns) it enters and leaves the place where ways meet."""
+
+@dataclass(frozen=True, slots=True)
+class Passing:
+    """A passage, and when (in columns) it enters and leaves the place where ways meet."""
+
+    passage: Passage
+    enters: float | None
+    leaves: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,27 +84,30 @@ def in_conflict(
 
     ``left_m``: how far the other is from the place where ways meet, if its track ends before.
     """
-    own, other = ego[0], foe[0]
-    (enters, leaves), (comes, passed) = (tuple(map(_column, when[1:])) for when in (ego, foe))
+    own, other = ego.passage, foe.passage
+    enters, leaves = _column(ego.enters), _column(ego.leaves)
+    comes, passed = _column(foe.enters), _column(foe.leaves)
     if enters is None or (passed is not None and passed <= enters):
         return None
     if comes is not None and comes < enters:
-        return _runs_into(context, (own, enters, leaves), (other, passed))
-    if _is_there_at_first(context, own, ego[1]) and _is_there_at_first(context, other, foe[1]):
+        return _runs_into(context, EgoThere.of(context, own, enters, leaves), other, passed)
+    if _is_there_at_first(context, ego) and _is_there_at_first(context, foe):
         # It was not recorded which of the two got there first
         return enters, False
     speed = context.surroundings.passages.tracks.speed[own.row, enters:passed]
     waits = speed.min(initial=np.inf) < SLOWEST_MPS
-    found = held_up(context, (own, enters, ego[2]), other, (foe[1], left_m))
+    there = EgoThere.of(context, own, enters, ego.leaves)
+    found = held_up(context, there, other, foe.enters, left_m)
     if found is not None and passed is not None and (leaves is None or passed < leaves):
-        return _let_pass(context, (own, slice(enters, passed)), other, found, waits=waits)
+        return _let_pass(context, own, other, slice(enters, passed), found, waits=waits)
     return found
 
 
 def _let_pass(
     context: DriveContext,
-    ego: tuple[Passage, slice],
+    own: Passage,
     other: Passage,
+    there: slice,
     found: tuple[int, bool],
     *,
     waits: bool,
@@ -109,7 +118,6 @@ def _let_pass(
     creeps on behind them. It is not sure if they brake, as that may be because of ego. ``found`` is
     what holds if they had not passed.
     """
-    own, there = ego
     if collide(context, own, other, there):
         return (found[0], collide(context, own, other, there, _GRAZES_M)) if waits else found
     present = context.surroundings.passages.tracks.present[other.row].nonzero()[0]
@@ -118,14 +126,14 @@ def _let_pass(
     return (found[0], False) if brakes else None
 
 
-def _is_there_at_first(context: DriveContext, passage: Passage, when: float | None) -> bool:
+def _is_there_at_first(context: DriveContext, passing: Passing) -> bool:
     """Whether a participant is where ways meet in the first state in which it is recorded."""
-    present = context.surroundings.passages.tracks.present[passage.row]
-    return when is not None and when <= int(present.argmax())
+    present = context.surroundings.passages.tracks.present[passing.passage.row]
+    return passing.enters is not None and passing.enters <= int(present.argmax())
 
 
 def _runs_into(
-    context: DriveContext, ego: tuple[Passage, int, int | None], foe: tuple[Passage, int | None]
+    context: DriveContext, ego: EgoThere, other: Passage, passed: int | None
 ) -> tuple[int, bool] | None:
     """``in_conflict`` for a vehicle that got there first, into whose side ego drives.
 
@@ -137,7 +145,7 @@ def _runs_into(
     the place is longer than bodies.
     """
     passages = context.surroundings.passages
-    (own, enters, leaves), (other, passed) = ego, foe
+    own, enters = ego.passage, ego.enters
     ways = passages.way(own), passages.way(other)
     present = passages.tracks.present[other.row].nonzero()[0]
     first = max(int(present[0]), context.first_column)
@@ -166,7 +174,7 @@ def _runs_into(
             return first, False
     moved_mps = max(slowest[1], passages.tracks.speed[other.row, moved_in])
     sure = moved_mps > SLOWEST_MPS and slowest.max() > DRIVES_MPS
-    meanwhile = until if leaves is None else min(until, leaves)
+    meanwhile = min(until, int(ego.until)) if ego.gone else until
     return first, bool(sure) and slows_down(context, own, enters, meanwhile) is False
 
 

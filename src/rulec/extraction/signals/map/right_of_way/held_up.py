@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import ceil, sqrt
 
 import numpy as np
@@ -50,58 +51,68 @@ _GAINS_MPS2 = 0.5
 """Whose speed changes by less than this keeps it."""
 
 
+@dataclass(frozen=True, slots=True)
+class EgoThere:
+    """Ego's passage, and when (in columns) it is at the place where its way meets another one.
+
+    ``until`` it has left, or its track ends there; then it is not ``gone``.
+    """
+
+    passage: Passage
+    enters: int
+    until: float
+    gone: bool
+
+    @staticmethod
+    def of(context: DriveContext, passage: Passage, enters: int, leaves: float | None) -> EgoThere:
+        """Ego from when it enters the place to when it leaves it; None if its track ends there."""
+        end = context.surroundings.passages.tracks.x.shape[1] - 1
+        return EgoThere(passage, enters, end if leaves is None else leaves, leaves is not None)
+
+
 def held_up(
-    context: DriveContext,
-    ego: tuple[Passage, int, float | None],
-    other: Passage,
-    there: tuple[float | None, float],
+    context: DriveContext, ego: EgoThere, other: Passage, at: float | None, left_m: float
 ) -> tuple[int, bool] | None:
     """``conflicts.in_conflict`` for one that gets there later than ego, or after its track's end.
 
-    ``there``: in which column, or how far (m) it still has to go at its end. It is not sure if its
-    track ends before, as it may come no sooner than it can, or later.
+    ``at``: in which column, or ``left_m``: how far (m) it still has to go at its end. It is not
+    sure if its track ends before, as it may come no sooner than it can, or later.
     """
-    passages, (_, enters, leaves) = context.surroundings.passages, ego
-    until = passages.tracks.x.shape[1] - 1 if leaves is None else leaves
-    present, (at, left_m) = passages.tracks.present[other.row].nonzero()[0], there
+    tracks = context.surroundings.passages.tracks
+    present = tracks.present[other.row].nonzero()[0]
     first, end = max(int(present[0]), context.first_column), int(present[-1])
-    if min(enters, end) < first:
+    if min(ego.enters, end) < first:
         return None
     if at is not None:
-        return _held_up_until(context, ego, other, (first, at, until))
-    if end < until:
+        return _held_up_until(context, ego, other, at)
+    if end < ego.until:
         return first, False
-    speed = max(float(zero_if_nan(passages.tracks.speed[other.row, end])), 0.0)
+    speed = max(float(zero_if_nan(tracks.speed[other.row, end])), 0.0)
     at = end + _soonest_s(speed, _SPEEDS_UP_MPS2, left_m) / context.recording.step_s
-    found = _held_up_until(context, ego, other, (first, at, until), left_m)
+    found = _held_up_until(context, ego, other, at, left_m)
     return found and (found[0], False)
 
 
 def _held_up_until(
-    context: DriveContext,
-    ego: tuple[Passage, int, float | None],
-    other: Passage,
-    times: tuple[int, float, float],
-    left_m: float = 0.0,
+    context: DriveContext, ego: EgoThere, other: Passage, at: float, left_m: float = 0.0
 ) -> tuple[int, bool] | None:
     """``held_up`` for a vehicle of which it is known when it gets there.
 
-    ``times``: the first column of the two, when the other gets there, and when ego has left;
     ``left_m``: how far (m) the other still has to go when its track ends.
     """
     limits, step_s = context.thresholds, context.recording.step_s
     passages = context.surroundings.passages
-    (own, enters, leaves), (first, at, until) = ego, times
+    own, enters, until = ego.passage, ego.enters, ego.until
     present = passages.tracks.present[other.row].nonzero()[0]
-    last = min(enters, int(present[-1]))
+    first, last = max(int(present[0]), context.first_column), min(enters, int(present[-1]))
     columns, comes = np.arange(first, last + 1), ceil(at)
     decides = min(max(_decides(context, own, enters) - first, 0), last - first)
     train, late_s = is_train(context, own, other.row), (at - until) * step_s
     if late_s < (limits.held_up_s if train else limits.yielding_s):
-        drove_on = leaves is not None or _drives_on(context, own, comes)
+        drove_on = ego.gone or _drives_on(context, own, comes)
         moved_in = min(max(passages.front_enters(own), first), last)
         late = (at - enters) * step_s > _LATE_S and _stood(context, own, enters, until)
-        late |= _catches_up(context, (own, enters, until), other, at, left_m)
+        late |= _catches_up(context, ego, other, at, left_m)
         # The meeting place is wider than the bodies, and where ways join it is longer. One that
         # drives on, or slows down for itself, and whose body does not come that soon, is not
         # disturbed
@@ -127,55 +138,50 @@ def _held_up_until(
     # in
     waits_longer = late_s >= limits.held_up_s
     before = max(decides - round(SEES_S / step_s), 0)
-    seen = first + before, first + decides
+    seen = slice(first + before, first + decides + 1)
     braked: bool | None
     if waits_longer or not (soon[decides] and soon[-1]):
         braked = bool(soon[before]) and _brakes_for(
-            context, other, (seen[0], int(until)), comes, may_turn=not waits_longer
+            context, other, slice(first + before, int(until) + 1), comes, may_turn=not waits_longer
         )
         decides = before
     else:
         # Nor was one that brakes once ego is gone
         braked = slows_down(context, other, first + decides, int(until))
     if braked is False:
-        return _stops_again(context, ego, other, (seen, until, comes), place)
+        return _stops_again(context, ego, other, seen, comes=comes, place=place)
     own_reason = _slows_for_itself(context, ego, other, first + decides, comes)
     if waits_longer and own_reason:
         return None
-    unsure = leaves is None or own_reason or waits_longer or braked is None
-    unsure = unsure or _catches_up(context, (own, enters, until), other, at, left_m)
+    unsure = not ego.gone or own_reason or waits_longer or braked is None
+    unsure = unsure or _catches_up(context, ego, other, at, left_m)
     return int(columns[soon.argmax()]), not unsure
 
 
 def _stops_again(
-    context: DriveContext,
-    ego: tuple[Passage, int, float | None],
-    other: Passage,
-    times: tuple[tuple[int, int], float, int],
-    place: float,
+    context: DriveContext, ego: EgoThere, other: Passage, seen: slice, *, comes: int, place: float
 ) -> tuple[int, bool] | None:
     """``held_up`` for one that was speeding up as ego drove in, and then brakes.
 
-    It would have come sooner than its speed tells; how much sooner is not known. ``times``: when it
-    may have seen that ego drives in, first and last, when ego has left, and when it comes;
-    ``place``: where that is (m).
+    It would have come sooner than its speed tells; how much sooner is not known. ``seen``: when it
+    may have seen that ego drives in; ``comes``: when it comes, and ``place``: where that is (m).
     """
-    (begin, decides), until, comes = times
     tracks, step_s = context.surroundings.passages.tracks, context.recording.step_s
-    by = until + context.thresholds.yielding_s / step_s
-    gains = tracks.acceleration[other.row, begin : decides + 1] >= _GAINS_MPS2
-    speeds_up = (begin + int(k) for k in gains.nonzero()[0])
+    by = ego.until + context.thresholds.yielding_s / step_s
+    gains = tracks.acceleration[other.row, seen] >= _GAINS_MPS2
+    speeds_up = (seen.start + int(k) for k in gains.nonzero()[0])
     soon = next((k for k in speeds_up if _comes_by(context, other, k, place) < by), None)
     if soon is None:
         return None
-    last = min(int(until), int(tracks.present[other.row].nonzero()[0][-1]))
+    last = min(int(ego.until), int(tracks.present[other.row].nonzero()[0][-1]))
     speed = zero_if_nan(tracks.speed[other.row, soon : last + 1])
     fastest = np.maximum.accumulate(speed)
     slowed = ((fastest > SLOWEST_MPS) & (speed < _BRAKED * fastest)).nonzero()[0]
-    if not len(slowed) and not _brakes_for(context, other, (soon, last), comes, may_turn=False):
+    there = slice(soon, last + 1)
+    if not len(slowed) and not _brakes_for(context, other, there, comes, may_turn=False):
         return None
     brakes = soon + int(speed[: slowed[0] if len(slowed) else None].argmax())
-    waits_longer = (comes - until) * step_s >= context.thresholds.held_up_s
+    waits_longer = (comes - ego.until) * step_s >= context.thresholds.held_up_s
     if waits_longer and _slows_for_itself(context, ego, other, brakes, comes):
         return None
     return soon, False
@@ -198,18 +204,14 @@ def _soonest_s(speed: float, gains: float, left_m: float) -> float:
 
 
 def _slows_for_itself(
-    context: DriveContext,
-    ego: tuple[Passage, int, float | None],
-    other: Passage,
-    first: int,
-    comes: int,
+    context: DriveContext, ego: EgoThere, other: Passage, first: int, comes: int
 ) -> bool:
     """Whether a vehicle gets slower, while ego is on its way there, and not only for ego."""
-    (own, _, leaves), step_s = ego, context.recording.step_s
-    last = comes if leaves is None else int(leaves)
-    until = min(last + round(_BRIEFLY_S / step_s), comes)
+    last = int(ego.until) if ego.gone else comes
+    until = min(last + round(_BRIEFLY_S / context.recording.step_s), comes)
+    rows = ego.passage.row, other.row
     slows = slows_down(context, other, first, last)
-    return bool(slows) and slows_for_itself(context, (own.row, other.row), (first, until))
+    return bool(slows) and slows_for_itself(context, rows, (first, until))
 
 
 def is_train(context: DriveContext, own: Passage, row: int) -> bool:
@@ -222,12 +224,7 @@ def is_train(context: DriveContext, own: Passage, row: int) -> bool:
 
 
 def _brakes_for(
-    context: DriveContext,
-    other: Passage,
-    columns: tuple[int, int],
-    comes: int,
-    *,
-    may_turn: bool,
+    context: DriveContext, other: Passage, columns: slice, comes: int, *, may_turn: bool
 ) -> bool:
     """Whether a vehicle brakes harder than ``disturbing_mps2`` then, and not to turn.
 
@@ -235,13 +232,12 @@ def _brakes_for(
     if it ``may_turn``, it comes to a stand, which no turn asks for.
     """
     tracks = context.surroundings.passages.tracks
-    begin, end = columns
-    there = other.row, slice(begin, end + 1)
+    there = other.row, columns
     least = -context.thresholds.disturbing_mps2
     hard = (tracks.acceleration[there] + tracks.acceleration_error[there] < least).nonzero()[0]
     if not len(hard):
         return False
-    brakes = begin + int(hard[0])
+    brakes = columns.start + int(hard[0])
     speed = tracks.speed[other.row, brakes : max(comes, brakes) + 1]
     if may_turn and (speed < SLOWEST_MPS).any():
         return True
@@ -256,21 +252,17 @@ def _stood(context: DriveContext, own: Passage, first: int, last: float) -> bool
 
 
 def _catches_up(
-    context: DriveContext,
-    ego: tuple[Passage, int, float],
-    other: Passage,
-    at: float,
-    left_m: float,
+    context: DriveContext, ego: EgoThere, other: Passage, at: float, left_m: float
 ) -> bool:
     """Whether another one comes so soon after ego only because ego is held up, as in a queue.
 
     When ego drove in, it could not come for a long time, however it sped up. ``at``: when it does,
     and ``left_m``: how far (m) it still has to go then.
     """
-    (own, enters, until), passages = ego, context.surroundings.passages
-    speed, comes = passages.tracks.speed[own.row], ceil(at)
-    moved_in = drives_in(context, own, enters)
-    is_held_up = bool((speed[enters : int(until) + 1] < DRIVES_MPS).any())
+    passages = context.surroundings.passages
+    speed, comes = passages.tracks.speed[ego.passage.row], ceil(at)
+    moved_in = drives_in(context, ego.passage, ego.enters)
+    is_held_up = bool((speed[ego.enters : int(ego.until) + 1] < DRIVES_MPS).any())
     if not is_held_up or comes <= moved_in:
         return False
     travelled = passages.travelled[other.row]
