@@ -2,145 +2,54 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from glob import escape
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.recordings import table_heads as heads
 from rulec.recordings.argoverse.argoverse_files import ANNOTATIONS, SCENARIO, is_named
-from rulec.recordings.recording_format import Glance, RecordingFormat, RecordingSource
+from rulec.recordings.recording_format import Glance, RecordingFormat, RecordingSource, when_called
 
 if TYPE_CHECKING:
     from rulec.recordings.recording import Recording
 
 
-def _commonroad(source: RecordingSource) -> Iterator[Recording]:
-    # NumPy and Shapely take a while, and few commands read recordings.
-    from rulec.recordings.commonroad.commonroad_file import read_commonroad
+def _one(place: str) -> Callable[[RecordingSource], Iterator[Recording]]:
+    """The reader of a format with one recording in a file, and its roads."""
 
-    yield read_commonroad(source.path)
+    def read(source: RecordingSource) -> Iterator[Recording]:
+        yield when_called(place)(source.path)
 
-
-def _commonroad_protobuf(source: RecordingSource) -> Iterator[Recording]:
-    # As above.
-    from rulec.recordings.commonroad.commonroad_protobuf import read_protobuf
-
-    yield read_protobuf(source.path)
+    return read
 
 
-def _sumo(source: RecordingSource) -> Iterator[Recording]:
-    # As above.
-    from rulec.recordings.sumo.sumo_recording import read_sumo
+def _one_on_map(place: str) -> Callable[[RecordingSource], Iterator[Recording]]:
+    """The reader of a format with one recording in a file, whose roads may be in another one."""
 
-    yield read_sumo(source.path, source.map_path)
+    def read(source: RecordingSource) -> Iterator[Recording]:
+        yield when_called(place)(source.path, source.map_path)
+
+    return read
 
 
 def _waymo(source: RecordingSource) -> Iterator[Recording]:
-    # As above.
-    from rulec.recordings.waymo.waymo_file import read_waymo
-
-    return read_waymo(source.path, source.scenario_id)
-
-
-def _scenarionet(source: RecordingSource) -> Iterator[Recording]:
-    # As above.
-    from rulec.recordings.scenarionet.scenarionet_file import read_scenarionet
-
-    yield read_scenarionet(source.path)
+    yield from when_called("waymo.waymo_file.read_waymo")(source.path, source.scenario_id)
 
 
 def _is_scenarionet(glance: Glance) -> bool:
     return glance.name.endswith((".pkl", ".pickle"))
 
 
-def _waymo_ids(path: Path) -> Iterator[str]:
-    # As above.
-    from rulec.recordings.waymo.waymo_file import waymo_ids
-
-    return waymo_ids(path)
-
-
 def _is_waymo(glance: Glance) -> bool:
     return ".tfrecord" in glance.name
-
-
-def _osi(source: RecordingSource) -> Iterator[Recording]:
-    # As above.
-    from rulec.recordings.osi.osi_recording import read_osi
-
-    yield read_osi(source.path, source.map_path)
 
 
 def _is_osi(glance: Glance) -> bool:
     return glance.name.endswith((".osi", ".mcap")) or glance.head.startswith(b"\x89MCAP0\r\n")
 
 
-def _argoverse_motion(source: RecordingSource) -> Iterator[Recording]:
-    # As above.
-    from rulec.recordings.argoverse.motion_scenario import read_motion
-
-    yield read_motion(source.path, source.map_path)
-
-
-def _argoverse_sensor(source: RecordingSource) -> Iterator[Recording]:
-    # As above.
-    from rulec.recordings.argoverse.sensor_log import read_sensor_log
-
-    yield read_sensor_log(source.path, source.map_path)
-
-
-def _d123(source: RecordingSource) -> Iterator[Recording]:
-    # As above.
-    from rulec.recordings.d123.log_recording import read_d123
-
-    yield read_d123(source.path, source.map_path)
-
-
 def _is_protobuf(glance: Glance) -> bool:
     return glance.name.endswith(".pb")
-
-
-def _tracks(source: RecordingSource) -> Iterator[Recording]:
-    # As above.
-    from rulec.recordings.tracks.track_table import read_track_table
-
-    return read_track_table(source)
-
-
-def _highd(source: RecordingSource) -> Iterator[Recording]:
-    # As above.
-    from rulec.recordings.tracks.levelx import read_highd
-
-    return read_highd(source)
-
-
-def _levelx(source: RecordingSource) -> Iterator[Recording]:
-    # As above.
-    from rulec.recordings.tracks.levelx import read_levelx
-
-    return read_levelx(source)
-
-
-def _interaction(source: RecordingSource) -> Iterator[Recording]:
-    # As above.
-    from rulec.recordings.tracks.interaction import read_interaction
-
-    return read_interaction(source)
-
-
-def _ngsim(source: RecordingSource) -> Iterator[Recording]:
-    # As above.
-    from rulec.recordings.tracks.ngsim import read_ngsim
-
-    return read_ngsim(source)
-
-
-def _omega_prime(source: RecordingSource) -> Iterator[Recording]:
-    # As above.
-    from rulec.recordings.tracks.omega_prime import read_omega_prime
-
-    return read_omega_prime(source)
 
 
 def _is_part(glance: Glance) -> bool:
@@ -172,7 +81,7 @@ FORMATS = (
         title="CommonRoad scenarios, 2018b and 2020a",
         files="*.xml",
         recognises=lambda glance: glance.root == "commonRoad",
-        read=_commonroad,
+        read=_one("commonroad.commonroad_file.read_commonroad"),
     ),
     RecordingFormat(
         name="commonroad-protobuf",
@@ -180,7 +89,7 @@ FORMATS = (
         files="*.pb, their parts beside each other",
         recognises=_is_protobuf,
         is_companion=_is_part,
-        read=_commonroad_protobuf,
+        read=_one("commonroad.commonroad_protobuf.read_protobuf"),
     ),
     RecordingFormat(
         name="sumo",
@@ -189,7 +98,7 @@ FORMATS = (
         recognises=lambda glance: (
             glance.root == "fcd-export" or heads.is_fcd_head(heads.head_of(glance))
         ),
-        read=_sumo,
+        read=_one_on_map("sumo.sumo_recording.read_sumo"),
         roads="beside it, or --map",
     ),
     RecordingFormat(
@@ -197,7 +106,7 @@ FORMATS = (
         title="Argoverse 2's motion forecasting, with the map beside it",
         files="scenario_*.parquet, or its folder",
         recognises=lambda glance: is_named(glance.path, SCENARIO),
-        read=_argoverse_motion,
+        read=_one_on_map("argoverse.motion_scenario.read_motion"),
         roads="beside it, or --map",
     ),
     RecordingFormat(
@@ -205,7 +114,7 @@ FORMATS = (
         title="Argoverse 2's sensor logs, with poses and map beside them",
         files="annotations*.feather, or its folder",
         recognises=lambda glance: is_named(glance.path, ANNOTATIONS),
-        read=_argoverse_sensor,
+        read=_one_on_map("argoverse.sensor_log.read_sensor_log"),
         roads="beside it, or --map",
     ),
     RecordingFormat(
@@ -214,14 +123,14 @@ FORMATS = (
         files="*.tfrecord, *.tfrecord-00000-of-01000",
         recognises=_is_waymo,
         read=_waymo,
-        names=_waymo_ids,
+        names=when_called("waymo.waymo_file.waymo_ids"),
     ),
     RecordingFormat(
         name="highd",
         title="highD",
         files="*_tracks.csv, with *_tracksMeta.csv and *_recordingMeta.csv",
         recognises=lambda glance: heads.is_highd_head(heads.head_of(glance)),
-        read=_highd,
+        read=when_called("tracks.levelx.read_highd"),
         is_companion=_is_about_tracks,
     ),
     RecordingFormat(
@@ -229,7 +138,7 @@ FORMATS = (
         title="inD, rounD, exiD and uniD, on their maps",
         files="*_tracks.csv, with *_tracksMeta.csv and *_recordingMeta.csv",
         recognises=lambda glance: heads.is_levelx_head(heads.head_of(glance)),
-        read=_levelx,
+        read=when_called("tracks.levelx.read_levelx"),
         roads="with --map",
         is_companion=_is_about_tracks,
     ),
@@ -238,7 +147,7 @@ FORMATS = (
         title="INTERACTION, on its maps",
         files="vehicle_tracks_*.csv, pedestrian_tracks_*.csv",
         recognises=lambda glance: heads.is_interaction_head(heads.head_of(glance)),
-        read=_interaction,
+        read=when_called("tracks.interaction.read_interaction"),
         roads="beside it, or --map",
         is_companion=_is_beside_vehicles,
     ),
@@ -247,7 +156,7 @@ FORMATS = (
         title="NGSIM's trajectories, on lanes as a table",
         files="trajectories-*.txt, *.csv",
         recognises=lambda glance: heads.is_ngsim_head(heads.head_of(glance)),
-        read=_ngsim,
+        read=when_called("tracks.ngsim.read_ngsim"),
         roads="beside it, or --map",
     ),
     RecordingFormat(
@@ -255,7 +164,7 @@ FORMATS = (
         title="tracks in OMEGA-PRIME's columns, on any map",
         files="*.csv, *.parquet",
         recognises=lambda glance: heads.is_omega_prime_head(heads.head_of(glance)),
-        read=_omega_prime,
+        read=when_called("tracks.omega_prime.read_omega_prime"),
         roads="beside it, or --map",
     ),
     RecordingFormat(
@@ -263,7 +172,7 @@ FORMATS = (
         title="tracks as a table, on any map",
         files="*.csv, *.parquet",
         recognises=lambda glance: heads.is_track_head(heads.head_of(glance)),
-        read=_tracks,
+        read=when_called("tracks.track_table.read_track_table"),
         roads="beside it, or --map",
     ),
     RecordingFormat(
@@ -271,7 +180,7 @@ FORMATS = (
         title="ASAM OSI traces",
         files="*.osi, *.mcap",
         recognises=_is_osi,
-        read=_osi,
+        read=_one_on_map("osi.osi_recording.read_osi"),
         roads="its own, or --map",
     ),
     RecordingFormat(
@@ -279,14 +188,14 @@ FORMATS = (
         title="scenarios of ScenarioNet's: Waymo, nuScenes, nuPlan and others in one form",
         files="*.pkl",
         recognises=_is_scenarionet,
-        read=_scenarionet,
+        read=_one("scenarionet.scenarionet_file.read_scenarionet"),
     ),
     RecordingFormat(
         name="123d",
         title="logs of 123D: Argoverse 2, nuPlan, nuScenes, Waymo and others in one form",
         files="sync.arrow, or its folder",
         recognises=lambda glance: is_named(glance.path, "sync.arrow"),
-        read=_d123,
+        read=_one_on_map("d123.log_recording.read_d123"),
         roads="beside it, or --map",
     ),
 )

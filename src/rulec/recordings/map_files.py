@@ -16,7 +16,7 @@ from rulec.recordings.argoverse.argoverse_files import MAP as MAP_ARCHIVES
 from rulec.recordings.argoverse.argoverse_files import is_named
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.xml_element import short
-from rulec.recordings.recording_format import Glance
+from rulec.recordings.recording_format import Glance, when_called
 
 if TYPE_CHECKING:
     from rulec.recordings.road_map import RoadMap
@@ -35,53 +35,18 @@ class MapFormat:
     read: Callable[[Path, float], RoadMap]
 
 
-def _sumo(path: Path, step_s: float) -> RoadMap:
-    # NumPy and Shapely take a while, and few commands read recordings.
-    from rulec.recordings.sumo.sumo_recording import read_sumo_map
+def _roads(place: str, *, with_lights: bool = False) -> Callable[[Path, float], RoadMap]:
+    """The reader of a format, which is told the time step if the format has lights."""
 
-    return read_sumo_map(path, step_s)
+    def read(path: Path, step_s: float) -> RoadMap:
+        given = (path, step_s) if with_lights else (path,)
+        roads: RoadMap = when_called(place)(*given)
+        return roads
 
-
-def _opendrive(path: Path, _: float) -> RoadMap:
-    # As above.
-    from rulec.recordings.opendrive.opendrive_map import read_opendrive_map
-
-    return read_opendrive_map(path)
+    return read
 
 
-def _commonroad(path: Path, step_s: float) -> RoadMap:
-    # As above.
-    from rulec.recordings.commonroad.commonroad_file import read_commonroad_map
-
-    return read_commonroad_map(path, step_s)
-
-
-def _lanelet2(path: Path, _: float) -> RoadMap:
-    # As above.
-    from rulec.recordings.lanelet2.lanelet2_map import read_lanelet2
-
-    return read_lanelet2(path)
-
-
-def _lanes(path: Path, step_s: float) -> RoadMap:  # noqa: ARG001 - lanes have no lights
-    # As above.
-    from rulec.recordings.lanes.lane_table import read_lane_map
-
-    return read_lane_map(path)
-
-
-def _argoverse(path: Path, _step_s: float) -> RoadMap:
-    # As above.
-    from rulec.recordings.argoverse.map_archive import read_map_archive
-
-    return read_map_archive(path)
-
-
-def _d123(path: Path, _step_s: float) -> RoadMap:
-    # As above.
-    from rulec.recordings.d123.map_lanes import read_d123_map
-
-    return read_d123_map(path)
+_read_lanes = _roads("lanes.lane_table.read_lane_map")
 
 
 def _is_d123(glance: Glance) -> bool:
@@ -91,37 +56,55 @@ def _is_d123(glance: Glance) -> bool:
 _D123_COLUMNS = (b"object_id", b"map_layer", b"features", b"wkb")
 
 MAP_FORMATS = (
-    MapFormat("sumo", "nets of SUMO's", "*.net.xml", lambda glance: glance.root == "net", _sumo),
+    MapFormat(
+        "sumo",
+        "nets of SUMO's",
+        "*.net.xml",
+        lambda glance: glance.root == "net",
+        _roads("sumo.sumo_recording.read_sumo_map", with_lights=True),
+    ),
     MapFormat(
         "opendrive",
         "ASAM OpenDRIVE, 1.4 to 1.8",
         "*.xodr",
         lambda glance: glance.root == "OpenDRIVE",
-        _opendrive,
+        _roads("opendrive.opendrive_map.read_opendrive_map"),
     ),
     MapFormat(
         "commonroad",
         "the roads of CommonRoad scenarios",
         "*.xml",
         lambda glance: glance.root == "commonRoad",
-        _commonroad,
+        _roads("commonroad.commonroad_file.read_commonroad_map", with_lights=True),
     ),
-    MapFormat("lanelet2", "Lanelet2 maps", "*.osm", lambda glance: glance.root == "osm", _lanelet2),
+    MapFormat(
+        "lanelet2",
+        "Lanelet2 maps",
+        "*.osm",
+        lambda glance: glance.root == "osm",
+        _roads("lanelet2.lanelet2_map.read_lanelet2"),
+    ),
     MapFormat(
         "lanes",
         "lanes as a table",
         "*.csv, *.parquet",
         lambda glance: heads.is_lane_head(heads.head_of(glance)),
-        _lanes,
+        _read_lanes,
     ),
     MapFormat(
         "argoverse",
         "maps of Argoverse 2",
         MAP_ARCHIVES,
         lambda glance: is_named(glance.path, MAP_ARCHIVES),
-        _argoverse,
+        _roads("argoverse.map_archive.read_map_archive"),
     ),
-    MapFormat("123d", "maps of 123D", "map.arrow, DATASET_PLACE.arrow", _is_d123, _d123),
+    MapFormat(
+        "123d",
+        "maps of 123D",
+        "map.arrow, DATASET_PLACE.arrow",
+        _is_d123,
+        _roads("d123.map_lanes.read_d123_map"),
+    ),
 )
 
 
@@ -146,7 +129,7 @@ def _read_map(path: Path, step_s: float) -> RoadMap:
         raise MAP.refused(path, why, help_text="give it as the recording, and its map with --map")
     if glance.name.endswith(heads.TABLES):
         # Nothing else is a table: what it lacks as one of lanes is what is wrong with it.
-        _lanes(path, step_s)
+        _read_lanes(path, step_s)
     with opened(path):
         # A file that is not there, or must not be read, says so by itself.
         why = f"it is XML of `{short(glance.root)}`" if glance.root else "it is of no known format"

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from rulec.diagnostics.argument_kinds import expected_fields
 from rulec.files.read_files import opened
@@ -69,6 +70,19 @@ class Glance:
         Raises RulecError R0610 for XML that is invalid there, R0701.
         """
         return root_of(self.path, RECORDING) if is_xml(self.path) else ""
+
+
+def when_called(place: str) -> Callable[..., Any]:
+    """A function of a format's own module, such as ``osi.osi_recording.read_osi``.
+
+    It is imported when it is called: NumPy and Shapely take a while, few commands read recordings.
+    """
+    module, _, name = place.rpartition(".")
+
+    def called(*given: Any) -> Any:
+        return getattr(import_module(f"rulec.recordings.{module}"), name)(*given)
+
+    return called
 
 
 Roads = Literal["its own", "its own, or --map", "beside it, or --map", "with --map"]
