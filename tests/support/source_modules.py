@@ -20,8 +20,9 @@ class SourceModule:
 
     ``classes``: the public ones at its top. ``named``: classes, functions and what is annotated,
     wherever it is. ``loaded``: names that are read. ``called``: how often which name is, however
-    it is used in a call. ``codes``: code -> the name that it is bound to. ``wide_calls``: what is
-    called with many positional arguments. ``inner_imports``: lines of imports within functions.
+    it is used in a call. ``codes``: code -> the name that it is bound to. ``wide``: what is defined
+    or called with many positional parameters. ``laid_out``: what is called with a tuple laid out
+    in the call. ``inner_imports``: lines of imports within functions.
     """
 
     name: str
@@ -31,7 +32,8 @@ class SourceModule:
     loaded: frozenset[str]
     called: Mapping[str, int]
     codes: Mapping[str, str]
-    wide_calls: tuple[str, ...]
+    wide: tuple[str, ...]
+    laid_out: tuple[str, ...]
     inner_imports: frozenset[int]
 
     @property
@@ -43,7 +45,7 @@ def read_module(name: str, text: str) -> SourceModule:
     """What a module's text says."""
     tree = ast.parse(text)
     named, loaded, inner_imports = set(), set(), set()
-    called, wide_calls = Counter(), []
+    called, wide, laid_out = Counter(), [], []
     for node, in_function in _nodes(tree):
         match node:
             case ast.Name(id=word, ctx=ast.Load()) | ast.Attribute(attr=word, ctx=ast.Load()):
@@ -53,9 +55,15 @@ def read_module(name: str, text: str) -> SourceModule:
                     called[func.id] += 1
                 plain = [part for part in arguments if not isinstance(part, ast.Starred)]
                 if len(plain) > MOST_POSITIONAL:
-                    wide_calls.append(ast.unparse(func))
-            case ast.ClassDef(name=word) | ast.FunctionDef(name=word):
+                    wide.append(ast.unparse(func))
+                if any(isinstance(part.value, ast.Tuple) for part in {*arguments} - {*plain}):
+                    laid_out.append(ast.unparse(func))
+            case ast.ClassDef(name=word):
                 named.add(word)
+            case ast.FunctionDef(name=word):
+                named.add(word)
+                if _is_wide(node):
+                    wide.append(word)
             case ast.AnnAssign(target=ast.Name(id=word)):
                 named.add(word)
             case ast.Import() | ast.ImportFrom() if in_function:
@@ -69,9 +77,17 @@ def read_module(name: str, text: str) -> SourceModule:
         frozenset(loaded),
         dict(called),
         dict(_codes(tree)),
-        tuple(wide_calls),
+        tuple(wide),
+        tuple(laid_out),
         frozenset(inner_imports),
     )
+
+
+def _is_wide(node: ast.FunctionDef) -> bool:
+    """Whether a function has many positional parameters; click passes all of a command by name."""
+    names = [own.arg for own in (*node.args.posonlyargs, *node.args.args)]
+    is_command = any("command(" in ast.unparse(own) for own in node.decorator_list)
+    return not is_command and len(names) - (names[:1] in (["self"], ["cls"])) > MOST_POSITIONAL
 
 
 def _nodes(tree: ast.Module) -> Iterator[tuple[ast.AST, bool]]:

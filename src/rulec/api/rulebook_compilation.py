@@ -53,8 +53,8 @@ def _of_source(
     search_path: Sequence[str | Path],
     warn: Callable[[Sequence[Diagnostic]], object],
     step: Fraction | None,
-    at: str,
     *,
+    at: str,
     any_step: bool,
     recalls: bool,
 ) -> CompiledRulebook:
@@ -109,14 +109,14 @@ def compile_rulebook(
             )
         if len(step_s) != 1:
             steps = list(map(exact_step, step_s))
-            return _for_steps(*(reference, search_path, warn, steps, at), recalls=recalls)
+            return _for_steps(reference, search_path, warn, steps, at=at, recalls=recalls)
         (step_s,) = step_s
     finite("step_s", step_s)
     step = None if step_s is None else exact_step(step_s)
     if isinstance(reference, str | Path):
         if Path(reference).suffix != ".json":
             return _of_source(
-                *(reference, search_path, warn, step, at), any_step=any_step, recalls=recalls
+                reference, search_path, warn, step, at=at, any_step=any_step, recalls=recalls
             )
         from rulec.automata.bundle.bundle_file import read_compiled
 
@@ -141,8 +141,8 @@ def _for_steps(
     search_path: Sequence[str | Path],
     warn: Callable[[Sequence[Diagnostic]], object],
     steps: Sequence[Fraction],
-    at: str,
     *,
+    at: str,
     recalls: bool,
 ) -> CompiledRulebook:
     from rulec.automata.bundle.stored_steps import for_steps

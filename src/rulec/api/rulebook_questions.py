@@ -148,8 +148,8 @@ class RulebookQuestions(RulebookVerbs):
             book,
             [base.rulebook for base in bases],
             on_progress,
-            extends.span if extends else None,
-            spread,
+            extends=extends.span if extends else None,
+            spread=spread,
             changes=changing_lines(loaded.books),
         )
         return without_allowed(findings)

@@ -69,7 +69,7 @@ class RulebookVerbs(SessionSettings):
         from rulec.api.rulebook_compilation import compile_rulebook
 
         return compile_rulebook(
-            *(reference, self.search_path, self._warn, step_s, self.at), recalls=True
+            reference, self.search_path, self._warn, step_s, self.at, recalls=True
         )
 
     compile = compile_rulebook

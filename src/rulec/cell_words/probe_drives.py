@@ -137,6 +137,7 @@ def probe_drives(
     rules: CompiledRulebook,
     side: Side,
     of_others: frozenset[str],
+    *,
     in_time: frozenset[str] = frozenset(),
     measured: frozenset[str] = frozenset(),
 ) -> ProbeDrives:

@@ -27,6 +27,7 @@ def start_cell(
     places: Occupancy,
     scenario: Scenario,
     timing: Timing,
+    *,
     partition: PartitionName,
     extent: ExtentName,
 ) -> int:

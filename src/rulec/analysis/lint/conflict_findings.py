@@ -145,6 +145,7 @@ def contradictions(
     sides: Mapping[str, AnalyzedRule],
     rules: Mapping[str, Rule],
     occurring: Occurring,
+    *,
     answers: RuleAnswers,
     related: RelatedRules,
 ) -> Iterator[Diagnostic]:

@@ -39,6 +39,7 @@ def rulebook_findings(
     book: Rulebook,
     bases: Sequence[Rulebook],
     tell: Callable[[float], object] = lambda _: None,
+    *,
     extends: Span | None = None,
     spread: Spread | None = None,
     changes: Mapping[str, Change] | None = None,

@@ -108,6 +108,7 @@ def _side_of_askew(
     corner: Floats,
     wide: Floats,
     others: tuple[Floats, Floats],
+    *,
     is_left: Flags,
 ) -> Floats:
     """How much farther (m) than its rectangle a body's side begins beside ``others``.
@@ -165,6 +166,7 @@ def _by_turning(
     other: RoadExtents,
     is_left: Flags,
     error: Floats,
+    *,
     beside: Flags,
 ) -> tuple[Floats, Floats]:
     """How much (m) nearer and farther a body may be, turned by up to its heading's error, by cell.

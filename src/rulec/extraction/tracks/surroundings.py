@@ -273,7 +273,8 @@ class Surroundings:
         places = np.array([middle])
         heading = float(directions_beside(lanelet, places)[0])
         far, opposite = OTHER_CARRIAGEWAY_M, []
-        around = shapely.box(*(middle.x - far, middle.y - far, middle.x + far, middle.y + far))
+        x, y = middle.x, middle.y
+        around = shapely.box(x - far, y - far, x + far, y + far)
         for index in tree.query(around).tolist():
             lane = lanes[index]
             if lane.id in (lanelet.id, *beside) or not _turns_against(lane, heading):

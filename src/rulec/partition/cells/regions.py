@@ -48,6 +48,7 @@ class Region:
 
 
 def region_of(
+    *,
     obstacle: Obstacle,
     index: int,
     body: Box,

@@ -106,7 +106,9 @@ def _filled(body: Participant, steps: NDArray[int64], most: int, step_s: float) 
         whole = Track(
             np.concatenate((steps, new_steps))[order],
             np.concatenate((rows, new_rows))[order],
-            *(track.length, track.width, track.shift),
+            track.length,
+            track.width,
+            track.shift,
         )
         return replace(body, states=TrackStates(whole), outlines=TrackOutlines(whole), lamps=lamps)
     states, outlines = dict(body.states), dict(body.outlines)

@@ -39,7 +39,8 @@ def wrong_form(node: tree.Prefix | tree.Infix, bound: tree.BoundNode) -> Diagnos
         message = f"`{node.operator}` looks at a stretch of time, and this is an instant"
         way_out: Help = offering(
             f"write `[<= {text}]`, `[>= {text}]` or `[{text} .. {text}]`",
-            *(f"[<= {text}]", f"[>= {text}]"),
+            f"[<= {text}]",
+            f"[>= {text}]",
         )
     else:
         message = f"`{node.operator}` looks at one instant, and this is a stretch of time"

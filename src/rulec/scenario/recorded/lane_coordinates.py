@@ -131,6 +131,7 @@ def lanes_along(
     line: ReferenceLine,
     ego_s: float,
     numbers: Sequence[int] | None = None,
+    *,
     borders: Floats | None = None,
 ) -> Lanes:
     """The lanes of the road along a route: the route's own and those beside it in its direction.

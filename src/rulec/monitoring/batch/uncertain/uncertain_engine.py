@@ -212,7 +212,10 @@ class _Engine:
     def _rule_letters(self, binding: RuleBinding, machine: UncertainMachine) -> RuleLetters:
         """The letters of a rule, with all its reads taken together."""
         return letters_of_rule(
-            *(binding.rule, machine.classes, binding.objects, self._rulebook),
+            binding.rule,
+            machine.classes,
+            binding.objects,
+            self._rulebook,
             everybody=self._everybody,
             bound=self._bound,
         )

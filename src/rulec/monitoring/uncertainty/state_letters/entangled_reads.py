@@ -135,7 +135,11 @@ class EntangledReads:
         if counted_parts is not None and len(everybody.objects) <= MOST_COUNTED:
             with suppress(LookupError):
                 self._counts = CountsApart(
-                    *(self._reads, self.subjects, binding, axioms, everybody),
+                    self._reads,
+                    self.subjects,
+                    binding,
+                    axioms,
+                    everybody,
                     known=counted_parts.together,
                 )
         self.regions = number_regions(

@@ -84,7 +84,7 @@ def letters_of_rule(
     key = rule.name, classes, tuple(objects.values())
     if key not in bound:
         reads = EntangledReads(
-            *(rule, objects, rulebook.axioms, everybody), counted_parts=known_parts(rulebook)
+            rule, objects, rulebook.axioms, everybody, counted_parts=known_parts(rulebook)
         )
         bound[key] = RuleLetters(classes, rule, reads)
     return bound[key]
@@ -207,7 +207,7 @@ class PossibleLetters:
     ) -> RuleLetters:
         everybody = NothingKnown(self._trace.objects, self._vocabulary)
         return letters_of_rule(
-            *(rule, classes, objects, self._rulebook), everybody=everybody, bound=self._bound
+            rule, classes, objects, self._rulebook, everybody=everybody, bound=self._bound
         )
 
     def impossible(self, rule: CompiledRule, objects: Mapping[str, str], number: int) -> RulecError:

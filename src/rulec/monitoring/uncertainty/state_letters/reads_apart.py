@@ -182,7 +182,9 @@ class _PartTable:
         vocabulary = self._vocabulary
         alike = alike_values(
             dict.fromkeys(name for name, _ in self._subjects),
-            *(self._reads, [axiom.formula for axiom in self._axioms], vocabulary),
+            self._reads,
+            [axiom.formula for axiom in self._axioms],
+            vocabulary,
         )
         key = self._subjects, self._axioms, (*self._objects.items(),), (*alike.items(),)
         with suppress(LookupError):
@@ -192,7 +194,7 @@ class _PartTable:
                 of_all = [fact for axiom in self._axioms for fact in instances_of(axiom, everybody)]
                 facts = [fact for fact in of_all if not fact.about.isdisjoint(self._subjects)]
                 self._together[key] = JointValues(
-                    *(self._subjects, facts, self._objects, vocabulary, alike)
+                    self._subjects, facts, self._objects, vocabulary, alike
                 )
             values = self._together[key]
             return None if values is None else read_ways(self._ready, self._binding, values)
@@ -364,7 +366,11 @@ class ReadsApart:
         tables, vocabulary = known.tables, self._everybody.vocabulary
         if key not in tables:
             tables[key] = _PartTable(
-                *(reads, subjects, binding, facts, objects),
+                reads,
+                subjects,
+                binding,
+                facts,
+                objects,
                 vocabulary=vocabulary,
                 together=known.together,
             )
