@@ -41,7 +41,7 @@ down and up.
 
 @dataclass(frozen=True, slots=True)
 class ConditionalOutcome:
-    """The outcome of an open verdict if some unknown names always have these values."""
+    """The outcome if unknown names always have these values, and numbers are within the bounds."""
 
     when: Mapping[str, bool | str]
     outcome: OutcomeName

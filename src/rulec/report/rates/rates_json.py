@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rulec.rates.drive_counts import GroupKey
-from rulec.rates.rule_rates import Rate, RuleRates, ViolationRates
+from rulec.rates.rule_rates import Rate, ViolationRates
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 
 
@@ -15,16 +15,6 @@ class JudgedByData(JsonPart, frozen=True, kw_only=True):
     rulec: str
     thresholds: str
     assumptions: str
-
-
-class RateData(JsonPart, frozen=True, kw_only=True):
-    """A rate as its least and most possible value, with its intervals."""
-
-    least: float
-    most: float
-    exact: tuple[float, float]
-    bootstrap: tuple[float, float] | None
-    clustered: tuple[float, float]
 
 
 class RuleRatesData(JsonPart, frozen=True, kw_only=True):
@@ -44,9 +34,9 @@ class RuleRatesData(JsonPart, frozen=True, kw_only=True):
     perhaps_exposed_h: float
     violated: int
     perhaps_violated: int
-    per_hour: RateData | None
-    per_1000_km: RateData | None
-    per_opportunity: RateData | None
+    per_hour: Rate | None
+    per_1000_km: Rate | None
+    per_opportunity: Rate | None
 
 
 class RatesDocument(JsonDocument, frozen=True, kw_only=True):
@@ -68,21 +58,9 @@ def as_json(rates: ViolationRates) -> str:
         RatesDocument,
         rates,
         judged_by=[filled(JudgedByData, by) for by in rates.judged_by],
-        rules=[_rule(rule, rates) for rule in rates.rules],
+        rules=[
+            filled(RuleRatesData, rule, group=dict(zip(rates.by, rule.group, strict=True)))
+            for rule in rates.rules
+        ],
     )
     return as_indented(document)
-
-
-def _rule(rule: RuleRates, rates: ViolationRates) -> RuleRatesData:
-    return filled(
-        RuleRatesData,
-        rule,
-        group=dict(zip(rates.by, rule.group, strict=True)),
-        per_hour=_rate(rule.per_hour),
-        per_1000_km=_rate(rule.per_1000_km),
-        per_opportunity=_rate(rule.per_opportunity),
-    )
-
-
-def _rate(rate: Rate | None) -> RateData | None:
-    return None if rate is None else filled(RateData, rate)

@@ -12,7 +12,13 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.rulebook_edition import edition_of
-from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleNotJudged, Verdict
+from rulec.monitoring.verdict import (
+    ConditionalOutcome,
+    NotJudged,
+    OpenVerdict,
+    RuleNotJudged,
+    Verdict,
+)
 from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
 from rulec.report.verdicts.violation_table import repaired_states
 from rulec.vocabulary.partial_values import Interval, OneOf, PartialValue, UnknownValue
@@ -155,13 +161,6 @@ class ViolationData(JsonPart, frozen=True, kw_only=True):
     evidence: EvidenceData | UnsetType = UNSET
 
 
-class ConditionalData(JsonPart, frozen=True, kw_only=True):
-    """The outcome if unknown names always have these values, and numbers are within the bounds."""
-
-    when: Mapping[str, bool | str]
-    outcome: Literal["kept", "violated", "open"]
-
-
 class OpenData(JsonPart, frozen=True, kw_only=True):
     """A rule and binding whose outcome is not settled.
 
@@ -174,7 +173,7 @@ class OpenData(JsonPart, frozen=True, kw_only=True):
     strength: Literal["hard", "soft"]
     because: Sequence[Literal["not told", "tolerance", "not over", "began before", "step"]]
     depends_on: Sequence[str]
-    outcomes: Sequence[ConditionalData]
+    outcomes: Sequence[ConditionalOutcome]
     exact: bool
     inherited_from: str | UnsetType = UNSET
 
@@ -262,7 +261,6 @@ def open_data(doubtful: Sequence[OpenVerdict], rulebook: CompiledRulebook) -> li
         filled(
             OpenData,
             rule,
-            outcomes=[filled(ConditionalData, outcome) for outcome in rule.outcomes],
             inherited_from=_inherited_from(rule.rule, rulebook),
         )
         for rule in doubtful
