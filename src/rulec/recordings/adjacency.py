@@ -78,10 +78,10 @@ def bordering(lanelets: Iterable[Lanelet], *, alone: bool = False) -> Iterator[B
         yield Bordering(right[own], left[other], part, length)
 
 
-def _oncoming_length(borders: Sequence[Points], least_m: float) -> float:
+def _oncoming_length(borders: Sequence[Points]) -> float:
     """The total length (m) of borders shared with lanes of the opposite direction.
 
-    Only stretches of at least ``least_m`` count.
+    Only stretches of at least ``_LEAST_M`` count.
     """
     if not borders:
         return 0.0
@@ -94,7 +94,7 @@ def _oncoming_length(borders: Sequence[Points], least_m: float) -> float:
     if not len(owns):
         return 0.0
     lengths = _near(lines, owns, lines, others, sense=-1) * lines.lengths[owns]
-    return float(lengths[lengths >= least_m].sum())
+    return float(lengths[lengths >= _LEAST_M].sum())
 
 
 class _Borders:
@@ -226,7 +226,7 @@ def side_by_lanes(lanelets: Iterable[Lanelet]) -> Side | None:
     """
     lanes = [lanelet for lanelet in lanelets if is_lane(lanelet) and not lanelet.types & _RESERVED]
     keeps_right, keeps_left = (
-        _oncoming_length([getattr(lanelet, border) for lanelet in lanes], _LEAST_M)
+        _oncoming_length([getattr(lanelet, border) for lanelet in lanes])
         for border in ("left", "right")
     )
     if keeps_right > _CLEARLY * keeps_left:

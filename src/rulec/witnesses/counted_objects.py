@@ -201,13 +201,13 @@ class CountedObjectKinds:
                 kind,
                 places,
                 tuple(bodies.values()),
-                axioms_about(EXTRA, kind, self._own),
+                axioms_about(kind, self._own),
                 Itself(vocabulary),
             )
 
     def _with_own(self, known: _FittingType) -> _FittingType:
         """A type known from the universe before, adapted to this universe's further axioms."""
-        own = axioms_about(EXTRA, known.counted.type, self._own)
+        own = axioms_about(known.counted.type, self._own)
         if all(
             axiom.holds_by_default and known.reached.isdisjoint(axiom.subjects) for axiom in own
         ):

@@ -33,7 +33,7 @@ def facts_beside(counts: Sequence[Count], universe: ObjectUniverse) -> list[Lett
     for kind in types_counted(counts, (), vocabulary):
         bodies = tuple(bodies_for(kind, counts, vocabulary).values())
         if can_add(bodies):
-            about = axioms_about(EXTRA, kind, universe)
+            about = axioms_about(kind, universe)
             functions |= dict.fromkeys(_beside(bodies, about, Itself(vocabulary)))
     return list(functions)
 

@@ -16,7 +16,7 @@ from rulec.logic.free_names import variables_of
 from rulec.rulebook.rulebook_model import Axiom
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_functions import LetterFunction, Reads, axiom_function
-from rulec.witnesses.object_universe import Itself, ObjectUniverse, applied_to, counts_in
+from rulec.witnesses.object_universe import EXTRA, Itself, ObjectUniverse, applied_to, counts_in
 from rulec.witnesses.state_synthesis import Subject, default_digit
 
 MOST_KEPT = 20_000
@@ -69,19 +69,19 @@ def ground_axioms(universe: ObjectUniverse) -> Iterator[GroundAxiom]:
         yield known[key][1]
 
 
-def axioms_about(name: str, kind: str, universe: ObjectUniverse) -> tuple[GroundAxiom, ...]:
+def axioms_about(kind: str, universe: ObjectUniverse) -> tuple[GroundAxiom, ...]:
     """The axioms without counts about one more object besides the universe's."""
     known = _about(Itself(universe.vocabulary))
-    key = name, kind, tuple(universe.objects.items()), tuple(map(id, universe.axioms))
+    key = kind, tuple(universe.objects.items()), tuple(map(id, universe.axioms))
     if key not in known:
         if len(known) > MOST_KEPT:
             known.clear()
-        with_it = replace(universe, objects={**universe.objects, name: kind})
+        with_it = replace(universe, objects={**universe.objects, EXTRA: kind})
         instances = tuple(
             [
                 axiom
                 for axiom in ground_axioms(with_it)
-                if not axiom.is_counting and name in axiom.objects
+                if not axiom.is_counting and EXTRA in axiom.objects
             ]
         )
         known[key] = universe.axioms, instances

@@ -69,9 +69,12 @@ if TYPE_CHECKING:
     help="If obstacles have several predictions, also count the maneuvers that remain when one of "
     "them does something less likely.",
 )
-@shared.file_option(
+@click.option(
     "--after",
-    "The past to continue from: a file with one trace, or a saved monitor (.json).",
+    metavar="FILE",
+    type=click.Path(dir_okay=False),
+    callback=shared.beside,
+    help="The past to continue from: a file with one trace, or a saved monitor (.json).",
 )
 @scenario_options.reading_options
 @click.option(

@@ -70,13 +70,8 @@ def number_option(
     return click.option(name, field, type=kind, show_default=True, help=help_text, **settings)
 
 
-def file_option(name: str, help_text: str) -> Callable[[Decorated], Decorated]:
-    """An option for the path of a file that is read besides the main ones."""
-    kind = click.Path(dir_okay=False)
-    return click.option(name, metavar="FILE", type=kind, callback=_beside, help=help_text)
-
-
-def _beside(context: click.Context, parameter: click.Parameter, value: str | None) -> Path | None:
+def beside(context: click.Context, parameter: click.Parameter, value: str | None) -> Path | None:
+    """The path of a file that is read besides the main ones."""
     return None if value is None else Path(read_as_file(context, parameter, value, ending=""))
 
 

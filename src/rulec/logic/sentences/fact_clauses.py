@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping
 
 from rulec.logic.formula import Atom, QuantityTerm
 from rulec.logic.sentences.english import ENGLISH
-from rulec.logic.sentences.language import Language
 from rulec.logic.sentences.spoken_words import (
     SpokenAtom,
     SpokenQuantity,
@@ -21,7 +20,6 @@ def facts_in_words(
     facts: Iterable[tuple[str, bool | str | float, str]],
     vocabulary: Vocabulary,
     phrases: Mapping[str, str],
-    language: Language = ENGLISH,
 ) -> str:
     """Facts joined to one text; empty if no phrase is known for any of them.
 
@@ -38,18 +36,18 @@ def facts_in_words(
         if item is None or len(items) != len(item.parameters):
             continue
         if isinstance(item, Quantity):
-            term = spoken_term(QuantityTerm(name, items), phrases, language)
+            term = spoken_term(QuantityTerm(name, items), phrases, ENGLISH)
             spoken = isinstance(term, SpokenQuantity)
             noun = term.noun if isinstance(term, SpokenQuantity) else ""
-            number = f"{language.decimals(shown)} {item.unit}"
+            number = f"{ENGLISH.decimals(shown)} {item.unit}"
             clauses.append(
-                language.value_is.format(noun or of_objects(name, items, language), number)
+                ENGLISH.value_is.format(noun or of_objects(name, items, ENGLISH), number)
             )
         else:
             named = str(value) if isinstance(item, Enumeration) else None
-            atom = spoken_formula(Atom(name, items, named), phrases, language)
+            atom = spoken_formula(Atom(name, items, named), phrases, ENGLISH)
             assert isinstance(atom, Atom), "an atom that is spoken stays one"
             spoken = isinstance(atom, SpokenAtom)
-            clauses.append(atom_clause(atom, language, holds=named is not None or value is True))
+            clauses.append(atom_clause(atom, ENGLISH, holds=named is not None or value is True))
         has_phrase |= spoken
-    return listed(clauses, language) if has_phrase else ""
+    return listed(clauses, ENGLISH) if has_phrase else ""

@@ -24,7 +24,6 @@ from rulec.recordings.argoverse.object_types import (
     EGO_MIDDLE_M,
     EGO_SIZE_M,
     NOT_ON_THE_ROAD,
-    RIDES,
 )
 from rulec.recordings.argoverse.sweep_boxes import TrackBoxes, check_sizes, participant, with_riders
 from rulec.recordings.argoverse.sweep_grid import NANOSECONDS, on_grid
@@ -92,7 +91,7 @@ def read_sensor_log(path: Path, map_path: Path | None = None) -> Recording:
     road = read_map_archive(map_path)
     own = next((x for x in tracks if x.category == _EGO_CATEGORY), None)
     ego = _ego(EGO if own is None else own.id, EGO_SIZE_M if own is None else own.size, sweeps)
-    others = with_riders([x for x in tracks if x.category != _EGO_CATEGORY], RIDES)
+    others = with_riders([x for x in tracks if x.category != _EGO_CATEGORY])
     if any(x.id == ego.id for x in others):
         raise SENSOR.refused(path, f"somebody else is called `{ego.id}`, as ego is")
     log = _NAME.fullmatch(map_path.name)

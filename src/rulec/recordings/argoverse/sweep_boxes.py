@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy import bool_, float64, int64, intp
 from numpy.typing import NDArray
 
 from rulec.recordings.argoverse.city_frame import CityPoses
+from rulec.recordings.argoverse.object_types import RIDES
 from rulec.recordings.argoverse.sweep_grid import rates
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable
 from rulec.recordings.recording import Participant
@@ -72,16 +73,13 @@ def check_sizes(table: ArrowTable, rows: NDArray[int64], sizes: NDArray[float64]
         raise table.refused(int(rows[at]), f"a box is {length:g} m by {width:g} m")
 
 
-def with_riders(boxes: Sequence[TrackBoxes], rides: Mapping[str, str]) -> list[TrackBoxes]:
-    """The boxes, with rider and ridden vehicle merged into one box that covers both.
-
-    ``rides``: category of a rider -> category of the ridden vehicle.
-    """
+def with_riders(boxes: Sequence[TrackBoxes]) -> list[TrackBoxes]:
+    """The boxes, with rider and ridden vehicle merged into one box that covers both."""
     ridden = {x.id: np.zeros(len(x.sweeps), dtype=bool) for x in boxes}
     sizes = {x.id: x.size for x in boxes}
     for rider in boxes:
         for device in boxes:
-            if device.category != rides.get(rider.category):
+            if device.category != RIDES.get(rider.category):
                 continue
             _, on, under = np.intersect1d(rider.sweeps, device.sweeps, return_indices=True)
             apart = rider.poses.translations[on, :2] - device.poses.translations[under, :2]

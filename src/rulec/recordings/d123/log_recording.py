@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from rulec.recordings.adjacency import with_untold_neighbours
 from rulec.recordings.argoverse.city_frame import CityPoses, poses_in, rotations
-from rulec.recordings.argoverse.object_types import RIDES
 from rulec.recordings.argoverse.sweep_boxes import TrackBoxes, check_sizes, participant, with_riders
 from rulec.recordings.argoverse.sweep_grid import NANOSECONDS, on_grid
 from rulec.recordings.d123 import log_files as files
@@ -81,7 +80,7 @@ def read_d123(path: Path, map_path: Path | None = None) -> Recording:
         raise LOG.refused(boxes.path, "its moments are not in ascending order")
     sweeps = _Sweeps(moments, *on_grid(boxes.path, LOG, moments))
     own = _ego(path.with_name(files.EGO), sweeps)
-    others = with_riders(list(_tracks(boxes, files.said_in(boxes))), RIDES)
+    others = with_riders(list(_tracks(boxes, files.said_in(boxes))))
     if any(x.id == own.id for x in others):
         raise LOG.refused(boxes.path, f"somebody else is called `{own.id}`, as ego is")
     road = read_d123_map(map_path or files.map_of(path, data_set, place))

@@ -17,6 +17,7 @@ from rulec.trace import Value
 
 WIDTH = 100
 TABLE_WIDTH = 96
+_INDENT = "    "
 
 MOST_ROWS = 8
 """A table with more rows omits those that have the default in all states."""
@@ -141,7 +142,7 @@ def _pair(pair: RulePair, rulebook_diff: RulebookDiff) -> Iterator[str]:
     for forbids, allows, table in rulebook_diff.tables(pair):
         yield f"  {forbids} forbids, {allows} allows"
         if table.rows:
-            yield from _table_lines(table, "    ")
+            yield from _table_lines(table)
             yield from _in_words(table, rulebook_diff, phrases)
         else:
             start, end = table.columns[0]
@@ -162,7 +163,7 @@ def _in_words(
         words = facts_in_words(facts, rulebook_diff.first.vocabulary, phrases)
         if words:
             line = f"{title}: {visible(words)}"
-            yield from wrap(line, TABLE_WIDTH, initial_indent="    ", subsequent_indent="      ")
+            yield from wrap(line, TABLE_WIDTH, initial_indent=_INDENT, subsequent_indent="      ")
 
 
 def _only(rules: Sequence[OneSided], has: str, lacks: str, *, from_first: bool) -> str:
@@ -241,11 +242,10 @@ def left_out(table: TraceTable) -> list[str]:
     return usual if len(table.rows) > MOST_ROWS else []
 
 
-def _table_lines(table: TraceTable, indent: str) -> list[str]:
+def _table_lines(table: TraceTable) -> list[str]:
     whole = [("state", state_titles(table)), *table_rows(table)]
-    lines = table_lines(
-        [(f"{title} ", *cells) for title, cells in whole], indent=indent, ruled=(0,)
-    )
+    titled = [(f"{title} ", *cells) for title, cells in whole]
+    lines = table_lines(titled, indent=_INDENT, ruled=(0,))
     rest = left_out(table)
     words = f"by default: {', '.join(rest)}" if rest else ""
-    return lines + [f"{indent}{line}" for line in wrap(words, TABLE_WIDTH - len(indent))]
+    return lines + [f"{_INDENT}{line}" for line in wrap(words, TABLE_WIDTH - len(_INDENT))]

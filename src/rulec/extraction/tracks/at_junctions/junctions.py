@@ -242,16 +242,16 @@ def _road_headings(recording: Recording, way: JunctionWay) -> tuple[float, float
     first, last, known = way.lanelets[0], way.lanelets[-1], recording.lanelets
     begins, ends = way.headings
     for entry in [known[x].centre for x in first.predecessors if x in known][:1]:
-        begins = _heading_from(entry[::-1], TURN_REACH_M) + np.pi
+        begins = _heading_from(entry[::-1]) + np.pi
     for exit_ in [known[x].centre for x in last.successors if x in known][:1]:
-        ends = _heading_from(exit_, TURN_REACH_M)
+        ends = _heading_from(exit_)
     return begins, ends
 
 
-def _heading_from(line: Points, away_m: float) -> float:
-    """The direction (rad) of a line ``away_m`` from its beginning, or at its end if shorter."""
+def _heading_from(line: Points) -> float:
+    """A line's direction (rad) ``TURN_REACH_M`` from its beginning, or at its end if shorter."""
     far = arc_lengths(line)[1:]
-    piece = min(int(far.searchsorted(away_m)), len(far) - 1)
+    piece = min(int(far.searchsorted(TURN_REACH_M)), len(far) - 1)
     return _heading(line[piece : piece + 2])
 
 
