@@ -211,7 +211,7 @@ def _slows_for_itself(
     until = min(last + round(_BRIEFLY_S / context.recording.step_s), comes)
     rows = ego.passage.row, other.row
     slows = slows_down(context, other, first, last)
-    return bool(slows) and slows_for_itself(context, rows, (first, until))
+    return bool(slows) and slows_for_itself(context, rows, first, until)
 
 
 def is_train(context: DriveContext, own: Passage, row: int) -> bool:

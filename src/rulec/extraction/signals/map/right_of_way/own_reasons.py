@@ -73,14 +73,12 @@ class _Braking:
     least_mps2: float
 
 
-def slows_for_itself(
-    context: DriveContext, rows: tuple[int, int], columns: tuple[int, int]
-) -> bool:
+def slows_for_itself(context: DriveContext, rows: tuple[int, int], since: int, last: int) -> bool:
     """Whether the second of two rows, ego's and another one's, may be slow for reasons of its own.
 
-    ``columns``: when it may be slow, from where its speed is not yet due to ego.
+    From ``since``, when its speed is not yet due to ego, to the column ``last``.
     """
-    first, slowest = _slowing(context, rows[1], *columns)
+    first, slowest = _slowing(context, rows[1], since, last)
     acceleration = context.surroundings.passages.tracks.acceleration[rows[1], first : slowest + 1]
     hardest = -float(np.fmin.reduce(acceleration, initial=0.0))
     braking = _Braking(rows, first, slowest, max(_EXPLAINS * hardest, _PREPARES_MPS2))
@@ -144,7 +142,7 @@ def _slows_at_line(context: DriveContext, braking: _Braking) -> bool:
     for passage in passages.of_row.get(row, ()):
         line = travelled[passage.first] - passages.lengths[row] / 2
         left = line - travelled[first]
-        waits = stands and _meets_another(context, braking.rows, passage, slowest)
+        waits = stands and _meets_another(context, passage, braking)
         if travelled[slowest] > line + _AT_LINE_M:
             if waits and slowest <= passage.last:
                 return True
@@ -153,10 +151,10 @@ def _slows_at_line(context: DriveContext, braking: _Braking) -> bool:
         too_late = needed > context.thresholds.braking_mps2 and not stands
         if needed < braking.least_mps2 or too_late:
             continue
-        if _is_told_to_stop(context, passage, (first, slowest)):
+        if _is_told_to_stop(context, passage, braking):
             return True
         # Who sees nobody does not stand there
-        if (waits or not stands) and _may_have_to_wait(context, passage, (first, slowest)):
+        if (waits or not stands) and _may_have_to_wait(context, passage, braking):
             return True
     return False
 
@@ -184,18 +182,16 @@ def _slows_for_limit(context: DriveContext, braking: _Braking) -> bool:
     return False
 
 
-def _is_told_to_stop(context: DriveContext, passage: Passage, columns: tuple[int, int]) -> bool:
+def _is_told_to_stop(context: DriveContext, passage: Passage, braking: _Braking) -> bool:
     """Whether a stop sign, or a light that is not green, stops a participant at a junction."""
     way, recording = context.surroundings.passages.way(passage), context.recording
     signs = any(entry.signs & STOP_SIGNS for entry in approaches(recording, way))
-    return signs or any(colour != "green" for colour in _shown(context, way, columns))
+    return signs or any(colour != "green" for colour in _shown(context, way, braking))
 
 
-def _meets_another(
-    context: DriveContext, rows: tuple[int, int], passage: Passage, column: int
-) -> bool:
+def _meets_another(context: DriveContext, passage: Passage, braking: _Braking) -> bool:
     """Whether anybody else may be, or come, in the way of a participant that waits at a line."""
-    passages = context.surroundings.passages
+    passages, rows, column = context.surroundings.passages, braking.rows, braking.slowest
     junction = passages.junctions[passage.junction]
     strays = [x[1:] for x in passages.astray.get(passage.junction, ()) if x[0] not in rows]
     crossing = [
@@ -207,7 +203,7 @@ def _meets_another(
     return any(first <= soon and last >= column for first, last in (*strays, *crossing))
 
 
-def _may_have_to_wait(context: DriveContext, passage: Passage, columns: tuple[int, int]) -> bool:
+def _may_have_to_wait(context: DriveContext, passage: Passage, braking: _Braking) -> bool:
     """Whether a sign or the order of the ways may tell a participant to give way at a junction."""
     way, recording = context.surroundings.passages.way(passage), context.recording
     entries = approaches(recording, way)
@@ -215,7 +211,7 @@ def _may_have_to_wait(context: DriveContext, passage: Passage, columns: tuple[in
     if may_give_way or turns_far(context, passage):
         return True
     # Where lights are green they order the ways, and not what the map says without them
-    if any(True for _ in _shown(context, way, columns)):
+    if any(True for _ in _shown(context, way, braking)):
         return False
     first = way.lanelets[0].first
     return _lets_near_side_go(context, passage) if first is None else bool(first)
@@ -234,12 +230,13 @@ def _lets_near_side_go(context: DriveContext, passage: Passage) -> bool:
     )
 
 
-def _shown(context: DriveContext, way: JunctionWay, columns: tuple[int, int]) -> Iterator[str]:
-    """What the lights at a way's entry show in some columns."""
+def _shown(context: DriveContext, way: JunctionWay, braking: _Braking) -> Iterator[str]:
+    """What the lights at a way's entry show while a participant brakes."""
     begin = context.surroundings.passages.tracks.first
+    columns = range(begin + braking.first, begin + braking.slowest + 1)
     for _, lights in entry_lights(context.recording, way):
         for light in lights:
-            yield from (light.colour_at(begin + k) for k in range(columns[0], columns[1] + 1))
+            yield from map(light.colour_at, columns)
 
 
 def _is_behind_another(context: DriveContext, braking: _Braking) -> bool:
