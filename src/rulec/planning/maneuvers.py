@@ -16,8 +16,7 @@ from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import partial_names
 from rulec.monitoring.uncertainty.untold_names import untold_names
 from rulec.monitoring.verdict import CarriedState, RuleNotJudged, Verdict, Violation
-from rulec.partition import NavigationGraph
-from rulec.partition.dead_ends import DeadEnd
+from rulec.partition import NavigationGraph, dead_ends, emergencies
 from rulec.planning.product.graph_instances import HARD, SOFT, violations
 from rulec.planning.product.graph_product import (
     Joint,
@@ -235,20 +234,16 @@ class Maneuvers(Rows):
         )
 
     @cached_property
-    def dead_end(self) -> DeadEnd | None:
+    def dead_end(self) -> dead_ends.DeadEnd | None:
         """Where the paths end; None if there is a maneuver."""
         if self.traces:
             return None
-        from rulec.partition.dead_ends import dead_end  # imported late: rarely needed
-
-        return dead_end(self.graph)
+        return dead_ends.dead_end(self.graph)
 
     @cached_property
     def least_braking(self) -> float | None:
         """The least braking (m/s²) that every maneuver needs, if that is more than 4; else None."""
-        from rulec.partition.emergencies import least_braking  # imported late: rarely needed
-
-        least = least_braking(self.graph)
+        least = emergencies.least_braking(self.graph)
         if least is None or self._search is None:
             return least
         every = explore(node_transformers(self.paths, []))
@@ -260,10 +255,10 @@ class Maneuvers(Rows):
 
         None if that is at most 4. After its end ego becomes as slow as what is ahead of it then.
         """
-        from rulec.partition.emergencies import least_braking_later  # imported late: rarely needed
-
         search = self._search
-        return None if search is None else least_braking_later(self.graph, search.others)
+        return (
+            None if search is None else emergencies.least_braking_later(self.graph, search.others)
+        )
 
     def without_each_rule(self) -> dict[str, int]:
         """For each hard rule, most first, how many maneuvers violate it and no other hard rule."""
