@@ -13,6 +13,7 @@ from rulec.api.session_settings import SessionSettings
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.argument_kinds import expected_fields, finite
 from rulec.files.written_files import written_whole
+from rulec.trace import Trace
 from rulec.trace.trace_model import check_trace
 
 if TYPE_CHECKING:
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
     from rulec.report.recordings.format_listing import ListedFormat
     from rulec.scoring.scores import Scores
     from rulec.scoring.traffic_world import TrafficWorld
-    from rulec.trace import Trace
     from rulec.trace.trace_columns import TraceCells, TraceColumns
 
 

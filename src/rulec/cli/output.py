@@ -31,12 +31,11 @@ from rulec.report.text.console import (
 )
 from rulec.report.text.outgoing import OutgoingLines, outgoing
 from rulec.report.text.terminal_text import wants_color
-from rulec.rulebook.files.source_walk import in_words
+from rulec.rulebook.files.source_walk import LeftAlone, in_words
 from rulec.settings import exclusion, search_path
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.rulebook.files.source_walk import LeftAlone
 
 
 _REPORTS = ("html", "junit", "sarif", "svg")

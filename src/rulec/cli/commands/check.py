@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import click
 
 from rulec.cli.options.output_options import Output
@@ -23,12 +21,9 @@ from rulec.diagnostics import named
 from rulec.files.read_files import MAX_SOURCE_BYTES
 from rulec.report.text.console import print_remark
 from rulec.report.text.terminal_text import counted
-from rulec.rulebook.batch.batch_check import check
+from rulec.rulebook.batch.batch_check import Checked, check
 from rulec.rulebook.batch.shipped_lock import not_as_locked, write_lock
 from rulec.settings import exclusion, search_path
-
-if TYPE_CHECKING:
-    from rulec.rulebook.batch.batch_check import Checked
 
 
 @click.command(cls=Verb)

@@ -18,6 +18,8 @@ from rulec.diagnostics import any_of, first_of, nearest_name
 from rulec.diagnostics.code import Code
 from rulec.report.findings import code_registry
 from rulec.report.text.console import print_remark
+from rulec.rulebook.files.search_path import available_rulebooks
+from rulec.rulebook.files.source_walk import SUFFIX
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
@@ -117,8 +119,6 @@ def _way_out(name: str) -> str:
     # Late import, only for unknown names: file search and their rules (60 ms).
     from rulec.rulebook.files import words_in_files as texts
     from rulec.rulebook.files.catalogue import rulebooks_with_rule
-    from rulec.rulebook.files.search_path import available_rulebooks
-    from rulec.rulebook.files.source_walk import SUFFIX
     from rulec.rulebook.names.word_meanings import described, offer
 
     places = _places()

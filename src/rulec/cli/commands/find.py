@@ -31,11 +31,11 @@ from rulec.files.read_files import opened
 from rulec.recordings.recording_files import is_recording, read_recordings
 from rulec.recordings.recording_inputs import input_files
 from rulec.report.findings.diagnostics_text import Complaints
+from rulec.rulebook.query_model import FormulaQuery
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
     from rulec.extraction.moment_search import DriveMoments
-    from rulec.rulebook.query_model import FormulaQuery
     from rulec.trace.formats.trace_files import Format
 
 FORMATS = {**endings_of("text", "json"), **TABLES}

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.bundle.renamed_rulebook import with_distinct_names
 from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
@@ -20,7 +21,6 @@ from rulec.report.text.console import print_result, progress
 from rulec.trace.trace_model import Ending
 
 if TYPE_CHECKING:
-    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.fleet.runs.fleet_run import FleetRun
 
 

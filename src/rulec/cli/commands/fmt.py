@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import click
 
@@ -18,11 +17,8 @@ from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_line, print_remark, print_result
 from rulec.report.text.terminal_text import counted
 from rulec.report.text.text_diff import as_diff, for_terminal
-from rulec.rulebook.batch.batch_format import format_files, formatted, replace_files
+from rulec.rulebook.batch.batch_format import Formatted, format_files, formatted, replace_files
 from rulec.settings import exclusion, search_path
-
-if TYPE_CHECKING:
-    from rulec.rulebook.batch.batch_format import Formatted
 
 
 @click.command(cls=Verb)

@@ -26,7 +26,7 @@ from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import read_machines, rulebooks_named
 from rulec.cli.verdict_outputs import FORMATS, VerdictOutputs, verdict_outputs
 from rulec.recordings.recording_files import check_readable, is_recording
-from rulec.recordings.recording_inputs import STANDARD_INPUT, input_files
+from rulec.recordings.recording_inputs import STANDARD_INPUT, InputFiles, input_files
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import page_width, print_remark
 from rulec.trace.trace_model import Ending
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from rulec.cli.recording_run import RecordingRun
     from rulec.cli.trace_run import TraceRun
     from rulec.fleet.drive_rows import DriveRows
-    from rulec.recordings.recording_inputs import InputFiles
     from rulec.report.verdicts.batch_table import BatchTally
     from rulec.trace.formats.trace_files import Format
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation, named
@@ -21,21 +21,17 @@ from rulec.monitoring.online.encoding.encoded_values import Encoded
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
 from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.online.group_letters import GroupLetters
-from rulec.monitoring.online.partial_states import PartialStateReader, rules_of_all
+from rulec.monitoring.online.partial_states import PartialStateReader, RulesOfAll, rules_of_all
 from rulec.monitoring.online.prepared_rule import PreparedRule
 from rulec.monitoring.online.rule_group import GroupNode, RuleGroup, RuleGroups, RulesRead
 from rulec.monitoring.online.uncertain_steps import Edge
 from rulec.monitoring.state_validation import check_state, has_partial_values
 from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings, known_bits
-from rulec.monitoring.uncertainty.state_letters.possible_letters import bound_letters
+from rulec.monitoring.uncertainty.state_letters.possible_letters import BoundLetters, bound_letters
 from rulec.resource_limits import CHOICES
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import State
 from rulec.vocabulary.vocabulary_model import choices
-
-if TYPE_CHECKING:
-    from rulec.monitoring.online.partial_states import RulesOfAll
-    from rulec.monitoring.uncertainty.state_letters.possible_letters import BoundLetters
 
 Awake: TypeAlias = Mapping[tuple[str, ...], Collection[Items]]
 """Choices of objects by the types of variables."""
