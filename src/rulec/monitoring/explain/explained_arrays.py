@@ -162,15 +162,14 @@ def _is_steady(arrays: TraceArrays, name: str, cells: slice | None) -> bool:
 class _Vocabularies:
     """A rulebook's words for one rule: as declared, as completed, and as they are given.
 
-    In ``given``, names that are ``untold`` are unknown. In ``completed``, they have the values that
-    are ``supposed`` for unknown ones.
+    In ``given``, names that the source does not tell are unknown. In ``completed``, they have the
+    values that are ``supposed`` for unknown ones.
     """
 
     declared: Vocabulary
     completed: Vocabulary
     given: Vocabulary
     supposed: Supposed
-    untold: frozenset[str]
 
     @staticmethod
     def of(
@@ -188,7 +187,6 @@ class _Vocabularies:
                 completed=with_all_defaults(declared, supposed, untold),
                 given=with_untold(declared, untold),
                 supposed=supposed,
-                untold=untold,
             )
             rulebook.prepared[key] = vocabularies
         return vocabularies

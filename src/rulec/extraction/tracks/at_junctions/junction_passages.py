@@ -54,7 +54,7 @@ class Passage:
 
     ``way`` is the number of the way; ``sure`` is False if it may be another one. ``heading`` is the
     direction (rad) of approach when the front got there: the participant may have turned by the
-    time its middle is in the junction. ``whole``: both its entry and its exit were recorded.
+    time its middle is in the junction.
     """
 
     row: int
@@ -64,7 +64,6 @@ class Passage:
     first: int
     last: int
     heading: float
-    whole: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -360,5 +359,4 @@ def _passage(ways: Sequence[JunctionWay], tracks: Tracks, stay: Stay) -> Passage
         first=first,
         last=last,
         heading=_heading(tracks, row, first, ways[best]),
-        whole=whole,
     )
