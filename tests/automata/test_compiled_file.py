@@ -14,6 +14,7 @@ import rulec
 from rulec.automata.bundle.bundle_file import from_json, read_compiled, to_json, write_compiled
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
 from rulec.automata.compiler import compile_rulebook
+from rulec.automata.hoa_texts import with_automata
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import (
     Binary,
@@ -323,7 +324,7 @@ PAST = "rulebook past signal p, q hard rule recalled { require always (p implies
 
 def test_machines_for_cut_traces_are_in_the_file(tmp_path, monkeypatch):
     compiled = rulec.compile_rulebook(rulec.parse_rulebook(PAST))
-    *_, path = write_compiled(compiled, tmp_path)
+    *_, path = write_compiled(with_automata(compiled), tmp_path)
     monkeypatch.setattr("rulec.automata.prefix_machines.answers_to", None)
     again = rulec.compile_rulebook(path)
     assert isinstance(again.prefixes, StoredPrefixes)
@@ -406,7 +407,7 @@ def test_a_bit_that_is_not_as_it_was_is_refused(text, data):
 
 @pytest.mark.long
 def test_ten_thousand_bits_in_a_file_of_a_country(tmp_path):
-    *_, path = write_compiled(rulec.compile_rulebook("gb", step_s=1), tmp_path)
+    *_, path = write_compiled(with_automata(rulec.compile_rulebook("gb", step_s=1)), tmp_path)
     whole = path.read_bytes()
     chance = random.Random(7)
     for _ in range(10_000):

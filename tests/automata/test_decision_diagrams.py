@@ -95,7 +95,7 @@ def test_shipped_rules_have_the_monitors_and_languages_of_spot(name, step_s):
     spot = pytest.importorskip("spot")
     rulebook = read_rulebook(name).rulebook
     lowered = compiler.lower(rulebook, Fraction(step_s))
-    jobs = [compiler._job(rulebook, each) for each in lowered.rules]
+    jobs = [compiler._job(rulebook, each, with_texts=True) for each in lowered.rules]
     answers, _ = compiler.answers_to(jobs)
     for each, other in zip(jobs, answers, strict=True):
         own = answer_to(each, COMPILER)

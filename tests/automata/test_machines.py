@@ -4,7 +4,6 @@ import pytest
 from hypothesis import given
 
 from rulec.automata.alphabet import reads_of
-from rulec.automata.tables import build_machine
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -16,15 +15,15 @@ from rulec.logic.formula import (
     atoms_of,
 )
 from support.generators.random_formulas import VOCABULARY, formulas
-from support.oracles.installed_spot import spot, spot_bridge
+from support.oracles.installed_spot import machine_of, spot, spot_bridge
 from support.oracles.past_in_spot import spot_automaton
 
-explore, in_hoa, translate = spot_bridge.explore, spot_bridge.in_hoa, spot_bridge.translate
+in_hoa, translate = spot_bridge.in_hoa, spot_bridge.translate
 
 
-def machine_of(formula):
+def machine_for(formula):
     reads = reads_of(formula, VOCABULARY)
-    return build_machine(explore(translate(formula, reads), reads), reads)
+    return machine_of(translate(formula, reads), reads)
 
 
 P = Atom("p")
@@ -38,7 +37,7 @@ def previously(formula: Formula) -> Formula:
 @given(formulas)
 def test_machines_are_minimal(formula):
     """Any two states are told apart by a word, any two letter classes by a state."""
-    machine = machine_of(formula)
+    machine = machine_for(formula)
     columns = list(zip(*machine.successors, *machine.outputs, strict=True))
     assert len(set(columns)) == len(columns)
     n = len(machine.successors)
@@ -98,7 +97,7 @@ def test_dead_and_safe_states():
         Constant(False): (False, True),
     }
     for formula, (accepting_sink, rejecting_sink) in safe_or_dead.items():
-        machine = machine_of(formula)
+        machine = machine_for(formula)
         assert (machine.accepting_sink is not None, machine.rejecting_sink is not None) == (
             accepting_sink,
             rejecting_sink,
@@ -130,7 +129,7 @@ def test_machines_of_equivalent_formulas_are_identical(left, right):
     no = UnaryOperator.NOT
     both = Binary(BinaryOperator.AND, left, right)
     either = Unary(no, Binary(BinaryOperator.OR, Unary(no, left), Unary(no, right)))
-    assert machine_of(both) == machine_of(either)
+    assert machine_for(both) == machine_for(either)
 
 
 LAWS = {
@@ -185,6 +184,6 @@ def test_machines_are_identical_by_the_laws_of_the_past(law, left, right):
     one, other = LAWS[law]
     reading = Binary(BinaryOperator.OR, Unary(UnaryOperator.NOT, left), left)
     reading = Binary(BinaryOperator.AND, reading, Binary(BinaryOperator.IMPLIES, right, right))
-    assert machine_of(Binary(BinaryOperator.AND, reading, one(left, right))) == machine_of(
+    assert machine_for(Binary(BinaryOperator.AND, reading, one(left, right))) == machine_for(
         Binary(BinaryOperator.AND, reading, other(left, right))
     )

@@ -71,8 +71,9 @@ def book_of(formula, axioms, vocabulary=VOCABULARY, semantics="stutter"):
     return Rulebook("test", vocabulary, (rule,), semantics=semantics, axioms=known)
 
 
-def answer(book):
-    return answer_to(compiler._job(book, compiler.lower(book).rules[0]), spot_bridge.COMPILER)
+def answer(book, *, with_texts=False):
+    job = compiler._job(book, compiler.lower(book).rules[0], with_texts=with_texts)
+    return answer_to(job, spot_bridge.COMPILER)
 
 
 def compiled(book):
@@ -210,7 +211,7 @@ def test_the_automaton_has_the_words_of_the_formula_on_which_the_facts_hold(form
     for fact in axioms:
         formula = Binary(BinaryOperator.AND, formula, Binary(BinaryOperator.IMPLIES, fact, fact))
     own = set(atoms_of(formula))
-    done = answer(book_of(formula, axioms))
+    done = answer(book_of(formula, axioms), with_texts=True)
     assume(not isinstance(done, Failed))
     # The values of enumerations that the formula speaks of exclude each other.
     exclusive = "&".join(
@@ -247,7 +248,7 @@ def test_every_fact_of_a_contradiction_is_needed(axioms):
 
 @given(formulas, facts_over(ATOMS))
 def test_machines_meet_possible_letters_alone_and_are_minimal_for_them(formula, axioms):
-    done = answer(book_of(formula, axioms))
+    done = answer(book_of(formula, axioms), with_texts=True)
     assume(not isinstance(done, Failed))
     machine = done.machine
     met = set(machine.letters) - {IMPOSSIBLE}

@@ -9,6 +9,7 @@ import pytest
 
 import rulec
 from rulec.automata.bundle.bundle_file import from_json, read_compiled, to_json, write_compiled
+from rulec.automata.hoa_texts import with_automata
 from rulec.cli.main import main
 from rulec.diagnostics import RulecError
 from support.builders.compiled_files import sealed
@@ -34,7 +35,7 @@ def soon(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def compiled(soon):
-    return rulec.compile_rulebook(soon, step_s=STEPS)
+    return with_automata(rulec.compile_rulebook(soon, step_s=STEPS))
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,6 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rulec.automata.alphabet import knowledge, propositions_of, reads_of
-from rulec.automata.tables import build_machine
 from rulec.automata.worker.random_words import agrees, verdict
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
 from support.generators.timed_formulas import (
@@ -15,18 +14,18 @@ from support.generators.timed_formulas import (
     letter_number,
     timed_formulas,
 )
-from support.oracles.installed_spot import spot, spot_bridge
+from support.oracles.installed_spot import machine_of, spot, spot_bridge
 from support.oracles.past_in_spot import in_spot, is_easy, spot_automaton
 
-explore, in_hoa, translate = spot_bridge.explore, spot_bridge.in_hoa, spot_bridge.translate
+in_hoa, translate = spot_bridge.in_hoa, spot_bridge.translate
 
 both_semantics = st.sampled_from(["stutter", "finite"])
 
 
-def machine_of(formula, semantics):
+def machine_for(formula, semantics):
     reads = reads_of(formula, TIMED_VOCABULARY)
     found = translate(formula, reads, semantics)
-    return build_machine(explore(found, reads), reads)
+    return machine_of(found, reads)
 
 
 P, Q = Atom("p"), Atom("q")
@@ -55,7 +54,7 @@ LONG = [
 @pytest.mark.parametrize("formula", LONG)
 def test_a_long_bound_takes_as_many_states_as_it_has_steps(formula, semantics):
     """One for each number of steps left, 0 to 39; one for nothing pending; lost, or won."""
-    machine = machine_of(formula, semantics)
+    machine = machine_for(formula, semantics)
     assert len(machine.successors) == 40 + 2
     assert agrees(machine, formula, semantics)
 
@@ -64,7 +63,7 @@ def test_a_long_bound_takes_as_many_states_as_it_has_steps(formula, semantics):
 def test_ranges_that_overlap_ask_for_the_same_instants(semantics):
     """Which of the coming 40 instants must have q: no set but unions of ranges of 25."""
     formula = Unary(ALWAYS, Binary(BinaryOperator.IMPLIES, P, later(ALWAYS, 16, 40, Q)))
-    machine = machine_of(formula, semantics)
+    machine = machine_for(formula, semantics)
     assert len(machine.successors) < 1000 < 2**16
     assert agrees(machine, formula, semantics)
 
@@ -76,7 +75,7 @@ def test_random_words_tell_machines_apart(semantics):
         (LONG[0], Unary(ALWAYS, Binary(BinaryOperator.IMPLIES, P, later(EVENTUALLY, 0, 41, Q)))),
         (LONG[2], Unary(ALWAYS, Binary(BinaryOperator.IMPLIES, P, later(ONCE, 0, 39, Q)))),
     ]:
-        assert not agrees(machine_of(formula, semantics), other, semantics)
+        assert not agrees(machine_for(formula, semantics), other, semantics)
 
 
 @given(timed_formulas, both_semantics)
@@ -88,13 +87,13 @@ def test_machines_are_canonical(formula, semantics):
         Binary(BinaryOperator.AND, formula, formula),
         Binary(BinaryOperator.AND, formula, Unary(UnaryOperator.NOT, formula)),
     )
-    assert machine_of(formula, semantics) == machine_of(twice, semantics)
-    assert machine_of(formula, semantics) == machine_of(split, semantics)
+    assert machine_for(formula, semantics) == machine_for(twice, semantics)
+    assert machine_for(formula, semantics) == machine_for(split, semantics)
 
 
 @given(timed_formulas, both_semantics)
 def test_machines_are_minimal(formula, semantics):
-    machine = machine_of(formula, semantics)
+    machine = machine_for(formula, semantics)
     columns = list(zip(*machine.successors, *machine.outputs, strict=True))
     assert len(set(columns)) == len(columns)
     blocks = [tuple(row) for row in machine.outputs]
@@ -148,7 +147,7 @@ def test_a_signal_called_alive_is_no_end_of_the_word(semantics):
     ]:
         found = translate(formula, reads, semantics)
         assert found.alive == ("alive (2)" if semantics == "finite" else None)
-        machine = build_machine(explore(found, reads), reads)
+        machine = machine_of(found, reads)
         assert [verdict(machine, word) for word in ([1, 1], [1, 0], [0, 0])] == verdicts
 
 
@@ -156,7 +155,7 @@ def test_different_comparisons_with_one_text_stay_different():
     slow, fast = (comparison("speed", relation, 1) for relation in "<>")
     fast = type(fast)(fast.terms, fast.relation, fast.limit, slow.text)
     formula = Unary(ALWAYS, Binary(BinaryOperator.IMPLIES, slow, Unary(UnaryOperator.NEXT, fast)))
-    machine = machine_of(formula, "stutter")
+    machine = machine_for(formula, "stutter")
     numbers = [letter_number(machine.reads, {SPEED: speed}) for speed in (0, 2, 1, 2)]
     assert [verdict(machine, numbers[:n]) for n in (1, 2, 3, 4)] == [False, True, True, True]
     assert not verdict(machine, numbers[:1] * 2)

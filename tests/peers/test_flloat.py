@@ -15,7 +15,6 @@ from pathlib import Path
 import pytest
 
 from rulec.automata.alphabet import propositions_of, reads_of
-from rulec.automata.tables import build_machine
 from rulec.automata.worker.random_words import verdict
 from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.formula import Binary, Constant, Unary
@@ -30,6 +29,7 @@ from support.generators.timed_formulas import (
     timed_words,
     without_bounds,
 )
+from support.oracles.installed_spot import machine_of
 
 spot_bridge = pytest.importorskip("rulec.automata.spot_bridge")
 
@@ -86,7 +86,7 @@ def in_flloat(formula, names):
 def by_machine(formula, words):
     reads = reads_of(formula, TIMED_VOCABULARY)
     found = spot_bridge.translate(formula, reads, "finite")
-    machine = build_machine(spot_bridge.explore(found, reads), reads)
+    machine = machine_of(found, reads)
     return [verdict(machine, [letter_number(reads, state) for state in word]) for word in words]
 
 

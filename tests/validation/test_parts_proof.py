@@ -8,6 +8,7 @@ import pytest
 import rulec
 from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.automata.bundle.stored_prefixes import stored
+from rulec.automata.hoa_texts import with_automata
 from rulec.validation.file_proof import proofs_of
 from support.builders.compiled_files import sealed
 
@@ -31,7 +32,7 @@ NOT_ITS_PARTS = "its parts do not make up its formula"
 
 @pytest.fixture(scope="module")
 def compiled():
-    return rulec.compile_rulebook(rulec.parse_rulebook(BOOK))
+    return with_automata(rulec.compile_rulebook(rulec.parse_rulebook(BOOK)))
 
 
 def reasons(data):
@@ -66,7 +67,7 @@ semantics {semantics}
 signal p, q, r, z default false
 hard rule k {{ require {required} {exempting} }}
 """
-    rules = rulec.compile_rulebook(rulec.parse_rulebook(text))
+    rules = with_automata(rulec.compile_rulebook(rulec.parse_rulebook(text)))
     data = json.loads(to_json(replace(rules, prefixes=stored(rules))))
     assert data["rules"][0]["cut"]["starts"]
     assert reasons(data) == {}

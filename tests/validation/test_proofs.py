@@ -11,6 +11,7 @@ import pytest
 import rulec
 from rulec.automata.bundle.bundle_file import to_json
 from rulec.automata.bundle.stored_prefixes import stored
+from rulec.automata.hoa_texts import with_automata
 from rulec.validation.comparison_words import KNOWN_UNITS
 from rulec.validation.file_proof import UnreadableError, proof_of, proofs_of
 from rulec.vocabulary.dimensions import UNITS
@@ -22,7 +23,7 @@ from support.generators.odd_documents import ODD_VALUES, places_in, with_value
 
 def file_of(reference, step):
     compiled = rulec.compile_rulebook(reference, step_s=step)
-    return to_json(replace(compiled, prefixes=stored(compiled))).encode()
+    return to_json(with_automata(replace(compiled, prefixes=stored(compiled)))).encode()
 
 
 def reasons(data):
@@ -49,7 +50,7 @@ hard rule counted {
 
 def test_one_limit_in_two_units_is_one_comparison():
     rules = rulec.compile_rulebook(rulec.parse_rulebook(TWO_UNITS))
-    data = to_json(replace(rules, prefixes=stored(rules))).encode()
+    data = to_json(with_automata(replace(rules, prefixes=stored(rules)))).encode()
     assert len(proofs_of(data)) == 2
     assert reasons(data) == {}
     for speeds, violated in [((18, 19, 18), True), ((18, 18, 19), False)]:
@@ -67,7 +68,7 @@ def test_a_count_is_never_negative(compared):
             f"hard rule r {{ require always (p or count x: a (s(x)) {compared}) }}"
         )
     )
-    assert reasons(to_json(rules).encode()) == {}
+    assert reasons(to_json(with_automata(rules)).encode()) == {}
 
 
 @pytest.mark.parametrize("name", sorted(UNITS.keys() - {"in"}))
@@ -85,7 +86,7 @@ def test_all_rules_that_ship_are_proved(name, step):
 @pytest.mark.parametrize("seed", range(2))
 def test_random_rules_are_proved(seed):
     compiled = compiled_at_random(random.Random(seed), n_rules=12)
-    assert reasons(to_json(compiled).encode()) == {}
+    assert reasons(to_json(with_automata(compiled)).encode()) == {}
 
 
 @pytest.mark.long
@@ -93,7 +94,7 @@ def test_a_thousand_random_rules_are_proved():
     chance = random.Random(3)
     for _ in range(80):
         compiled = compiled_at_random(chance, n_rules=13, most=6)
-        assert reasons(to_json(compiled).encode()) == {}
+        assert reasons(to_json(with_automata(compiled)).encode()) == {}
 
 
 def changed(machine, chance, outputs):
@@ -127,7 +128,7 @@ def check_changed_tables(seed, count, found=of_file, times=40):
     for number in range(count):
         if number % times == 0:
             compiled = compiled_at_random(chance)
-            whole = json.loads(to_json(compiled))
+            whole = json.loads(to_json(with_automata(compiled)))
             pool = list(zip(whole["rules"], compiled.rules, strict=True))
         entry, rule = chance.choice(pool)
         entry = json.loads(json.dumps(entry))
@@ -180,7 +181,7 @@ def test_ten_thousand_changed_tables():
 )
 def test_a_changed_hoa_text_is_not_proved(before, after):
     book = "rulebook b signal p, q hard rule r { require always (p implies next q) }"
-    data = json.loads(to_json(rulec.compile_rulebook(rulec.parse_rulebook(book))))
+    data = json.loads(to_json(with_automata(rulec.compile_rulebook(rulec.parse_rulebook(book)))))
     text = data["rules"][0]["hoa"]
     assert reasons(sealed(data)) == {}
     assert before in text, text
@@ -194,7 +195,7 @@ def test_the_trace_that_is_given_is_judged_otherwise():
             "rulebook b signal p, q hard rule r { require always (p implies next q) }"
         )
     )
-    data = json.loads(to_json(compiled))
+    data = json.loads(to_json(with_automata(compiled)))
     machine = data["rules"][0]["machine"]
     # After p, without q: the state that waits for q now takes anything.
     waiting = machine["following"][0][machine["letters"][1]]
@@ -216,7 +217,7 @@ def test_changed_tables_for_cut_traces_are_proved_only_if_nothing_changes(seed, 
     for number in range(count):
         if number % 40 == 0:
             compiled = compiled_at_random(chance)
-            whole = json.loads(to_json(compiled))
+            whole = json.loads(to_json(with_automata(compiled)))
             pool = [entry for entry in whole["rules"] if entry["cut"] is not None]
         entry = json.loads(json.dumps(chance.choice(pool)))
         before = json.loads(json.dumps(entry["cut"]))

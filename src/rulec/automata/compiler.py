@@ -111,17 +111,18 @@ def lower(
 
 def compile_rulebook(rulebook: Rulebook, *, step_s: Fraction | None = None) -> CompiledRulebook:
     """Compile every rule for one step: ``lower``, then ``build_all``."""
-    return build_all(rulebook, lower(rulebook, step_s))
+    return build_all(rulebook, lower(rulebook, step_s), with_texts=True)
 
 
 def build_all(
     rulebook: Rulebook,
     formulas: RulebookFormulas,
     *,
+    with_texts: bool = False,
     more_will_come: bool = False,
     time: CompilerTime | None = None,
 ) -> CompiledRulebook:
-    """Build the automaton of every formula, in the order of the rules.
+    """Build the automaton of every formula, in the order of the rules; ``with_texts`` in HOA, too.
 
     With ``more_will_come`` the worker stays alive for the next call, since starting one takes
     0.25 s.
@@ -134,7 +135,7 @@ def build_all(
     problems = list(formulas.problems)
     if problems and not formulas.rules:
         raise RulecError(problems)  # there is nothing to compile, so no process is started
-    jobs = [_job(rulebook, rule) for rule in formulas.rules]
+    jobs = [_job(rulebook, rule, with_texts=with_texts) for rule in formulas.rules]
     answers, spot = answers_to(jobs, more_will_come=more_will_come, time=time)
     for lowered, answer in zip(formulas.rules, answers, strict=True):
         if isinstance(answer, Done):
@@ -142,7 +143,8 @@ def build_all(
         elif answer == Failed("time"):
             raise no_time(lowered.rule.name, at(lowered.rule.span), lowered.step_s)
         else:
-            problems.append(no_machine(lowered.rule, answer, lowered.step_s))
+            place = at(lowered.rule.span)
+            problems.append(no_machine(lowered.rule, place, answer, lowered.step_s))
     if problems:
         # Every rule reports contradictory facts; each report is kept once.
         raise RulecError(dict.fromkeys(problems))
@@ -319,22 +321,25 @@ def _children_s() -> float:
     return used.children_user + used.children_system
 
 
-def _job(rulebook: Rulebook, lowered: RuleFormula) -> Job:
-    rule, formula, step = lowered.rule, lowered.formula, lowered.step_s
+def remarks_on(
+    rule: Rule | CompiledRule, rulebook: str, step_s: Fraction | None
+) -> tuple[str, ...]:
+    """The comments in the text of a rule's automaton."""
     cite = f", {rule.cite}" if rule.cite else ""
-    remarks = [
-        f"{rule.strength} rule {rule.name} of {rulebook.name}{cite}",
-        f"compiled by rulec {__version__}",
-    ]
-    if step is not None:
-        remarks.append(f"one letter is {time_in_words(step, 's')}")
+    step = [] if step_s is None else [f"one letter is {time_in_words(step_s, 's')}"]
+    of = f"{rule.strength} rule {rule.name} of {rulebook}{cite}"
+    return of, f"compiled by rulec {__version__}", *step
+
+
+def _job(rulebook: Rulebook, lowered: RuleFormula, *, with_texts: bool = False) -> Job:
+    rule, formula = lowered.rule, lowered.formula
     vocabulary = rulebook.vocabulary
     instances = axiom_instances(rule.variables, rulebook.axioms, vocabulary)
     return Job(
         name=rule.name,
         formula=formula,
         reads=reads_of(formula, vocabulary),
-        remarks=tuple(remarks),
+        remarks=remarks_on(rule, rulebook.name, lowered.step_s) if with_texts else (),
         semantics=rulebook.semantics,
         groups=axiom_groups(propositions_of(formula), instances, vocabulary),
     )

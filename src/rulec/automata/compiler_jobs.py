@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from rulec.automata.axiom_groups import AxiomGroup
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
 from rulec.automata.tables import DeterministicAutomaton
-from rulec.logic.formula import Formula
+from rulec.logic.formula import Formula, Proposition
 from rulec.logic.semantics import Semantics
 from rulec.rulebook.rules.axiom_instances import AxiomInstance
 
@@ -114,9 +114,14 @@ Translator: TypeAlias = Callable[[Job], Translated]
 class Compiler:
     """A compiler: its ``version`` and its functions.
 
-    ``contradicts`` returns whether a formula without temporal operators holds in no state.
+    ``contradicts`` returns whether a formula without temporal operators holds in no state. Some
+    can translate the ``rest`` of a job's formula, once its past is in registers; it is given with
+    the letters of each proposition, as bits, and their number. ``possible`` are then the letters
+    that the facts allow, as bits, None for all.
     """
 
     version: str
     translate: Translator
     contradicts: Callable[[Formula], bool]
+    rest: Callable[[Job, Formula, Mapping[Proposition, int], int], Translated] | None = None
+    possible: Callable[[Job], int | None] = lambda _: None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from rulec.automata.bundle.bundle_messages import AUTOMATON_TOO_LARGE
+from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.compiler_jobs import MOST_EDGES, MOST_OPERATORS, MOST_STATES, Failed
 from rulec.automata.worker.confinement import Confinement
 from rulec.diagnostics import Diagnostic, SourceLocation
@@ -61,7 +62,12 @@ _GET_SPOT = (
 )
 
 
-def no_machine(rule: Rule, failed: Failed | None, step_s: Fraction | None = None) -> Diagnostic:
+def no_machine(
+    rule: Rule | CompiledRule,
+    place: SourceLocation | None,
+    failed: Failed | None,
+    step_s: Fraction | None = None,
+) -> Diagnostic:
     """The diagnostic (R0401 to R0403, R0409) for a failure; None: Spot's process died (R0401).
 
     ``step_s`` is the step in which the rule's bounds were counted. Raises RuntimeError for a bug.
@@ -72,7 +78,7 @@ def no_machine(rule: Rule, failed: Failed | None, step_s: Fraction | None = None
             raise RuntimeError(f"while compiling rule {rule.name}:\n{traceback}")
         case Failed("check"):
             return FAILED_CHECK.at(
-                rule.span,
+                place,
                 f"the automaton of rule `{rule.name}` is not equivalent to its formula",
                 help="this is a bug in Spot or rulec, not in the rulebook: please report the rule",
                 notes=_provision(rule),
@@ -81,7 +87,7 @@ def no_machine(rule: Rule, failed: Failed | None, step_s: Fraction | None = None
             return contradictory_facts(instances, rule.variables)
         case Failed("reach"):
             return SPOT_MISSING.at(
-                rule.span,
+                place,
                 f"rule `{rule.name}` needs Spot: it nests unbounded obligations, or its past "
                 "depends on the future",
                 help=_GET_SPOT,
@@ -117,7 +123,7 @@ def no_machine(rule: Rule, failed: Failed | None, step_s: Fraction | None = None
             "steps; for a recording, every fifth state may be enough"
         )
     return AUTOMATON_TOO_LARGE.at(
-        rule.span,
+        place,
         f"the automaton of rule `{rule.name}` would be too large: {why}",
         help=help_text,
         notes=_provision(rule),
@@ -132,7 +138,7 @@ def no_time(name: str, place: SourceLocation | None, step_s: Fraction | None) ->
     return COMPILING.spent(place, whose)
 
 
-def _provision(rule: Rule) -> tuple[str, ...]:
+def _provision(rule: Rule | CompiledRule) -> tuple[str, ...]:
     return (provision_note(rule.name, rule.cite),) if rule.cite else ()
 
 

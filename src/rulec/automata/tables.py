@@ -43,28 +43,46 @@ class DeterministicAutomaton:
     after_the_end: tuple[tuple[int, int], ...] | None = None
 
 
-def build_machine(
-    automaton: DeterministicAutomaton,
-    reads: tuple[Read | NumberRead, ...],
-    possible: int | None = None,
-) -> MealyMonitor:
-    """The minimal machine of the automaton over the letters of ``reads``.
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """A complete deterministic table: letters of each class as bits, targets and verdicts by state.
 
-    ``possible`` is the bit set of the letters (at least one) that states can have; None for all.
-    The result, including its numbering, is the same for every automaton of the same language:
+    Classes are in the order of their smallest letters.
+    """
+
+    classes: Sequence[int]
+    successors: Sequence[Sequence[int]]
+    outputs: Sequence[Sequence[bool]]
+    initial: int = 0
+
+
+def rows_of(automaton: DeterministicAutomaton, possible: int) -> Rows:
+    """The verdicts of an automaton as a table.
+
+    ``possible`` is the bit set of the letters (at least one) that states can have.
+    """
+    classes = sorted(_letter_classes(automaton, possible), key=lambda members: members & -members)
+    return Rows(classes, *_tables(automaton, classes), automaton.initial)
+
+
+def build_machine(
+    rows: Rows, reads: tuple[Read | NumberRead, ...], n_letters: int | None = None
+) -> MealyMonitor:
+    """The minimal machine of a table over the letters of ``reads``, or over so many letters.
+
+    The result, including its numbering, is the same for every table of the same language:
     classes are numbered by their smallest letter, states in breadth-first order.
     """
-    n_letters = count_letters(reads)
-    met = (1 << n_letters) - 1 if possible is None else possible
-    classes = sorted(_letter_classes(automaton, met), key=lambda members: members & -members)
-    successors, outputs = minimise(*_tables(automaton, classes), automaton.initial)
+    classes = rows.classes
+    successors, outputs = minimise(rows.successors, rows.outputs, rows.initial)
     columns = list(zip(*successors, *outputs, strict=True))
     merged = {column: index for index, column in enumerate(dict.fromkeys(columns))}
     kept = [columns.index(column) for column in merged]
-    letters = [IMPOSSIBLE] * n_letters
+    letters = [IMPOSSIBLE] * (n_letters or count_letters(reads))
     for members, column in zip(classes, columns, strict=True):
-        for letter in _bits(members):
-            letters[letter] = merged[column]
+        number = merged[column]
+        for letter in places_of(members):
+            letters[letter] = number
     return MealyMonitor(
         reads,
         tuple(letters),
@@ -75,7 +93,7 @@ def build_machine(
     )
 
 
-def _bits(members: int) -> Iterator[int]:
+def places_of(members: int) -> Iterator[int]:
     """The positions of the set bits; removing them one by one would be quadratic for large sets."""
     digits = f"{members:b}"[::-1]
     place = digits.find("1")
@@ -102,7 +120,7 @@ def _tables(
     targets: list[list[int]] = []
     verdicts: list[list[bool]] = []
     over = automaton.after_the_end
-    ends_well = None if over is None else _loop_verdicts(over, automaton)
+    ends_well = None if over is None else loop_verdicts(over, automaton.accepts)
     firsts = [members & -members for members in classes]
     # Far fewer sets of letters than edges have them, and each may have 100,000 bits.
     labels = {edge.letters for edges in automaton.edges for edge in edges}
@@ -116,16 +134,17 @@ def _tables(
     for step in zip(*rows, strict=True):
         targets.append([target for target, _ in step])
         if ends_well is None:
-            verdicts.append(_loop_verdicts(step, automaton))
+            verdicts.append(loop_verdicts(step, automaton.accepts))
         else:
             verdicts.append([ends_well[target] for target, _ in step])
     return list(zip(*targets, strict=True)), list(zip(*verdicts, strict=True))
 
 
-def _loop_verdicts(
-    step: Sequence[tuple[int, int]], automaton: DeterministicAutomaton
-) -> list[bool]:
-    """For each state, whether repeating one letter for ever (``step``) is accepted."""
+def loop_verdicts(step: Sequence[tuple[int, int]], accepts: Callable[[int], bool]) -> list[bool]:
+    """For each state, whether repeating one letter for ever is accepted.
+
+    ``step`` has each state's target and colours; ``accepts`` is about all colours of a loop.
+    """
     verdicts: dict[int, bool] = {}
     for first in range(len(step)):
         path: dict[int, int] = {}
@@ -135,7 +154,7 @@ def _loop_verdicts(
             state = step[state][0]
         if state in path:
             cycle = list(path)[path[state] :]
-            verdicts[state] = automaton.accepts(reduce(or_, (step[member][1] for member in cycle)))
+            verdicts[state] = accepts(reduce(or_, (step[member][1] for member in cycle)))
         verdicts.update(dict.fromkeys(path, verdicts[state]))
     return [verdicts[state] for state in range(len(step))]
 
@@ -145,23 +164,47 @@ def minimise(
 ) -> tuple[list[list[int]], list[Sequence[Output]]]:
     """Merge equivalent states; number the rest in breadth-first order from ``initial``.
 
-    Moore's partition refinement; states with different outputs (verdicts) are different.
+    Moore's partition refinement; states with different outputs (verdicts) are different. When a
+    block splits, its largest part keeps its number, so that only states with a successor in one of
+    the others are looked at again (after Hopcroft, 1971).
     """
     blocks = _number(map(tuple, outputs))
-    columns = list(zip(*successors, strict=True))
-    while True:
-        targets = (map(blocks.__getitem__, column) for column in columns)
-        refined = _number(zip(blocks, *targets, strict=True))
-        if max(refined) == max(blocks):
-            break
-        blocks = refined
+    before: list[set[int]] = [set() for _ in blocks]
+    for state, row in enumerate(successors):
+        for target in set(row):
+            before[target].add(state)
+    members: dict[int, set[int]] = {}
+    for state, block in enumerate(blocks):
+        members.setdefault(block, set()).add(state)
+    changed = set(range(len(blocks)))
+    while changed:
+        parts: dict[int, dict[tuple[int, ...], list[int]]] = {}
+        for state in changed:
+            after = tuple(map(blocks.__getitem__, successors[state]))
+            parts.setdefault(blocks[state], {}).setdefault(after, []).append(state)
+        moved: list[int] = []
+        for block, by_target in parts.items():
+            apart = sorted(map(set, by_target.values()), key=len)
+            # Those that were not looked at still agree with each other, and with none of these.
+            others = members[block]
+            others.difference_update(*apart)
+            if len(others) < len(apart[-1]):
+                members[block] = apart.pop()
+                apart += [others] if others else []
+            for part in apart:
+                number = len(members)
+                members[number] = part
+                moved += part
+                for state in part:
+                    blocks[state] = number
+        changed = {state for target in moved for state in before[target]}
     representative: dict[int, int] = {}
     for state, block in enumerate(blocks):
         representative.setdefault(block, state)
     position = {blocks[initial]: 0}
     rows = [representative[blocks[initial]]]
-    for row in rows:
-        for target in successors[row]:
+    for state in rows:
+        for target in successors[state]:
             if blocks[target] not in position:
                 position[blocks[target]] = len(rows)
                 rows.append(representative[blocks[target]])

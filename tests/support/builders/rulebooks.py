@@ -59,7 +59,7 @@ def compile_here(rulebook, step_s=None):
 
     compiled = []
     for formula in compiler.lower(rulebook, step_s).rules:
-        job = compiler._job(rulebook, formula)
+        job = compiler._job(rulebook, formula, with_texts=True)
         answer = answer_to(job, usual)
         if answer in (Failed("reach"), Failed("sets")):
             reject()

@@ -5,6 +5,7 @@ from dataclasses import replace
 import rulec
 from rulec.automata.alphabet import letters_with, propositions_of
 from rulec.automata.bundle.stored_prefixes import stored
+from rulec.automata.hoa_texts import with_automata
 from rulec.diagnostics import RulecError
 from rulec.logic.bounds import in_steps
 from rulec.logic.semantics import holds
@@ -18,7 +19,7 @@ def compiled_at_random(chance, n_rules=8, most=5):
         compiled = rulec.compile_rulebook(rulebook, step_s=1)
     except RulecError:  # a formula whose automaton is too large
         return compiled_at_random(chance, n_rules, most)
-    return replace(compiled, prefixes=stored(compiled))
+    return with_automata(replace(compiled, prefixes=stored(compiled)))
 
 
 def verdict(machine, word):

@@ -2,6 +2,9 @@
 
 import pytest
 
+from rulec.automata.alphabet import count_letters, letters_with
+from rulec.automata.tables import build_machine, rows_of
+
 
 class _Missing:
     def __getattr__(self, name):
@@ -19,4 +22,12 @@ try:
 except ImportError:
     spot = spot_bridge = SpotFormulas = _Missing()
 
-__all__ = ["SpotFormulas", "spot", "spot_bridge"]
+__all__ = ["SpotFormulas", "machine_of", "spot", "spot_bridge"]
+
+
+def machine_of(translation, reads):
+    """The minimal machine of an automaton of Spot's over all letters of these reads."""
+    n_letters = count_letters(reads)
+    letters = letters_with(reads, translation.names)
+    automaton = spot_bridge.explore(translation, letters, n_letters)
+    return build_machine(rows_of(automaton, (1 << n_letters) - 1), reads)

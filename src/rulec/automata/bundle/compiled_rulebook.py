@@ -26,8 +26,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class CompiledRule:
-    """A rule with its machine; ``hoa`` is its automaton in HOA v1.
+    """A rule with its machine.
 
+    ``hoa`` is its automaton in HOA v1, empty until a file is written (``automata.hoa_texts``).
     ``step_s`` is the step of the traces that the machine can judge; None for any step, because the
     formula has no bounds in seconds. ``trigger`` is the condition under which the rule demands
     anything, None if the formula's form does not show one (``logic.opportunities``); it is derived
@@ -44,7 +45,7 @@ class CompiledRule:
     says: str
     formula: Formula
     machine: MealyMonitor
-    hoa: str
+    hoa: str = field(compare=False)
     step_s: Fraction | None = None
     level: str = ""
     weight: Fraction = Fraction(1)

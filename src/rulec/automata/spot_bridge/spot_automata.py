@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import spot
 
 import buddy  # isort: skip - only once spot has been imported
 
-from rulec.automata.alphabet import count_letters, letters_with
-from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.spot_bridge.translation import Translation
 from rulec.automata.tables import DeterministicAutomaton, TableEdge
+from rulec.logic.formula import Proposition
 
 VERSION: str = spot.version()
 
@@ -67,14 +66,16 @@ def _without_comment_signs(text: str) -> str:
     return " ".join(text.replace("*/", "* /").replace("/*", "/ *").split())
 
 
-def explore(translation: Translation, reads: Sequence[Read | NumberRead]) -> DeterministicAutomaton:
-    """The automaton over the letters of ``reads``; colours and letters are bit sets."""
+def explore(
+    translation: Translation, letters_with: Mapping[Proposition, int], n_letters: int
+) -> DeterministicAutomaton:
+    """The automaton over letters, of which ``letters_with`` has those of each proposition.
+
+    Colours and letters are bit sets.
+    """
     automaton = translation.automaton
-    sets = {
-        translation.names[atom]: letters
-        for atom, letters in letters_with(reads, translation.names).items()
-    }
-    everything = (1 << count_letters(reads)) - 1
+    sets = {name: letters_with[atom] for atom, name in translation.names.items()}
+    everything = (1 << n_letters) - 1
     if translation.alive is not None:
         sets[translation.alive] = everything
     variables = {automaton.register_ap(ap): sets[ap.ap_name()] for ap in automaton.ap()}

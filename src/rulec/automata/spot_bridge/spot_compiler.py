@@ -2,41 +2,86 @@
 
 from __future__ import annotations
 
-from rulec.automata.alphabet import AND, joined, propositions_of
+from collections.abc import Mapping, Sequence
+
+from rulec.automata.alphabet import AND, count_letters, joined, letters_with, propositions_of
 from rulec.automata.axiom_groups import possible_letters
 from rulec.automata.compiler_jobs import AcceptanceError, Compiler, Job, Translated
+from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.spot_bridge.spot_automata import VERSION, explore, in_hoa
 from rulec.automata.spot_bridge.spot_formulas import projected
-from rulec.automata.spot_bridge.translation import translate
-from rulec.logic.formula import Constant, Formula
+from rulec.automata.spot_bridge.translation import Translation, translate
+from rulec.logic.formula import Atom, Comparison, Constant, Formula, Proposition
+from rulec.logic.semantics import Semantics
 
 _NO_SETS = "Too many acceptance sets"
 """The start of Spot's error for an automaton with more than the 32 sets that it was built for."""
 
 
 def _translated(job: Job) -> Translated:
-    propositions = propositions_of(job.formula)
-    facts = [projected(group.known, propositions) for group in job.groups]
-    axioms = [fact for fact in facts if fact != Constant(True)]
+    axioms = _facts(job, job.formula)
+    translation = _translation(job.formula, job.semantics, job.reads, axioms)
+    letters = letters_with(job.reads, translation.names)
+    return Translated(
+        explore(translation, letters, count_letters(job.reads)),
+        _possible(job),
+        in_hoa(translation.automaton, job.name, job.remarks_on(translation.alive)),
+        translation.is_checked,
+        translation.compare,
+    )
+
+
+def _rest(
+    job: Job, rest: Formula, letters: Mapping[Proposition, int], n_letters: int
+) -> Translated:
+    mentioned = [_mentioned(read, propositions_of(rest)) for read in job.reads]
+    reads = [read for read in mentioned if read is not None]
+    translation = _translation(rest, job.semantics, reads, _facts(job, rest))
+    automaton = explore(translation, letters, n_letters)
+    return Translated(automaton, None, "", translation.is_checked, translation.compare)
+
+
+def _mentioned(
+    read: Read | NumberRead, propositions: Sequence[Proposition]
+) -> Read | NumberRead | None:
+    """The part of a read that these propositions are about."""
+    if isinstance(read, NumberRead):
+        about = (each.terms == read.terms for each in propositions if isinstance(each, Comparison))
+        return read if any(about) else None
+    values = [x for x in read.values if Atom(read.name, read.variables, x) in propositions]
+    if not values:
+        return None  # nothing is known of signals
+    return Read(read.name, read.variables, tuple(values), read.others or values != [*read.values])
+
+
+def _translation(
+    formula: Formula,
+    semantics: Semantics,
+    reads: Sequence[Read | NumberRead],
+    axioms: Sequence[Formula],
+) -> Translation:
     try:
-        translation = translate(job.formula, job.reads, job.semantics, axioms)
+        return translate(formula, reads, semantics, axioms)
     except RuntimeError as problem:
         if str(problem).startswith(_NO_SETS):
             raise AcceptanceError from None
         raise
-    return Translated(
-        explore(translation, job.reads),
-        possible_letters(job.reads, joined(AND, axioms)) if axioms else None,
-        in_hoa(translation.automaton, job.name, job.remarks_on(translation.alive))
-        if job.remarks
-        else "",
-        translation.is_checked,
-        translation.compare,
-    )
+
+
+def _facts(job: Job, formula: Formula) -> list[Formula]:
+    """What the facts say about a formula's propositions."""
+    propositions = propositions_of(formula)
+    facts = [projected(group.known, propositions) for group in job.groups]
+    return [fact for fact in facts if fact != Constant(True)]
+
+
+def _possible(job: Job) -> int | None:
+    axioms = _facts(job, job.formula)
+    return possible_letters(job.reads, joined(AND, axioms)) if axioms else None
 
 
 def _contradicts(known: Formula) -> bool:
     return projected(known, ()) == Constant(False)
 
 
-COMPILER = Compiler(VERSION, _translated, _contradicts)
+COMPILER = Compiler(VERSION, _translated, _contradicts, _rest, _possible)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from rulec.automata.alphabet import count_letters, letters_with, propositions_of
 from rulec.automata.axiom_groups import AxiomGroup
 from rulec.automata.compiler_jobs import (
+    MOST_LETTERS,
     MOST_OPERATORS,
     MOST_STEPS_AHEAD,
     AcceptanceError,
@@ -22,12 +23,23 @@ from rulec.automata.compiler_jobs import (
     Translated,
 )
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
-from rulec.automata.tables import build_machine
+from rulec.automata.register_product import MOST_REGISTERS, Skeleton, with_registers
+from rulec.automata.tables import build_machine, rows_of
 from rulec.automata.worker.random_words import agrees, outlined
 from rulec.logic.bounds import operations_of
 from rulec.logic.codec import from_data, to_data
 from rulec.logic.fold import bit_sets, fold
-from rulec.logic.formula import Binary, BinaryOperator, Formula, Unary
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    BinaryOperator,
+    Formula,
+    Proposition,
+    Unary,
+    with_operands,
+)
+from rulec.logic.past_registers import eliminate_past
+from rulec.logic.semantics import Semantics
 from rulec.rulebook.rules.axiom_instances import AxiomInstance
 from rulec.validation.table_proof import prove_words
 from rulec.validation.unprovable import UnprovableError
@@ -45,7 +57,7 @@ def answer_to(job: Job, compiler: Compiler) -> Done | Failed:
         if compiler.contradicts(group.known):
             return Failed("facts", contradiction=_contradiction(group, compiler))
     try:
-        translated = compiler.translate(job)
+        return _by_registers(job, compiler) or _whole(job, compiler)
     except CheckError:
         return Failed("check")
     except BeyondReachError:
@@ -54,15 +66,85 @@ def answer_to(job: Job, compiler: Compiler) -> Done | Failed:
         return Failed("size")
     except AcceptanceError:
         return Failed("sets")
-    machine = build_machine(translated.automaton, job.reads, translated.possible)
-    try:
-        return (
-            Done(machine, translated.hoa)
-            if _is_right(machine, job, translated)
-            else Failed("check")
-        )
-    except CheckError:
-        return Failed("check")
+
+
+def _whole(job: Job, compiler: Compiler) -> Done:
+    """The answer by translating the whole formula."""
+    translated = compiler.translate(job)
+    possible = (1 << count_letters(job.reads)) - 1
+    if translated.possible is not None:
+        possible = translated.possible
+    machine = build_machine(rows_of(translated.automaton, possible), job.reads)
+    outline, parts = outlined(job.formula)
+    claim = _Claim(machine, outline, _letters_of(job, parts), job.semantics)
+    if not _is_right(claim, translated, lambda: agrees(machine, job.formula, job.semantics)):
+        raise CheckError
+    return Done(machine, translated.hoa)
+
+
+def _by_registers(job: Job, compiler: Compiler) -> Done | None:
+    """The answer by translating what remains of a formula once its past is in registers.
+
+    None if the compiler does not do so, the automaton's text is wanted, or there is no such rest.
+    """
+    if compiler.rest is None or job.remarks:
+        return None
+    skeleton = _skeleton(job, compiler.possible(job))
+    if skeleton is None:
+        return None
+    letters = skeleton.letters_with
+    translated = compiler.rest(job, skeleton.rest, letters, skeleton.n_letters)
+    small = build_machine(rows_of(translated.automaton, skeleton.possible), (), skeleton.n_letters)
+    rows = with_registers(small, skeleton, ends=job.semantics == "finite")
+    machine = build_machine(rows, job.reads)
+    claim = _Claim(small, skeleton.present, letters, job.semantics)
+    if not _is_right(claim, translated, lambda: agrees(machine, job.formula, job.semantics)):
+        raise CheckError
+    return Done(machine, "")
+
+
+def _skeleton(job: Job, possible: int | None) -> Skeleton | None:
+    outline, parts = outlined(job.formula)
+    past = eliminate_past(outline)
+    if past.memories or len(past.registers) > MOST_REGISTERS:
+        return None
+    every = (1 << count_letters(job.reads)) - 1
+    true_in = _letters_of(job, parts)
+    groups = _told_apart([every if possible is None else possible], true_in.values())
+    groups.sort(key=lambda letters: letters & -letters)
+    if len(groups) << len(past.registers) > MOST_LETTERS:
+        return None
+    firsts = [letters & -letters for letters in groups]
+    propositions = letters_with(job.reads, propositions_of(job.formula))
+    holds = {
+        part: sum([1 << place for place, first in enumerate(firsts) if first & letters])
+        for part, letters in (true_in | propositions).items()
+    }
+    rest = _with_parts(past.present, {atom: part for part, atom in parts.items()})
+    return Skeleton(past.present, rest, past.registers, tuple(groups), holds)
+
+
+def _with_parts(outline: Formula, parts: Mapping[Atom, Formula]) -> Formula:
+    """An outline with its parts in place of their atoms."""
+    if isinstance(outline, Unary | Binary):
+        return with_operands(outline, lambda operand: _with_parts(operand, parts))
+    return parts.get(outline, outline) if isinstance(outline, Atom) else outline
+
+
+def _letters_of(job: Job, parts: Mapping[Formula, Atom]) -> dict[Proposition, int]:
+    """The letters in which each part of an outline is true."""
+    every = (1 << count_letters(job.reads)) - 1
+    of_letters = bit_sets(letters_with(job.reads, propositions_of(job.formula)), every)
+    return {atom: fold(part, of_letters) for part, atom in parts.items()}
+
+
+def _told_apart(groups: Iterable[int], sets: Iterable[int]) -> list[int]:
+    """The groups, as bits, split by sets."""
+    apart = list(groups)
+    for members in sets:
+        halves = [half for group in apart for half in (group & members, group & ~members)]
+        apart = [half for half in halves if half]
+    return apart
 
 
 def _farthest_step(formula: Formula) -> Fraction:
@@ -93,15 +175,25 @@ def _contradiction(group: AxiomGroup, compiler: Compiler) -> tuple[AxiomInstance
     return needed.instances
 
 
-def _is_right(machine: MealyMonitor, job: Job, translated: Translated) -> bool:
-    """Whether a machine judges words as its job's formula does.
+@dataclass(frozen=True, slots=True)
+class _Claim:
+    """A machine that is to judge words as a formula does; ``true_in`` has its atoms' letters."""
+
+    machine: MealyMonitor
+    formula: Formula
+    true_in: Mapping[Proposition, int]
+    semantics: Semantics
+
+
+def _is_right(claim: _Claim, translated: Translated, agree: Callable[[], bool]) -> bool:
+    """Whether a machine judges words as its formula does.
 
     This is proved for all words. If the proof takes too long, the compiler compares its automaton
-    with the formula as far as it can; unless that is complete, the machine is tested on random
-    words. Raises CheckError as ``found.compare``.
+    with the formula as far as it can; unless that is complete, it has to ``agree`` on random words.
+    Raises CheckError as ``translated.compare``.
     """
     try:
-        _prove(machine, job)
+        _prove(claim)
     except RecursionError:
         pass
     except UnprovableError as problem:
@@ -111,30 +203,24 @@ def _is_right(machine: MealyMonitor, job: Job, translated: Translated) -> bool:
         return True
     if translated.compare is not None:
         translated.compare()
-    return translated.is_checked or agrees(machine, job.formula, job.semantics)
+    return translated.is_checked or agree()
 
 
-def _prove(machine: MealyMonitor, job: Job) -> None:
+def _prove(claim: _Claim) -> None:
     """Raise UnprovableError unless a machine judges all words as its formula does."""
-    everything = (1 << len(machine.letters)) - 1
-    of_letters = bit_sets(letters_with(machine.reads, propositions_of(job.formula)), everything)
-    outline, parts = outlined(job.formula)
-    true_in = {atom: fold(part, of_letters) for part, atom in parts.items()}
+    machine = claim.machine
     # Letters that neither the formula nor the table tells apart count as one: these are few.
-    groups = list(enumerate(_classes_of(machine.letters)))
-    for letters in true_in.values():
-        halves = [
-            (number, members & side)
-            for number, members in groups
-            for side in (letters, everything ^ letters)
-        ]
-        groups = [half for half in halves if half[1]]
+    groups = [
+        (number, group)
+        for number, letters in enumerate(_classes_of(machine.letters))
+        for group in _told_apart([letters], claim.true_in.values())
+    ]
     places: dict[Formula, int] = {
         atom: sum([1 << place for place, (_, members) in enumerate(groups) if members & letters])
-        for atom, letters in true_in.items()
+        for atom, letters in claim.true_in.items()
     }
     prove_words(
-        to_data(outline),
+        to_data(claim.formula),
         lambda atom: places[from_data(atom)],
         {
             "letters": [number for number, _ in groups],
@@ -143,7 +229,7 @@ def _prove(machine: MealyMonitor, job: Job) -> None:
             "dead": machine.rejecting_sink,
             "safe": machine.accepting_sink,
         },
-        ends=job.semantics == "finite",
+        ends=claim.semantics == "finite",
     )
 
 

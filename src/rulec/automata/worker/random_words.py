@@ -9,7 +9,7 @@ from itertools import repeat
 from rulec.automata.alphabet import letters_with, propositions_of
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
 from rulec.logic.bounds import BOOLEAN, operations_of, range_of
-from rulec.logic.formula import Atom, Binary, Formula, Unary, with_operands
+from rulec.logic.formula import Atom, Binary, Constant, Formula, Unary, with_operands
 from rulec.logic.semantics import Semantics, holds, truth_values
 
 MOST_WORDS, FEWEST_WORDS = 300, 40
@@ -52,6 +52,8 @@ def outlined(formula: Formula) -> tuple[Formula, Mapping[Formula, Atom]]:
     atoms: dict[Formula, Atom] = {}
 
     def outline(part: Formula) -> Formula:
+        if isinstance(part, Constant):
+            return part
         is_timed = any(operation.operator not in BOOLEAN for operation in operations_of(part))
         if is_timed and isinstance(part, Unary | Binary):
             return with_operands(part, outline)
