@@ -28,6 +28,7 @@ DRIVES = [
     {
         "id": "t",
         "step_s": 0.5,
+        "ends": "complete",
         "objects": {"a": "car", "b": "car"},
         "present": {"b": [1, 3]},
         "states": [
@@ -83,6 +84,16 @@ FORMULAS = {
 @pytest.mark.parametrize("formula", FORMULAS)
 def test_moments_by_hand(files, formula, capsys):
     assert found(files, formula, capsys) == FORMULAS[formula]
+
+
+def test_a_drive_in_seconds_goes_on_unseen(files, capsys):
+    book, drives = files
+    unsaid = Path(drives).read_text().replace('"ends": "complete", ', "")
+    Path(drives).write_text(unsaid)
+    moments = found((book, drives), "wet and next not wet", capsys)
+    assert moments == [(0, 0, "surely"), (3, 3, "perhaps")]
+    before = found((book, drives), "(c: car) previously near(c)", capsys)
+    assert before[:2] == [("a", 0, 0, "perhaps"), ("a", 1, 3, "surely")]
 
 
 def test_only_what_is_sure(files, capsys):

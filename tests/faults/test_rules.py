@@ -1,6 +1,7 @@
 """Judging a rule raises: it costs that rule, on the traces on which it does."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -9,7 +10,9 @@ from rulec.api.rulebook_compilation import machines
 from rulec.cli.main import main
 from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.stacked import verify_arrays
+from rulec.monitoring.batch.uncertain import uncertain_engine
 from rulec.monitoring.online import running_monitor
+from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 
 GERMAN = machines("de")
 PAPER = machines("esterle2019")
@@ -61,10 +64,30 @@ def planted_in_runs(monkeypatch, book, rule):
             f"rulec.monitoring.batch.batch_verify.{name}",
             lambda *_, **__: (_ for _ in ()).throw(RecursionError("planted")),
         )
+    # The engines for what is cut or partly unknown
+    answer, outcomes = UncertainRun._answer, uncertain_engine._Engine.outcomes
+
+    def broken_answer(self, own, *others):
+        if own.name == rule:
+            raise RecursionError("planted")
+        return answer(self, own, *others)
+
+    def broken_outcomes(self, binding, *others):
+        if binding.rule.name == rule:
+            raise RecursionError("planted")
+        return outcomes(self, binding, *others)
+
+    monkeypatch.setattr(UncertainRun, "_answer", broken_answer)
+    monkeypatch.setattr(uncertain_engine._Engine, "outcomes", broken_outcomes)
 
 
-def test_on_traces(monkeypatch):
-    traces = list(rulec.read_traces(SAMPLE))
+of_both_ends = pytest.mark.parametrize("ends", ["complete", "cut"])
+
+
+@of_both_ends
+@pytest.mark.parametrize("copies", [1, 4])
+def test_on_traces(monkeypatch, ends, copies):
+    traces = [replace(one, ends=ends) for one in rulec.read_traces(SAMPLE)] * copies
     before = list(rulec.verify_many(traces, PAPER))
     rule = PAPER.rules[0].name
     planted_in_runs(monkeypatch, PAPER, rule)
@@ -76,11 +99,12 @@ def test_on_traces(monkeypatch):
     assert one.satisfied in (None, False)
 
 
-def test_the_command_names_it_and_ends_with_2(monkeypatch, capsys):
+@of_both_ends
+def test_the_command_names_it_and_ends_with_2(monkeypatch, capsys, ends):
     rule = PAPER.rules[0].name
     planted_in_runs(monkeypatch, PAPER, rule)
     monkeypatch.setattr("rulec.cli.commands.verify.read_machines", lambda *_: PAPER)
-    assert main(["verify", SAMPLE, "-r", "esterle2019", "--json"]) == 2
+    assert main(["verify", SAMPLE, "-r", "esterle2019", "--json", "--end", ends]) == 2
     out, err = capsys.readouterr()
     for line in map(json.loads, out.splitlines()):
         assert [own["rule"] for own in line["not_judged"]] == [rule]
@@ -113,7 +137,7 @@ def test_a_monitor_refuses_the_state_and_stays_as_it_was(monkeypatch):
 
 
 def test_what_is_no_fault_stays_what_it_is(monkeypatch):
-    trace = next(iter(rulec.read_traces(SAMPLE)))
+    trace = replace(next(iter(rulec.read_traces(SAMPLE))), ends="complete")
     for problem in (KeyboardInterrupt(), BrokenPipeError()):
 
         def broken(*_, problem=problem):

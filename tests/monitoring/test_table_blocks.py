@@ -99,6 +99,7 @@ def rows_of(traces):
 
 
 words = st.sampled_from(["", "true", "false", "near", "gone", "car", "thing", "a", "b", "x", " "])
+words |= st.sampled_from(["cut", "complete"])
 numerals = st.sampled_from(["0", "1", "2", "0.3", "nan", "1e999", "-.5", "9007199254740993"])
 cells = words | numerals | st.sampled_from(['qu"ote', "li\nne", "é"])
 
@@ -106,7 +107,11 @@ cells = words | numerals | st.sampled_from(['qu"ote', "li\nne", "é"])
 @st.composite
 def tables(draw):
     """The rows of traces, in which a few cells may be anything, and rows anywhere."""
-    rows = rows_of([one for one in draw(chunks()) if one.states])
+    ends = st.sampled_from(["complete", "cut"])
+    rows = rows_of([replace(one, ends=draw(ends)) for one in draw(chunks()) if one.states])
+    if draw(st.booleans()):
+        place = rows[0].index("ends")
+        rows = [[*row[:place], *row[place + 1 :]] for row in rows]
     for change in draw(st.lists(st.sampled_from(["cell", "drop", "twice", "swap"]), max_size=2)):
         if len(rows) < 3:
             break
@@ -228,7 +233,8 @@ def test_only_traces_of_which_something_is_not_known_are_read(form, monkeypatch)
     for place, change in ((5, {"rain": UNKNOWN}), (20, {"yields_to": UNKNOWN})):
         states = ({**traces[place].states[0], **change}, *traces[place].states[1:])
         traces[place] = replace(traces[place], states=states)
-    traces[70] = replace(traces[70], ends="cut")
+    traces[70] = replace(traces[70], told=frozenset(["rain", "speed"]))
+    traces[71] = replace(traces[71], ends="cut")
     alone = [verify_or_reason(trace, traffic()) for trace in traces]
     data, read = written(traces, form), []
     for module in (table_reader, arrow_blocks):

@@ -33,7 +33,7 @@ signal braking(v: vehicle) default false
 lane(v: vehicle) is one of left, right
 quantity gap(v: vehicle) in m
 quantity speed in m/s default 0
-hard rule near (v: vehicle) { require always (gap(v) < 5 m implies weak next braking(v)) }
+hard rule near (v: vehicle) { require always (gap(v) < 5 m implies next braking(v)) }
 hard rule right (v: vehicle) { require always (wet implies right(v)) }
 hard rule slow { require always speed <= 50 km/h }
 """
@@ -110,6 +110,17 @@ def test_what_most_programs_write_is_read_together(style, rules):
     held_against_one_by_one(text, rules)
     found = answers(text, rules, together=True)
     assert {bool(verdict.violations) for verdict in found} == {False, True}
+    assert any(verdict.open for verdict in found)
+
+
+def test_complete_traces_and_cut_ones_are_read_together(rules):
+    said = (line.replace('"step_s"', '"ends": "complete", "step_s"') for line in lines()[::2])
+    text = "\n".join([*said, *lines()]).encode()
+    assert alike_in(text) == list(range(14))
+    held_against_one_by_one(text, rules)
+    found = answers(text, rules, together=True)
+    assert {bool(verdict.open) for verdict in found[:5]} == {False}
+    assert {bool(verdict.open) for verdict in found[5:]} == {False, True}
 
 
 def test_traces_of_different_lengths_names_and_steps(rules):
@@ -164,7 +175,8 @@ ODD = {
     "states before the rest": ('{"id"', '{"states": [], "id"'),
     "an object of no known type": ('"vehicle"}', '"tram"}'),
     "presence": ('"step_s"', '"present": {"7.0": [0, 3]}, "step_s"'),
-    "a cut trace": ('"step_s"', '"ends": "cut", "step_s"'),
+    "a complete trace": ('"step_s"', '"ends": "complete", "step_s"'),
+    "a trace that does not say its step": ('"step_s": 0.5, ', ""),
     "a step of nothing": ('"step_s": 0.5', '"step_s": 0'),
     "a step that is no float": ('"step_s": 0.5', '"step_s": 0.50000000000000000001'),
 }

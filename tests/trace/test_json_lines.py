@@ -42,7 +42,7 @@ def problem(data):
 
 def test_a_trace_is_read():
     (trace,) = read(line())
-    assert trace == Trace("t1", 0.5, GOOD["objects"], tuple(GOOD["states"]))
+    assert trace == Trace("t1", 0.5, GOOD["objects"], tuple(GOOD["states"]), ends="cut")
     assert (trace.place.file, trace.place.line) == ("t.jsonl", 1)
 
 

@@ -49,6 +49,7 @@ T1 = Trace(
         },
     ),
     {"p1": (1, 1)},
+    ends="cut",
 )
 T2 = Trace("t2", 1.0, {}, ({"surface": "R_cw", "speed": -0.5},))
 

@@ -22,7 +22,7 @@ from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.batch.batch_verify import Items, rulebook_for, step_of, verify_items
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.report.findings.diagnostics_text import Complaints
-from rulec.report.text.console import page_width, progress
+from rulec.report.text.console import page_width, print_remark, progress
 from rulec.report.verdict_findings.verdict_finding import RecordingFindings, VerdictFinding
 from rulec.report.verdicts import verdict_report
 from rulec.report.verdicts.batch_table import BatchTally
@@ -42,6 +42,11 @@ Answer = tuple[Sequence[Trace | RulecError], int, Verdict | NotJudged]
 AnswerWithFacts = tuple[Answer, "DriveFacts | None"]
 """An answer with the facts for rows of drives, if they are wanted."""
 
+_GOES_ON = (
+    "rulec: a trace that is cut goes on unseen, and so does one in seconds that does not say how "
+    "it ends; `--end complete` judges both as over"
+)
+
 
 @dataclass
 class TraceRun:
@@ -60,6 +65,7 @@ class TraceRun:
     complete: bool = True
     opened: bool = False
     open_hard: bool = False
+    pending: bool = False
 
     def __post_init__(self) -> None:
         self._names = [rule.name for rule in self.rules.rules]
@@ -90,6 +96,8 @@ class TraceRun:
                 self.to.add(RecordingFindings(file, "", drives, tuple(findings), tuple(rows)))
         if self.total.judged or self.opened:
             self.to.text(verdict_report.summary(self.total.counts, self.total.not_judged))
+        if self.pending and assumed.ends is None:
+            print_remark(_GOES_ON)
 
     def _ids(self, ids: set[str] | None, file: str, answer: Answer) -> set[str] | None:
         """A file's ids so far; None once a duplicate has been reported."""
@@ -175,6 +183,8 @@ class TraceRun:
                 times=StateTimes(step_s=step_of(traces, place)),
             )
             self.to.text(text)
+            shown = verdict.open[: verdict_report.MOST_VIOLATIONS]
+            self.pending |= any("not over" in result.because for result in shown)
         if self.to.wants_findings:
             # Late import, as above.
             from rulec.report.verdict_findings.findings_of_traces import trace_findings

@@ -24,6 +24,15 @@ Ending = Literal["complete", "cut"]
 """``complete``, or ``cut``: the recording began and ended in the middle of what happened."""
 
 
+def ending_in_file(said: Ending | None, *, in_seconds: bool) -> Ending:
+    """How a trace in a file ends.
+
+    One that states its step in seconds was sampled, so unless it says otherwise it is a piece of
+    something longer.
+    """
+    return said or ("cut" if in_seconds else "complete")
+
+
 @dataclass(frozen=True, slots=True)
 class Trace:
     """A finite sequence of states, ``step_s`` seconds apart.
@@ -31,7 +40,8 @@ class Trace:
     ``objects`` maps each object's id to its type. ``present`` maps an object that is not always
     present to the first and the last state (from 0, inclusive) in which it is. ``told`` are the
     names that the source provides, None for all; every other name is unknown. ``place`` is where
-    the trace was read, for messages.
+    the trace was read, for messages. A trace made in Python is complete unless ``ends`` says
+    otherwise; one that a file gives in seconds is cut unless the file says otherwise.
     """
 
     __repr__ = short_repr

@@ -222,7 +222,7 @@ end_option = click.option(
     "ends",
     type=click.Choice(["cut", "complete"]),
     help="Whether traces are cut out of a longer drive or complete when they end.  [default: what "
-    "each trace says, else complete]",
+    "each trace says, else cut if it states its step in seconds, else complete]",
 )
 
 

@@ -11,7 +11,14 @@ from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.columns.block_columns import BlockGroup, columnize_block, groups_of
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.columns.line_columns import columnize_lines
-from rulec.monitoring.batch.trace_groups import Names, Shape, group_traces, shape_of
+from rulec.monitoring.batch.trace_groups import (
+    Names,
+    Placed,
+    Shape,
+    TraceGroup,
+    group_traces,
+    shape_of,
+)
 from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
@@ -28,14 +35,24 @@ class AlikeTraces:
     """Traces of one shape as columns, with the object names of the first trace.
 
     ``places`` are the positions of the traces among all that were read, in the order of the
-    columns; ``names`` maps such a position to the object names of that trace.
+    columns. For the trace at a number in this order, ``ids`` gives its id, ``names`` its object
+    names, ``says`` whether a state of it has a name, and ``traces`` the trace itself.
     """
 
     places: Sequence[int]
     columns: TraceColumns
+    ids: Callable[[int], str]
     names: Callable[[int], Names]
-    ends: Ending = "complete"
+    says: Callable[[int, str], bool]
+    traces: Callable[[int], Trace]
+    ends: Ending
     told: frozenset[str] | None = None
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether nothing is unknown: before, after and in the traces."""
+        known = not self.columns.unknown and not self.columns.upper
+        return known and self.ends == "complete" and self.told is None
 
 
 def alike_traces(
@@ -51,16 +68,15 @@ def alike_traces(
         makers += [partial(traces_of_group, group, vocabulary) for group in groups]
         wanted = [place for place in wanted if place in items.partial]
     elif isinstance(items, LineBlock):
-        makers += [partial(traces_of_lines, lines, vocabulary) for lines in items.alike]
+        makers += [partial(traces_of_lines, items, lines, vocabulary) for lines in items.alike]
         wanted = [place for place in wanted if items.items[place] is not None]
-    shapes: dict[Shape, list[tuple[int, Trace]]] = {}
+    shapes: dict[Shape, list[Placed]] = {}
     for place in wanted:
-        trace = items[place]
-        assert isinstance(trace, Trace), "it has been judged"
+        trace = _trace(items[place])
         if vocabulary.constants or vocabulary.implied:
             trace = with_derived_values(spelled_out(trace, vocabulary), vocabulary)
         shapes.setdefault((*shape_of(trace), trace.ends, trace.told), []).append((place, trace))
-    makers += [partial(_of_traces, placed, vocabulary) for placed in shapes.values()]
+    makers += [partial(traces_placed, placed, vocabulary) for placed in shapes.values()]
     for made in makers:
         with suppress(UnencodableError):
             yield made()
@@ -70,34 +86,65 @@ def traces_of_group(group: BlockGroup, vocabulary: Vocabulary) -> AlikeTraces:
     """The traces of one shape in a block. Raises UnencodableError."""
     columns = columnize_block(group, vocabulary)
     _check_nothing_derived(columns, vocabulary)
-    traces = group.traces.tolist()
-    return AlikeTraces(traces, columns, lambda number: group.presence.objects_of(traces[number]))
+    block, presence, places = group.block, group.presence, group.traces.tolist()
 
+    def says(number: int, name: str) -> bool:
+        start, stop = block.starts[places[number] : places[number] + 2].tolist()
+        column = block.columns.get(name) if name in block.table.names else None
+        return column is not None and bool(column.given_at(slice(start, stop)).any())
 
-def traces_of_lines(lines: AlikeLines, vocabulary: Vocabulary) -> AlikeTraces:
-    """The traces of some lines; ``places`` are those of the lines. Raises UnencodableError."""
-    order, columns = columnize_lines(lines, vocabulary)
-    _check_nothing_derived(columns, vocabulary)
-    headings = [lines.headings[place] for place in order.tolist()]
     return AlikeTraces(
-        lines.lines[order].tolist(), columns, lambda number: tuple(headings[number].objects)
+        places=places,
+        columns=columns,
+        ids=lambda number: presence.names[places[number]],
+        names=lambda number: presence.objects_of(places[number]),
+        says=says,
+        traces=lambda number: _trace(block[places[number]]),
+        ends=presence.ends[places[0]],
     )
 
 
-def _of_traces(placed: Sequence[tuple[int, Trace]], vocabulary: Vocabulary) -> AlikeTraces:
+def traces_of_lines(block: LineBlock, lines: AlikeLines, vocabulary: Vocabulary) -> AlikeTraces:
+    """The traces of some lines of a block. Raises UnencodableError."""
+    order, columns = columnize_lines(lines, vocabulary)
+    _check_nothing_derived(columns, vocabulary)
+    headings = [lines.headings[place] for place in order.tolist()]
+    places = lines.lines[order].tolist()
+    return AlikeTraces(
+        places=places,
+        columns=columns,
+        ids=lambda number: headings[number].id,
+        names=lambda number: tuple(headings[number].objects),
+        says=lambda _, name: name in lines.names,
+        traces=lambda number: _trace(block[places[number]]),
+        ends=headings[0].ends,
+    )
+
+
+def _trace(item: Trace | RulecError) -> Trace:
+    assert isinstance(item, Trace), "it has been read"
+    return item
+
+
+def traces_placed(
+    placed: Sequence[Placed], vocabulary: Vocabulary, group: TraceGroup | None = None
+) -> AlikeTraces:
+    """Traces of one shape, perhaps grouped before. Raises UnencodableError."""
+    group = group or group_traces([trace for _, trace in placed])
     example = placed[0][1]
-    group = group_traces([trace for _, trace in placed])
     untold = untold_names(vocabulary, example.told)
     if untold:
         vocabulary = with_untold(vocabulary, untold)
-    columns = columnize(group.cells, vocabulary, group.names)
-    ordered = [placed[place] for place in group.order]
+    ordered = [placed[place][1] for place in group.order]
     return AlikeTraces(
-        [place for place, _ in ordered],
-        columns,
-        lambda number: tuple(ordered[number][1].objects),
-        example.ends,
-        example.told,
+        places=[placed[place][0] for place in group.order],
+        columns=columnize(group.cells, vocabulary, group.names),
+        ids=lambda number: ordered[number].id,
+        names=lambda number: tuple(ordered[number].objects),
+        says=lambda number, name: any(name in state for state in ordered[number].states),
+        traces=ordered.__getitem__,
+        ends=example.ends,
+        told=example.told,
     )
 
 

@@ -6,7 +6,7 @@ Any irregular trace, for instance one with an unknown name or a missing value, i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
@@ -16,11 +16,17 @@ from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.batch import trace_groups
-from rulec.monitoring.batch.alike_traces import AlikeTraces, traces_of_group, traces_of_lines
+from rulec.monitoring.batch.alike_traces import (
+    AlikeTraces,
+    traces_of_group,
+    traces_of_lines,
+    traces_placed,
+)
 from rulec.monitoring.batch.columns.block_columns import groups_of
 from rulec.monitoring.batch.columns.column_reader import NotGivenError
-from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
+from rulec.monitoring.batch.columns.columnize import UnencodableError
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
+from rulec.monitoring.batch.trace_groups import Placed
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.bindings import Cast, types_of
 from rulec.monitoring.implied_values import with_derived_values
@@ -33,7 +39,6 @@ from rulec.monitoring.state_validation import (
 )
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
-from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import rulebook_for_trace, said, verify_or_reason
 from rulec.rulebook.rules.axiom_instances import counts
@@ -61,13 +66,13 @@ _SHARED = 4
 
 Answer = Verdict | NotJudged
 
-_Placed = tuple[int, Trace]
-"""A trace with its position among all traces."""
-
 _FEWEST_ROWS = 200
 """If a shape in a block has fewer rows on average, its traces are read row by row."""
 
 Items = Sequence[Trace | RulecError]
+
+_IRREGULAR = UnencodableError, NotGivenError, MissingValueError, RulecError
+"""What prevents traces from being judged as columns."""
 
 
 def verify_many(
@@ -108,7 +113,7 @@ def _verify_chunk(
     items: Sequence[Trace | RulecError], rulebook: CompiledRulebook, fewest: int
 ) -> list[Answer]:
     answers: list[Answer | None] = [None] * len(items)
-    shapes: dict[trace_groups.Shape, list[_Placed]] = {}
+    shapes: dict[trace_groups.Shape, list[Placed]] = {}
     for place, item in enumerate(items):
         if isinstance(item, Trace):
             try:
@@ -140,7 +145,7 @@ def _is_framed(trace: Trace) -> bool:
 
 
 def _verify_group(
-    traces: Sequence[_Placed], rulebook: CompiledRulebook, answers: list[Answer | None]
+    traces: Sequence[Placed], rulebook: CompiledRulebook, answers: list[Answer | None]
 ) -> None:
     if not traces:
         return
@@ -172,56 +177,26 @@ def _verify_group(
         group = trace_groups.group_traces([trace for _, trace in traces])
         cells = trace_groups.under_common_names(group)
     verdicts = verify_cells(cells, rules)
-    _answer(violations_in(verdicts, len(traces)), traces, group, answers)
+    objects = tuple(group.cells.objects)
+    for number, violations in violations_in(verdicts, len(traces)):
+        place, trace = traces[group.order[number]]
+        own = trace_groups.under_own_names(violations, objects, tuple(trace.objects))
+        answers[place] = Verdict(trace.id, own)
 
 
 def _verify_columns(
-    traces: Sequence[_Placed],
+    traces: Sequence[Placed],
     group: trace_groups.TraceGroup,
     rules: CompiledRulebook,
     answers: list[Answer | None],
 ) -> bool:
     """Judge traces as columns; False if one of them is irregular."""
-    if any(counts(axiom.formula) for axiom in rules.axioms):
-        return False
-    example = traces[0][1]
-    is_whole = example.ends == "complete" and example.told is None
     try:
-        check_told(example.told, rules.vocabulary)
-        untold = untold_names(rules.vocabulary, example.told)
-        vocabulary = with_untold(rules.vocabulary, untold) if untold else rules.vocabulary
-        columns = columnize(group.cells, vocabulary, group.names)
-        if is_whole and not columns.unknown and not columns.upper:
-            verdicts = verify_columns(columns, rules)
-            _answer(violations_in(verdicts, len(traces)), traces, group, answers)
-            return True
-        # What judges partial states, 10 ms: only where there are some.
-        from rulec.monitoring.batch.uncertain.uncertain_verdicts import uncertain_verdicts
-        from rulec.monitoring.uncertainty.judged_rules import judged_rules
-
-        ordered = [traces[place] for place in group.order]
-        judged = judged_rules(rules, example.told, cut=example.ends == "cut")
-        own = [trace for _, trace in ordered]
-        for (place, _), answer in zip(
-            ordered, uncertain_verdicts(columns, own, rules, judged), strict=True
-        ):
-            answers[place] = answer
-    except (UnencodableError, NotGivenError, MissingValueError, RulecError):
+        check_told(traces[0][1].told, rules.vocabulary)
+        _verify_alike(traces_placed(traces, rules.vocabulary, group), rules, answers)
+    except _IRREGULAR:
         return False
     return True
-
-
-def _answer(
-    violated: Iterable[tuple[int, Sequence[Violation]]],
-    traces: Sequence[_Placed],
-    group: trace_groups.TraceGroup,
-    answers: list[Answer | None],
-) -> None:
-    objects = tuple(group.cells.objects)
-    for number, violations in violated:
-        place, trace = traces[group.order[number]]
-        own = trace_groups.under_own_names(violations, objects, tuple(trace.objects))
-        answers[place] = Verdict(trace.id, own)
 
 
 def _is_partial(state: object) -> bool:
@@ -325,15 +300,10 @@ def _verify_lines(block: LineBlock, rulebook: CompiledRulebook) -> Sequence[Answ
     answers: list[Answer | None] = [None] * len(block)
     for lines in block.alike:
         # Irregularities are reported line by line.
-        with suppress(UnencodableError, NotGivenError, RulecError):
+        with suppress(*_IRREGULAR):
             example = lines.headings[0]
             rules = rules_for(Trace("", example.step_s, example.objects, ()), rulebook)
-            ids = {
-                place: heading.id
-                for place, heading in zip(lines.lines.tolist(), lines.headings, strict=True)
-            }
-            alike = traces_of_lines(lines, rules.vocabulary)
-            _verify_alike(alike, rules, ids.__getitem__, answers)
+            _verify_alike(traces_of_lines(block, lines, rules.vocabulary), rules, answers)
     left = [place for place, answer in enumerate(answers) if answer is None]
     others = iter(verify_chunk([block[place] for place in left], rulebook))
     return [next(others) if answer is None else answer for answer in answers]
@@ -342,21 +312,24 @@ def _verify_lines(block: LineBlock, rulebook: CompiledRulebook) -> Sequence[Answ
 def _verify_alike(
     alike: AlikeTraces,
     rules: CompiledRulebook,
-    ids: Callable[[int], str],
     answers: list[Answer | None],
 ) -> None:
-    """Fill in the answers for traces read from a file whose values are all readable.
-
-    ``ids`` gives the id of the trace at a position. Raises UnencodableError, NotGivenError.
-    """
+    """Fill in the answers for traces whose values are all readable. Raises ``_IRREGULAR``."""
     if any(counts(axiom.formula) for axiom in rules.axioms):
         raise UnencodableError
+    if not alike.is_whole:
+        # What judges partial states, 10 ms: only where there are some.
+        from rulec.monitoring.batch.uncertain.uncertain_verdicts import uncertain_verdicts
+
+        for place, answer in zip(alike.places, uncertain_verdicts(alike, rules), strict=True):
+            answers[place] = answer
+        return
     verdicts, objects = verify_columns(alike.columns, rules), tuple(alike.columns.objects)
     for number, violations in violations_in(verdicts, len(alike.places)):
         place = alike.places[number]
         own = alike.names(number) if violations else ()
         renamed = trace_groups.under_own_names(violations, objects, own)
-        answers[place] = Verdict(ids(place), renamed)
+        answers[place] = Verdict(alike.ids(number), renamed)
 
 
 def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> CompiledRulebook:
@@ -383,6 +356,7 @@ def _verify_block(
     answers: list[Answer | None] = [None] * len(block)
     try:
         presence = outlined(block)
+        block = replace(block, outline=presence)
         groups = groups_of(block, presence)
         if len(groups) > 1 and len(groups) * _FEWEST_ROWS > len(presence.trace) + _FEWEST_ROWS:
             return None
@@ -390,9 +364,7 @@ def _verify_block(
             objects = dict(zip(group.objects, group.types, strict=True))
             step_s = float(presence.step_s[group.traces[0]])
             rules = rules_for(Trace("", step_s, objects, ()), rulebook)
-            alike = traces_of_group(group, rules.vocabulary)
-            _verify_alike(alike, rules, presence.names.__getitem__, answers)
-    except (OddTableError, UnencodableError, NotGivenError, RulecError):
+            _verify_alike(traces_of_group(group, rules.vocabulary), rules, answers)
+    except (OddTableError, *_IRREGULAR):
         return None
-    block = replace(block, outline=presence)
     return block, _with_others(answers, block, rulebook)

@@ -20,6 +20,9 @@ Shape: TypeAlias = tuple[object, ...]
 Names: TypeAlias = tuple[str, ...]
 """The objects of a trace, in their order."""
 
+Placed: TypeAlias = tuple[int, Trace]
+"""A trace with its position among all traces."""
+
 _PLAIN = frozenset((bool, int, float, str))
 
 

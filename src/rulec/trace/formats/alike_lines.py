@@ -20,7 +20,7 @@ from rulec.trace.formats.byte_columns import PADDING, bytes_from, column_words, 
 from rulec.trace.formats.byte_words import Bytes, Places, end_as_before, words_for
 from rulec.trace.formats.partial_json import BOUNDS
 from rulec.trace.formats.table_blocks import Coded, Column, Numbers
-from rulec.trace.trace_model import Trace
+from rulec.trace.trace_model import Ending, Trace
 
 FEWEST_STATES = 32
 """With fewer states of one form, reading them together does not pay."""
@@ -37,8 +37,9 @@ ColumnPath: TypeAlias = tuple[str, tuple[int, ...]]
 """A name, and the indices of the objects it is about among the trace's objects."""
 
 
-HeadingReader: TypeAlias = Callable[[bytes], tuple[str, float, Mapping[str, str]] | None]
-"""Reads a trace's name, step (s) and objects from a line without states; None if it has more."""
+HeadingReader: TypeAlias = Callable[[bytes], tuple[str, float, Mapping[str, str], Ending] | None]
+"""Reads a trace's name, step (s), objects and end from a line without states; None if it has more.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,20 +49,23 @@ class LineHeading:
     id: str
     step_s: float
     objects: Mapping[str, str]
+    ends: Ending
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AlikeLines:
-    """Traces that have the same columns except for the names of objects.
+    """Traces that have the same end and columns, except for the names of objects.
 
     ``lines`` are the indices of their lines, ``lengths`` their numbers of states, ``headings`` what
-    else the lines contain. ``columns`` hold the states of one trace after another, in this order.
+    else the lines contain. ``columns`` hold the states of one trace after another, in this order;
+    ``names`` are all names in these, also those without a value.
     """
 
     lines: Places
     lengths: NDArray[np.int64]
     headings: Sequence[LineHeading]
     columns: Mapping[ColumnPath, Column]
+    names: frozenset[str]
 
 
 def placed_among(places: Mapping[int, int], alike: AlikeLines, first: int) -> AlikeLines:
@@ -116,6 +120,7 @@ class _Form:
     named: tuple[int, ...]
     paths: tuple[ColumnPath, ...]
     n_quotes: int
+    names: frozenset[str]
 
     def between(self, names: Sequence[bytes]) -> tuple[bytes, ...]:
         """The text before each value and before the next state, for objects of these names."""
@@ -145,8 +150,8 @@ def alike_lines(lines: Sequence[bytes], heading_of: HeadingReader) -> Iterator[A
             continue
         form, heading = outline.form, outline.heading
         types = tuple(heading.objects.values())
-        kind = heading.step_s, types, form.text, form.named, tuple(map(len, outline.between))
-        kinds.setdefault(kind, []).append(outline)
+        written = form.text, form.named, tuple(map(len, outline.between))
+        kinds.setdefault((heading.step_s, heading.ends, types, *written), []).append(outline)
     for outlines in kinds.values():
         together = _together(outlines)
         if together is not None:
@@ -199,7 +204,12 @@ def _form_of(first: bytes, comma: bytes, colon: bytes, objects: Mapping[str, str
     if not parts.add_state(state) or not parts.paths:
         return None
     form = _Form(
-        comma, bytes(parts.text + comma), tuple(parts.named), tuple(parts.paths), first.count(b'"')
+        comma=comma,
+        text=bytes(parts.text + comma),
+        named=tuple(parts.named),
+        paths=tuple(parts.paths),
+        n_quotes=first.count(b'"'),
+        names=frozenset(state),
     )
     place, whole = 0, first + comma
     for part in form.between([name.encode(errors="surrogatepass") for name in objects]):
@@ -308,6 +318,7 @@ def _together(outlines: Sequence[_Outline]) -> AlikeLines | None:
         lengths=lengths[kept],
         headings=[outlines[place].heading for place in kept],
         columns=columns,
+        names=form.names,
     )
 
 

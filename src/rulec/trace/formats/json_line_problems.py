@@ -114,8 +114,8 @@ class Kind(Generic[Record]):
             help_text = "numbers are written without quotes"
         choice = _UNKNOWN_CHOICE.search(str(problem))
         if choice is not None:
-            choices = get_args(get_type_hints(self.structure)[choice[1]])
-            help_text = " or ".join(f'`"{choice[1]}": "{value}"`' for value in choices)
+            given, _ = get_args(get_type_hints(self.structure)[choice[1]])  # or nothing is given
+            help_text = " or ".join(f'`"{choice[1]}": "{value}"`' for value in get_args(given))
         return self.bad(f"{this}: {words}", place, help_text)
 
 

@@ -20,7 +20,7 @@ from rulec.trace.formats.json_numbers import as_written, exactly, may_be_no_floa
 from rulec.trace.formats.partial_json import BOUNDS, from_json, to_json
 from rulec.trace.formats.stream_lines import foreign, lines_as_they_come, placed
 from rulec.trace.trace_messages import NOT_A_TRACE
-from rulec.trace.trace_model import Ending, State, Trace, plain_step_s
+from rulec.trace.trace_model import Ending, State, Trace, ending_in_file, plain_step_s
 
 if TYPE_CHECKING:
     from rulec.trace.formats.alike_lines import AlikeLines, LineBlock
@@ -31,11 +31,22 @@ _LONGEST_HEAD_BYTES = 1 << 16
 
 class _Header(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
     id: str | int = ""
-    step_s: float = 1.0
+    step_s: float | msgspec.UnsetType = msgspec.UNSET
     objects: dict[str, str] = {}
     present: dict[str, tuple[int, int]] = {}
-    ends: Ending = "complete"
+    ends: Ending | msgspec.UnsetType = msgspec.UNSET
     told: list[str] | None = None
+
+    @property
+    def seconds(self) -> float:
+        """The step, also if none is given."""
+        return 1.0 if self.step_s is msgspec.UNSET else self.step_s
+
+    @property
+    def ending(self) -> Ending:
+        """How the trace ends, also if it does not say."""
+        said = None if self.ends is msgspec.UNSET else self.ends
+        return ending_in_file(said, in_seconds=self.step_s is not msgspec.UNSET)
 
 
 class _Record(_Header):
@@ -161,16 +172,16 @@ def _block(
     )
 
 
-def _heading(line: bytes) -> tuple[str, float, Mapping[str, str]] | None:
-    """A trace's name, step and objects; None if something besides its states is unusual."""
+def _heading(line: bytes) -> tuple[str, float, Mapping[str, str], Ending] | None:
+    """A trace's name, step, objects and end; None if anything else but its states is unusual."""
     try:
         read = _OUTLINE_DECODER.decode(line)
     except (ValueError, RecursionError):  # msgspec's errors are ValueErrors
         return None
-    is_usual = read.ends == "complete" and read.told is None and not read.present
-    if not is_usual or not 0 < read.step_s < math.inf or may_be_no_float(line):
+    is_usual = read.told is None and not read.present
+    if not is_usual or not 0 < read.seconds < math.inf or may_be_no_float(line):
         return None
-    return str(read.id), read.step_s, read.objects
+    return str(read.id), read.seconds, read.objects, read.ending
 
 
 @dataclass(slots=True)
@@ -261,12 +272,12 @@ def _as_written(line: bytes, place: SourceLocation) -> Trace | RulecError:
 def _made(record: _Header, states: Sequence[State], place: SourceLocation) -> Trace:
     return Trace(
         str(record.id) or f"line {place.line}",
-        record.step_s,
+        record.seconds,
         record.objects,
         tuple(states),
         record.present,
         place=place,
-        ends=record.ends,
+        ends=record.ending,
         told=None if record.told is None else frozenset(record.told),
     )
 
@@ -314,8 +325,7 @@ def write_traces(traces: Iterable[Trace], stream: IO[bytes]) -> int:
         fields |= {"objects": trace.objects, "states": [to_json(state) for state in trace.states]}
         if trace.present:
             fields["present"] = trace.present
-        if trace.ends != "complete":
-            fields["ends"] = trace.ends
+        fields["ends"] = trace.ends
         if trace.told is not None:
             fields["told"] = sorted(trace.told)
         try:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, overload
+from typing import Any, get_args, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.trace.formats import table_reader as tables
-from rulec.trace.formats.table_reader import OBJECT, OTHER, STEP, STEP_S, TRACE, TYPE
-from rulec.trace.trace_model import Trace
+from rulec.trace.formats.table_reader import ENDS, OBJECT, OTHER, STEP, STEP_S, TRACE, TYPE
+from rulec.trace.trace_model import Ending, Trace, ending_in_file
 from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
 
 
@@ -136,9 +136,9 @@ class BlockPresence:
     Each row has its ``trace``, its ``step``, and the objects it is about: ``item`` and ``other``
     are indices among its trace's objects, in the order of their first rows, or NOBODY.
 
-    Each trace has ``names``, a ``length`` in states, a step in seconds, and from ``starts`` on its
-    objects: their names (``objects``), their ``types``, and in ``stretches`` the first and last
-    state in which each is present, or twice NOBODY if it always is.
+    Each trace has ``names``, a ``length`` in states, a step in seconds, an end, and from ``starts``
+    on its objects: their names (``objects``), their ``types``, and in ``stretches`` the first and
+    last state in which each is present, or twice NOBODY if it always is.
     """
 
     trace: Rows
@@ -148,6 +148,7 @@ class BlockPresence:
     names: list[str]
     length: NDArray[np.int64]
     step_s: NDArray[np.float64]
+    ends: Sequence[Ending]
     starts: NDArray[np.int64]
     objects: list[str]
     types: list[str]
@@ -158,10 +159,11 @@ class BlockPresence:
         return tuple(self.objects[self.starts[trace] : self.starts[trace + 1]])
 
     def shape_of(self, trace: int) -> tuple[object, ...]:
-        """Equal for traces of the same step, types and presence, whatever lengths and names."""
+        """Equal for traces of the same step, end, types and presence; not of length and names."""
         there = slice(self.starts[trace], self.starts[trace + 1])
         types = tuple(self.types[there])
-        return float(self.step_s[trace]), types, self.stretches[there].tobytes()
+        stretches = self.stretches[there].tobytes()
+        return float(self.step_s[trace]), self.ends[trace], types, stretches
 
 
 def outlined(block: Block) -> BlockPresence:
@@ -210,6 +212,7 @@ def outlined(block: Block) -> BlockPresence:
         names=[names.values[code] for code in names.codes[starts[:-1]].tolist()],
         length=length,
         step_s=_step_s(block.columns.get(STEP_S), trace, starts),
+        ends=_ends(block.columns, trace, len(block)),
         starts=starts_of_objects,
         objects=[items.values[code] for code in items.codes[first_row].tolist()],
         types=[types.values[code] for code in kind.tolist()],
@@ -249,6 +252,7 @@ def _outlined_trace(block: Block, outline: BlockPresence, place: int) -> Trace |
             if first != NOBODY
         },
         place=block.table.place(number),
+        ends=outline.ends[place],
     )
 
 
@@ -380,3 +384,17 @@ def _step_s(column: Column | None, trace: Rows, starts: NDArray[np.int64]) -> ND
     if not ((result > 0) & np.isfinite(result)).all() or (seconds != result[trace]).any():
         raise OddTableError
     return result
+
+
+def _ends(columns: Mapping[str, Column], trace: Rows, n_traces: int) -> Sequence[Ending]:
+    """How each trace ends, given in some of its rows or in none. Raises OddTableError."""
+    step_s, said = columns.get(STEP_S), columns.get(ENDS, Coded(np.full(len(trace), -1), ()))
+    if isinstance(said, Numbers) or not {*said.values} <= {*get_args(Ending)}:
+        raise OddTableError
+    rows = np.flatnonzero(said.given)
+    code_of = np.full(n_traces, -1)
+    code_of[trace[rows]] = said.codes[rows]
+    if (code_of[trace[rows]] != said.codes[rows]).any():
+        raise OddTableError
+    unsaid = ending_in_file(None, in_seconds=step_s is not None and bool(step_s.given.any()))
+    return [unsaid if code < 0 else said.values[code] for code in code_of.tolist()]

@@ -13,7 +13,7 @@ from rulec.diagnostics import RulecError, SourceLocation, nearest_name
 from rulec.diagnostics.diagnostic import as_answer
 from rulec.resource_limits import STATES
 from rulec.trace.trace_messages import NOT_A_TABLE
-from rulec.trace.trace_model import Ending, State, Trace
+from rulec.trace.trace_model import Ending, State, Trace, ending_in_file
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 from rulec.vocabulary.written_numbers import WrittenNumber
 
@@ -187,7 +187,7 @@ class _Building:
             states=tuple(self.states),
             present={name: span for name, span in self.spans.items() if span != always},
             place=self.table.place(rows[0][0]),
-            ends=self.ends or "complete",
+            ends=ending_in_file(self.ends, in_seconds=self.step_s is not None),
             told=self.told,
         )
 

@@ -82,7 +82,7 @@ def write_traces(
         return
     columns = columns_for(kinds)
     if not partial:
-        columns = [name for name in columns if name not in PARTIAL]
+        columns = [name for name in columns if name not in PARTIAL or name == ENDS]
     elif form == "csv":
         columns.remove(UNKNOWN_NAMES)  # `?` says it
     rows = chain.from_iterable(rows_of(trace, columns) for trace in traces)
@@ -142,15 +142,11 @@ def with_bounds(kinds: Kinds, names: Collection[str]) -> dict[str, type]:
 
 def is_partial(trace: Trace) -> bool:
     """Whether something in a trace is unknown."""
-    return (
-        trace.ends != "complete"
-        or trace.told is not None
-        or any(
-            leave is UNKNOWN
-            for state in trace.states
-            for value in state.values()
-            for leave in _leaves(value)
-        )
+    return trace.told is not None or any(
+        leave is UNKNOWN
+        for state in trace.states
+        for value in state.values()
+        for leave in _leaves(value)
     )
 
 
@@ -178,7 +174,7 @@ def rows_of(trace: Trace, columns: Sequence[str]) -> Iterator[list[Any]]:
     own = [name for name in columns if name in PARTIAL]
     names = columns[len(OWN) - len(PARTIAL) + len(own) :]
     told = None if trace.told is None else sorted(trace.told)
-    of_trace = {ENDS: None if trace.ends == "complete" else trace.ends, TOLD: told}
+    of_trace = {ENDS: trace.ends, TOLD: told}
     nothing = [None] * len(own)
     first = [of_trace.get(name) for name in own]
     for step, state in enumerate(trace.states):

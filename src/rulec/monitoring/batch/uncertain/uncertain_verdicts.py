@@ -2,40 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.monitoring.batch.alike_traces import AlikeTraces
 from rulec.monitoring.batch.uncertain.uncertain_engine import uncertain_outcomes
-from rulec.monitoring.uncertainty.judged_rules import JudgedRules
+from rulec.monitoring.implied_values import with_derived_values
+from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.uncertainty.suppositions import spelled_out
-from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun, presumed_in
+from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 from rulec.monitoring.verdict import OpenReasons, OpenVerdict, Verdict, Violation
 from rulec.trace import Trace
 from rulec.trace.trace_columns import TraceColumns
 
 
-def uncertain_verdicts(
-    columns: TraceColumns,
-    traces: Sequence[Trace],
-    rulebook: CompiledRulebook,
-    judged: JudgedRules,
-) -> Iterator[Verdict | None]:
+def uncertain_verdicts(alike: AlikeTraces, rulebook: CompiledRulebook) -> Iterator[Verdict | None]:
     """A verdict for each trace, in the layout's order.
 
     None where the trace must be judged by itself.
 
     Raises NotGivenError if a rule needs a value that is not given and has no default.
     """
+    columns, is_cut = alike.columns, alike.ends == "cut"
+    judged = judged_rules(rulebook, alike.told, cut=is_cut)
+    numbers = range(columns.layout.n_traces)
     unread: set[int] = set()
     violations: dict[int, list[Violation]] = {}
     doubtful: dict[int, list[OpenVerdict]] = {}
-    later = [_LaterReasons(trace, rulebook) for trace in traces]
+    later = [_LaterReasons(partial(alike.traces, number), rulebook) for number in numbers]
     places = {name: place for place, name in enumerate(columns.objects)}
-    objects = [tuple(trace.objects) for trace in traces]
+    objects = [alike.names(number) for number in numbers]
     for outcomes in uncertain_outcomes(columns, rulebook, judged):
         rule, bound = outcomes.binding.rule, outcomes.binding.objects
         chosen = [(variable, places[item]) for variable, item in bound.items()]
@@ -61,18 +61,19 @@ def uncertain_verdicts(
             reasons = partial(later[number].of, rule.name, binding)
             verdict = OpenVerdict.explained_later(rule.name, rule.strength, binding, reasons)
             doubtful.setdefault(number, []).append(verdict)
+    is_known = alike.told is None and not is_cut
     is_partial = _are_partial(columns)
-    for number, trace in enumerate(traces):
+    for number in numbers:
         if number in unread:
             yield None
             continue
         found_here = tuple(violations.get(number, ()))
-        if not is_partial[number] and trace.ends == "complete" and trace.told is None:
-            yield Verdict(trace.id, found_here)
+        if is_known and not is_partial[number]:
+            yield Verdict(alike.ids(number), found_here)
             continue
-        presumed = presumed_in(trace, judged.presumed)
+        presumed = tuple([name for name in judged.presumed if not alike.says(number, name)])
         unsettled = tuple(doubtful.get(number, ()))
-        yield Verdict(trace.id, found_here, unsettled, judged.not_judged, presumed)
+        yield Verdict(alike.ids(number), found_here, unsettled, judged.not_judged, presumed)
 
 
 def _are_partial(columns: TraceColumns) -> NDArray[np.bool_]:
@@ -91,13 +92,15 @@ def _are_partial(columns: TraceColumns) -> NDArray[np.bool_]:
 class _LaterReasons:
     """Why verdicts on a trace are open, computed for each verdict on demand."""
 
-    def __init__(self, trace: Trace, rulebook: CompiledRulebook) -> None:
+    def __init__(self, trace: Callable[[], Trace], rulebook: CompiledRulebook) -> None:
         self._trace = trace
         self._rulebook = rulebook
 
     @cached_property
     def _run(self) -> UncertainRun:
-        return UncertainRun(spelled_out(self._trace, self._rulebook.vocabulary), self._rulebook)
+        vocabulary = self._rulebook.vocabulary
+        trace = with_derived_values(spelled_out(self._trace(), vocabulary), vocabulary)
+        return UncertainRun(trace, self._rulebook)
 
     def of(self, rule: str, binding: Mapping[str, str]) -> OpenReasons:
         return self._run.reasons(rule, binding)

@@ -30,10 +30,11 @@ from rulec.trace.formats.arrow.arrow_arrays import (
     truths_in,
 )
 from rulec.trace.formats.table_reader import (
+    ENDS,
     NAMES,
     OWN,
-    PARTIAL,
     STEP,
+    TOLD,
     TRACE,
     UNKNOWN_NAMES,
     Row,
@@ -194,10 +195,10 @@ def _unknown_rows(piece: Piece, table: Table) -> Mapping[str, NDArray[np.int64]]
 
 
 def _partial_rows(piece: Piece, table: Table) -> NDArray[np.bool_]:
-    """Mask of the rows that give an interval's bounds, ``told`` or ``ends``."""
+    """Mask of the rows that give an interval's bounds or ``told``."""
     rows = np.zeros(len(piece), dtype=bool)
     bounds = chain.from_iterable(table.intervals.values())
-    own = [table.at[name] for name in PARTIAL if name in table.at and name != UNKNOWN_NAMES]
+    own = [table.at[TOLD]] if TOLD in table.at else []
     for place in (*own, *bounds):
         array = piece.column(place)
         is_text = types.is_string(array.type) or types.is_dictionary(array.type)
@@ -235,7 +236,7 @@ def columns_of(piece: Any, table: Table) -> Mapping[str, blocks.Column]:
     """The columns of a record batch as arrays. Raises OddTableError."""
     columns: dict[str, blocks.Column] = {}
     for name in (*OWN, *table.names):
-        if name in PARTIAL or name not in table.at:
+        if name in (TOLD, UNKNOWN_NAMES) or name not in table.at:
             continue
         array = piece.column(table.at[name])
         steps = _whole(array) if name == STEP else None
@@ -243,7 +244,7 @@ def columns_of(piece: Any, table: Table) -> Mapping[str, blocks.Column]:
             columns[name] = steps
         elif name == TRACE and types.is_string(array.type):
             columns[name] = coded(array, runs_in)
-        elif name in NAMES:
+        elif name in NAMES or name == ENDS:
             columns[name] = (_one_text(array, str) if table.has_texts else None) or coded(array)
         elif types.is_boolean(array.type):
             codes = np.where(given_in(array), truths_in(array), np.int8(-1))
