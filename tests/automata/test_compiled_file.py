@@ -14,7 +14,7 @@ import rulec
 from rulec.automata.bundle.bundle_file import from_json, read_compiled, to_json, write_compiled
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
 from rulec.automata.compiler import compile_rulebook
-from rulec.automata.hoa_texts import with_automata
+from rulec.automata.second_compiler import with_automata
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import (
     Binary,

@@ -9,7 +9,7 @@ import pytest
 
 import rulec
 from rulec.automata.bundle.bundle_file import from_json, read_compiled, to_json, write_compiled
-from rulec.automata.hoa_texts import with_automata
+from rulec.automata.second_compiler import with_automata
 from rulec.cli.main import main
 from rulec.diagnostics import RulecError
 from support.builders.compiled_files import sealed

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rulec
+from rulec.automata.second_compiler import with_automata
 from rulec.ltl_export.ltl_terms import NUXMV, PRISM, SPOT, TRUE, Term, size_of, text_of
 from rulec.ltl_export.rule_terms import fresh_identifier
 from support.cases.kinds_of_rules import ALL_KINDS
@@ -42,7 +43,7 @@ def is_same_language(row, rule, meanings):
 def compared(reference, folder):
     """The rules that are the same and that are not, and those that were not asked."""
     rulec.write_ltl(reference, folder, SMALL)
-    compiled = rulec.compile_rulebook(reference, step_s=SMALL)
+    compiled = with_automata(rulec.compile_rulebook(reference, step_s=SMALL))
     table = rows(folder, compiled.name)
     meanings = json.loads((folder / f"{compiled.name}.propositions.json").read_text("utf-8"))
     assert list(table) == [rule.name for rule in compiled.rules]

@@ -85,7 +85,7 @@ class RulebookVerbs(SessionSettings):
         from rulec.automata.bundle.bundle_file import write_compiled
 
         # Late import, only to write files: the compiler (30 ms).
-        from rulec.automata.hoa_texts import with_automata
+        from rulec.automata.second_compiler import with_automata
 
         # A rulebook with two steps could not judge any trace.
         rulebook = with_automata(rulebook.at_one_step())

@@ -1,4 +1,6 @@
-"""Certificates: rules that Spot and rulec's own compiler compile to the same table.
+"""Rules that are compiled a second time: for certificates, and for automata as texts.
+
+Certificates name the rules that Spot and rulec's own compiler compile to the same table.
 
 Both compilers make the minimal machine with the same numbering of states and letter classes, so
 the tables must be equal number for number.
@@ -13,9 +15,9 @@ from typing import TYPE_CHECKING
 
 from rulec.automata import compiler
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes
-from rulec.automata.bundle.stored_steps import StoredSteps
+from rulec.automata.bundle.stored_steps import StoredSteps, for_steps
 from rulec.automata.compiler_jobs import Done, Failed
-from rulec.automata.compiler_messages import COMPILERS_DISAGREE
+from rulec.automata.compiler_messages import COMPILERS_DISAGREE, no_machine, no_time
 from rulec.automata.worker.compiler_choice import DIAGRAMS
 from rulec.diagnostics import RulecError
 from rulec.validation.file_proof import table_digest
@@ -80,3 +82,38 @@ def _with_certificate(
 
 def _digest(machine: MealyMonitor) -> str:
     return table_digest(machine.letters, machine.successors, machine.outputs)
+
+
+def with_automata(rulebook: CompiledRulebook) -> CompiledRulebook:
+    """The rulebook, or its books for several steps, with the automaton of every rule as text.
+
+    Each is translated anew, as a whole: the table had a way of its own, with the past in registers.
+    Raises RulecError R0402 where both differ, else as ``build_all``.
+    """
+    if isinstance(rulebook.recompile, StoredSteps):
+        steps, books = rulebook.recompile.steps, rulebook.recompile.books
+        return for_steps([with_automata(book) for book in books], steps)
+    lacking = [rule for rule in rulebook.rules if not rule.hoa]
+    if not lacking:
+        return rulebook
+    jobs = [
+        replace(
+            compiler.job_of(x, rulebook), remarks=compiler.remarks_on(x, rulebook.name, x.step_s)
+        )
+        for x in lacking
+    ]
+    texts, problems = {}, []
+    for rule, answer in zip(lacking, compiler.answers_to(jobs)[0], strict=True):
+        place = rulebook.place_of(rule.name)
+        if answer == Failed("time"):
+            raise no_time(rule.name, place, rule.step_s)
+        if not isinstance(answer, Done):
+            problems.append(no_machine(rule, place, answer, rule.step_s))
+        elif answer.machine != rule.machine:
+            problems.append(no_machine(rule, place, Failed("check")))
+        else:
+            texts[rule.name] = answer.hoa
+    if problems:
+        raise RulecError(problems)
+    rules = [replace(rule, hoa=texts.get(rule.name, rule.hoa)) for rule in rulebook.rules]
+    return replace(rulebook, rules=tuple(rules))

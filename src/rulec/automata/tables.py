@@ -44,7 +44,7 @@ class DeterministicAutomaton:
 
 
 @dataclass(frozen=True, slots=True)
-class Rows:
+class VerdictTable:
     """A complete deterministic table: letters of each class as bits, targets and verdicts by state.
 
     Classes are in the order of their smallest letters.
@@ -56,17 +56,17 @@ class Rows:
     initial: int = 0
 
 
-def rows_of(automaton: DeterministicAutomaton, possible: int) -> Rows:
+def rows_of(automaton: DeterministicAutomaton, possible: int) -> VerdictTable:
     """The verdicts of an automaton as a table.
 
     ``possible`` is the bit set of the letters (at least one) that states can have.
     """
     classes = sorted(_letter_classes(automaton, possible), key=lambda members: members & -members)
-    return Rows(classes, *_tables(automaton, classes), automaton.initial)
+    return VerdictTable(classes, *_tables(automaton, classes), automaton.initial)
 
 
 def build_machine(
-    rows: Rows, reads: tuple[Read | NumberRead, ...], n_letters: int | None = None
+    rows: VerdictTable, reads: tuple[Read | NumberRead, ...], n_letters: int | None = None
 ) -> MealyMonitor:
     """The minimal machine of a table over the letters of ``reads``, or over so many letters.
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 class CompiledRule:
     """A rule with its machine.
 
-    ``hoa`` is its automaton in HOA v1, empty until a file is written (``automata.hoa_texts``).
+    ``hoa`` is its automaton in HOA v1, empty until a file is written (``second_compiler``).
     ``step_s`` is the step of the traces that the machine can judge; None for any step, because the
     formula has no bounds in seconds. ``trigger`` is the condition under which the rule demands
     anything, None if the formula's form does not show one (``logic.opportunities``); it is derived

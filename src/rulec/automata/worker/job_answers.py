@@ -23,9 +23,9 @@ from rulec.automata.compiler_jobs import (
     Translated,
 )
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
-from rulec.automata.register_product import MOST_REGISTERS, Skeleton, with_registers
 from rulec.automata.tables import build_machine, rows_of
 from rulec.automata.worker.random_words import agrees, outlined
+from rulec.automata.worker.register_product import MOST_REGISTERS, Skeleton, with_registers
 from rulec.logic.bounds import operations_of
 from rulec.logic.codec import from_data, to_data
 from rulec.logic.fold import bit_sets, fold

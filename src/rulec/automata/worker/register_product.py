@@ -13,7 +13,7 @@ from itertools import product
 
 from rulec.automata.compiler_jobs import MOST_EDGES, MOST_STATES, SizeError
 from rulec.automata.mealy_monitor import MealyMonitor
-from rulec.automata.tables import Rows, loop_verdicts, places_of
+from rulec.automata.tables import VerdictTable, loop_verdicts, places_of
 from rulec.logic.fold import bit_sets, fold
 from rulec.logic.formula import Formula, Proposition
 from rulec.logic.past_registers import Register
@@ -112,7 +112,7 @@ class _Move:
     operands: _Operands
 
 
-def with_registers(small: MealyMonitor, skeleton: Skeleton, *, ends: bool) -> Rows:
+def with_registers(small: MealyMonitor, skeleton: Skeleton, *, ends: bool) -> VerdictTable:
     """The table for letters from the small table; ``ends`` if nothing follows a word.
 
     Raises SizeError.
@@ -159,7 +159,7 @@ def with_registers(small: MealyMonitor, skeleton: Skeleton, *, ends: bool) -> Ro
         columns = zip(zip(*successors, strict=True), zip(*verdicts, strict=True), strict=True)
         settled = [loop_verdicts(list(zip(*column, strict=True)), bool) for column in columns]
         verdicts = [list(row) for row in zip(*settled, strict=True)]
-    return Rows(list(members.values()), successors, verdicts)
+    return VerdictTable(list(members.values()), successors, verdicts)
 
 
 def _moves(
