@@ -18,6 +18,7 @@ from program import run
 from timing import in_turns, processor_time
 
 import rulec
+from rulec.automata.second_compiler import with_automata
 from rulec.monitoring.batch.columns.columnize import columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.verify import verify
@@ -37,7 +38,7 @@ WANTED = {
 
 def measure(rounds: int) -> Iterator[Result]:
     """Time, then memory."""
-    rules = rulec.compile_rulebook("esterle2019")
+    rules = with_automata(rulec.compile_rulebook("esterle2019"))
     cells = maneuvers()
     layout = cells.layout
     columns = columnize(cells, rules.vocabulary)

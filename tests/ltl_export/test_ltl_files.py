@@ -78,7 +78,7 @@ def test_what_is_wrong_is_found(tmp_path):
     rulec.write_ltl("esterle2019", tmp_path, SMALL)
     row = rows(tmp_path, "esterle2019")["R3"]
     meanings = json.loads((tmp_path / "esterle2019.propositions.json").read_text("utf-8"))
-    rule = rulec.compile_rulebook("esterle2019").rules[2]
+    rule = with_automata(rulec.compile_rulebook("esterle2019")).rules[2]
     for wrong in ("G !R_pc", "F !(R_pc & f_p)"):
         changed = {**row, "formula": wrong}
         assert is_same_language(changed, rule, meanings["rules"]["R3"]) is False

@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 
 import rulec
+from rulec.automata.second_compiler import with_automata
 from rulec.rulebook.files.search_path import available_rulebooks
 from support.cases.kinds_of_rules import ALL_KINDS
 from support.environments import environment
@@ -126,7 +127,7 @@ def test_its_verdicts_are_those_of_the_automata(book, answers, tmp_path):
         reference, name = str(tmp_path / "kinds.rules"), "kinds"
         Path(reference).write_text(ALL_KINDS.format(semantics=book))
     rulec.write_ltl(reference, tmp_path, 1)
-    compiled = rulec.compile_rulebook(reference, step_s=1)
+    compiled = with_automata(rulec.compile_rulebook(reference, step_s=1))
     meanings = json.loads((tmp_path / f"{name}.propositions.json").read_text("utf-8"))["rules"]
     text = (tmp_path / f"{name}.smv").read_text("utf-8")
     modules = re.findall(r"MODULE rule_[\s\S]*?(?=\n\n)", text)
