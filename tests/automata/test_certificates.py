@@ -76,7 +76,8 @@ def test_two_compilers_that_disagree_write_nothing(soon, tmp_path, monkeypatch):
     ask = compiler.answers_to
 
     def mistaken(jobs, *, choice=None, **more):
-        assert choice == DIAGRAMS
+        if choice != DIAGRAMS:  # the texts, which Spot translates
+            return ask(jobs, choice=choice, **more)
         return ask([jobs[1], *[replace(job, name="x") for job in jobs[1:]]], choice=choice)
 
     monkeypatch.setattr(compiler, "answers_to", mistaken)
