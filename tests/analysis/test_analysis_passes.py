@@ -57,13 +57,13 @@ class TestSharedCompilation:
         from rulec.analysis import shared_compilation
 
         compiled = []
-        original = shared_compilation.compile_rulebook
+        original = shared_compilation.build_all
 
-        def counting(rulebook):
+        def counting(rulebook, formulas):
             compiled.append([one.name for one in rulebook.rules])
-            return original(rulebook)
+            return original(rulebook, formulas)
 
-        monkeypatch.setattr(shared_compilation, "compile_rulebook", counting)
+        monkeypatch.setattr(shared_compilation, "build_all", counting)
         first, second = rule("r", P), replace(rule("s", P), strength="soft", cite="§ 2")
         other = rule("t", no(P))
         (ours, theirs) = compile_shared(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.compiler import compile_rulebook
+from rulec.automata.compiler import build_all, lower
 from rulec.logic.bounds import has_seconds, longest_divisor
 from rulec.logic.free_names import names_in
 from rulec.monitoring.verdict import Violation
@@ -51,7 +51,8 @@ def compile_shared(
     for number, (book, chosen) in enumerate(zip(rulebooks, rules, strict=True), 1):
         keys = {name: _key(rule, book) for name, rule in chosen.items()}
         missing = {key: chosen[name] for name, key in keys.items() if key not in machines}
-        header = compile_rulebook(replace(book, rules=tuple(missing.values())))
+        lacking = replace(book, rules=tuple(missing.values()))
+        header = build_all(lacking, lower(lacking))
         machines.update(zip(missing, header.rules, strict=True))
         tell(number)
         compiled_rules.append(

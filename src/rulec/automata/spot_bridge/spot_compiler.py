@@ -24,8 +24,10 @@ def _translated(job: Job) -> Translated:
     letters = letters_with(job.reads, translation.names)
     return Translated(
         explore(translation, letters, count_letters(job.reads)),
-        _possible(job),
-        in_hoa(translation.automaton, job.name, job.remarks_on(translation.alive)),
+        _letters_where(axioms, job),
+        in_hoa(translation.automaton, job.name, job.remarks_on(translation.alive))
+        if job.remarks
+        else "",
         translation.is_checked,
         translation.compare,
     )
@@ -76,7 +78,10 @@ def _facts(job: Job, formula: Formula) -> list[Formula]:
 
 
 def _possible(job: Job) -> int | None:
-    axioms = _facts(job, job.formula)
+    return _letters_where(_facts(job, job.formula), job)
+
+
+def _letters_where(axioms: Sequence[Formula], job: Job) -> int | None:
     return possible_letters(job.reads, joined(AND, axioms)) if axioms else None
 
 

@@ -71,12 +71,12 @@ def answer_to(job: Job, compiler: Compiler) -> Done | Failed:
 def _whole(job: Job, compiler: Compiler) -> Done:
     """The answer by translating the whole formula."""
     translated = compiler.translate(job)
-    possible = (1 << count_letters(job.reads)) - 1
-    if translated.possible is not None:
-        possible = translated.possible
+    every = (1 << count_letters(job.reads)) - 1
+    possible = every if translated.possible is None else translated.possible
     machine = build_machine(rows_of(translated.automaton, possible), job.reads)
     outline, parts = outlined(job.formula)
-    claim = _Claim(machine, outline, _letters_of(job, parts), job.semantics)
+    propositions = letters_with(job.reads, propositions_of(job.formula))
+    claim = _Claim(machine, outline, _letters_of(parts, propositions, every), job.semantics)
     if not _is_right(claim, translated, lambda: agrees(machine, job.formula, job.semantics)):
         raise CheckError
     return Done(machine, translated.hoa)
@@ -109,13 +109,13 @@ def _skeleton(job: Job, possible: int | None) -> Skeleton | None:
     if past.memories or len(past.registers) > MOST_REGISTERS:
         return None
     every = (1 << count_letters(job.reads)) - 1
-    true_in = _letters_of(job, parts)
-    groups = _told_apart([every if possible is None else possible], true_in.values())
+    propositions = letters_with(job.reads, propositions_of(job.formula))
+    true_in = _letters_of(parts, propositions, every)
+    groups = _split([every if possible is None else possible], true_in.values())
     groups.sort(key=lambda letters: letters & -letters)
     if len(groups) << len(past.registers) > MOST_LETTERS:
         return None
     firsts = [letters & -letters for letters in groups]
-    propositions = letters_with(job.reads, propositions_of(job.formula))
     holds = {
         part: sum([1 << place for place, first in enumerate(firsts) if first & letters])
         for part, letters in (true_in | propositions).items()
@@ -131,14 +131,15 @@ def _with_parts(outline: Formula, parts: Mapping[Atom, Formula]) -> Formula:
     return parts.get(outline, outline) if isinstance(outline, Atom) else outline
 
 
-def _letters_of(job: Job, parts: Mapping[Formula, Atom]) -> dict[Proposition, int]:
-    """The letters in which each part of an outline is true."""
-    every = (1 << count_letters(job.reads)) - 1
-    of_letters = bit_sets(letters_with(job.reads, propositions_of(job.formula)), every)
+def _letters_of(
+    parts: Mapping[Formula, Atom], propositions: Mapping[Proposition, int], every: int
+) -> dict[Proposition, int]:
+    """The letters in which each part of an outline is true, from those of its propositions."""
+    of_letters = bit_sets(propositions, every)
     return {atom: fold(part, of_letters) for part, atom in parts.items()}
 
 
-def _told_apart(groups: Iterable[int], sets: Iterable[int]) -> list[int]:
+def _split(groups: Iterable[int], sets: Iterable[int]) -> list[int]:
     """The groups, as bits, split by sets."""
     apart = list(groups)
     for members in sets:
@@ -213,7 +214,7 @@ def _prove(claim: _Claim) -> None:
     groups = [
         (number, group)
         for number, letters in enumerate(_classes_of(machine.letters))
-        for group in _told_apart([letters], claim.true_in.values())
+        for group in _split([letters], claim.true_in.values())
     ]
     places: dict[Formula, int] = {
         atom: sum([1 << place for place, (_, members) in enumerate(groups) if members & letters])
