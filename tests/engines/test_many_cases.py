@@ -11,7 +11,7 @@ from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.diagnostics import RulecError
 from rulec.monitoring.online.running_monitor import Monitor
 from rulec.validation.file_proof import proofs_of
-from support.builders.rulebooks import compile_here
+from support.builders.rulebooks import compile_both_ways
 from support.engines.engine import code_of, is_right
 from support.engines.engine_table import ENGINES
 from support.engines.monitor_engines import ended
@@ -49,7 +49,7 @@ def test_engines_and_the_checker_agree(part, record_property):
     while tried < CASES:
         step_s = chance.choice([Fraction(1), Fraction(1, 2)])
         book = rulebook(chance, step_s)
-        compiled = compile_here(book, step_s)
+        compiled = compile_both_ways(book, step_s)
         reasons = [one.because for one in proofs_of(to_json(compiled).encode())]
         assert [one for one in reasons if one and not one.startswith(UNREAD)] == []
         proved += reasons.count("")

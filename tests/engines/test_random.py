@@ -4,7 +4,7 @@ from fractions import Fraction
 
 from hypothesis import Phase, given, settings
 
-from support.builders.rulebooks import compile_here
+from support.builders.rulebooks import compile_both_ways
 from support.engines.engine import is_right
 from support.engines.engine_table import ENGINES
 from support.generators.random_rulebooks import rulebook
@@ -18,7 +18,7 @@ from support.oracles.rulebook_oracle import Oracle
 def test_all_engines_agree(chance):
     step_s = chance.choice([Fraction(1), Fraction(1, 2)])
     book, every = rulebook(chance, step_s), traces(chance, step_s)
-    compiled = compile_here(book, step_s)
+    compiled = compile_both_ways(book, step_s)
     oracle = Oracle(book)
     expected = {trace.id: oracle.judged(trace) for trace in every}
     wrong = {}

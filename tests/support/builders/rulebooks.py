@@ -48,7 +48,14 @@ def rule(name, formula, *variables, strength="hard"):
     return Rule(name, strength, tuple(bound), formula, cite=f"Art. {name}")
 
 
-def compile_here(rulebook, step_s=None):
+def compile_both_ways(rulebook, step_s=None):
+    """With automata as texts; the tables are those that are made with the past in registers."""
+    compiled = compile_here(rulebook, step_s, with_texts=True)
+    assert compiled.rules == compile_here(rulebook, step_s).rules
+    return compiled
+
+
+def compile_here(rulebook, step_s=None, *, with_texts=False):
     """As the compiler does, without a process of its own: for tests with many small rulebooks."""
     from rulec.automata.compiler_jobs import Failed
     from rulec.automata.worker.compiler_choice import choice
@@ -59,7 +66,7 @@ def compile_here(rulebook, step_s=None):
 
     compiled = []
     for formula in compiler.lower(rulebook, step_s).rules:
-        job = compiler._job(rulebook, formula, with_texts=True)
+        job = compiler._job(rulebook, formula, with_texts=with_texts)
         answer = answer_to(job, usual)
         if answer in (Failed("reach"), Failed("sets")):
             reject()

@@ -9,7 +9,7 @@ from functools import cached_property
 
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
-from support.builders.rulebooks import compile_here
+from support.builders.rulebooks import compile_both_ways
 from support.oracles.rulebook_oracle import Refused, Said
 
 
@@ -25,7 +25,7 @@ class Case:
 
     @cached_property
     def compiled(self):
-        return compile_here(self.rulebook)
+        return compile_both_ways(self.rulebook)
 
     @property
     def expected(self):
