@@ -94,7 +94,7 @@ NOT_FOR_WHAT_IS_KNOWN = {
     "pyarrow",
     "shapely",
     "rulec.logic.sentences.english",
-    "rulec.monitoring.batch.uncertain.uncertain_engine",
+    "rulec.monitoring.batch.stacked.stacked_run",
     "rulec.monitoring.explain.explanation",
     "rulec.monitoring.uncertainty.uncertain_machine",
     "rulec.syntax",

@@ -9,8 +9,7 @@ import rulec
 from rulec.api.rulebook_compilation import machines
 from rulec.cli.main import main
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch.stacked import verify_arrays
-from rulec.monitoring.batch.uncertain import uncertain_engine
+from rulec.monitoring.batch.stacked import stacked_run
 from rulec.monitoring.online import running_monitor
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 
@@ -28,14 +27,14 @@ def said(verdict, but=()):
 @pytest.mark.parametrize("rule", ["following_distance", "speed_limit", "give_way_to_pedestrians"])
 def test_on_arrays(monkeypatch, rule):
     before = list(rulec.verify_recording(RECORDING, GERMAN))
-    outcomes = verify_arrays.outcomes
+    outcomes = stacked_run.outcomes
 
     def broken(own, *others):
         if own.rule.name == rule:
             raise ValueError("planted")
         return outcomes(own, *others)
 
-    monkeypatch.setattr(verify_arrays, "outcomes", broken)
+    monkeypatch.setattr(stacked_run, "outcomes", broken)
     for known, after in zip(before, rulec.verify_recording(RECORDING, GERMAN), strict=True):
         lost = [own.rule for own in after.answer.not_judged if own.by_fault]
         assert lost in ([], [rule])
@@ -65,20 +64,20 @@ def planted_in_runs(monkeypatch, book, rule):
             lambda *_, **__: (_ for _ in ()).throw(RecursionError("planted")),
         )
     # The engines for what is cut or partly unknown
-    answer, outcomes = UncertainRun._answer, uncertain_engine._Engine.outcomes
+    answer, outcomes = UncertainRun._answer, stacked_run.outcomes
 
     def broken_answer(self, own, *others):
         if own.name == rule:
             raise RecursionError("planted")
         return answer(self, own, *others)
 
-    def broken_outcomes(self, binding, *others):
-        if binding.rule.name == rule:
+    def broken_outcomes(own, *others):
+        if own.rule.name == rule:
             raise RecursionError("planted")
-        return outcomes(self, binding, *others)
+        return outcomes(own, *others)
 
     monkeypatch.setattr(UncertainRun, "_answer", broken_answer)
-    monkeypatch.setattr(uncertain_engine._Engine, "outcomes", broken_outcomes)
+    monkeypatch.setattr(stacked_run, "outcomes", broken_outcomes)
 
 
 of_both_ends = pytest.mark.parametrize("ends", ["complete", "cut"])

@@ -15,9 +15,9 @@ import rulec
 from rulec.extraction.recording_verdicts import some_rules
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.stacked import instances, stacked_rule
-from rulec.monitoring.batch.stacked import verify_arrays as judging
+from rulec.monitoring.batch.stacked import stacked_run as judging
 from rulec.monitoring.batch.stacked.stack import Stack
-from rulec.monitoring.batch.stacked.verify_arrays import verify_arrays
+from rulec.monitoring.batch.verify_arrays import verify_arrays
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify_or_reason
 from rulec.trace import Trace

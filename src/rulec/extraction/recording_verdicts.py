@@ -16,7 +16,7 @@ from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.findings import JudgedTrace
 from rulec.monitoring.batch.rounded_verify import judge_rounded
-from rulec.monitoring.batch.stacked.verify_arrays import answer_to
+from rulec.monitoring.batch.verify_arrays import answer_to
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed_by_type, with_law

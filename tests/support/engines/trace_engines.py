@@ -11,8 +11,8 @@ from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.cli.main import main
 from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.batch.columns.columnize import columnize
-from rulec.monitoring.batch.stacked.verify_arrays import verify_arrays
 from rulec.monitoring.batch.trace_groups import group_traces
+from rulec.monitoring.batch.verify_arrays import verify_arrays
 from rulec.monitoring.verify import verify_or_reason
 from rulec.trace.formats.trace_files import kinds_in, read_chunks, write_traces
 from rulec.vocabulary import Enumeration, Quantity, Signal

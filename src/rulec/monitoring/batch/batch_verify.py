@@ -6,10 +6,12 @@ Any irregular trace, for instance one with an unknown name or a missing value, i
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from itertools import islice
+from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
@@ -26,6 +28,9 @@ from rulec.monitoring.batch.columns.block_columns import groups_of
 from rulec.monitoring.batch.columns.column_reader import NotGivenError
 from rulec.monitoring.batch.columns.columnize import UnencodableError
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
+from rulec.monitoring.batch.joined.joined_columns import joined_columns
+from rulec.monitoring.batch.joined.joined_states import joined_states
+from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind
 from rulec.monitoring.batch.trace_groups import Placed
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.bindings import Cast, types_of
@@ -34,7 +39,6 @@ from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import (
     check_objects,
     check_state,
-    check_told,
     has_partial_values,
 )
 from rulec.monitoring.state_view import StateView
@@ -48,6 +52,9 @@ from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
 from rulec.trace.trace_model import check_frame, check_presence
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
+
+if TYPE_CHECKING:
+    from rulec.monitoring.batch.findings import JudgedTrace
 
 FEWEST = 4
 """Fewer traces of one shape are judged one by one."""
@@ -113,25 +120,65 @@ def _verify_chunk(
     items: Sequence[Trace | RulecError], rulebook: CompiledRulebook, fewest: int
 ) -> list[Answer]:
     answers: list[Answer | None] = [None] * len(items)
+    kinds: dict[TraceKind, list[Placed]] = {}
     shapes: dict[trace_groups.Shape, list[Placed]] = {}
     for place, item in enumerate(items):
         if isinstance(item, Trace):
             try:
                 if rulebook.vocabulary.constants or rulebook.vocabulary.implied:
                     item = _with_derived_values(item, rulebook.vocabulary)
-                shape = *trace_groups.shape_of(item), item.ends, item.told
-                shapes.setdefault(shape, []).append((place, item))
+                kind = TraceKind(item.step_s, item.ends, item.told)
+                kinds.setdefault(kind, []).append((place, item))
+                if kind.is_whole:
+                    shapes.setdefault(trace_groups.shape_of(item), []).append((place, item))
             except (TypeError, AttributeError, LookupError, RulecError):
                 continue  # it is no trace, or a constant changes, which ``verify`` will say
-    for alike in shapes.values():
-        n_states = sum(_n_states(trace) for _, trace in alike)
-        if len(alike) >= fewest or n_states >= _LONG:
-            framed = [(place, trace) for place, trace in alike if _is_framed(trace)]
-            _verify_group(framed, rulebook, answers)
+    for alike in filter(partial(_are_many, fewest=fewest), shapes.values()):
+        _verify_group([own for own in alike if _is_framed(own[1])], rulebook, answers)
+    for kind, placed in kinds.items():
+        left = [own for own in placed if answers[own[0]] is None]
+        if _are_many(left, fewest):
+            # What judges partial states, 10 ms: only where there are some.
+            from rulec.monitoring.batch.stacked.stacked_run import check_judgeable, judge_joined
+
+            with suppress(*_IRREGULAR):
+                check_judgeable(kind, rulebook)
+                framed = [own for own in left if _is_framed(own[1])]
+                _verify_together(framed, rulebook, judge_joined, answers)
     return [
         verify_or_reason(item, rulebook) if answer is None else answer
         for item, answer in zip(items, answers, strict=True)
     ]
+
+
+def _are_many(placed: Sequence[Placed], fewest: int) -> bool:
+    return len(placed) >= fewest or sum(_n_states(trace) for _, trace in placed) >= _LONG
+
+
+def _verify_together(
+    traces: Sequence[Placed],
+    rulebook: CompiledRulebook,
+    judge: Callable[[JoinedTraces, CompiledRulebook], Sequence[JudgedTrace | None]],
+    answers: list[Answer | None],
+) -> None:
+    """Judge traces of one kind, whatever their objects; an irregular one is left."""
+    if not traces:
+        return
+    try:
+        joined = joined_states([trace for _, trace in traces], rulebook.vocabulary)
+        judged = judge(joined, rulebook)
+    except _IRREGULAR:
+        middle = len(traces) // 2
+        for part in (traces[:middle], traces[middle:]) if middle else ():
+            _verify_together(part, rulebook, judge, answers)
+        return
+    for (place, trace), own in zip(traces, judged, strict=True):
+        if own is not None:
+            answers[place] = own.findings.verdict(own.number, trace.id, partial(_says, trace))
+
+
+def _says(trace: Trace, name: str) -> bool:
+    return any(name in state for state in trace.states)
 
 
 def _is_framed(trace: Trace) -> bool:
@@ -154,14 +201,11 @@ def _verify_group(
     except (RulecError, UnencodableError):
         return
     group = trace_groups.group_traces([trace for _, trace in traces])
-    example = traces[0][1]
-    is_whole = example.ends == "complete" and example.told is None
     are_shared = len(group.cells.states) * _SHARED <= group.cells.layout.n_states
-    if not are_shared or not is_whole or any(map(_is_partial, group.cells.states)):
-        if not _verify_columns(traces, group, rules, answers):
-            known = [placed for placed in traces if not any(map(_is_partial, placed[1].states))]
-            if is_whole and len(known) < len(traces):
-                _verify_group(known, rulebook, answers)
+    if not are_shared or any(map(_is_partial, group.cells.states)):
+        # What is irregular is judged with others, or alone.
+        with suppress(*_IRREGULAR):
+            _verify_alike(traces_placed(traces, rules.vocabulary, group), rules, answers)
         return
     cells = trace_groups.under_common_names(group)
     scenes = cells.there or (cells.objects,) * len(cells.states)
@@ -182,21 +226,6 @@ def _verify_group(
         place, trace = traces[group.order[number]]
         own = trace_groups.under_own_names(violations, objects, tuple(trace.objects))
         answers[place] = Verdict(trace.id, own)
-
-
-def _verify_columns(
-    traces: Sequence[Placed],
-    group: trace_groups.TraceGroup,
-    rules: CompiledRulebook,
-    answers: list[Answer | None],
-) -> bool:
-    """Judge traces as columns; False if one of them is irregular."""
-    try:
-        check_told(traces[0][1].told, rules.vocabulary)
-        _verify_alike(traces_placed(traces, rules.vocabulary, group), rules, answers)
-    except _IRREGULAR:
-        return False
-    return True
 
 
 def _is_partial(state: object) -> bool:
@@ -318,17 +347,20 @@ def _verify_alike(
     if any(counts(axiom.formula) for axiom in rules.axioms):
         raise UnencodableError
     if not alike.is_whole:
-        # What judges partial states, 10 ms: only where there are some.
-        from rulec.monitoring.batch.uncertain.uncertain_verdicts import uncertain_verdicts
+        # As above.
+        from rulec.monitoring.batch.stacked.stacked_run import judge_joined
 
-        for place, answer in zip(alike.places, uncertain_verdicts(alike, rules), strict=True):
-            answers[place] = answer
+        judged = judge_joined(joined_columns(alike, rules.vocabulary), rules)
+        for place, own in zip(alike.places, judged, strict=True):
+            if own is not None:
+                says = partial(alike.says, own.number)
+                answers[place] = own.findings.verdict(own.number, alike.ids(own.number), says)
         return
     verdicts, objects = verify_columns(alike.columns, rules), tuple(alike.columns.objects)
     for number, violations in violations_in(verdicts, len(alike.places)):
         place = alike.places[number]
-        own = alike.names(number) if violations else ()
-        renamed = trace_groups.under_own_names(violations, objects, own)
+        names = alike.names(number) if violations else ()
+        renamed = trace_groups.under_own_names(violations, objects, names)
         answers[place] = Verdict(alike.ids(number), renamed)
 
 

@@ -23,7 +23,6 @@ from rulec.automata.outcome_machine import VIOLATED
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules
 from rulec.monitoring.uncertainty.uncertain_machine import Answer
 from rulec.monitoring.verdict import OpenReasons, OpenVerdict, RuleNotJudged, Verdict, Violation
-from rulec.trace.trace_arrays import TraceArrays
 
 ViolationOrOpen: TypeAlias = Violation | OpenVerdict
 
@@ -138,13 +137,13 @@ class Findings:
         kept = are_violated | ~np.isin(traces, list(self._whole))
         return ChargedTraces(rule, traces[kept], are_violated[kept])
 
-    def verdict(self, number: int, trace: TraceArrays) -> Verdict:
-        """The verdict on a trace with this number."""
+    def verdict(self, number: int, name: str, says: Callable[[str], bool]) -> Verdict:
+        """The verdict on a trace with this number and name, which ``says`` some names."""
         violations, doubtful = self.of(number)
         if number in self._whole:
-            return Verdict(trace.id, violations)
-        presumed = tuple([name for name in self._rules.presumed if not trace.says(name)])
-        return Verdict(trace.id, violations, doubtful, self._rules.not_judged, presumed)
+            return Verdict(name, violations)
+        presumed = tuple([own for own in self._rules.presumed if not says(own)])
+        return Verdict(name, violations, doubtful, self._rules.not_judged, presumed)
 
     def not_judged(self, number: int) -> tuple[RuleNotJudged, ...]:
         """The rules that cannot be judged because the trace lacks values."""

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence, Set
 from contextlib import suppress
 from itertools import count, repeat
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -141,20 +141,12 @@ class _Columnizer:
                 filler = next(value for value in values if value is not _NOT_GIVEN)
             values = [filler if value is _NOT_GIVEN else value for value in values]
         cells, key = self._traces.cells, (declaration.name, items)
-        kinds = set(map(type, values))
-        if UnknownValue in kinds:
-            if Interval not in kinds:
-                column, unknown = _with_unknown(values, kinds, declaration)
-                self.columns[key], self.unknown[key] = column.take(cells), unknown.take(cells)
-                return
-            self.unknown[key] = np.array([value is UNKNOWN for value in values]).take(cells)
-            anything = least_value(declaration)
-            values = [anything if value is UNKNOWN else value for value in values]
-        if Interval in kinds:
-            highest = [value.high if type(value) is Interval else value for value in values]
-            self.upper[key] = encode_values(highest, declaration).take(cells)
-            values = [value.low if type(value) is Interval else value for value in values]
-        self.columns[key] = encode_values(values, declaration).take(cells)
+        column = encode_partly_known(values, declaration)
+        self.columns[key] = column.values.take(cells)
+        if column.unknown is not None:
+            self.unknown[key] = column.unknown.take(cells)
+        if column.upper is not None:
+            self.upper[key] = column.upper.take(cells)
 
     def _are_there_in_any(self, items: tuple[str, ...], values: Sequence[Any]) -> bool:
         places = {place for place, value in enumerate(values) if value is _NOT_GIVEN}
@@ -179,6 +171,35 @@ def column_dtype(declaration: Declaration) -> np.dtype[Any]:
     if isinstance(declaration, Enumeration):
         return smallest_unsigned(len(declaration.values))
     return np.dtype(bool if isinstance(declaration, Signal) else np.float64)
+
+
+class PartlyKnown(NamedTuple):
+    """A column of values, or of the least ones where ``upper`` has the greatest.
+
+    They mean nothing where they are ``unknown``; None means nowhere.
+    """
+
+    values: Array
+    upper: Array | None
+    unknown: NDArray[np.bool_] | None
+
+
+def encode_partly_known(values: Sequence[Any], declaration: Declaration) -> PartlyKnown:
+    """Encode values, of which some may be unknown or intervals. Raises UnencodableError."""
+    kinds = set(map(type, values))
+    unknown = upper = None
+    if UnknownValue in kinds:
+        if Interval not in kinds:
+            column, unknown = _with_unknown(values, kinds, declaration)
+            return PartlyKnown(column, None, unknown)
+        unknown = np.array([value is UNKNOWN for value in values])
+        anything = least_value(declaration)
+        values = [anything if value is UNKNOWN else value for value in values]
+    if Interval in kinds:
+        highest = [value.high if type(value) is Interval else value for value in values]
+        upper = encode_values(highest, declaration)
+        values = [value.low if type(value) is Interval else value for value in values]
+    return PartlyKnown(encode_values(values, declaration), upper, unknown)
 
 
 def _with_unknown(

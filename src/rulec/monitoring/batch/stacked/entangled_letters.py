@@ -121,7 +121,7 @@ def _are_entangled(reads: EntangledReads, reader: StackReader, spots: Spots) -> 
             continue
         flags = is_partial(column) if about in reads.shared else column.apart
         if flags is not None:
-            entangled |= flags[spots.cells[variables[0]] if variables else spots.states]
+            entangled |= flags[reader.where(variables, spots)]
     return entangled
 
 

@@ -14,7 +14,7 @@ from typing import overload
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.array_types import Indices
+from rulec.array_types import Flags, Indices
 from rulec.monitoring.batch.columns.column_numbers import Mask
 from rulec.monitoring.batch.stacked.stack import FEW, Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
@@ -163,6 +163,40 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
         )
         objects = _pairs(rule, reader, first, second)
     return _of_objects(objects, stack)
+
+
+def with_all_of(suspects: Flags, doubtful: Instances, rule: StackedRule, stack: Stack) -> Instances:
+    """The ``doubtful`` choices, and all choices in the traces that are ``suspects``."""
+    own = suspects[stack.trace_of]
+    if not rule.variables:
+        traces = suspects.nonzero()[0]
+        firsts, lasts = stack.begins[traces], stack.begins[traces + 1] - 1
+        every = Instances(traces, (), firsts, lasts)
+    else:
+        chosen = [(stack.of_type(kind) & own).nonzero()[0] for kind in rule.types]
+        objects = tuple(chosen) if len(chosen) == 1 else _pairs_present(chosen[0], chosen[1], stack)
+        every = _of_objects(objects, stack)
+    others = doubtful.part((~suspects[doubtful.traces]).nonzero()[0])
+    if not len(others.traces):
+        return every
+    both = zip(others.objects, every.objects, strict=True)
+    return Instances(
+        np.concatenate([others.traces, every.traces]),
+        tuple(np.concatenate(pair) for pair in both),
+        np.concatenate([others.firsts, every.firsts]),
+        np.concatenate([others.lasts, every.lasts]),
+    )
+
+
+def _pairs_present(first: Indices, second: Indices, stack: Stack) -> tuple[Indices, Indices]:
+    """The pairs of different objects of one trace that are present together."""
+    begins = stack.trace_of[second].searchsorted(stack.trace_of[first], side="left")
+    ends = stack.trace_of[second].searchsorted(stack.trace_of[first], side="right")
+    places, _ = ranges(begins, ends - begins)
+    left, right = first.repeat(ends - begins), second[places]
+    since = np.maximum(stack.firsts[left], stack.firsts[right])
+    met = (left != right) & (since <= np.minimum(stack.lasts[left], stack.lasts[right]))
+    return left[met], right[met]
 
 
 def _of_objects(objects: tuple[Indices, ...], stack: Stack) -> Instances:

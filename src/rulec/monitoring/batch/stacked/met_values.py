@@ -45,7 +45,7 @@ class MetValues:
         None for a signal that no state contains and that has no default.
         """
         met = self.signals.get(name)
-        if met is not None or name in self._stack.is_about_objects:
+        if met is not None or name in self._stack.arity:
             return met or 0
         default = self._stack.default(name)
         return None if default is None or default is UNKNOWN_VALUE else 1 << int(default)

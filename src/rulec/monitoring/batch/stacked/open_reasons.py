@@ -112,7 +112,7 @@ class StackedReasons:
             if column is None:
                 is_unknown = stack.default(term.name) is UNKNOWN
             else:
-                where = spots.cells[term.arguments[0]] if term.arguments else spots.states
+                where = self._reader.where(term.arguments, spots)
                 is_unknown = flags is not None and bool(flags[where].any())
             if is_unknown:
                 unknown.add(term.name)
@@ -179,10 +179,10 @@ class StackedReasons:
 
     def _in_states(self, name: str, flags: Flags | None) -> Flags | None:
         stack = self._reader.stack
-        if flags is None or name in stack.traces[0].world:
+        if flags is None or not stack.arity[name]:
             return flags
         flagged: NDArray[np.bool_] = np.zeros(stack.n_states, dtype=bool)
-        flagged[stack.state_of[flags]] = True
+        flagged[stack.states_at(name, flags.nonzero()[0])] = True
         return flagged
 
 

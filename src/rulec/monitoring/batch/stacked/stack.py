@@ -20,9 +20,10 @@ from rulec.monitoring.batch.columns.columnize import (
     column_dtype,
     encode_values,
 )
-from rulec.monitoring.batch.stacked.joined_traces import joined_traces
+from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
+from rulec.monitoring.batch.stacked.stacked_pairs import StackedPairs
 from rulec.trace.plain_arrays import distinct
-from rulec.trace.trace_arrays import TraceArrays, starts_of
+from rulec.trace.trace_arrays import starts_of
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
@@ -57,35 +58,31 @@ class Stack:
     ``defaults`` caches these, encoded as in columns, for all traces judged with the vocabulary.
 
     ``begins`` is where the states of each trace begin, ``starts`` where the cells of each object
-    do; both have the total length as last entry. ``is_about_objects`` tells for each name in the
-    traces whether it is about objects. ``trace_of``, ``firsts`` and ``lasts`` are each object's
+    do; both have the total length as last entry. ``arity`` is the number of objects that
+    each name in the traces is about. ``trace_of``, ``firsts`` and ``lasts`` are each object's
     trace and its first and last state among all; ``kind_of`` is the number of its type among the
     ``kinds``.
     """
 
     def __init__(
-        self, traces: Sequence[TraceArrays], vocabulary: Vocabulary, defaults: dict[str, Any]
+        self, traces: JoinedTraces, vocabulary: Vocabulary, defaults: dict[str, Any]
     ) -> None:
-        self.traces = traces
         self._defaults = defaults
-        self._pieces = tuple(joined_traces(traces))
+        self._pieces = traces.pieces
         self.vocabulary = vocabulary
-        lengths = np.array([trace.n_states for trace in traces], dtype=np.intp)
-        self.begins = np.concatenate([np.zeros(1, dtype=np.intp), lengths.cumsum()])
+        self.begins = np.concatenate([np.zeros(1, dtype=np.intp), traces.lengths.cumsum()])
         self.n_states = int(self.begins[-1])
-        n_objects = [len(trace.objects) for trace in traces]
-        self.trace_of = np.arange(len(traces)).repeat(n_objects)
-        spans = np.concatenate([trace.spans for trace in traces])
-        self.firsts = spans[:, 0] + self.begins[self.trace_of]
-        self.lasts = spans[:, 1] + self.begins[self.trace_of]
-        self.starts = starts_of(spans)
-        self.types = [kind for trace in traces for kind in trace.objects.values()]
+        self.trace_of = np.arange(len(traces.lengths)).repeat(traces.n_objects)
+        self.firsts = traces.spans[:, 0] + self.begins[self.trace_of]
+        self.lasts = traces.spans[:, 1] + self.begins[self.trace_of]
+        self.starts = starts_of(traces.spans)
+        self.types = traces.types
         self.kinds = tuple(dict.fromkeys(self.types))
         numbers = {kind: number for number, kind in enumerate(self.kinds)}
         self.kind_of: Indices = np.array([numbers[kind] for kind in self.types], dtype=np.intp)
-        self.names = [name for trace in traces for name in trace.objects]
-        about = dict.fromkeys(traces[0].about, True)
-        self.is_about_objects = {**dict.fromkeys(traces[0].world, False), **about}
+        piece = traces.pieces[0]
+        parts = piece.world, piece.about, piece.between
+        self.arity = {name: n for n, part in enumerate(parts) for name in part}
         self._ends: dict[str, tuple[float, float]] = {}
         self._of_type: dict[str, Flags] = {}
         self._whole_types: dict[str, bool] = {}
@@ -162,21 +159,41 @@ class Stack:
             if column.missing is not None:
                 odd.update(self.traces_at(name, column.missing.nonzero()[0]))
             if name in constants:
-                starts = self.starts if self.is_about_objects[name] else self.begins
-                lengths = self._n_cells if self.is_about_objects[name] else starts[1:] - starts[:-1]
-                for values in (column.values, column.unknown):
-                    if values is not None:
+                starts = (self.begins, self.starts, self.pairs.starts)[self.arity[name]]
+                lengths = starts[1:] - starts[:-1]
+                for own in (column.values, column.unknown):
+                    if own is not None:
+                        values = own[: starts[-1]]
                         changed = values != values[starts[:-1]].repeat(lengths)
                         if changed.any():
                             odd.update(self.traces_at(name, changed.nonzero()[0]))
         return odd
 
+    def partial_traces(self) -> set[int]:
+        """Traces in which a value is unknown or an interval. Raises UnencodableError."""
+        doubts = ((name, either(own.apart, own.unknown)) for name, own in self.columns.items())
+        known = ((name, flags) for name, flags in doubts if flags is not None)
+        return {x for name, flags in known for x in self.traces_at(name, flags.nonzero()[0])}
+
     def traces_at(self, name: str, places: Indices) -> list[int]:
         """The traces of a name's values at some places."""
-        if self.is_about_objects[name]:
-            places = self.state_of[places]
+        places = self.states_at(name, places)
         traces: list[int] = distinct(self.begins.searchsorted(places, side="right") - 1).tolist()
         return traces
+
+    def states_at(self, name: str, places: Indices) -> Indices:
+        """The states of a name's values at some places."""
+        if self.arity[name] < 2:
+            return self.state_of[places] if self.arity[name] else places
+        states: Indices = self.pairs.state_of[places[places < self.pairs.starts[-1]]]
+        return states
+
+    @cached_property
+    def pairs(self) -> StackedPairs:
+        """The pairs of objects that something is said about."""
+        objects = self._pieces[0].pairs
+        spans = [self.firsts[objects].max(axis=1), self.lasts[objects].min(axis=1)]
+        return StackedPairs(objects, len(self.types), np.stack(spans, axis=1))
 
     def column(self, name: str) -> StackColumn | None:
         """The column of a name; None if no state contains it. Raises UnencodableError."""
@@ -185,7 +202,7 @@ class Stack:
     @cached_property
     def columns(self) -> Mapping[str, StackColumn]:
         """The columns of all names in the traces. Raises UnencodableError."""
-        return {name: self._column(name) for name in self.is_about_objects}
+        return {name: self._column(name) for name in self.arity}
 
     def ends(self, name: str) -> tuple[float, float] | None:
         """The least and greatest number of a quantity; None if some are unknown or none is given.
@@ -223,12 +240,12 @@ class Stack:
 
     def _column(self, name: str) -> StackColumn:
         declaration = self.vocabulary.declarations.get(name)
-        is_about = self.is_about_objects[name]
-        if declaration is None or len(declaration.parameters) != is_about:
+        arity = self.arity[name]
+        if declaration is None or len(declaration.parameters) != arity:
             raise UnencodableError
-        parts = [piece.about[name] if is_about else piece.world[name] for piece in self._pieces]
+        parts = [(piece.world, piece.about, piece.between)[arity][name] for piece in self._pieces]
         unknown, unsaid = self._unknown_and_unsaid(name, parts)
-        if is_about:
+        if arity == 1:
             unsaid = either(unsaid, self._not_about(name, declaration))
         upper = None
         if isinstance(declaration, Enumeration):
@@ -257,7 +274,21 @@ class Stack:
             values = np.where(unfit, _anything(declaration), values)
             upper = None if upper is None else np.where(unfit, values, upper)
         column = StackColumn(values, upper, unknown, None)
-        return column if unsaid is None else self._with_default(name, column, unsaid)
+        column = column if unsaid is None else self._with_default(name, column, unsaid)
+        return column if arity < 2 else self._with_strangers(name, column)
+
+    def _with_strangers(self, name: str, column: StackColumn) -> StackColumn:
+        """The column about pairs, with a last value for all pairs of which nothing is said."""
+        default, unknown, upper = self.default(name), column.unknown, column.upper
+        is_dark = default is UNKNOWN
+        if default is None or is_dark:
+            default = _anything(self.vocabulary.declarations[name])
+        if unknown is not None or is_dark:
+            known = np.zeros(len(column.values), dtype=bool)
+            unknown = np.append(known if unknown is None else unknown, is_dark)
+        values = np.append(column.values, column.values.dtype.type(default))
+        upper = None if upper is None else np.append(upper, float(default))
+        return StackColumn(values, upper, unknown, column.missing)
 
     def _unknown_and_unsaid(
         self, name: str, parts: Sequence[Array]
@@ -279,8 +310,8 @@ class Stack:
         declaration = self.vocabulary.declarations[name]
         if default is None:
             return StackColumn(column.values, column.upper, unknown, unsaid)
-        if default is UNKNOWN:
-            raise UnencodableError  # it is not told, and yet said of somebody
+        if default is UNKNOWN:  # it is not told, and yet said of somebody
+            return StackColumn(column.values, column.upper, either(unknown, unsaid), None)
         values = np.where(unsaid, default, column.values).astype(column_dtype(declaration))
         upper = None if column.upper is None else np.where(unsaid, default, column.upper)
         unknown = None if unknown is None else unknown & ~unsaid

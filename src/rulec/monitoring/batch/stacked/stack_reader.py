@@ -87,10 +87,10 @@ class StackReader:
         if spots is None or not isinstance(numbers, np.ndarray):
             return numbers
         if spots.kind is None:
-            return numbers.take(spots.cells[read.variables[0]] if read.variables else spots.states)
+            return numbers.take(self.where(read.variables, spots))
         key = read.key, spots.kind
         if key not in self._of_kind:
-            own = spots.cells[read.variables[0]] if read.variables else spots.states
+            own = self.where(read.variables, spots)
             is_every = bool(read.variables) and len(own) == len(numbers)
             self._of_kind[key] = numbers if is_every else numbers.take(own)
         return self._of_kind[key]
@@ -140,7 +140,7 @@ class StackReader:
         if others:
             return read.every
         ready = read.ready
-        if name not in self.stack.is_about_objects:
+        if name not in self.stack.arity:
             default = self.stack.default(name)
             if default is UNKNOWN_VALUE:
                 return read.every
@@ -205,9 +205,17 @@ class StackReader:
 
     def _at(self, values: Array, variables: Sequence[str], spots: Spots) -> Array:
         """A column's values at the spots."""
-        if spots.whole and (variables or not spots.cells):
+        if spots.whole and (len(variables) == 1 or not spots.cells):
             return values
-        return values.take(spots.cells[variables[0]] if variables else spots.states)
+        return values.take(self.where(variables, spots))
+
+    def where(self, variables: Sequence[str], spots: Spots) -> Indices:
+        """Where the values about the objects of some variables are in their columns."""
+        if len(variables) < 2:
+            return spots.cells[variables[0]] if variables else spots.states
+        object_of = self.stack.object_of
+        first, second = [object_of[spots.cells[variable]] for variable in variables]
+        return self.stack.pairs.places(first, second, spots.states)
 
     def _between(self, ready: ThresholdScale, spots: Spots) -> Numbers:
         bounds = [(factor, *self._bounds(term, spots)) for factor, term in ready.read.terms]
@@ -313,7 +321,7 @@ class StackReader:
         column = self.stack.column(name)
         if column is None:
             return [declaration.default] * len(spots.states)
-        where = spots.cells[variables[0]] if variables else spots.states
+        where = self.where(variables, spots)
         return partial_values(
             column.values[where],
             None if column.upper is None else column.upper[where],

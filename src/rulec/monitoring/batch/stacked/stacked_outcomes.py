@@ -10,6 +10,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.array_types import Flags
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.outcome_machine import KEPT
 from rulec.monitoring.batch.stacked.crowded_states import CrowdedStates
@@ -18,10 +19,11 @@ from rulec.monitoring.batch.stacked.instances import (
     Instances,
     NumbersAt,
     doubtful_instances,
+    with_all_of,
 )
+from rulec.monitoring.batch.stacked.read_numbers import number_of_value
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import FEW_WORDS, StackedRule, stretches
-from rulec.monitoring.batch.uncertain.partial_reader import number_of_value
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.uncertain_machine import Answer
@@ -64,14 +66,20 @@ class StackedOutcomes:
 
 
 def outcomes(
-    rule: StackedRule, reader: StackReader, rulebook: CompiledRulebook
+    rule: StackedRule, reader: StackReader, rulebook: CompiledRulebook, suspects: Flags
 ) -> Iterator[StackedOutcomes]:
-    """All choices for which a rule is not kept. Raises UnencodableError."""
+    """All choices for which a rule is not kept.
+
+    In traces that are ``suspects`` all choices are examined for letters that axioms exclude. Raises
+    UnencodableError.
+    """
     instances = doubtful_instances(rule, reader)
+    if rule.facts and suspects.any():
+        instances = with_all_of(suspects, instances, rule, reader.stack)
     if not len(instances.traces):
         return
     for chosen in _by_unknown_constants(rule, reader, instances, rulebook):
-        words = _doubtful_words(rule, reader, chosen)
+        words = _doubtful_words(rule, reader, chosen, suspects)
         if words is None:
             continue
         if len(words.bounds) <= FEW_WORDS:
@@ -218,14 +226,16 @@ def _by_unknown_constants(
         yield replace(own_part, unknown=which, supposed=supposed, is_exact=is_exact)
 
 
-def _doubtful_words(rule: StackedRule, reader: StackReader, chosen: _Chosen) -> StackedWords | None:
+def _doubtful_words(
+    rule: StackedRule, reader: StackReader, chosen: _Chosen, suspects: Flags
+) -> StackedWords | None:
     """The words of the choices that are not surely kept, judging each read separately.
 
     Reads together allow fewer letters than separately, so for the other choices this need not be
     found out.
     """
     alternatives = _alternatives(rule, reader, chosen)
-    doubtful = np.zeros(len(chosen.instances.traces), dtype=bool)
+    doubtful = suspects[chosen.instances.traces]
     for _, _, letters in alternatives:
         doubtful |= ~_are_surely_kept(rule, letters, chosen.bounds)
     if not doubtful.any():

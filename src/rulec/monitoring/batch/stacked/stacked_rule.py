@@ -15,7 +15,7 @@ from rulec.automata.thresholds import ThresholdScale, scale
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_of
 from rulec.logic.kleene import holds
-from rulec.monitoring.batch.uncertain.partial_reader import meanings_of
+from rulec.monitoring.batch.stacked.read_numbers import meanings_of
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
     NothingKnown,
@@ -151,7 +151,7 @@ class StackedRule:
             )
         )
         self.counts_everywhere = any(read.count and not read.variables for read in self.reads)
-        self.is_simple = _is_simple(self)
+        self.is_simple = _is_simple(self, vocabulary)
         self._busy_flags: NDArray[np.bool_] = np.zeros(0, dtype=bool)
         self._class_bits: NDArray[np.uint64] = np.zeros(0, dtype=np.uint64)
         self._fit_bits = machine.machine.n_classes <= _MOST_BITS
@@ -352,14 +352,29 @@ def _related(reads: Sequence[StackedRead], in_facts: frozenset[str]) -> tuple[in
     )
 
 
-def _is_simple(rule: StackedRule) -> bool:
+def _is_simple(rule: StackedRule, vocabulary: Vocabulary) -> bool:
     """Whether all of the rule's reads are of kinds that can be read from arrays."""
+    names = (name for name in rule.names if name in vocabulary.declarations)
+    arity = max([len(vocabulary.declarations[name].parameters) for name in names], default=0)
+    is_among_two = arity == 2 and not any(read.count or _repeats(read) for read in rule.reads)
     return (
         len(rule.variables) <= 2
+        and (arity < 2 or is_among_two)
         and all(map(is_of_one, rule.facts))
         and all(_is_simple_read(read, rule) for read in rule.reads)
         and len({rule.reads[place].names for place in rule.constants}) == len(rule.constants)
     )
+
+
+def _repeats(read: StackedRead) -> bool:
+    """Whether a value is about two objects that are the same one."""
+    own = read.read
+    terms = (
+        [own.variables]
+        if isinstance(own, Read)
+        else [term.arguments for _, term in own.terms if isinstance(term, ltl.QuantityTerm)]
+    )
+    return any(len(set(variables)) < len(variables) for variables in terms)
 
 
 def _is_value(read: StackedRead) -> bool:

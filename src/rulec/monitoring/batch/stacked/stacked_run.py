@@ -1,18 +1,15 @@
-"""Verification of traces in arrays, with the same verdicts as ``verify`` on their states.
-
-Any irregular trace, or rule for some objects, is left to ``verify``, as are rules that cannot be
-evaluated on arrays.
-"""
+"""One run of all rules over traces laid end to end: the engine behind every way to judge many."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rulec.array_types import Flags
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
@@ -26,8 +23,8 @@ from rulec.monitoring.batch.findings import (
     RuleFindings,
     ViolationOrOpen,
 )
+from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind
 from rulec.monitoring.batch.stacked.contradictions import contradicted
-from rulec.monitoring.batch.stacked.joined_traces import side_by_side
 from rulec.monitoring.batch.stacked.open_reasons import StackedReasons
 from rulec.monitoring.batch.stacked.simple_rules import SimpleRules
 from rulec.monitoring.batch.stacked.stack import Stack
@@ -36,132 +33,81 @@ from rulec.monitoring.batch.stacked.stacked_outcomes import StackedOutcomes, out
 from rulec.monitoring.batch.stacked.stacked_rule import ReadKeys, StackedRule
 from rulec.monitoring.state_validation import check_objects, check_told
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules, judged_rules
-from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.resource_limits import OBJECTS
 from rulec.rulebook.rules.axiom_instances import counts
-from rulec.trace.shared_columns import SharedColumns
-from rulec.trace.trace_arrays import TraceArrays
-from rulec.trace.trace_columns import Array
+from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
     from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 
-Answer: TypeAlias = Verdict | NotJudged
+
+_MOST_OBJECTS = 1 << 6
+"""A trace of more objects that contradicts facts is judged by its states."""
 
 
-def verify_arrays(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Answer]:
-    """Answers for traces in arrays, in their order: a verdict, or a ``NotJudged``."""
-    judged = judge_arrays(traces, rulebook)
-    return [answer_to(own, trace) for own, trace in zip(judged, traces, strict=True)]
+def judge_joined(traces: JoinedTraces, rulebook: CompiledRulebook) -> Sequence[JudgedTrace | None]:
+    """The traces with their findings; None for those that must be judged by their states.
+
+    Raises RulecError or UnencodableError where this holds for all of them.
+    """
+    return _StackedRun(traces, rulebook).judged()
 
 
-def answer_to(judged: JudgedTrace | Answer, trace: TraceArrays) -> Answer:
-    """The answer for a trace that has been judged."""
-    if isinstance(judged, JudgedTrace):
-        return judged.findings.verdict(judged.number, trace)
-    return judged
-
-
-def judge_arrays(
-    traces: Sequence[TraceArrays], rulebook: CompiledRulebook
-) -> list[JudgedTrace | Answer]:
-    """The same as ``verify_arrays``, but verdicts are built on demand by ``answer_to``."""
-    answers: list[JudgedTrace | Answer | None] = [None] * len(traces)
-    groups: dict[object, list[int]] = {}
-    known: dict[int, frozenset[str]] = {}
-    for place in side_by_side(traces):
-        trace = traces[place]
-        names = _names(trace.world, known), _names(trace.about, known)
-        key = trace.step_s, trace.ends, trace.told, names
-        groups.setdefault(key, []).append(place)
-    for places in groups.values():
-        together = [traces[place] for place in places]
-        judged: Sequence[JudgedTrace | Answer]
-        try:
-            judged = _StackedRun(together, rulebook).judged()
-        except (UnencodableError, RulecError):
-            judged = _by_states(together, rulebook)
-        for place, own in zip(places, judged, strict=True):
-            answers[place] = own
-    return [answer for answer in answers if answer is not None]
-
-
-def _names(columns: Mapping[str, Array], known: dict[int, frozenset[str]]) -> frozenset[str]:
-    """The names of columns; ``known`` caches those of columns that several traces share."""
-    if not isinstance(columns, SharedColumns):
-        return frozenset(columns)
-    key = id(columns.columns)
-    if key not in known:
-        known[key] = frozenset(columns)
-    return known[key]
-
-
-def _check_objects(traces: Sequence[TraceArrays], vocabulary: Vocabulary) -> None:
-    """Check the objects of all traces, each type once. Raises RulecError."""
-    kinds = frozenset().union(*[trace.objects.values() for trace in traces])
-    check_objects({kind: kind for kind in kinds}, vocabulary)
-    check_objects(max([trace.objects for trace in traces], key=len), vocabulary)
-
-
-def _by_states(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Answer]:
-    # The engines for states load slowly, and few recordings need them.
-    from rulec.monitoring.batch.batch_verify import verify_chunk
-
-    return list(verify_chunk([trace.trace() for trace in traces], rulebook))
-
-
-def _by_its_states(trace: TraceArrays, rulebook: CompiledRulebook) -> Answer:
-    # As above: only for irregular traces.
-    from rulec.monitoring.verify import verify_or_reason
-
-    return verify_or_reason(trace.trace(), rulebook)
+def check_judgeable(kind: TraceKind, rulebook: CompiledRulebook) -> None:
+    """Raise RulecError or UnencodableError if no traces of this kind can be judged together."""
+    _ready_for(kind, rulebook.fitted_to(kind.step_s))
 
 
 class _StackedRun:
-    """The judgement of traces with the same names. Raises RulecError, UnencodableError."""
+    """The judgement of traces of one kind. Raises RulecError, UnencodableError."""
 
-    def __init__(self, traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> None:
-        example = traces[0]
-        self._traces = traces
-        self._whole_rulebook = rulebook
-        self._rulebook = rules = rulebook.fitted_to(example.step_s)
-        key = example.told, example.ends, example.step_s
-        known: dict[object, _ReadyRules] = rules.prepared.setdefault(_ReadyRules, {})
-        if key not in known:
-            known[key] = _ready_rules(example, rules)
-        self._ready = known[key]
+    def __init__(self, traces: JoinedTraces, rulebook: CompiledRulebook) -> None:
+        self._rulebook = rules = rulebook.fitted_to(traces.kind.step_s)
+        self._n_traces = n_traces = len(traces.lengths)
+        self._is_derived = traces.derived
+        self._ready = _ready_for(traces.kind, rules)
         _check_objects(traces, rules.vocabulary)
-        self._judged = self._ready.judged
-        self._stack = Stack(traces, self._judged.vocabulary, self._ready.defaults)
+        judged = self._ready.judged
+        self._stack = Stack(traces, judged.vocabulary, self._ready.defaults)
         self._reader = StackReader(self._stack)
-        self._closely = [_CloseLook(trace, rules) for trace in traces]
-        whole: list[int] = []
-        if example.ends == "complete" and example.told is None:
-            whole = [number for number, trace in enumerate(traces) if not trace.is_partial]
-        names = self._stack.names
-        self._findings = Findings(self._judged, len(traces), names, frozenset(whole))
+        self._closely = [_CloseLook(partial(traces.trace, n), rules) for n in range(n_traces)]
+        whole: set[int] = set()
+        if traces.kind.is_whole:
+            whole = {*range(n_traces)} - self._stack.partial_traces()
+        self._findings = Findings(judged, n_traces, traces.names, frozenset(whole))
         self._reasons = StackedReasons(self._reader)
         self._odd: set[int] = set()
 
-    def judged(self) -> list[JudgedTrace | Answer]:
-        """The judged traces with their findings, and the answers for irregular ones."""
+    def judged(self) -> list[JudgedTrace | None]:
+        """The judged traces with their findings, and None for irregular ones."""
         simple = self._ready.simple_rules(frozenset(self._stack.untold(self._ready.names)))
-        self._odd |= contradicted(simple.facts, self._reader)
+        suspects = self._suspects(contradicted(simple.facts, self._reader))
         busy = simple.busy(self._reader)
         for number, rule in enumerate(self._ready.rules):
             if number not in simple.rules:
                 self._add_closely(number, rule)
-            elif number in busy:
+            elif number in busy or (rule.facts and suspects.any()):
                 rule.forget_many()
-                for stacked_outcomes in outcomes(rule, self._reader, self._rulebook):
+                for stacked_outcomes in outcomes(rule, self._reader, self._rulebook, suspects):
                     self._add(number, stacked_outcomes)
         self._odd |= self._stack.odd_traces()
         return [
-            _by_its_states(trace, self._whole_rulebook)
-            if number in self._odd
-            else JudgedTrace(self._findings, number)
-            for number, trace in enumerate(self._traces)
+            None if number in self._odd else JudgedTrace(self._findings, number)
+            for number in range(self._n_traces)
         ]
+
+    def _suspects(self, contradicted: Set[int]) -> Flags:
+        """The traces among these that are examined closely, unless they are crowded.
+
+        Without the values that follow by facts, which a state may leave out, none is.
+        """
+        suspects: Flags = np.zeros(self._n_traces, dtype=bool)
+        suspects[list(contradicted)] = True
+        odd = np.bincount(self._stack.trace_of, minlength=self._n_traces) > _MOST_OBJECTS
+        odd |= not self._is_derived
+        self._odd.update((suspects & odd).nonzero()[0].tolist())
+        return suspects & ~odd
 
     def _add(self, rule_number: int, outcomes: StackedOutcomes) -> None:
         words, findings = outcomes.words, self._findings
@@ -240,16 +186,23 @@ class _ReadyRules:
         return known
 
 
-def _ready_rules(example: TraceArrays, rules: CompiledRulebook) -> _ReadyRules:
-    """The rules for traces like this one. Raises RulecError, UnencodableError."""
+def _ready_for(kind: TraceKind, rules: CompiledRulebook) -> _ReadyRules:
+    """The rules for traces of this kind. Raises RulecError, UnencodableError."""
+    known: dict[TraceKind, _ReadyRules] = rules.prepared.setdefault(_ReadyRules, {})
+    if kind not in known:
+        known[kind] = _ready_rules(kind, rules)
+    return known[kind]
+
+
+def _ready_rules(kind: TraceKind, rules: CompiledRulebook) -> _ReadyRules:
     for rule in rules.rules:
-        check_step(rule, exact_step(example.step_s))
-    check_told(example.told, rules.vocabulary)
+        check_step(rule, exact_step(kind.step_s))
+    check_told(kind.told, rules.vocabulary)
     constants = rules.vocabulary.constants
     for fact in rules.axioms:
         if counts(fact.formula) or not set(constants).isdisjoint(names_of(fact.formula)):
             raise UnencodableError  # what it says of values is looked up state by state
-    judged = judged_rules(rules, example.told, cut=example.ends == "cut")
+    judged = judged_rules(rules, kind.told, cut=kind.ends == "cut")
     keys: ReadKeys = {}
     ready = [
         StackedRule(rule, machine, rules, judged.vocabulary, keys)
@@ -262,23 +215,26 @@ def _ready_rules(example: TraceArrays, rules: CompiledRulebook) -> _ReadyRules:
 class _CloseLook:
     """Verdicts on single rules of one trace, by its states."""
 
-    def __init__(self, trace: TraceArrays, rulebook: CompiledRulebook) -> None:
+    def __init__(self, trace: Callable[[], Trace], rulebook: CompiledRulebook) -> None:
         self._trace = trace
         self._rulebook = rulebook
 
     @cached_property
     def _run(self) -> UncertainRun:
         # Judging by states, 5 ms: only where arrays do not tell.
-        from rulec.monitoring.implied_values import with_derived_values
-        from rulec.monitoring.uncertainty.suppositions import spelled_out
         from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 
-        vocabulary = self._rulebook.vocabulary
-        trace = with_derived_values(spelled_out(self._trace.trace(), vocabulary), vocabulary)
-        return UncertainRun(trace, self._rulebook)
+        return UncertainRun(self._trace(), self._rulebook)
 
     def answer(self, rule: str, binding: Mapping[str, str]) -> ViolationOrOpen | None:
         return self._run.answer(rule, binding)
 
     def answers(self, rule: str) -> list[ViolationOrOpen]:
         return list(self._run.answers(rule))
+
+
+def _check_objects(traces: JoinedTraces, vocabulary: Vocabulary) -> None:
+    """Check the objects of all traces, each type once. Raises RulecError."""
+    kinds = frozenset(traces.types)
+    check_objects({kind: kind for kind in kinds}, vocabulary)
+    OBJECTS.within(max(traces.n_objects), None)

@@ -1,0 +1,1 @@
+"""Traces laid end to end, whatever they were given as."""

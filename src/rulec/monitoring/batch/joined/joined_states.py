@@ -1,0 +1,192 @@
+"""Traces given by their states, laid end to end."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import chain
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from rulec.array_types import Flags, Indices
+from rulec.monitoring.batch.columns.columnize import UnencodableError
+from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind
+from rulec.monitoring.batch.joined.piece_columns import NOT_GIVEN, PieceColumns
+from rulec.trace import Trace
+from rulec.vocabulary import Declaration, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN
+from rulec.vocabulary.vocabulary_model import least_value
+
+_ByObject: TypeAlias = Mapping[str, Any]
+
+_NOBODY: _ByObject = {}
+
+
+def joined_states(traces: Sequence[Trace], vocabulary: Vocabulary) -> JoinedTraces:
+    """Traces of one kind that have passed ``check_frame``, with what follows from their values.
+
+    Raises UnencodableError if ``check_state`` would refuse a state, and in some cases also for a
+    value of an unusual type.
+    """
+    states = list(chain.from_iterable([trace.states for trace in traces]))
+    if set(map(type, states)) != {dict}:
+        raise UnencodableError
+    casts = [_Cast(trace, vocabulary) for trace in traces]
+    columns = PieceColumns()
+    pairs: list[tuple[int, int]] = []
+    of_pairs: list[tuple[Declaration, Sequence[Sequence[_ByObject]]]] = []
+    for name in set().union(*states):
+        declaration = vocabulary.declarations.get(name)
+        if declaration is None:
+            raise UnencodableError
+        given = [state.get(name, NOT_GIVEN) for state in states]
+        kinds = declaration.parameters
+        if not kinds:
+            columns.add(given, declaration)
+            continue
+        values = iter(given)
+        maps = [
+            [_by_object(next(values), cast.fitting(kinds[0])) for _ in cast.trace.states]
+            for cast in casts
+        ]
+        if len(kinds) == 1:
+            columns.add(*_about_objects(maps, declaration, casts))
+        else:
+            of_pairs.append((declaration, maps))
+    if of_pairs:
+        pairs = _add_pairs(of_pairs, casts, columns)
+    example = traces[0]
+    n_objects = [len(trace.objects) for trace in traces]
+    return JoinedTraces(
+        kind=TraceKind(example.step_s, example.ends, example.told),
+        lengths=np.array([len(trace.states) for trace in traces], dtype=np.intp),
+        n_objects=n_objects,
+        spans=_indices([span for cast in casts for span in cast.spans]),
+        types=[kind for trace in traces for kind in trace.objects.values()],
+        names=[name for trace in traces for name in trace.objects],
+        pieces=(columns.piece(sum(n_objects), _indices(pairs)),),
+        trace=traces.__getitem__,
+        derived=True,
+    )
+
+
+def _indices(pairs: Sequence[tuple[int, int]]) -> Indices:
+    return np.array(pairs, dtype=np.intp).reshape(-1, 2)
+
+
+@dataclass(frozen=True, eq=False)
+class _Cast:
+    """The objects of a trace, and when each is present."""
+
+    trace: Trace
+    vocabulary: Vocabulary
+
+    @cached_property
+    def spans(self) -> Sequence[tuple[int, int]]:
+        """The first and the last state of each object."""
+        present, whole = self.trace.present, (0, len(self.trace.states) - 1)
+        return [present.get(item, whole) for item in self.trace.objects]
+
+    @cached_property
+    def _fitting(self) -> dict[str, frozenset[str]]:
+        return {}
+
+    def fitting(self, kind: str) -> frozenset[str]:
+        """The objects of a type."""
+        if kind not in self._fitting:
+            own, is_subtype = self.trace.objects.items(), self.vocabulary.is_subtype
+            self._fitting[kind] = frozenset([x for x, of in own if is_subtype(of, kind)])
+        return self._fitting[kind]
+
+
+def _by_object(value: Any, fitting: frozenset[str]) -> _ByObject:
+    """What a state says of each object."""
+    if type(value) is dict:
+        if not fitting.issuperset(value):
+            raise UnencodableError
+        return value
+    if value is NOT_GIVEN:
+        return _NOBODY
+    if value is UNKNOWN:
+        return dict.fromkeys(fitting, UNKNOWN)
+    raise UnencodableError
+
+
+def _about_objects(
+    maps: Sequence[Sequence[_ByObject]], declaration: Declaration, casts: Sequence[_Cast]
+) -> tuple[list[Any], Declaration, Flags]:
+    """A name's values for each object in each of its states, and the objects it can be about."""
+    values: list[Any] = []
+    suits: list[bool] = []
+    for cast, of_trace in zip(casts, maps, strict=True):
+        fitting = cast.fitting(declaration.parameters[0])
+        for item, (first, last) in zip(cast.trace.objects, cast.spans, strict=True):
+            suits.append(item in fitting)
+            if item in fitting:
+                values += [about.get(item, NOT_GIVEN) for about in of_trace[first : last + 1]]
+            else:
+                values += [NOT_GIVEN] * (last - first + 1)
+    return values, declaration, np.array(suits, dtype=bool)
+
+
+_OfPairs: TypeAlias = tuple[Declaration, Sequence[Sequence[_ByObject]]]
+"""A name about two objects, and what each state of each trace says of first objects."""
+
+
+def _add_pairs(
+    of_pairs: Sequence[_OfPairs], casts: Sequence[_Cast], columns: PieceColumns
+) -> list[tuple[int, int]]:
+    """Add the columns about pairs of objects, and return these."""
+    values: list[list[Any]] = [[] for _ in of_pairs]
+    pairs: list[tuple[int, int]] = []
+    begin = 0
+    for number, cast in enumerate(casts):
+        items = list(cast.trace.objects)
+        places = {item: place for place, item in enumerate(items)}
+        own = [_by_pair(declaration, maps[number], cast) for declaration, maps in of_pairs]
+        said = {(places[first], places[second]) for found in own for first, second in found}
+        for first, second in sorted(said):
+            since = max(cast.spans[first][0], cast.spans[second][0])
+            until = min(cast.spans[first][1], cast.spans[second][1])
+            if since <= until:
+                pairs.append((begin + first, begin + second))
+                pair = items[first], items[second]
+                for (declaration, _), found, column in zip(of_pairs, own, values, strict=True):
+                    column += _of_pair(pair, found, cast, declaration)[since : until + 1]
+        begin += len(items)
+    for (declaration, _), column in zip(of_pairs, values, strict=True):
+        columns.add(column, declaration)
+    return pairs
+
+
+def _of_pair(
+    pair: tuple[str, str],
+    found: Mapping[tuple[str, str], Sequence[_ByObject]],
+    cast: _Cast,
+    declaration: Declaration,
+) -> list[Any]:
+    """A name's values about a pair in all states; anything where they are never read."""
+    first, second = pair
+    if found.get(pair):
+        return [about.get(second, NOT_GIVEN) for about in found[pair]]
+    kinds = declaration.parameters
+    fits = first in cast.fitting(kinds[0]) and second in cast.fitting(kinds[1])
+    value = NOT_GIVEN if fits and first != second else least_value(declaration)
+    return [value] * len(cast.trace.states)
+
+
+def _by_pair(
+    declaration: Declaration, maps: Sequence[_ByObject], cast: _Cast
+) -> Mapping[tuple[str, str], Sequence[_ByObject]]:
+    """For each pair what the states say of its second object, asked of its first one."""
+    firsts, seconds = map(cast.fitting, declaration.parameters)
+    found: dict[tuple[str, str], Sequence[_ByObject]] = {}
+    if declaration.default is None:
+        # Where a value is missing, this is to be noticed
+        found = {(x, y): () for x in firsts for y in seconds if x != y}
+    for first in set().union(*maps):
+        of_first = [_by_object(about.get(first, NOT_GIVEN), seconds) for about in maps]
+        found |= {(first, second): of_first for second in set().union(*of_first)}
+    return found

@@ -1,0 +1,151 @@
+"""Traces of one kind end to end; those whose columns lie in the same arrays are joined."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from operator import attrgetter
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rulec.array_types import Flags, Indices
+from rulec.trace import Trace
+from rulec.trace.shared_columns import SharedColumns
+from rulec.trace.trace_arrays import TraceArrays
+from rulec.trace.trace_columns import Array
+from rulec.trace.trace_model import Ending
+from rulec.vocabulary import Vocabulary
+
+_COLUMNS = ("world", "about", "unknown", "absent", "bounds", "only")
+_columns_of = attrgetter(*_COLUMNS)
+
+
+@dataclass(frozen=True, slots=True)
+class JoinedPiece:
+    """The content of one trace, or of several whose columns lie in the same arrays.
+
+    ``between`` has values about ``pairs`` of objects (pairs x 2, numbers among all of the traces):
+    pair by pair, one for each state in which both are present.
+    """
+
+    world: Mapping[str, Array]
+    about: Mapping[str, Array]
+    unknown: Mapping[str, Flags]
+    absent: Mapping[str, Flags]
+    bounds: Mapping[str, tuple[Array, Array]]
+    only: Mapping[str, Flags]
+    texts: Mapping[str, tuple[str, ...]]
+    n_objects: int
+    between: Mapping[str, Array] = field(default_factory=dict)
+    pairs: Indices = field(default_factory=lambda: np.empty((0, 2), dtype=np.intp))
+
+    @staticmethod
+    def of(traces: Sequence[TraceArrays]) -> JoinedPiece:
+        """The content of traces, each of which lies before the next one."""
+        first, last = traces[0], traces[-1]
+        ends = zip(_COLUMNS, _columns_of(first), _columns_of(last), strict=True)
+        columns: dict[str, Any] = {name: _joined(own, end) for name, own, end in ends}
+        n_objects = sum([len(trace.objects) for trace in traces])
+        return JoinedPiece(**columns, texts=first.texts, n_objects=n_objects)
+
+
+class TraceKind(NamedTuple):
+    """What must be the same for traces to be judged together; as in a ``Trace``."""
+
+    step_s: float
+    ends: Ending
+    told: frozenset[str] | None
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether nothing is unknown before, after and beside the traces."""
+        return self.ends == "complete" and self.told is None
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class JoinedTraces:
+    """Traces of one kind with the same names, in the order of their ``pieces``.
+
+    ``lengths`` and ``n_objects`` are each trace's numbers of states and of objects; ``types``,
+    ``names`` and ``spans`` (objects x 2: first and last state in the trace) are of all objects.
+    ``trace`` makes the trace of a number, with what follows from its values by facts; the columns
+    have this, too, if they are ``derived``.
+    """
+
+    kind: TraceKind
+    lengths: Indices
+    n_objects: Sequence[int]
+    spans: Indices
+    types: Sequence[str]
+    names: Sequence[str]
+    pieces: Sequence[JoinedPiece]
+    trace: Callable[[int], Trace]
+    derived: bool
+
+    @staticmethod
+    def of_arrays(traces: Sequence[TraceArrays], vocabulary: Vocabulary) -> JoinedTraces:
+        """Traces in arrays, which are of one kind."""
+        example = traces[0]
+
+        def made(number: int) -> Trace:
+            # What judges states, 5 ms: only where arrays do not tell.
+            from rulec.monitoring.implied_values import with_derived_values
+            from rulec.monitoring.uncertainty.suppositions import spelled_out
+
+            return with_derived_values(spelled_out(traces[number].trace(), vocabulary), vocabulary)
+
+        return JoinedTraces(
+            kind=TraceKind(example.step_s, example.ends, example.told),
+            lengths=np.array([trace.n_states for trace in traces], dtype=np.intp),
+            n_objects=[len(trace.objects) for trace in traces],
+            spans=np.concatenate([trace.spans for trace in traces]),
+            types=[kind for trace in traces for kind in trace.objects.values()],
+            names=[name for trace in traces for name in trace.objects],
+            pieces=tuple(_joined_pieces(traces)),
+            trace=made,
+            derived=not vocabulary.implied,
+        )
+
+
+def side_by_side(traces: Sequence[TraceArrays]) -> list[int]:
+    """The places of traces, sorted so that those in the same arrays follow each other."""
+    known: dict[int, int] = {}
+
+    def place(number: int) -> tuple[int, int]:
+        own = traces[number].world
+        if not isinstance(own, SharedColumns):
+            return len(traces) + number, 0
+        return known.setdefault(id(own.columns), len(known)), own.states.start
+
+    return sorted(range(len(traces)), key=place)
+
+
+def _joined_pieces(traces: Sequence[TraceArrays]) -> Iterator[JoinedPiece]:
+    """The content of the traces, joined where they lie in the same arrays."""
+    begin = 0
+    for place, (trace, other) in enumerate(pairwise(traces), 1):
+        if not _stands_before(trace, other):
+            yield JoinedPiece.of(traces[begin:place])
+            begin = place
+    yield JoinedPiece.of(traces[begin:])
+
+
+def _stands_before(before: TraceArrays, after: TraceArrays) -> bool:
+    """Whether all columns of a trace lie before those of another in the same arrays."""
+    if after.texts is not before.texts:
+        return False
+    for own, theirs in zip(_columns_of(before), _columns_of(after), strict=True):
+        if isinstance(own, SharedColumns):
+            if not own.is_before(theirs):
+                return False
+        elif own or theirs or type(own) is not type(theirs):
+            return False
+    return True
+
+
+def _joined(own: Mapping[str, Any], end: Mapping[str, Any]) -> Mapping[str, Any]:
+    if isinstance(own, SharedColumns) and isinstance(end, SharedColumns):
+        return own.up_to(end)
+    return own

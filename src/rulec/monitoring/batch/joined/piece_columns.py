@@ -1,0 +1,79 @@
+"""Columns of a piece, built name by name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rulec.array_types import Flags, Indices
+from rulec.monitoring.batch.columns.columnize import PartlyKnown, encode_partly_known
+from rulec.monitoring.batch.joined.joined_traces import JoinedPiece
+from rulec.trace.trace_columns import Array
+from rulec.vocabulary import Declaration, Enumeration
+from rulec.vocabulary.vocabulary_model import least_value
+
+NOT_GIVEN = object()
+"""Stands for a value that is not given."""
+
+
+class PieceColumns:
+    """The columns of a piece, name by name."""
+
+    def __init__(self) -> None:
+        self._world: dict[str, Array] = {}
+        self._about: dict[str, Array] = {}
+        self._between: dict[str, Array] = {}
+        self._unknown: dict[str, Flags] = {}
+        self._absent: dict[str, Flags] = {}
+        self._bounds: dict[str, tuple[Array, Array]] = {}
+        self._only: dict[str, Flags] = {}
+        self._texts: dict[str, tuple[str, ...]] = {}
+
+    def add(
+        self, values: Sequence[Any], declaration: Declaration, suits: Flags | None = None
+    ) -> None:
+        """Add a name's values, some ``NOT_GIVEN``; ``suits``: the objects that it can be about."""
+        absent: Flags | None = None
+        if NOT_GIVEN in values:
+            absent = np.array([value is NOT_GIVEN for value in values], dtype=bool)
+            anything = least_value(declaration)
+            values = [anything if value is NOT_GIVEN else value for value in values]
+        self.add_encoded(encode_partly_known(values, declaration), declaration, suits, absent)
+
+    def add_encoded(
+        self,
+        column: PartlyKnown,
+        declaration: Declaration,
+        suits: Flags | None = None,
+        absent: Flags | None = None,
+    ) -> None:
+        """Add a name's column; ``absent``: where it gives nothing."""
+        name, arity = declaration.name, len(declaration.parameters)
+        (self._world, self._about, self._between)[arity][name] = column.values
+        if suits is not None:
+            self._only[name] = suits
+        if column.unknown is not None:
+            self._unknown[name] = column.unknown
+        if column.upper is not None:
+            self._bounds[name] = column.values, column.upper
+        if absent is not None:
+            self._absent[name] = absent
+        if isinstance(declaration, Enumeration):
+            self._texts[name] = declaration.values
+
+    def piece(self, n_objects: int, pairs: Indices) -> JoinedPiece:
+        """The piece of these columns."""
+        return JoinedPiece(
+            self._world,
+            self._about,
+            unknown=self._unknown,
+            absent=self._absent,
+            bounds=self._bounds,
+            only=self._only,
+            texts=self._texts,
+            n_objects=n_objects,
+            between=self._between,
+            pairs=pairs,
+        )

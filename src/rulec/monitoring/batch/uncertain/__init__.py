@@ -1,1 +1,0 @@
-"""Verification of many traces with unknown values."""

@@ -1,0 +1,90 @@
+"""Verification of traces in arrays, with the same verdicts as ``verify`` on their states.
+
+Any irregular trace, or rule for some objects, is left to ``verify``, as are rules that cannot be
+evaluated on arrays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TypeAlias
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics import RulecError
+from rulec.monitoring.batch.columns.columnize import UnencodableError
+from rulec.monitoring.batch.findings import (
+    JudgedTrace,
+)
+from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind, side_by_side
+from rulec.monitoring.batch.stacked.stacked_run import judge_joined
+from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.trace.shared_columns import SharedColumns
+from rulec.trace.trace_arrays import TraceArrays
+from rulec.trace.trace_columns import Array
+
+Answer: TypeAlias = Verdict | NotJudged
+
+
+def verify_arrays(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Answer]:
+    """Answers for traces in arrays, in their order: a verdict, or a ``NotJudged``."""
+    judged = judge_arrays(traces, rulebook)
+    return [answer_to(own, trace) for own, trace in zip(judged, traces, strict=True)]
+
+
+def answer_to(judged: JudgedTrace | Answer, trace: TraceArrays) -> Answer:
+    """The answer for a trace that has been judged."""
+    if isinstance(judged, JudgedTrace):
+        return judged.findings.verdict(judged.number, trace.id, trace.says)
+    return judged
+
+
+def judge_arrays(
+    traces: Sequence[TraceArrays], rulebook: CompiledRulebook
+) -> list[JudgedTrace | Answer]:
+    """The same as ``verify_arrays``, but verdicts are built on demand by ``answer_to``."""
+    answers: list[JudgedTrace | Answer | None] = [None] * len(traces)
+    groups: dict[object, list[int]] = {}
+    known: dict[int, frozenset[str]] = {}
+    for place in side_by_side(traces):
+        trace = traces[place]
+        names = _names(trace.world, known), _names(trace.about, known)
+        key = TraceKind(trace.step_s, trace.ends, trace.told), names
+        groups.setdefault(key, []).append(place)
+    for places in groups.values():
+        together = [traces[place] for place in places]
+        judged: Sequence[JudgedTrace | Answer]
+        try:
+            found = judge_joined(JoinedTraces.of_arrays(together, rulebook.vocabulary), rulebook)
+            judged = [
+                _by_its_states(trace, rulebook) if own is None else own
+                for trace, own in zip(together, found, strict=True)
+            ]
+        except (UnencodableError, RulecError):
+            judged = _by_states(together, rulebook)
+        for place, own in zip(places, judged, strict=True):
+            answers[place] = own
+    return [answer for answer in answers if answer is not None]
+
+
+def _names(columns: Mapping[str, Array], known: dict[int, frozenset[str]]) -> frozenset[str]:
+    """The names of columns; ``known`` caches those of columns that several traces share."""
+    if not isinstance(columns, SharedColumns):
+        return frozenset(columns)
+    key = id(columns.columns)
+    if key not in known:
+        known[key] = frozenset(columns)
+    return known[key]
+
+
+def _by_states(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Answer]:
+    # The engines for states load slowly, and few recordings need them.
+    from rulec.monitoring.batch.batch_verify import verify_chunk
+
+    return list(verify_chunk([trace.trace() for trace in traces], rulebook))
+
+
+def _by_its_states(trace: TraceArrays, rulebook: CompiledRulebook) -> Answer:
+    # As above: only for irregular traces.
+    from rulec.monitoring.verify import verify_or_reason
+
+    return verify_or_reason(trace.trace(), rulebook)

@@ -1,0 +1,174 @@
+"""Traces laid end to end, given by states or as columns of one shape, get the verdicts of each."""
+
+from dataclasses import replace
+from fractions import Fraction
+from random import Random
+from unittest.mock import patch
+
+import pytest
+from hypothesis import Phase, given, settings
+
+from rulec.diagnostics import RulecError
+from rulec.logic.free_names import names_in
+from rulec.monitoring.batch.alike_traces import traces_placed
+from rulec.monitoring.batch.batch_verify import verify_many
+from rulec.monitoring.batch.columns.columnize import UnencodableError
+from rulec.monitoring.batch.joined.joined_columns import joined_columns
+from rulec.monitoring.batch.joined.joined_states import joined_states
+from rulec.monitoring.batch.stacked import instances, stacked_rule
+from rulec.monitoring.batch.stacked.stacked_run import judge_joined
+from rulec.monitoring.implied_values import with_derived_values
+from rulec.monitoring.uncertainty.suppositions import spelled_out
+from rulec.monitoring.verdict import NotJudged
+from rulec.monitoring.verify import verify_or_reason
+from rulec.rulebook.loader import parse_rulebook
+from rulec.trace import Trace
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
+from support.builders.rulebooks import compile_here
+from support.generators.blurred_traces import blurred
+from support.generators.random_rulebooks import rulebook
+from support.generators.random_traces import traces
+from support.generators.seeds import seeds
+
+
+def judged(joined, given_traces, compiled):
+    """The verdicts of those that can be judged together."""
+    found = judge_joined(joined, compiled)
+    return {
+        number: own.findings.verdict(
+            own.number, trace.id, lambda name, x=trace: any(name in state for state in x.states)
+        )
+        for number, (own, trace) in enumerate(zip(found, given_traces, strict=True))
+        if own is not None
+    }
+
+
+def same_as_alone(verdicts, given_traces, compiled):
+    for number, verdict in verdicts.items():
+        assert verdict == verify_or_reason(given_traces[number], compiled)
+
+
+@given(seeds)
+@settings(phases=[Phase.generate])
+def test_states_of_any_traces(chance):
+    compiled = compile_here(rulebook(chance, Fraction(1)), Fraction(1))
+    vocabulary = compiled.vocabulary
+    names = {n for x in compiled.rules for n in names_in(x.formula)}
+    ends = chance.choice(["cut", "complete"])
+    own = [blurred(chance, x, names, most=12) for x in traces(chance, Fraction(1))[:5]]
+    own = [replace(trace, ends=ends) for trace in own]
+    try:
+        told = [with_derived_values(spelled_out(x, vocabulary), vocabulary) for x in own]
+        joined = joined_states(told, vocabulary)
+        verdicts = judged(joined, own, compiled)
+        with patch.object(instances, "FEW", -1), patch.object(stacked_rule, "FEW_WORDS", -1):
+            assert judged(joined, own, compiled) == verdicts
+    except (UnencodableError, RulecError):
+        return
+    same_as_alone(verdicts, own, compiled)
+
+
+TWO = """rulebook two
+type car
+type bus is car
+place(v: car) is one of left, right, middle
+signal yields_to(v: car, w: car) default false
+signal sees(v: car, w: bus)
+quantity gap(v: car, w: car) in m default 50
+quantity speed(v: car) in m/s
+signal rain default false
+fact left(v) implies speed(v) < 90 m/s
+hard rule mutual (v: car, w: bus) {
+  require always (yields_to(v, w) implies next (left(w) or yields_to(w, v)))
+}
+soft rule calm (v: car) { require never (speed(v) > 50 m/s and rain) }
+hard rule seen (v: car, w: bus) { require always (gap(v, w) < 10 m implies sees(v, w)) }
+hard rule apart (v: car, w: car) {
+  require always (gap(v, w) + 2 * gap(w, v) > 9 m or gap(w, v) > 5 m)
+}
+"""
+
+
+def drive(chance, number, cut):
+    """Cars, and a bus that comes later; some values are unknown, some pairs are never named."""
+    names = [f"{number}.{n}" for n in range(chance.randint(1, 3))]
+    bus, n_states = f"{number}.bus", chance.randint(2, 7)
+
+    def perhaps(value):
+        return UNKNOWN if chance.random() < 0.1 else value
+
+    def number_(low, high):
+        low = round(chance.uniform(low, high), 1)
+        return Interval(low, low + 1.0) if chance.random() < 0.1 else perhaps(low)
+
+    def state(step):
+        there = [*names, bus] if step else names
+        pairs = [(v, w) for v in there for w in there if v != w]
+        said = {
+            "place": {v: perhaps(chance.choice(["left", "right"])) for v in there},
+            "speed": {v: number_(0, 55) for v in there},
+            "sees": {v: {bus: perhaps(chance.random() < 0.9)} for v in there if step},
+            "yields_to": {},
+            "gap": {},
+            "rain": perhaps(chance.random() < 0.5),
+        }
+        for v, w in pairs:
+            if chance.random() < 0.5:
+                said["yields_to"].setdefault(v, {})[w] = perhaps(chance.random() < 0.2)
+            if chance.random() < 0.5:
+                said["gap"].setdefault(v, {})[w] = number_(0, 15)
+        return said
+
+    objects = dict.fromkeys(names, "car") | {bus: "bus"}
+    states = tuple(state(step) for step in range(n_states))
+    present = {bus: (1, n_states - 1)}
+    return Trace(f"t{number}", 0.5, objects, states, present, ends="cut" if cut else "complete")
+
+
+@pytest.mark.parametrize("cut", [False, True])
+def test_values_of_two_objects(cut):
+    """Nothing here is irregular, so all are judged together."""
+    compiled, chance = compile_here(parse_rulebook(TWO)), Random(8)
+    own = [drive(chance, number, cut) for number in range(300)]
+    verdicts = judged(joined_states(own, compiled.vocabulary), own, compiled)
+    assert len(verdicts) == len(own)
+    same_as_alone(verdicts, own, compiled)
+    found = [(len(one.violations), len(one.open)) for one in verdicts.values()]
+    assert min(sum(n > 0 for n in kind) for kind in zip(*found, strict=True)) > 30
+    assert list(verify_many(own, compiled)) == list(verdicts.values())
+
+
+def test_a_value_of_two_objects_that_is_missing():
+    """It has no default, so the trace gets the error that it gets alone, and no other does."""
+    compiled, chance = compile_here(parse_rulebook(TWO)), Random(9)
+    own = [drive(chance, number, cut=True) for number in range(20)]
+    states = ({**own[4].states[0]}, *[{**state, "sees": {}} for state in own[4].states[1:]])
+    own[4] = replace(own[4], states=states)
+    answers = list(verify_many(own, compiled))
+    assert [n for n, one in enumerate(answers) if isinstance(one, NotJudged)] == [4]
+    assert "R0504" in str(answers[4].error.diagnostics[0])
+
+
+def only_from_the_first(trace):
+    """Nobody has a gap to others but the first car."""
+    first = next(iter(trace.objects))
+    states = [
+        {**state, "gap": {v: of_v for v, of_v in state["gap"].items() if v == first}}
+        for state in trace.states
+    ]
+    return replace(trace, states=tuple(states))
+
+
+@pytest.mark.parametrize("change", [lambda trace: trace, only_from_the_first])
+@pytest.mark.parametrize("ends", ["cut", "complete"])
+def test_columns_of_one_shape(ends, change):
+    compiled, chance = compile_here(parse_rulebook(TWO)), Random(10)
+    many = [drive(chance, number, ends == "cut") for number in range(400)]
+    own = [change(x) for x in many if (len(x.objects), len(x.states)) == (3, 5)]
+    assert len(own) > 10
+    alike = traces_placed(list(enumerate(own)), compiled.vocabulary)
+    joined = joined_columns(alike, compiled.vocabulary)
+    ordered = [own[place] for place in alike.places]
+    verdicts = judged(joined, ordered, compiled)
+    assert len(verdicts) == len(own)
+    same_as_alone(verdicts, ordered, compiled)
