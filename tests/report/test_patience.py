@@ -10,6 +10,14 @@ from rulec.report.text.console import progress
 from rulec.report.text.patience import patience
 
 
+NEVER_SILENT_FOR_S = 2
+
+
+def test_no_silence_reaches_its_limit_even_if_a_line_comes_late():
+    assert module._FIRST_S < NEVER_SILENT_FOR_S
+    assert module._AGAIN_S <= 0.8 * NEVER_SILENT_FOR_S
+
+
 @pytest.fixture
 def soon(monkeypatch):
     monkeypatch.delenv(module.QUIET)

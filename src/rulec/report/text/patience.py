@@ -1,4 +1,4 @@
-"""What long work is doing: a line on standard error after a second, then every two seconds."""
+"""What long work is doing: a line on standard error after a second, then every one and a half."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rulec.report.text.terminal_text import visible
 QUIET = "RULEC_QUIET"
 """The environment variable that turns the lines off, whatever its value."""
 
-_FIRST_S, _AGAIN_S = 1.0, 2.0
+_FIRST_S, _AGAIN_S = 1.0, 1.5
 _IDLE = frozenset({"lsp", "monitor", "--watch", "-q", "--quiet"})
 """Verbs and options with which a command waits for somebody else, or says nothing."""
 
