@@ -84,6 +84,9 @@ class Obligations:
         self.is_safety = not any(o.strong and o.span.high is None for o in self._variables)
         self.is_cosafety = all(o.strong or o.span.high is not None for o in self._variables)
         self.known = self._implications()
+        self._at_end = buddy.bddtrue
+        for obligation, variable in reversed(self._variables.items()):
+            self._at_end &= -variable if obligation.strong else variable
 
     def _all(self) -> Iterator[_Obligation]:
         """All obligations; unfolding one of them may add more."""
@@ -188,9 +191,7 @@ class Obligations:
 
     def ends_well(self, state: Any) -> bool:
         """Whether a word may end in a state, with its pending untils unfulfilled."""
-        for obligation, variable in self._variables.items():
-            state = buddy.bdd_restrict(state, -variable if obligation.strong else variable)
-        return bool(state == buddy.bddtrue)
+        return bool(buddy.bdd_restrict(state, self._at_end) == buddy.bddtrue)
 
 
 def _weak_until(left: ltl.Formula, right: ltl.Formula, span: Range) -> ltl.Formula:
