@@ -23,6 +23,7 @@ from rulec.logic.formula import (
 )
 from rulec.logic.past_registers import eliminate_past
 from rulec.logic.printing import formula_text
+from rulec.resource_limits import in_force
 from rulec.rulebook.loader import load_rulebook
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.vocabulary import Enumeration, Signal, Vocabulary
@@ -372,6 +373,16 @@ def test_bounds_that_rules_have_fit_into_the_limits(formula, semantics):
     compiled = compile_rulebook(rulebook)
     assert compiled.semantics == semantics
     assert len(compiled.rules[0].machine.successors) <= 102
+
+
+def test_many_pending_duties_of_a_word_that_ends_are_asked_all_at_once():
+    """Asked one after another in each state, they took two minutes of processor time."""
+    formula = P
+    for _ in range(23):
+        formula = always(eventually(formula))
+    with in_force(["compiling=20"]):
+        (compiled,) = compile_rulebook(replace(book(rule("A", formula)), semantics="finite")).rules
+    assert len(compiled.machine.successors) <= 3
 
 
 def test_a_distance_into_the_past_explodes():

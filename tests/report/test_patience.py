@@ -9,7 +9,6 @@ from rulec.report.text import patience as module
 from rulec.report.text.console import progress
 from rulec.report.text.patience import patience
 
-
 NEVER_SILENT_FOR_S = 2
 
 
