@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 
 from rulec.logic.causes import instants_among
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator, atoms_of
-from rulec.logic.semantics import extended_by_columns, holds
+from rulec.logic.semantics import holds
+from rulec.monitoring.explain.observed_word import ObservedWord, bits_of
 from support.generators.random_formulas import formulas, letters, words
 from support.generators.timed_formulas import letters_of, timed_formulas, timed_words
 
@@ -14,8 +15,8 @@ P, Q = Atom("p"), Atom("q")
 
 
 def deciding(formula, word, semantics="stutter", since=0):
-    truths = {atom: [atom in letter for letter in word] for atom in set(atoms_of(formula))}
-    known = extended_by_columns(formula, truths, len(word), semantics)
+    truths = {atom: bits_of([atom in own for own in word]) for atom in set(atoms_of(formula))}
+    known = ObservedWord(truths, len(word), semantics).parts(formula)
     decides = instants_among(known, formula, len(word), semantics, since)
     assert decides.keys() == known.keys()
     return decides

@@ -3,14 +3,12 @@
 import pytest
 
 from rulec import compile_rulebook
-from rulec.monitoring.explain.explained_arrays import explain_arrays
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.explain.margins import Margin
 from rulec.monitoring.verify import verify
 from rulec.report.verdicts import violation_table
 from rulec.trace import Trace
 from rulec.vocabulary.partial_values import UNKNOWN
-from support.builders.array_traces import in_arrays
 
 
 @pytest.fixture(scope="module")
@@ -109,8 +107,6 @@ def test_what_may_have_been_broken_before_is_not_what_is_measured(tmp_path):
     assert violation.step == 2
     explanation = explain(violation, trace, rules, repaired=False)
     assert [str(margin) for margin in explanation.margins()] == ["gap(c) 12 m < 15 m"]
-    arrays = in_arrays(trace, rules.vocabulary)
-    assert explain_arrays(violation, arrays, rules, {}) == explanation
 
 
 def test_what_decides_in_a_state_that_is_not_shown_is_measured_there(tmp_path):

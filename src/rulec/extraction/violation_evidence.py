@@ -12,7 +12,6 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.extraction.traces.recorded_drive import Drive, Place
 from rulec.logic.formula import Comparison, Count, atoms_of
 from rulec.logic.free_names import names_in
-from rulec.monitoring.explain.explained_arrays import explain_arrays
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.explain.margins import Margin
 from rulec.monitoring.verdict import Violation
@@ -51,12 +50,8 @@ def evidence_of(
     explanation: Explanation | None = None,
 ) -> ViolationEvidence:
     """The evidence for a violation in a drive; ``explanation`` explains it, if already made."""
-    explained = (
-        explanation
-        or explain_arrays(violation, drive.arrays, rules, drive.decided_by)
-        or explain(
-            violation, trace_for(violation, drive, rules), rules, drive.decided_by, repaired=False
-        )
+    explained = explanation or explain(
+        violation, trace_for(violation, drive, rules), rules, drive.decided_by, repaired=False
     )
     read = dict.fromkeys(names_in(explained.rule.formula))
     told = [name for name in read if name in drive.kinds and name not in assumed]

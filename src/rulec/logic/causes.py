@@ -28,7 +28,8 @@ def instants_among(
 ) -> dict[Formula, list[bool]]:
     """The instants at which a formula and its parts decide its value at the first instant.
 
-    They are found from its ``extended_by_columns`` on a word of ``n_letters``. If an ``always`` or
+    They are found from the values of its parts, operands first, on a word of ``n_letters`` whose
+    last one is repeated until they settle, unless nothing follows it. If an ``always`` or
     ``never`` fails at several instants, the first one decides; with ``since``, the first one not
     before that instant, if there is one.
     """

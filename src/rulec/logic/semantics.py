@@ -11,7 +11,7 @@ real-time properties with metric temporal logic" (1990), on a clock that ticks w
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Callable, Sequence, Set
 from dataclasses import dataclass
 from typing import Literal
 
@@ -37,22 +37,11 @@ def truth_values(
     formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
 ) -> list[bool]:
     """The formula's truth value at each instant of a word. Raises ValueError as ``holds`` does."""
-    parts = _extended(formula, _spelled(word), len(word), semantics)
-    return parts[id(formula)][1][: len(word)]
-
-
-def extended_by_columns(
-    formula: ltl.Formula,
-    truths: Mapping[ltl.Proposition, Sequence[bool]],
-    n_letters: int,
-    semantics: Semantics,
-) -> dict[ltl.Formula, list[bool]]:
-    """The truth values of all parts, operands first, extended beyond the word until they settle.
-
-    The word is given as each proposition's truth value at each instant. Raises ValueError as
-    ``holds`` does.
-    """
-    return dict(_extended(formula, truths.__getitem__, n_letters, semantics).values())
+    if not word:
+        raise ValueError("an empty word has no last letter")
+    ends = semantics == "finite"
+    settling = 0 if ends else steps_to_settle(formula)
+    return _evaluate(formula, _Word(_spelled(word), len(word), settling, ends), {})[: len(word)]
 
 
 _Truths = Callable[[ltl.Proposition], Sequence[bool]]
@@ -81,18 +70,6 @@ class _Word:
     n_letters: int
     n_settling: int
     ends: bool
-
-
-def _extended(
-    formula: ltl.Formula, truths: _Truths, n_letters: int, semantics: Semantics
-) -> _Parts:
-    if not n_letters:
-        raise ValueError("an empty word has no last letter")
-    ends = semantics == "finite"
-    parts: _Parts = {}
-    word = _Word(truths, n_letters, 0 if ends else steps_to_settle(formula), ends)
-    _evaluate(formula, word, parts)
-    return parts
 
 
 def steps_to_settle(formula: ltl.Formula) -> int:

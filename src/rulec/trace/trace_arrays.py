@@ -122,13 +122,13 @@ class TraceArrays:
             *self.unknown.items(),
             *((name, low != high) for name, (low, high) in self.bounds.items()),
         ]
-        return any(bool((flags & self._is_given(name)).any()) for name, flags in partial)
+        return any(bool((flags & self.is_given(name)).any()) for name, flags in partial)
 
     def says(self, name: str) -> bool:
         """Whether a name is given, even as unknown, in some state."""
-        return (name in self.world or name in self.about) and bool(self._is_given(name).any())
+        return (name in self.world or name in self.about) and bool(self.is_given(name).any())
 
-    def _is_given(self, name: str) -> Flags:
+    def is_given(self, name: str) -> Flags:
         """Mask of a name's values that are given, even as unknown."""
         column = self.world[name] if name in self.world else self.about[name]
         given = np.ones(len(column), dtype=bool)

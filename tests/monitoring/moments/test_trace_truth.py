@@ -71,8 +71,8 @@ def rows_of(formula, trace, semantics):
     return {
         tables.objects[item]: (
             *(int(ends[row]) for ends in truth.stretch_of(part.choices)),
-            part.sure[row],
-            part.possible[row],
+            part.truth.sure[row],
+            part.truth.possible[row],
         )
         for part in truth.of(ReadyFormula(formula), truth.choices_of(X))
         for row, (item,) in enumerate(part.choices.items.tolist())

@@ -3,35 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TypeAlias
 
 from rulec.logic import formula as ltl
-from rulec.logic.semantics import extended_by_columns
-
-_Truths: TypeAlias = Mapping[ltl.Proposition, Sequence[bool]]
+from rulec.monitoring.explain.observed_word import ObservedWord
 
 
 def broken_stretch(
     formula: ltl.Formula,
     values: Mapping[ltl.Formula, list[bool]],
-    truths: _Truths,
+    word: ObservedWord,
     decisive: int,
     numbers: Sequence[int],
 ) -> tuple[int, int]:
     """The stretch around a state in which the body of an outermost always or never is broken.
 
-    ``decisive`` is the index of that state, ``truths`` are those of propositions. A forbidden
+    ``decisive`` is the index of that state in the ``word``. A forbidden
     sequence of phases, such as overtaking, lasts from the latest state in which it can have begun
     to the decisive one. The stretch ends where states, whose ``numbers`` are given, have been left
     out.
     """
     for part, wanted in _bodies(formula):
         if not wanted and _has_phases(part):
-            until: _Truths = {atom: column[: decisive + 1] for atom, column in truths.items()}
             # The last phase may only require that something continues
-            beyond: _Truths = {atom: [*column, False] for atom, column in until.items()}
-            for n_states, word in enumerate((until, beyond), decisive + 1):
-                done = extended_by_columns(part, word, n_states, "finite")[part]
+            for n_states in (decisive + 1, decisive + 2):
+                done = word.up_to(decisive, n_states).parts(part)[part]
                 begins = [n for n in range(decisive, -1, -1) if done[n]]
                 if begins:
                     return begins[0], decisive

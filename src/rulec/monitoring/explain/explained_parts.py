@@ -74,11 +74,11 @@ class Deciding(Protocol):
 
 
 def facts_of(
-    truths: Mapping[ltl.Proposition, list[bool]],
+    truths: Mapping[ltl.Proposition, int],
     deciding: Set[ltl.Formula],
     observed: ObservedStates,
 ) -> Iterator[Observation]:
-    """The observations, from the ``truths`` of propositions by state."""
+    """The observations, from the ``truths`` of propositions, a bit per state."""
     readers: dict[ltl.Atom | ltl.Term, list[ltl.Proposition]] = {}
     for proposition in truths:
         if isinstance(proposition, ltl.Comparison):
@@ -91,7 +91,7 @@ def facts_of(
     for read, propositions in readers.items():
         # Numbers always change a little; what matters is whether they pass a limit.
         passes = isinstance(read, ltl.Atom) or any(
-            observed.changes(truths[proposition]) for proposition in propositions
+            observed.flips(truths[proposition]) for proposition in propositions
         )
         values: dict[int, Value | Interval | None]
         unit, objects = "", None

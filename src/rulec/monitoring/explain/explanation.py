@@ -14,7 +14,7 @@ from rulec.diagnostics import RulecError
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import in_steps
 from rulec.logic.causes import instants_among
-from rulec.logic.semantics import Semantics, extended_by_columns
+from rulec.logic.semantics import Semantics
 from rulec.monitoring.bindings import Binding, binding_of
 from rulec.monitoring.explain.broken_stretch import broken_stretch, is_broken_before
 from rulec.monitoring.explain.explained_parts import (
@@ -29,6 +29,7 @@ from rulec.monitoring.explain.explained_states import shown_states, states_to_ex
 from rulec.monitoring.explain.margins import Margin, choosing_comparisons
 from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
 from rulec.monitoring.explain.observed_states import ObservedStates
+from rulec.monitoring.explain.observed_word import ObservedWord
 from rulec.monitoring.explain.turning_margins import turning
 from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.letter_reader import LetterReader
@@ -198,16 +199,17 @@ def explanation_of(
     """The explanation from observed states with these ``numbers``, without a repair."""
     rule, semantics = subject.rule, subject.semantics
     place, n_states = observed.decisive, len(numbers)
-    truths = {atom: observed.truths(atom) for atom in dict.fromkeys(ltl.atoms_of(rule.formula))}
+    atoms = dict.fromkeys(ltl.atoms_of(rule.formula))
+    word = ObservedWord({atom: observed.truths(atom) for atom in atoms}, n_states, semantics)
     formula = in_steps(rule.formula, exact_step(subject.step_s))
-    known = extended_by_columns(formula, truths, n_states, semantics)
+    known = word.parts(formula)
     values = {part: column[:n_states] for part, column in known.items()}
-    first, last = broken_stretch(formula, values, truths, place, numbers)
+    first, last = broken_stretch(formula, values, word, place, numbers)
     early = is_broken_before(first, formula, values) and _is_violated_before(rule.machine, observed)
     instants = instants_among(known, formula, n_states, semantics, first if early else 0)
     deciding = {part: _last_until(place, at) for part, at in instants.items() if True in at}
     when = set() if rule.trigger is None else set(ltl.atoms_of(rule.trigger))
-    turned = turning(formula, truths, instants, observed, semantics=semantics, when=when)
+    turned = turning(formula, word, instants, observed, when=when)
     states = tuple([numbers[index] for index in observed.shown])
     decided_at = {
         part.name: numbers[index] for part, index in deciding.items() if isinstance(part, ltl.Atom)
@@ -219,7 +221,7 @@ def explanation_of(
         decisive=numbers[place],
         facts=tuple(
             with_margins(fact, decided_by, states, decided_at)
-            for fact in facts_of(truths, deciding.keys(), observed)
+            for fact in facts_of(word.truths, deciding.keys(), observed)
         ),
         parts=tuple(
             parts_of((rule.formula, formula), values, deciding, observed, numbers, turned=turned)

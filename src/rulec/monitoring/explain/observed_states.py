@@ -12,6 +12,7 @@ from rulec.automata.thresholds import bound_in_floats
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import Unknown, evaluator_of, weighted_sum
 from rulec.monitoring.explain.margins import Margin, margin_in
+from rulec.monitoring.explain.observed_word import bits_of
 from rulec.monitoring.state_view import StateView
 from rulec.trace import Value
 
@@ -51,8 +52,11 @@ class ObservedStates:
         assert not isinstance(value, Unknown), "verify has read it"
         return value
 
-    def truths(self, proposition: ltl.Proposition) -> list[bool]:
-        """The truth of a proposition in each state."""
+    def truths(self, proposition: ltl.Proposition) -> int:
+        """The truth of a proposition in each state, as bits."""
+        return bits_of(self._truths(proposition))
+
+    def _truths(self, proposition: ltl.Proposition) -> list[bool]:
         if isinstance(proposition, ltl.Atom):
             name, items = proposition.name, self.items(proposition.arguments)
             wanted = proposition.value or True
@@ -102,3 +106,7 @@ class ObservedStates:
     def changes(self, values: Sequence[object] | Mapping[int, object]) -> bool:
         """Whether the decisive state's value differs from the one before."""
         return self.decisive > 0 and values[self.decisive] != values[self.decisive - 1]
+
+    def flips(self, bits: int) -> bool:
+        """The same for a truth, with a bit per state."""
+        return self.decisive > 0 and (bits >> self.decisive ^ bits >> self.decisive - 1) & 1 == 1

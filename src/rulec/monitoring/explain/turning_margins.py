@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence, Set
+from dataclasses import replace
 from fractions import Fraction
 
 from rulec.logic import formula as ltl
 from rulec.logic.linear_comparison import stands
-from rulec.logic.semantics import extended_by_columns
 from rulec.monitoring.explain.observed_states import ObservedStates
-from rulec.rulebook.rulebook_model import Semantics
+from rulec.monitoring.explain.observed_word import ObservedWord
 
 _MOST_STATES = 20
 """So many states up to the decisive one are looked through."""
@@ -19,11 +19,10 @@ _HAIR = Fraction(1, 10**12)
 
 def turning(
     formula: ltl.Formula,
-    truths: Mapping[ltl.Proposition, Sequence[bool]],
+    word: ObservedWord,
     instants: Mapping[ltl.Formula, Sequence[bool]],
     observed: ObservedStates,
     *,
-    semantics: Semantics,
     when: Set[ltl.Formula],
 ) -> dict[ltl.Formula, int]:
     """The comparison that is nearest to keeping the rule, and the state where it is.
@@ -33,18 +32,19 @@ def turning(
     a stop that never was. Comparisons in ``when`` only say when the rule applies.
     """
     place = observed.decisive
-    cut = {part: list(column[: place + 1]) for part, column in truths.items()}
-    asked = [part for part in cut if isinstance(part, ltl.Comparison) and part not in when]
+    word = replace(word, n_states=place + 1)
+    asked = [part for part in word.truths if isinstance(part, ltl.Comparison) and part not in when]
 
     def holds(one: ltl.Comparison | None = None, at: Iterable[int] = ()) -> bool:
-        changed = dict(cut)
+        changed = dict(word.truths)
         for own in asked if one is not None else ():
             if one is not None and own.terms == one.terms:
-                changed[own] = list(cut[own])
                 for instant in at:
-                    number = _across(one, holds=not cut[one][instant])
-                    changed[own][instant] = stands(number, own.relation, own.limit)
-        return extended_by_columns(formula, changed, place + 1, semantics)[formula][0]
+                    bit = 1 << instant
+                    number = _across(one, holds=not word.truths[one] & bit)
+                    is_true = stands(number, own.relation, own.limit)
+                    changed[own] = changed[own] | bit if is_true else changed[own] & ~bit
+        return replace(word, truths=changed).holds(formula)
 
     decide = {
         part: [at for at in range(place + 1) if instants[part][at]]

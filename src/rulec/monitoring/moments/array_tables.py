@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rulec.array_types import Flags
-from rulec.monitoring.moments.name_tables import NameTables, ValueRows, default_of
+from rulec.array_types import Flags, Indices
+from rulec.monitoring.moments.name_tables import NameTables, default_of, partly_known
+from rulec.trace.partly_known.partly_known_values import Number, PartlyKnown
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Enumeration, Vocabulary
@@ -24,32 +24,22 @@ class ArrayTables(NameTables):
         self._there: Flags = (state >= first) & (state <= last)
 
     @property
-    def spans(self) -> NDArray[np.intp]:
+    def spans(self) -> Indices:
         """The first and last state of each object."""
         return self._arrays.spans
 
-    def about_several(self, name: str, rows: NDArray[np.intp]) -> ValueRows:
+    def about_several(self, name: str, rows: Indices) -> PartlyKnown:
         """The rows of a name, which all have its default."""
         return self._rows(name, None, np.ones((len(rows), self.n_states), dtype=bool))
 
-    def _world(self, name: str) -> ValueRows:
+    def _world(self, name: str) -> PartlyKnown:
         column = self._arrays.world.get(name)
         return self._rows(name, column, np.ones((1, self.n_states), dtype=bool))
 
-    def _about(self, name: str) -> ValueRows:
-        rows = self._rows(name, self._arrays.about.get(name), self._there)
-        only = self._arrays.only.get(name)
-        if only is None or name not in self._arrays.about or only.all():
-            return rows
-        others = self._rows(name, None, self._there)
-        chosen = np.asarray(only)[:, None]
-        return ValueRows(
-            np.where(chosen, rows.values, others.values),
-            np.where(chosen, rows.upper, others.upper),
-            np.where(chosen, rows.unknown, others.unknown),
-        )
+    def _about(self, name: str) -> PartlyKnown:
+        return self._rows(name, self._arrays.about.get(name), self._there)
 
-    def _rows(self, name: str, column: Array | None, there: Flags) -> ValueRows:
+    def _rows(self, name: str, column: Array | None, there: Flags) -> PartlyKnown:
         """Rows of values in the states that are ``there``.
 
         Names that are never given have their default.
@@ -61,36 +51,29 @@ class ArrayTables(NameTables):
         upper = values
         if column is not None:
             arrays = self._arrays
-            given: Flags = ~arrays.absent[name] if name in arrays.absent else np.True_  # type: ignore[assignment]
+            given = arrays.is_given(name)
             if isinstance(declaration, Enumeration):
                 places = [declaration.values.index(text) for text in arrays.texts[name]]
                 column = np.asarray(places)[column]
-            dark = arrays.unknown.get(name, np.False_)
             values[there] = np.where(given, column, default)
-            unknown[there] = np.where(given, dark, not is_known)
+            unknown[there] = np.where(given, arrays.unknown.get(name, np.False_), not is_known)
             if name in arrays.bounds:
                 upper = values.copy()
                 low, high = arrays.bounds[name]
                 values[there] = np.where(given, low, default)
                 upper[there] = np.where(given, high, default)
-        rows = ValueRows(values, upper, unknown)
+        rows = partly_known(declaration, values, upper, unknown)
         return _constant(rows, there) if declaration.constant else rows
 
 
-def _constant(rows: ValueRows, there: Flags) -> ValueRows:
+def _constant(rows: PartlyKnown, there: Flags) -> PartlyKnown:
     """Rows of a constant, whose value in some state holds in all."""
     is_stated = there & ~rows.unknown
     any_stated = is_stated.any(axis=1, keepdims=True)
+    if isinstance(rows, Number) and (is_stated & (rows.low != rows.high)).any():
+        # The intersection of several intervals.
+        low = np.where(is_stated, rows.low, -np.inf).max(axis=1, keepdims=True)
+        high = np.where(is_stated, rows.high, np.inf).min(axis=1, keepdims=True)
+        return Number(np.where(any_stated, low, rows.low), np.where(any_stated, high, rows.high))
     first = is_stated.argmax(axis=1)[:, None]
-    values = np.where(any_stated, np.take_along_axis(rows.values, first, 1), rows.values)
-    if rows.upper is rows.values:
-        return ValueRows(values, values, rows.unknown & ~any_stated)
-    # The intersection of several intervals.
-    low = np.where(is_stated, rows.values, -np.inf).max(axis=1, keepdims=True)
-    high = np.where(is_stated, rows.upper, np.inf).min(axis=1, keepdims=True)
-    low, high = np.broadcast_arrays(low, values)[0], np.broadcast_arrays(high, values)[0]
-    return ValueRows(
-        np.where(any_stated, low, rows.values),
-        np.where(any_stated, high, rows.upper),
-        rows.unknown & ~any_stated,
-    )
+    return rows.each(lambda half: np.where(any_stated, np.take_along_axis(half, first, 1), half))

@@ -35,6 +35,7 @@ from rulec.monitoring.moments.trace_truth import (
     TraceTruth,
 )
 from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.value_display import short_repr
 
 Counts = NDArray[np.intp]
@@ -137,7 +138,7 @@ def _tally(truth: TraceTruth, watched: _Watched, outcomes: Mapping[Chosen, Outco
         tally.add_whole(choices.trace, *truth.stretch_of(choices))
     else:
         for part in truth.of(watched.trigger, choices):
-            opportunities = opportunity_stretches(part.sure, part.possible)
+            opportunities = opportunity_stretches(part.truth)
             tally.add(part, opportunities)
             rows, decided = _decided(part.choices, left)
             if decided:
@@ -147,9 +148,10 @@ def _tally(truth: TraceTruth, watched: _Watched, outcomes: Mapping[Chosen, Outco
                 for breach in truth.of(watched.breach, own):
                     at = rows[breach.rows]
                     surely = taken[0].of_rows(breach.rows)
+                    own_trigger = Truth(part.truth.sure[at], part.truth.possible[at])
                     breached[:, breach.rows] += (
-                        surely.per_row(len(at), surely.with_some(breach.sure)),
-                        most_violated(part.sure[at], part.possible[at], breach.possible),
+                        surely.per_row(len(at), surely.with_some(breach.truth.sure)),
+                        most_violated(own_trigger, breach.truth.possible),
                     )
                 is_open = np.array([outcome == "open" for outcome in decided])
                 tally.violated_in(own.trace, taken, breached, is_open)
@@ -198,8 +200,9 @@ class _Tally:
         """Count opportunities."""
         n_traces, n_states = self._there.shape
         traces, begins = np.unique(part.choices.trace, return_index=True)
-        size = min(n_states, part.sure.shape[1])
-        for level, flags in enumerate(part.in_trace()):
+        size = min(n_states, part.truth.sure.shape[1])
+        exposed_at = part.in_trace()
+        for level, flags in enumerate((exposed_at.sure, exposed_at.possible)):
             exposed = np.logical_or.reduceat(flags[:, :size], begins, axis=0)
             self._exposed[level, traces, :size] |= exposed
             own = part.choices.trace[opportunities[level].rows]

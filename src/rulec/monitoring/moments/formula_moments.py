@@ -21,6 +21,7 @@ from rulec.monitoring.moments.trace_truth import (
 )
 from rulec.rulebook.query_model import FormulaQuery
 from rulec.trace import Trace
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import short_repr
 
@@ -51,28 +52,29 @@ def moments(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Moment]:
     tables = tables_of(trace, query.vocabulary)
     truth, n_states = TraceTruth(tables, query.semantics, trace.ends), tables.n_states
     choices = truth.choices_of(query.rule.variables)
-    flags_of: dict[tuple[str, ...], list[tuple[Flags, Flags]]] = {}
+    truths_of: dict[tuple[str, ...], list[Truth]] = {}
     for rounded in roundings:
         ready = ReadyFormula(rounded, place=trace.place if isinstance(trace, Trace) else None)
         for part in truth.of(ready, choices):
-            sure, possible = (flags[:, :n_states] for flags in part.in_trace())
-            for row in np.flatnonzero(possible.any(axis=1)).tolist():
+            own = part.in_trace()
+            for row in np.flatnonzero(own.possible[:, :n_states].any(axis=1)).tolist():
                 choice = tuple([tables.objects[item] for item in part.choices.items[row]])
-                flags_of.setdefault(choice, []).append((sure[row], possible[row]))
+                of_row = Truth(own.sure[row, :n_states], own.possible[row, :n_states])
+                truths_of.setdefault(choice, []).append(of_row)
     result = []
-    for choice, rows in flags_of.items():
-        possible = np.any([flags for _, flags in rows], axis=0)
-        sure = np.all([flags for flags, _ in rows], axis=0)
-        sure &= len(rows) == len(roundings)
+    for choice, truths in truths_of.items():
+        possible = np.any([truth.possible for truth in truths], axis=0)
+        sure = np.all([truth.sure for truth in truths], axis=0)
+        sure &= len(truths) == len(roundings)
         objects = dict(zip(choices.variables, choice, strict=True))
-        result += sorted(_of_one(objects, sure, possible), key=lambda moment: moment.first)
+        result += sorted(_of_one(objects, Truth(sure, possible)), key=lambda moment: moment.first)
     return result
 
 
-def _of_one(objects: Mapping[str, str], sure: Flags, possible: Flags) -> Iterator[Moment]:
+def _of_one(objects: Mapping[str, str], truth: Truth) -> Iterator[Moment]:
     kinds: Sequence[tuple[Literal["surely", "perhaps"], Flags]] = (
-        ("surely", sure),
-        ("perhaps", possible & ~sure),
+        ("surely", truth.sure),
+        ("perhaps", truth.unknown),
     )
     for holds, flags in kinds:
         stretches = stretches_of(flags[None])

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rulec.array_types import Flags
+from rulec.array_types import Flags, Indices
 from rulec.automata.thresholds import EXACT_IN_FLOATS
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.trace_groups import group_traces
@@ -20,36 +19,52 @@ from rulec.monitoring.state_view import value_in, with_values
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.trace import Trace
+from rulec.trace.partly_known.partly_known_values import (
+    EnumeratedChoice,
+    Number,
+    PartlyKnown,
+    Truth,
+)
 from rulec.trace.trace_columns import Array, TraceColumns
-from rulec.vocabulary import Declaration, Enumeration, Vocabulary
+from rulec.vocabulary import Declaration, Enumeration, Quantity, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 from rulec.vocabulary.vocabulary_model import least_value
 from rulec.vocabulary.written_numbers import WrittenNumber
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ValueRows:
-    """The values of a name (rows x states): Booleans, numbers, or places among those declared.
+def at_places(rows: PartlyKnown, chosen: Indices | None, states: Indices | None) -> PartlyKnown:
+    """Some of the rows (None for all) and columns, which may differ by row."""
 
-    A number lies between ``values`` and ``upper``; where a value is ``unknown`` its entry is
-    meaningless.
+    def part(half: Array) -> Array:
+        if states is None:
+            return half if chosen is None else half[chosen]
+        return half[(np.arange(len(half)) if chosen is None else chosen)[:, None], states]
+
+    return rows.each(part)
+
+
+def partly_known(
+    declaration: Declaration | None, values: Array, upper: Array, unknown: Flags | None
+) -> PartlyKnown:
+    """The values of a name: Booleans, numbers up to ``upper``, or places among those declared.
+
+    Where they are ``unknown`` their entries are meaningless.
     """
-
-    values: Array
-    upper: Array
-    unknown: Flags
-
-    def at(
-        self, *, rows: NDArray[np.intp] | None = None, states: NDArray[np.intp] | None = None
-    ) -> ValueRows:
-        """Some of the rows and some of the columns; the columns may differ by row."""
-        chosen: Any = slice(None) if rows is None else rows
-        if states is not None:
-            numbers = np.arange(len(self.values)) if rows is None else rows
-            chosen = numbers[:, None], states
-        values = self.values[chosen]
-        upper = values if self.upper is self.values else self.upper[chosen]
-        return ValueRows(values, upper, self.unknown[chosen])
+    if unknown is not None and not unknown.any():
+        unknown = None
+    if isinstance(declaration, Enumeration):
+        n_values = len(declaration.values)
+        kind = np.min_scalar_type(1 << n_values)
+        bits = np.array([1 << place for place in range(n_values)], dtype=kind)
+        if unknown is None:
+            return EnumeratedChoice(bits[values])
+        return EnumeratedChoice(np.where(unknown, bits.sum(dtype=kind), bits[values]))
+    if isinstance(declaration, Quantity):
+        if unknown is None:
+            return Number(values, upper)
+        return Number(np.where(unknown, -np.inf, values), np.where(unknown, np.inf, upper))
+    truth = Truth.known(values)
+    return truth if unknown is None else truth.unknown_at(unknown)
 
 
 class NameTables(ABC):
@@ -66,7 +81,7 @@ class NameTables(ABC):
         self,
         told: frozenset[str] | None,
         objects: Mapping[str, str],
-        last: NDArray[np.intp],
+        last: Indices,
         vocabulary: Vocabulary,
     ) -> None:
         untold = untold_names(vocabulary, told)
@@ -75,7 +90,7 @@ class NameTables(ABC):
         self.types = tuple(objects.values())
         self.last = last
         self.n_states = int(last.max()) + 1
-        self._known: dict[str, ValueRows] = {}
+        self._known: dict[str, PartlyKnown] = {}
 
     @property
     def n_traces(self) -> int:
@@ -84,31 +99,31 @@ class NameTables(ABC):
 
     @property
     @abstractmethod
-    def spans(self) -> NDArray[np.intp]:
+    def spans(self) -> Indices:
         """The first and last state of each object."""
 
-    def world(self, name: str) -> ValueRows:
+    def world(self, name: str) -> PartlyKnown:
         """The rows of a name that is about no object, one for each trace."""
         if name not in self._known:
             self._known[name] = self._world(name)
         return self._known[name]
 
-    def about(self, name: str) -> ValueRows:
+    def about(self, name: str) -> PartlyKnown:
         """The rows of a name that is about one object, one for each object of the traces."""
         if name not in self._known:
             self._known[name] = self._about(name)
         return self._known[name]
 
     @abstractmethod
-    def about_several(self, name: str, rows: NDArray[np.intp]) -> ValueRows:
+    def about_several(self, name: str, rows: Indices) -> PartlyKnown:
         """The rows of a name for these objects (rows x parameters), given by their numbers."""
 
     @abstractmethod
-    def _world(self, name: str) -> ValueRows:
+    def _world(self, name: str) -> PartlyKnown:
         """The rows of a name about no object."""
 
     @abstractmethod
-    def _about(self, name: str) -> ValueRows:
+    def _about(self, name: str) -> PartlyKnown:
         """The rows of a name about one object."""
 
 
@@ -126,7 +141,7 @@ class ColumnTables(NameTables):
         self._cells = layout.starts[step] + np.arange(layout.n_traces)[:, None]
 
     @property
-    def spans(self) -> NDArray[np.intp]:
+    def spans(self) -> Indices:
         """The first and last state of each object."""
         spans = np.zeros((self.n_traces, len(self.objects), 2), dtype=np.intp)
         spans[:, :, 1] = self.last[:, None]
@@ -135,7 +150,7 @@ class ColumnTables(NameTables):
                 spans[:, place] = self._columns.present[item]
         return spans.reshape(-1, 2)
 
-    def about_several(self, name: str, rows: NDArray[np.intp]) -> ValueRows:
+    def about_several(self, name: str, rows: Indices) -> PartlyKnown:
         """The rows of a name for these objects (rows x parameters), given by their numbers."""
         n_objects = len(self.objects)
         trace, places = rows[:, 0] // n_objects, rows % n_objects
@@ -143,41 +158,40 @@ class ColumnTables(NameTables):
         _, first, which = np.unique(codes, return_index=True, return_inverse=True)
         chosen = [tuple([self.objects[place] for place in row]) for row in places[first].tolist()]
         stacked = self._stacked(name, chosen)
-        return stacked.at(rows=trace * len(chosen) + which)
+        return at_places(stacked, trace * len(chosen) + which, None)
 
-    def _world(self, name: str) -> ValueRows:
+    def _world(self, name: str) -> PartlyKnown:
         return self._stacked(name, [()])
 
-    def _about(self, name: str) -> ValueRows:
+    def _about(self, name: str) -> PartlyKnown:
         return self._stacked(name, [(item,) for item in self.objects])
 
-    def _stacked(self, name: str, about: Sequence[tuple[str, ...]]) -> ValueRows:
+    def _stacked(self, name: str, about: Sequence[tuple[str, ...]]) -> PartlyKnown:
         """The rows of a name for these objects of the first trace, then of the second, etc."""
         columns, cells = self._columns, self._cells
-        default, is_known = default_of(self.vocabulary.declarations[name])
+        declaration = self.vocabulary.declarations[name]
+        default, is_known = default_of(declaration)
         shape = (self.n_traces, len(about), self.n_states)
         values = np.empty(shape, dtype=type(default))
-        upper: Array | None = None
-        unknown = np.zeros(shape, dtype=bool)
+        unknown, upper = np.zeros(shape, dtype=bool), values
+        if any((name, items) in columns.upper for items in about):
+            upper = np.empty(shape, dtype=type(default))
         for row, items in enumerate(about):
             key = name, items
             column = columns.values.get(key)
             if column is None:
-                values[:, row], unknown[:, row] = default, not is_known
+                values[:, row] = upper[:, row] = default
+                unknown[:, row] = not is_known
                 continue
             values[:, row] = column[cells]
+            if upper is not values:
+                upper[:, row] = np.maximum(columns.upper.get(key, column), column)[cells]
             if key in columns.unknown:
                 unknown[:, row] = columns.unknown[key][cells]
-            if key in columns.upper:
-                if upper is None:
-                    upper = values.copy()
-                upper[:, row] = columns.upper[key][cells]
-            elif upper is not None:
-                upper[:, row] = values[:, row]
-        flat = (-1, self.n_states)
-        lowest = values.reshape(flat)
-        highest = lowest if upper is None else np.maximum(upper, values).reshape(flat)
-        return ValueRows(lowest, highest, unknown.reshape(flat))
+        # One array for both ends says that they are equal
+        flat = values.reshape(-1, self.n_states)
+        highest = flat if upper is values else upper.reshape(flat.shape)
+        return partly_known(declaration, flat, highest, unknown.reshape(flat.shape))
 
 
 def tables_of_trace(trace: Trace, vocabulary: Vocabulary) -> NameTables:

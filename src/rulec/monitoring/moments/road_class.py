@@ -6,6 +6,7 @@ import numpy as np
 
 from rulec.array_types import Flags
 from rulec.monitoring.moments.name_tables import NameTables
+from rulec.trace.partly_known.partly_known_values import EnumeratedChoice, Truth
 from rulec.vocabulary import Enumeration, Signal
 
 MOTORWAY, BUILT_UP, OUTSIDE = "motorway", "built-up", "outside"
@@ -41,8 +42,7 @@ def _known(tables: NameTables, name: str, there: Flags) -> tuple[Flags, Flags] |
     if not isinstance(declared, Signal | Enumeration) or declared.parameters:
         return None
     rows = tables.world(declared.name)
-    holds: Flags = rows.values.astype(bool)
-    if isinstance(declared, Enumeration):
-        holds = rows.values == declared.values.index(name)
-    known = there & ~rows.unknown
-    return holds & known, ~holds & known
+    if isinstance(declared, Enumeration) and isinstance(rows, EnumeratedChoice):
+        rows = rows.equals(declared.values.index(name))
+    assert isinstance(rows, Truth), "a signal has one"
+    return there & rows.sure, there & ~rows.possible

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rulec.array_types import Flags, Indices
+from rulec.trace.partly_known.partly_known_values import Truth
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,7 +69,7 @@ def _with_states_between(inner: Stretches, outer: Stretches, n_states: int) -> S
     return Stretches(inner.rows, first, last)
 
 
-def opportunity_stretches(sure: Flags, possible: Flags) -> tuple[Stretches, Stretches]:
+def opportunity_stretches(truth: Truth) -> tuple[Stretches, Stretches]:
     """The certain opportunities, and the most that there may be.
 
     A stretch in which something possibly holds is one certain opportunity if it certainly holds
@@ -77,9 +78,9 @@ def opportunity_stretches(sure: Flags, possible: Flags) -> tuple[Stretches, Stre
     than it has to. Each such stretch takes the states up to the next one, and the first in a
     stretch also those before it, as something may hold there, too.
     """
-    joined = stretches_of(possible)
-    for_sure = joined.with_some(sure)
-    certain = _with_states_between(stretches_of(sure), joined, sure.shape[1])
+    joined = stretches_of(truth.possible)
+    for_sure = joined.with_some(truth.sure)
+    certain = _with_states_between(stretches_of(truth.sure), joined, truth.sure.shape[1])
     doubtful = Stretches(*[part[~for_sure] for part in (joined.rows, joined.first, joined.last)])
     at_least = Stretches(*[part[for_sure] for part in (joined.rows, joined.first, joined.last)])
     at_most = Stretches(
@@ -90,15 +91,14 @@ def opportunity_stretches(sure: Flags, possible: Flags) -> tuple[Stretches, Stre
     return at_least, at_most
 
 
-def most_violated(sure: Flags, possible: Flags, breached: Flags) -> Indices:
+def most_violated(truth: Truth, breached: Flags) -> Indices:
     """For each row the most opportunities with a breach in one of their states (rows x states).
 
-    An opportunity certainly holds where ``sure`` and perhaps where ``possible``; there are at most
-    as many as in ``opportunity_stretches``. What may hold between two certain ones belongs to the
-    one, the other, both or neither, or joins them, whichever is worst.
+    There are at most as many as in ``opportunity_stretches``. What may hold between two certain
+    ones belongs to the one, the other, both or neither, or joins them, whichever is worst.
     """
-    _, at_most = opportunity_stretches(sure, possible)
-    joined = stretches_of(possible)
+    _, at_most = opportunity_stretches(truth)
+    joined, sure = stretches_of(truth.possible), truth.sure
     begins = joined.rows * sure.shape[1] + joined.first
     within = np.searchsorted(begins, at_most.rows * sure.shape[1] + at_most.first, side="right") - 1
     n_most = np.bincount(within, minlength=len(joined))

@@ -18,10 +18,12 @@ from rulec.monitoring.batch.columns.column_numbers import ComparisonSides
 from rulec.monitoring.moments.array_tables import ArrayTables
 from rulec.monitoring.moments.name_tables import NameTables, tables_of_trace
 from rulec.monitoring.moments.row_evaluation import RowEvaluation
-from rulec.monitoring.moments.temporal_operators import RowEnding, RowStretches
 from rulec.resource_limits import LOOKBACK
 from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
+from rulec.trace.partly_known.partly_known_values import Truth
+from rulec.trace.partly_known.row_stretches import RowStretches
+from rulec.trace.partly_known.temporal_operators import Beyond
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_model import Ending
 from rulec.vocabulary import Vocabulary
@@ -54,21 +56,19 @@ class ChosenObjects:
 class FormulaTruth:
     """The truth of a formula in every state, with a row for each choice of objects.
 
-    ``rows`` are their places among the choices asked about. ``sure`` and ``possible`` (rows x
-    states) are False where some of their objects are absent. For a row that continues for ever, the
-    states up to the point after which nothing changes follow its ``last`` state.
+    ``rows`` are their places among the choices asked about. ``truth`` (rows x states) is False
+    where some of their objects are absent. For a row that continues for ever, the states up to the
+    point after which nothing changes follow its ``last`` state.
     """
 
     choices: ChosenObjects
     rows: Indices
     last: Indices
-    sure: NDArray[np.bool_]
-    possible: NDArray[np.bool_]
+    truth: Truth
 
-    def in_trace(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-        """``sure`` and ``possible``, only in states of the trace."""
-        there = np.arange(self.sure.shape[1]) <= self.last[:, None]
-        return self.sure & there, self.possible & there
+    def in_trace(self) -> Truth:
+        """The truth, only in states of the trace."""
+        return self.truth & Truth.known(np.arange(self.truth.sure.shape[1]) <= self.last[:, None])
 
 
 def tables_of(trace: Trace | TraceArrays, vocabulary: Vocabulary) -> NameTables:
@@ -104,7 +104,7 @@ class TraceTruth:
     def __init__(self, tables: NameTables, semantics: Semantics, ends: Ending) -> None:
         self.tables = tables
         self._spans = tables.spans
-        self._ends: RowEnding = "goes on" if semantics == "stutter" else "over"
+        self._ends: Beyond = "goes on" if semantics == "stutter" else "over"
         if ends == "cut":
             self._ends = "cut"
 
@@ -147,18 +147,11 @@ class TraceTruth:
             # The last state is repeated until nothing changes.
             states, end = np.arange(len(states) + ready.settles), last + ready.settles
             states = np.minimum(states, last[:1] if (last == last[0]).all() else last[:, None])
-        bound = dict(zip(own.variables, own.items.T, strict=True))
-        stretches = RowStretches(first[:, None], end[:, None], self._ends)
-        truth = self._evaluation(ready, stretches, states, own.trace).of(ready.formula, bound)
         state = np.arange(states.shape[-1])
+        stretches = RowStretches(first[:, None], end[:, None], len(state), self._ends)
+        truth = self._evaluation(ready, stretches, states, own).of(ready.formula)
         there = (state >= first[:, None]) & (state <= end[:, None])
-        return FormulaTruth(
-            choices=own,
-            rows=rows,
-            last=last,
-            sure=truth.sure & there,
-            possible=truth.possible & there,
-        )
+        return FormulaTruth(own, rows, last, truth & Truth.known(there))
 
     def _may_hold(self, ready: ReadyFormula) -> NDArray[np.bool_]:
         """The traces in which the formula may hold.
@@ -167,21 +160,27 @@ class TraceTruth:
         """
         tables = self.tables
         states, last = np.arange(tables.n_states), tables.last[:, None]
-        stretches = RowStretches(np.zeros_like(last), last, self._ends)
-        evaluation = self._evaluation(ready, stretches, states, np.arange(tables.n_traces))
+        stretches = RowStretches(np.zeros_like(last), last, len(states), self._ends)
+        nobody = np.empty((tables.n_traces, 0), dtype=np.intp)
+        chosen = ChosenObjects((), np.arange(tables.n_traces), nobody)
+        evaluation = self._evaluation(ready, stretches, states, chosen)
         result = np.ones(tables.n_traces, dtype=bool)
         for part in ready.world_parts:
-            result &= (evaluation.of(part, {}).possible & (states <= last)).any(axis=1)
+            result &= (evaluation.of(part).possible & (states <= last)).any(axis=1)
         return result
 
     def _evaluation(
-        self, ready: ReadyFormula, stretches: RowStretches, states: Indices, trace: Indices
+        self,
+        ready: ReadyFormula,
+        stretches: RowStretches,
+        states: Indices,
+        chosen: ChosenObjects,
     ) -> RowEvaluation:
         return RowEvaluation(
             self.tables,
-            self._spans,
             stretches,
             states,
-            comparisons=ready.comparisons,
-            trace=trace if self.tables.n_traces > 1 else None,
+            dict(zip(chosen.variables, chosen.items.T, strict=True)),
+            ready.comparisons,
+            trace=chosen.trace if self.tables.n_traces > 1 else None,
         )

@@ -16,9 +16,12 @@ from rulec.logic.fold import Algebra, fold
 from rulec.logic.free_names import names_in, reads_in
 from rulec.logic.kleene import ObjectBinding
 from rulec.monitoring.batch.columns.column_numbers import Mask, comparison_sides, digits_of
-from rulec.trace.partial_truth import UNKNOWN, Truth
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.trace_columns import Array, TraceColumns
 from rulec.vocabulary import Enumeration, Vocabulary
+
+TRUE, FALSE = Truth.known(np.array(True)), Truth.known(np.array(False))
+UNKNOWN = Truth(FALSE.sure, TRUE.sure)
 
 KLEENE_COLUMNS: Algebra[Truth] = Algebra(
     proposition=lambda _: UNKNOWN,

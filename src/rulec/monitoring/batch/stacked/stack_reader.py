@@ -21,12 +21,12 @@ from rulec.monitoring.batch.columns.column_numbers import (
     numbers_between,
     partial_values,
 )
-from rulec.monitoring.batch.columns.column_reader import KLEENE_COLUMNS
+from rulec.monitoring.batch.columns.column_reader import KLEENE_COLUMNS, TRUE, UNKNOWN
 from rulec.monitoring.batch.stacked.met_values import MetValues
 from rulec.monitoring.batch.stacked.stack import Stack, StackColumn, either
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRead
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
-from rulec.trace.partial_truth import TRUE, UNKNOWN, Truth
+from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.trace_columns import Array, smallest_unsigned
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN_VALUE

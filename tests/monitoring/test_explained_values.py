@@ -1,51 +1,20 @@
-"""Traces in arrays are explained as their states are, of which few are made."""
+"""The state in which what decides is found, whatever kind of value it is; parts of arrays."""
 
 from dataclasses import replace
-from fractions import Fraction
 
 import pytest
-from hypothesis import Phase, given, settings
+from hypothesis import given
 
 import rulec
-from rulec.logic.free_names import names_in
-from rulec.monitoring.explain.explained_arrays import explain_arrays
+from rulec.logic.formula import atoms_of
+from rulec.logic.semantics import holds, truth_values
 from rulec.monitoring.explain.explanation import explain
-from rulec.monitoring.verdict import Verdict
-from rulec.monitoring.verify import verify, verify_or_reason
+from rulec.monitoring.explain.observed_word import ObservedWord, bits_of
+from rulec.monitoring.verify import verify
 from rulec.trace import Trace
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
-from support.builders.array_traces import CannotSayError, in_arrays
-from support.builders.rulebooks import compile_here
-from support.generators.blurred_traces import blurred
-from support.generators.constant_values import steady, with_some_constant, with_unknown_constants
-from support.generators.random_rulebooks import rulebook
-from support.generators.random_traces import traces
-from support.generators.seeds import seeds
-
-
-@given(seeds)
-@settings(phases=[Phase.generate], max_examples=settings().max_examples // 4)
-def test_columns_explain_what_states_do(chance):
-    book = with_some_constant(chance, rulebook(chance, Fraction(1)))
-    compiled, vocabulary = compile_here(book, Fraction(1)), book.vocabulary
-    single = {name for name, own in vocabulary.declarations.items() if len(own.parameters) < 2}
-    names = {n for x in (*book.rules, *book.axioms) for n in names_in(x.formula)}
-    for whole in traces(chance, Fraction(1))[:3]:
-        states = [{x: own for x, own in state.items() if x in single} for state in whole.states]
-        steadied = steady(replace(whole, states=tuple(states)), vocabulary.constants)
-        dark = blurred(chance, steadied, (names & single) - {*vocabulary.constants}, most=12)
-        dark = with_unknown_constants(chance, dark, vocabulary.constants)
-        told = frozenset().union(*dark.states) if chance.random() < 0.5 else None
-        try:
-            arrays = in_arrays(replace(dark, ends="cut", told=told), vocabulary)
-        except CannotSayError:
-            continue
-        trace = arrays.trace()
-        verdict = verify_or_reason(trace, compiled)
-        for violation in verdict.violations if isinstance(verdict, Verdict) else ():
-            found = explain_arrays(violation, arrays, compiled, {})
-            assert found in (None, explain(violation, trace, compiled, repaired=False))
-
+from support.builders.array_traces import in_arrays
+from support.generators.timed_formulas import letters_of, timed_formulas, timed_words
 
 BOOK = """\
 rulebook shown
@@ -85,10 +54,8 @@ CARS = {"a": "car", "b": "car"}
 def test_one_state_of_two_cars(state, rule, decisive):
     compiled = rulec.compile(rulec.parse_rulebook(BOOK))
     trace = Trace("t", 1.0, CARS, ({}, {}, state, {}), {"b": (1, 3)}, ends="cut")
-    arrays = in_arrays(trace, compiled.vocabulary)
     (violation,) = [x for x in verify(trace, compiled).violations if x.rule == rule]
-    found = explain_arrays(violation, arrays, compiled, {})
-    assert found == explain(violation, trace, compiled, repaired=False)
+    found = explain(violation, trace, compiled, repaired=False)
     assert found.decisive == decisive
 
 
@@ -99,17 +66,8 @@ def test_a_constant_that_is_unknown_in_some_states_is_what_others_say():
     states = ({"limit": UNKNOWN, "speed": 3.0}, {"limit": 2.0, "speed": 3.0})
     trace = Trace("t", 1.0, {}, states, ends="cut")
     (violation,) = verify(trace, compiled).violations
-    assert explain_arrays(violation, in_arrays(trace, compiled.vocabulary), compiled, {}) is None
     limits = {fact.text: fact.values for fact in explain(violation, trace, compiled).facts}
     assert limits["limit"] == (2.0, 2.0)
-
-
-def test_what_follows_from_other_values_takes_all_states():
-    source = "rulebook f\nsignal a\nsignal b default false\nfact a implies b\n"
-    compiled = rulec.compile(rulec.parse_rulebook(source + "hard rule r { require never b }\n"))
-    trace = Trace("t", 1.0, {}, ({"a": True, "b": True}, {"a": True}), ends="cut")
-    (violation,) = verify(trace, compiled).violations
-    assert explain_arrays(violation, in_arrays(trace, compiled.vocabulary), compiled, {}) is None
 
 
 def test_some_states_of_a_trace():
@@ -127,3 +85,14 @@ def test_some_states_of_a_trace():
         trace, states=states[::2], present={"a": (0, 0), "b": (1, 1)}
     )
     assert arrays.at((3,)).trace() == replace(trace, objects={}, states=states[3:], present={})
+
+
+@pytest.mark.parametrize("semantics", ["stutter", "finite"])
+@given(formula=timed_formulas, word=timed_words)
+def test_all_parts_have_the_values_of_their_definitions(semantics, formula, word):
+    letters = letters_of(formula, word)
+    truths = {atom: bits_of([atom in own for own in letters]) for atom in atoms_of(formula)}
+    observed = ObservedWord(truths, len(letters), semantics)
+    assert observed.holds(formula) == holds(formula, letters, semantics)
+    for part, values in observed.parts(formula).items():
+        assert values[: len(letters)] == truth_values(part, letters, semantics)

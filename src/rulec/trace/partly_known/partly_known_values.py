@@ -1,0 +1,126 @@
+"""Values that are partly known, in many states at once: truth, numbers and choices.
+
+Halves of truth are NumPy masks or, where there is no NumPy, integers with a bit per state, in which
+bits beyond the last state mean nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Generic
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeVar
+
+    from rulec.array_types import Flags
+
+    Half = TypeVar("Half", int, Flags, default=Flags)
+else:
+    from typing import TypeVar
+
+    Half = TypeVar("Half")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Truth(Generic[Half]):
+    """Where something is ``sure`` and where it is ``possible``; masks have shapes that broadcast.
+
+    What is sure is also possible. The operators are those of Kleene's strong three-valued logic.
+    """
+
+    sure: Half
+    possible: Half
+
+    @staticmethod
+    def known(values: Half) -> Truth[Half]:
+        """Truth that is known everywhere."""
+        return Truth(values, values)
+
+    @property
+    def is_known(self) -> bool:
+        """Whether it is known everywhere by its making: both halves are one object."""
+        return self.sure is self.possible
+
+    def __invert__(self) -> Truth[Half]:
+        return Truth.known(~self.sure) if self.is_known else Truth(~self.possible, ~self.sure)
+
+    def __and__(self, other: Truth[Half]) -> Truth[Half]:
+        if self.is_known and other.is_known:
+            return Truth.known(self.sure & other.sure)
+        return Truth(self.sure & other.sure, self.possible & other.possible)
+
+    def __or__(self, other: Truth[Half]) -> Truth[Half]:
+        if self.is_known and other.is_known:
+            return Truth.known(self.sure | other.sure)
+        return Truth(self.sure | other.sure, self.possible | other.possible)
+
+    def same_as(self, other: Truth[Half]) -> Truth[Half]:
+        """Both or neither."""
+        return self & other | ~self & ~other
+
+    def unknown_at(self, unknown: Half) -> Truth[Half]:
+        """The same truth, but unknown where ``unknown``."""
+        return Truth(self.sure & ~unknown, self.possible | unknown)
+
+    @property
+    def unknown(self) -> Half:
+        """Where it is possible, but not sure."""
+        return self.possible & ~self.sure
+
+    def each(self, change: Callable[[Half], Half]) -> Truth[Half]:
+        """The truth with both halves changed."""
+        if self.is_known:
+            return Truth.known(change(self.sure))
+        return Truth(change(self.sure), change(self.possible))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Number:
+    """Numbers that lie between ``low`` and ``high``, both included; unknown ones have no bounds.
+
+    Each end is one number or an array of them.
+    """
+
+    low: Any
+    high: Any
+
+    @property
+    def unknown(self) -> Any:
+        """Where nothing is known of the number."""
+        return self.high - self.low == float("inf")
+
+    def __add__(self, other: Number) -> Number:
+        low = self.low + other.low
+        is_known = self.high is self.low and other.high is other.low
+        return Number(low, low if is_known else self.high + other.high)
+
+    def each(self, change: Callable[[Any], Any]) -> Number:
+        """The numbers with both ends changed."""
+        low = change(self.low)
+        return Number(low, low if self.high is self.low else change(self.high))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EnumeratedChoice:
+    """Values of an enumeration, as ``bits``: value ``i`` is possible where bit ``i`` is set."""
+
+    bits: Any
+
+    @property
+    def unknown(self) -> Any:
+        """Where several values are possible."""
+        return self.bits & (self.bits - 1) != 0
+
+    def equals(self, place: int) -> Truth:
+        """Whether it is a value."""
+        bit = 1 << place
+        return Truth(self.bits == bit, self.bits & bit != 0)
+
+    def each(self, change: Callable[[Any], Any]) -> EnumeratedChoice:
+        """The values with changed bits."""
+        return EnumeratedChoice(change(self.bits))
+
+
+PartlyKnown = Truth | Number | EnumeratedChoice
+"""A name's values: of a signal, a quantity, an enumeration."""
