@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rulec.logic.fold import fold
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -110,9 +111,7 @@ def test_operators_are_exact_where_each_value_occurs_once(form, pair):
 
 
 def evaluated(formula, instants, left, right):
-    if isinstance(formula, Unary):
-        return instants.unary(formula, right)
-    return instants.binary(formula, left, right)
+    return fold(formula, instants.algebra({P: left, Q: right}.__getitem__))
 
 
 def holds_in(formula, pair, ends):
@@ -179,11 +178,12 @@ def test_what_lies_beyond_a_cut_is_unknown():
     """Nobody knows whether what holds in the first state began there."""
     began = Unary(UnaryOperator.PREVIOUSLY, Q)
     instants = BitInstants(3, "cut")
-    assert listed(instants.unary(began, as_bits("TFT")), 3) == (
+    assert listed(evaluated(began, instants, None, as_bits("TFT")), 3) == (
         [False, True, False],
         [True, True, False],
     )
-    assert listed(BitInstants(3, "over").unary(began, as_bits("TFT")), 3)[1] == [False, True, False]
+    over = evaluated(began, BitInstants(3, "over"), None, as_bits("TFT"))
+    assert listed(over, 3)[1] == [False, True, False]
 
 
 def test_a_number_known_as_one_stays_known():

@@ -135,8 +135,8 @@ def test_what_is_too_long_is_refused(text):
 
 def test_moments_know_between_what_it_lies(rules):
     state = json.loads('{"v": 48.280320000000001}', parse_float=number_written)
-    rows = tables_of_trace(Trace("t", 1.0, {}, (state,)), rules.vocabulary).world("v")
-    low, high = rows.values[0, 0].item(), rows.upper[0, 0].item()
+    number = tables_of_trace(Trace("t", 1.0, {}, (state,)), rules.vocabulary).world("v")
+    low, high = number.low[0, 0].item(), number.high[0, 0].item()
     assert Fraction(repr(low)) < Fraction("48.280320000000001") < Fraction(repr(high))
 
 

@@ -29,7 +29,8 @@ class Algebra(Generic[Value]):
 
     ``implication`` and ``difference`` (xor) are derived from the others if missing. Without
     ``identity`` a formula must not contain ``Same``; without ``operation``, which receives the
-    operation and the fold of its operands, it must not contain a temporal operator.
+    operation and the fold of its operands, it must not contain a temporal operator. With
+    ``is_false`` a right operand is left out beside a left one that settles the value.
     """
 
     proposition: Callable[[ltl.Proposition], Value]
@@ -44,6 +45,7 @@ class Algebra(Generic[Value]):
     operation: Callable[[ltl.Unary | ltl.Binary, Callable[[ltl.Formula], Value]], Value] | None = (
         None
     )
+    is_false: Callable[[Value], bool] | None = None
 
 
 def fold(
@@ -83,8 +85,13 @@ def _value(
         case ltl.Unary(ltl.UnaryOperator.NOT, operand):
             return algebra.negation(fold(operand, algebra, known))
         case ltl.Binary(operator, left, right) if operator in _CONNECTIVES:
-            first, second = fold(left, algebra, known), fold(right, algebra, known)
-            return _joined(operator, first, second, algebra)
+            first = fold(left, algebra, known)
+            if known is None and algebra.is_false is not None and operator in _SETTLED_BY:
+                asked = first if _SETTLED_BY[operator] is False else algebra.negation(first)
+                if algebra.is_false(asked):
+                    implies = operator is ltl.BinaryOperator.IMPLIES
+                    return algebra.negation(first) if implies else first
+            return _joined(operator, first, fold(right, algebra, known), algebra)
         case ltl.Unary() | ltl.Binary():
             if algebra.operation is None:
                 raise TypeError("this formula does not speak of one state alone")
@@ -100,6 +107,14 @@ _CONNECTIVES = frozenset(
         ltl.BinaryOperator.XOR,
     }
 )
+
+
+_SETTLED_BY = {
+    ltl.BinaryOperator.AND: False,
+    ltl.BinaryOperator.OR: True,
+    ltl.BinaryOperator.IMPLIES: False,
+}
+"""The value of the left operand beside which the right one is of no account."""
 
 
 def _joined(
@@ -149,13 +164,15 @@ def temporal_operation(
     release: WordJoin[Value],
     weak_until: Callable[[Value, Value, Range], Value],
     strong_release: Callable[[Value, Value, Range], Value],
+    since: WordJoin[Value] | None = None,
 ) -> Callable[[ltl.Unary | ltl.Binary, Callable[[ltl.Formula], Value]], Value]:
-    """The temporal operators of the future, derived from four of them.
+    """The temporal operators, derived from four of the future and one of the past.
 
-    For the ``operation`` of an algebra of words without a past.
+    For the ``operation`` of an algebra of words; one without ``since`` has no past.
 
-    ``until`` without a left operand means ``eventually``, ``release`` without one means ``always``.
-    Bounds are in steps. The operation raises ValueError for a past operator.
+    ``until`` without a left operand means ``eventually``, ``release`` without one means ``always``,
+    ``since`` without one ``once``. Bounds are in steps. The operation raises ValueError for an
+    operator of a past that there is not.
     """
 
     def operation(
@@ -177,7 +194,15 @@ def temporal_operation(
                 return weak_until(value_of(left), value_of(right), span)
             case ltl.Binary(ltl.BinaryOperator.STRONG_RELEASE, left, right):
                 return strong_release(value_of(left), value_of(right), span)
-        raise ValueError(f"`{formula.operator.value}` is an operator of the past")
+        if since is None:
+            raise ValueError(f"`{formula.operator.value}` is an operator of the past")
+        match formula:
+            case ltl.Unary(ltl.UnaryOperator.ONCE | ltl.UnaryOperator.PREVIOUSLY, operand):
+                return since(None, value_of(operand), span)
+            case ltl.Unary(_, operand):
+                return negation(since(None, negation(value_of(operand)), span))
+            case ltl.Binary(_, left, right):
+                return since(value_of(left), value_of(right), span)
 
     return operation
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.logic import formula as ltl
+from rulec.logic.fold import Algebra, fold
 from rulec.logic.semantics import Semantics, steps_to_settle
-from rulec.trace.partly_known.formula_evaluation import FormulaEvaluation, Parts
 from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.partly_known.temporal_operators import Beyond, BitInstants
 
@@ -33,31 +33,32 @@ class ObservedWord:
 
     def holds(self, formula: ltl.Formula) -> bool:
         """Whether a formula, with bounds in steps, holds in the first state."""
-        return self._evaluation(formula, None).of(formula).sure & 1 == 1
+        return fold(formula, self._algebra(self._n_settled(formula))).sure & 1 == 1
 
     def parts(self, formula: ltl.Formula) -> dict[ltl.Formula, list[bool]]:
         """The truth of all parts by state, operands first, beyond the word until they settle."""
-        parts: Parts[int] = {}
-        evaluation = self._evaluation(formula, parts)
-        evaluation.of(formula)
-        n_states = self.n_states + self._settling(formula)
+        parts: dict[ltl.Formula, Truth[int]] = {}
+        n_states = self._n_settled(formula)
+        fold(formula, self._algebra(n_states), parts)
         inside = (1 << n_states) - 1
         return {
             part: [bit == "1" for bit in reversed(f"{truth.sure & inside:0{n_states}b}")]
-            for part, truth in parts.values()
+            for part, truth in parts.items()
         }
 
-    def _settling(self, formula: ltl.Formula) -> int:
-        return 0 if self.semantics == "finite" else steps_to_settle(formula)
+    def _n_settled(self, formula: ltl.Formula) -> int:
+        """The number of states until nothing changes any more."""
+        settles = 0 if self.semantics == "finite" else steps_to_settle(formula)
+        return self.n_states + settles
 
-    def _evaluation(self, formula: ltl.Formula, parts: Parts[int] | None) -> FormulaEvaluation[int]:
-        settling = self._settling(formula)
-        inside, beyond = (1 << self.n_states) - 1, (1 << settling) - 1 << self.n_states
+    def _algebra(self, n_states: int) -> Algebra[Truth[int]]:
+        """The meaning of formulas in the word, with its last state repeated."""
+        inside = (1 << self.n_states) - 1
+        beyond = (1 << n_states) - 1 ^ inside
 
-        def proposition(part: ltl.Proposition | ltl.Same) -> Truth[int]:
-            assert not isinstance(part, ltl.Same), "it occurs in counts only"
+        def proposition(part: ltl.Proposition) -> Truth[int]:
             bits = self.truths[part] & inside
             return Truth.known(bits | beyond if bits >> self.n_states - 1 else bits)
 
         ends: Beyond = "over" if self.semantics == "finite" else "goes on"
-        return FormulaEvaluation(proposition, BitInstants(self.n_states + settling, ends), parts)
+        return BitInstants(n_states, ends).algebra(proposition)

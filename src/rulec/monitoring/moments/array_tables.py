@@ -6,7 +6,7 @@ import numpy as np
 
 from rulec.array_types import Flags, Indices
 from rulec.monitoring.moments.name_tables import NameTables, default_of, partly_known
-from rulec.trace.partly_known.partly_known_values import Number, PartlyKnown
+from rulec.trace.partly_known.partly_known_values import NameValues, Number
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Enumeration, Vocabulary
@@ -28,18 +28,18 @@ class ArrayTables(NameTables):
         """The first and last state of each object."""
         return self._arrays.spans
 
-    def about_several(self, name: str, rows: Indices) -> PartlyKnown:
+    def about_several(self, name: str, rows: Indices) -> NameValues:
         """The rows of a name, which all have its default."""
         return self._rows(name, None, np.ones((len(rows), self.n_states), dtype=bool))
 
-    def _world(self, name: str) -> PartlyKnown:
+    def _world(self, name: str) -> NameValues:
         column = self._arrays.world.get(name)
         return self._rows(name, column, np.ones((1, self.n_states), dtype=bool))
 
-    def _about(self, name: str) -> PartlyKnown:
+    def _about(self, name: str) -> NameValues:
         return self._rows(name, self._arrays.about.get(name), self._there)
 
-    def _rows(self, name: str, column: Array | None, there: Flags) -> PartlyKnown:
+    def _rows(self, name: str, column: Array | None, there: Flags) -> NameValues:
         """Rows of values in the states that are ``there``.
 
         Names that are never given have their default.
@@ -66,7 +66,7 @@ class ArrayTables(NameTables):
         return _constant(rows, there) if declaration.constant else rows
 
 
-def _constant(rows: PartlyKnown, there: Flags) -> PartlyKnown:
+def _constant(rows: NameValues, there: Flags) -> NameValues:
     """Rows of a constant, whose value in some state holds in all."""
     is_stated = there & ~rows.unknown
     any_stated = is_stated.any(axis=1, keepdims=True)

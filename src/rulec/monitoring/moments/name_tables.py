@@ -21,8 +21,8 @@ from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.trace import Trace
 from rulec.trace.partly_known.partly_known_values import (
     EnumeratedChoice,
+    NameValues,
     Number,
-    PartlyKnown,
     Truth,
 )
 from rulec.trace.trace_columns import Array, TraceColumns
@@ -32,7 +32,7 @@ from rulec.vocabulary.vocabulary_model import least_value
 from rulec.vocabulary.written_numbers import WrittenNumber
 
 
-def at_places(rows: PartlyKnown, chosen: Indices | None, states: Indices | None) -> PartlyKnown:
+def at_places(rows: NameValues, chosen: Indices | None, states: Indices | None) -> NameValues:
     """Some of the rows (None for all) and columns, which may differ by row."""
 
     def part(half: Array) -> Array:
@@ -45,7 +45,7 @@ def at_places(rows: PartlyKnown, chosen: Indices | None, states: Indices | None)
 
 def partly_known(
     declaration: Declaration | None, values: Array, upper: Array, unknown: Flags | None
-) -> PartlyKnown:
+) -> NameValues:
     """The values of a name: Booleans, numbers up to ``upper``, or places among those declared.
 
     Where they are ``unknown`` their entries are meaningless.
@@ -90,7 +90,7 @@ class NameTables(ABC):
         self.types = tuple(objects.values())
         self.last = last
         self.n_states = int(last.max()) + 1
-        self._known: dict[str, PartlyKnown] = {}
+        self._known: dict[str, NameValues] = {}
 
     @property
     def n_traces(self) -> int:
@@ -102,28 +102,28 @@ class NameTables(ABC):
     def spans(self) -> Indices:
         """The first and last state of each object."""
 
-    def world(self, name: str) -> PartlyKnown:
+    def world(self, name: str) -> NameValues:
         """The rows of a name that is about no object, one for each trace."""
         if name not in self._known:
             self._known[name] = self._world(name)
         return self._known[name]
 
-    def about(self, name: str) -> PartlyKnown:
+    def about(self, name: str) -> NameValues:
         """The rows of a name that is about one object, one for each object of the traces."""
         if name not in self._known:
             self._known[name] = self._about(name)
         return self._known[name]
 
     @abstractmethod
-    def about_several(self, name: str, rows: Indices) -> PartlyKnown:
+    def about_several(self, name: str, rows: Indices) -> NameValues:
         """The rows of a name for these objects (rows x parameters), given by their numbers."""
 
     @abstractmethod
-    def _world(self, name: str) -> PartlyKnown:
+    def _world(self, name: str) -> NameValues:
         """The rows of a name about no object."""
 
     @abstractmethod
-    def _about(self, name: str) -> PartlyKnown:
+    def _about(self, name: str) -> NameValues:
         """The rows of a name about one object."""
 
 
@@ -150,7 +150,7 @@ class ColumnTables(NameTables):
                 spans[:, place] = self._columns.present[item]
         return spans.reshape(-1, 2)
 
-    def about_several(self, name: str, rows: Indices) -> PartlyKnown:
+    def about_several(self, name: str, rows: Indices) -> NameValues:
         """The rows of a name for these objects (rows x parameters), given by their numbers."""
         n_objects = len(self.objects)
         trace, places = rows[:, 0] // n_objects, rows % n_objects
@@ -160,13 +160,13 @@ class ColumnTables(NameTables):
         stacked = self._stacked(name, chosen)
         return at_places(stacked, trace * len(chosen) + which, None)
 
-    def _world(self, name: str) -> PartlyKnown:
+    def _world(self, name: str) -> NameValues:
         return self._stacked(name, [()])
 
-    def _about(self, name: str) -> PartlyKnown:
+    def _about(self, name: str) -> NameValues:
         return self._stacked(name, [(item,) for item in self.objects])
 
-    def _stacked(self, name: str, about: Sequence[tuple[str, ...]]) -> PartlyKnown:
+    def _stacked(self, name: str, about: Sequence[tuple[str, ...]]) -> NameValues:
         """The rows of a name for these objects of the first trace, then of the second, etc."""
         columns, cells = self._columns, self._cells
         declaration = self.vocabulary.declarations[name]

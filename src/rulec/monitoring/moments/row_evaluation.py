@@ -11,17 +11,17 @@ import numpy as np
 from rulec.array_types import Flags, Indices
 from rulec.automata.thresholds import ThresholdScale
 from rulec.logic import formula as ltl
+from rulec.logic.fold import fold
 from rulec.monitoring.batch.columns.column_numbers import (
     ComparisonSides,
     comparison_sides,
     digits_of,
 )
 from rulec.monitoring.moments.name_tables import NameTables, at_places
-from rulec.trace.partly_known.formula_evaluation import FormulaEvaluation
 from rulec.trace.partly_known.partly_known_values import (
     EnumeratedChoice,
+    NameValues,
     Number,
-    PartlyKnown,
     Truth,
 )
 from rulec.trace.partly_known.row_stretches import RowStretches
@@ -48,23 +48,22 @@ class RowEvaluation:
 
     def of(self, formula: ltl.Formula) -> Truth:
         """The truth of a formula."""
-        return FormulaEvaluation(self._proposition, self.stretches).of(formula)
+        return fold(formula, self.stretches.algebra(self._proposition, self._identity))
 
-    def _proposition(self, proposition: ltl.Proposition | ltl.Same) -> Truth:
-        match proposition:
-            case ltl.Comparison():
-                return self._comparison(proposition)
-            case ltl.Same(left, right):
-                return Truth.known((self.bound[left] == self.bound[right])[:, None])
-            case ltl.Atom(name, arguments, value):
-                values = self._values(name, arguments)
-                if isinstance(values, EnumeratedChoice):
-                    declaration = self.tables.vocabulary.declarations[name]
-                    assert isinstance(declaration, Enumeration), "its values are choices"
-                    assert value is not None, "the formula has been checked"
-                    values = values.equals(declaration.values.index(value))
-                assert isinstance(values, Truth), "the formula has been checked"
-                return values
+    def _identity(self, same: ltl.Same) -> Truth:
+        return Truth.known((self.bound[same.left] == self.bound[same.right])[:, None])
+
+    def _proposition(self, proposition: ltl.Proposition) -> Truth:
+        if isinstance(proposition, ltl.Comparison):
+            return self._comparison(proposition)
+        values = self._values(proposition.name, proposition.arguments)
+        if isinstance(values, EnumeratedChoice):
+            declaration = self.tables.vocabulary.declarations[proposition.name]
+            assert isinstance(declaration, Enumeration), "its values are choices"
+            assert proposition.value is not None, "the formula has been checked"
+            return values.equals(declaration.values.index(proposition.value))
+        assert isinstance(values, Truth), "the formula has been checked"
+        return values
 
     @property
     def _shows_all(self) -> bool:
@@ -74,7 +73,7 @@ class RowEvaluation:
             return False
         return int(self.states[-1]) == n_states - 1
 
-    def _values(self, name: str, arguments: tuple[str, ...]) -> PartlyKnown:
+    def _values(self, name: str, arguments: tuple[str, ...]) -> NameValues:
         """The values of a name for the objects of variables."""
         tables = self.tables
         states = None if self._shows_all else self.states

@@ -1,1 +1,1 @@
-"""Values that are partly known, operators of time on them, and the evaluation of formulas."""
+"""Values that are partly known, and what formulas mean on them."""

@@ -122,5 +122,5 @@ class EnumeratedChoice:
         return EnumeratedChoice(change(self.bits))
 
 
-PartlyKnown = Truth | Number | EnumeratedChoice
+NameValues = Truth | Number | EnumeratedChoice
 """A name's values: of a signal, a quantity, an enumeration."""

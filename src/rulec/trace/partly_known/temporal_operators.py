@@ -7,11 +7,14 @@ up beyond is unknown if the trace is cut.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Generic, Literal
 
 from rulec.logic import formula as ltl
-from rulec.logic.bounds import PAST, Range, range_of
+from rulec.logic.bounds import Range
+from rulec.logic.fold import Algebra, temporal_operation
 from rulec.trace.partly_known.partly_known_values import Half, Truth
 
 Beyond = Literal["over", "goes on", "cut"]
@@ -41,42 +44,46 @@ class Instants(ABC, Generic[Half]):
     def until(self, left: Truth[Half], right: Truth[Half], span: Range) -> Truth[Half]:
         """``right`` in the span ahead, and ``left`` in all states from the present to before it."""
 
-    def weak_until(self, left: Truth[Half], right: Truth[Half], span: Range) -> Truth[Half]:
+    def algebra(
+        self,
+        proposition: Callable[[ltl.Proposition], Truth[Half]],
+        identity: Callable[[ltl.Same], Truth[Half]] | None = None,
+    ) -> Algebra[Truth[Half]]:
+        """The meaning of formulas in these states, from that of their propositions."""
+        return Algebra(
+            proposition=proposition,
+            identity=identity,
+            constant=lambda value: self.always if value else ~self.always,
+            negation=Truth.__invert__,
+            conjunction=Truth.__and__,
+            disjunction=Truth.__or__,
+            equivalence=Truth.same_as,
+            is_false=lambda truth: not self.is_somewhere(truth.possible),
+            operation=temporal_operation(
+                Truth.__invert__,
+                until=partial(self._joined, self.until),
+                release=lambda left, right, span: (
+                    ~self._joined(self.until, None if left is None else ~left, ~right, span)
+                ),
+                weak_until=self._weak_until,
+                strong_release=lambda left, right, span: ~self._weak_until(~left, ~right, span),
+                since=partial(self._joined, self.since),
+            ),
+        )
+
+    def _joined(
+        self,
+        join: Callable[[Truth[Half], Truth[Half], Range], Truth[Half]],
+        left: Truth[Half] | None,
+        right: Truth[Half],
+        span: Range,
+    ) -> Truth[Half]:
+        return join(self.always if left is None else left, right, span)
+
+    def _weak_until(self, left: Truth[Half], right: Truth[Half], span: Range) -> Truth[Half]:
         """Until, or ``left`` up to the end of the span."""
         breaks = self.until(self.always, ~left, Range(0, span.high))
         return self.until(left, right, span) | ~breaks
-
-    def unary(self, formula: ltl.Unary, operand: Truth[Half]) -> Truth[Half]:
-        """The truth of a temporal operator on one formula."""
-        join = self.since if formula.operator in PAST else self.until
-        span = range_of(formula)
-        match formula.operator:
-            case (
-                ltl.UnaryOperator.NEXT
-                | ltl.UnaryOperator.EVENTUALLY
-                | ltl.UnaryOperator.PREVIOUSLY
-                | ltl.UnaryOperator.ONCE
-            ):
-                return join(self.always, operand, span)
-            case ltl.UnaryOperator.NEVER:
-                return ~join(self.always, operand, span)
-            case _:
-                return ~join(self.always, ~operand, span)
-
-    def binary(self, formula: ltl.Binary, left: Truth[Half], right: Truth[Half]) -> Truth[Half]:
-        """The truth of a temporal operator between two formulas."""
-        span = range_of(formula)
-        match formula.operator:
-            case ltl.BinaryOperator.UNTIL | ltl.BinaryOperator.THEN:
-                return self.until(left, right, span)
-            case ltl.BinaryOperator.SINCE:
-                return self.since(left, right, span)
-            case ltl.BinaryOperator.WEAK_UNTIL:
-                return self.weak_until(left, right, span)
-            case ltl.BinaryOperator.RELEASE:
-                return ~self.until(~left, ~right, span)
-            case _:
-                return ~self.weak_until(~left, ~right, span)
 
 
 @dataclass(frozen=True, slots=True)
