@@ -10,6 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from operator import lshift, rshift
 from typing import Generic, Literal
 
 from rulec.logic import formula as ltl
@@ -100,85 +101,68 @@ class BitInstants(Instants[int]):
 
     def is_somewhere(self, half: int) -> bool:
         """Whether a bit of a state is set."""
-        return bool(half & self._all)
+        return half & self._inside != 0
 
     def since(self, left: Truth[int], right: Truth[int], span: Range) -> Truth[int]:
         """``right`` in the span back, and ``left`` in all states after it up to the present one."""
-        outside = Truth(0, -1) if self.ends == "cut" else Truth.known(0)
-        return self._found(left, right, span, (outside, outside), way=1)
+        return self._found(left, right, span, _from_ones if self.ends == "cut" else lshift)
 
     def until(self, left: Truth[int], right: Truth[int], span: Range) -> Truth[int]:
         """``right`` in the span ahead, and ``left`` in all states from the present to before it."""
-        outside = Truth(0, -1) if self.ends == "cut" else Truth.known(0)
-        beyond = outside, outside
-        if self.ends == "goes on":
-            beyond = self._last(left), self._last(right)
-        return self._found(left, right, span, beyond, way=-1)
+        left, right = self._continued(left), self._continued(right)
+        return self._found(left, right, span, rshift)
 
     @property
-    def _all(self) -> int:
+    def _inside(self) -> int:
         return (1 << self.n_states) - 1
 
-    def _last(self, truth: Truth[int]) -> Truth[int]:
-        """The truth in the last state, for every state."""
-        sure, possible = (
-            -(half >> (self.n_states - 1) & 1) for half in (truth.sure, truth.possible)
-        )
-        return Truth.known(sure) if sure == possible else Truth(sure, possible)
+    def _continued(self, truth: Truth[int]) -> Truth[int]:
+        """The truth with bits for all that follows the last state."""
+        inside, last = self._inside, self.n_states - 1
+        if self.ends == "cut":
+            return Truth(truth.sure & inside, truth.possible | ~inside)
+        if self.ends == "over":
+            return truth.each(lambda half: half & inside)
+        return truth.each(lambda half: half & inside | -(half >> last & 1) & ~inside)
 
     def _found(
-        self,
-        left: Truth[int],
-        right: Truth[int],
-        span: Range,
-        beyond: tuple[Truth[int], Truth[int]],
-        *,
-        way: Literal[1, -1],
+        self, left: Truth[int], right: Truth[int], span: Range, shifted: Callable[[int, int], int]
     ) -> Truth[int]:
-        search = _Search(self.n_states, way, beyond[0].sure, beyond[1].sure)
-        sure = search.found(left.sure, right.sure, span)
-        if all(truth.is_known for truth in (left, right, *beyond)):
+        """A search by shifts; those of what is sure let in no states from beyond the first one."""
+        surely = lshift if shifted is _from_ones else shifted
+        sure = _bits_found(left.sure, right.sure, span, self.n_states, surely)
+        if left.is_known and right.is_known and surely is shifted:
             return Truth.known(sure)
-        search = _Search(self.n_states, way, beyond[0].possible, beyond[1].possible)
-        return Truth(sure, search.found(left.possible, right.possible, span))
+        return Truth(sure, _bits_found(left.possible, right.possible, span, self.n_states, shifted))
 
 
-@dataclass(frozen=True, slots=True)
-class _Search:
-    """A search back (``way`` 1) or ahead (-1), with what holds beyond the states: 0 or -1."""
+def _from_ones(bits: int, steps: int) -> int:
+    """Bits shifted to the left, with ones behind them."""
+    return ~(~bits << steps)
 
-    n_states: int
-    way: Literal[1, -1]
-    left_beyond: int
-    right_beyond: int
 
-    def found(self, left: int, right: int, span: Range) -> int:
-        """The bits of the states that find ``right`` in the span, with ``left`` in all between.
+def _bits_found(
+    left: int, right: int, span: Range, n_states: int, shifted: Callable[[int, int], int]
+) -> int:
+    """The bits of the states that find ``right`` in the span, with ``left`` in all between.
 
-        Each step doubles how far it looks, as in Kogge, Stone, "A parallel algorithm for the
-        efficient solution of a general class of recurrence equations" (1973).
-        """
-        # Farther away all states are alike
-        low = min(span.low, self.n_states + 1)
-        high = low + self.n_states if span.high is None else min(span.high, low + self.n_states)
-        if high < low:
-            return 0
-        reached, clear, width = right, left, 1
-        while width <= high - low:
-            more = min(width, high - low + 1 - width)
-            reached |= clear & self._shifted(reached, more, self.right_beyond)
-            clear &= self._shifted(clear, more, self.left_beyond)
-            width += more
-        result, clear, width = self._shifted(reached, low, self.right_beyond), left, 1
-        while width < low:
-            more = min(width, low - width)
-            clear &= self._shifted(clear, more, self.left_beyond)
-            width += more
-        return result & clear if low else result
-
-    def _shifted(self, bits: int, steps: int, beyond: int) -> int:
-        """What holds so many steps back or ahead."""
-        inside = (1 << self.n_states) - 1
-        if self.way > 0:
-            return (bits << steps | beyond & ((1 << steps) - 1)) & inside
-        return (bits & inside | beyond & ~inside) >> steps & inside
+    Each step doubles how far it looks, as in Kogge, Stone, "A parallel algorithm for the efficient
+    solution of a general class of recurrence equations" (1973).
+    """
+    # Farther away all states are alike
+    low = min(span.low, n_states + 1)
+    high = low + n_states if span.high is None else min(span.high, low + n_states)
+    if high < low:
+        return 0
+    reached, clear, width = right, left, 1
+    while width <= high - low:
+        more = min(width, high - low + 1 - width)
+        reached |= clear & shifted(reached, more)
+        clear &= shifted(clear, more)
+        width += more
+    clear, width = left if low else -1, 1
+    while width < low:
+        more = min(width, low - width)
+        clear &= shifted(clear, more)
+        width += more
+    return shifted(reached, low) & clear & (1 << n_states) - 1
