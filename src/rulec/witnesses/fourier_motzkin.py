@@ -7,10 +7,10 @@ handful of unknowns and inequalities.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import chain, pairwise, product
+from itertools import product
 from math import floor
 
 from rulec.logic.formula import Term
@@ -27,34 +27,23 @@ class LinearBound:
     strict: bool = False
 
 
-class TooManyBoundsError(Exception):
-    """Elimination would create more inequalities than the caller allows."""
-
-
 def solve(
     system: Sequence[LinearBound],
     unknowns: Sequence[Term],
     preferred: Mapping[Term, Fraction],
     whole: Set[Term] = frozenset(),
     near_bounds: Set[Term] = frozenset(),
-    *,
-    any_number: bool = False,
-    on_elimination: Callable[[int], None] | None = None,
 ) -> dict[Term, Fraction] | None:
-    """Solve a system by numbers with short decimals, or by ``any_number``; None if unsolvable.
+    """Solve a system by numbers with short decimals; None if there are none.
 
     The last of the ``unknowns`` is given its number first: the ``preferred`` one where it fits,
     else zero (for unknowns in ``near_bounds`` zero is not preferred) or a number near a bound. If
     the first numbers tried for ``whole`` unknowns leave no solution, the search is not repeated.
-    ``on_elimination`` is called before each elimination with the number of inequalities that it
-    creates, and may raise ``TooManyBoundsError``.
     """
     stages: list[tuple[Term, list[LinearBound]]] = []
     rest = list(system)
     for unknown in unknowns:
         stages.append((unknown, [bound for bound in rest if bound.coefficients.get(unknown)]))
-        if on_elimination is not None:
-            on_elimination(_n_eliminated(unknown, rest))
         rest = _eliminate(unknown, rest)
     if any(bound.limit < 0 or (bound.strict and bound.limit == 0) for bound in rest):
         return None
@@ -68,16 +57,12 @@ def solve(
             ],
             key=lambda limit: limit[0] > 0,
         )
-        candidates: Iterable[Fraction] = _candidates(
+        candidates = _candidates(
             preferred.get(unknown),
             [rest / factor for factor, rest, _ in limits],
             whole=unknown in whole,
             zero_first=unknown not in near_bounds,
         )
-        if any_number:
-            ends = sorted([rest / factor for factor, rest, _ in limits])
-            middles = [(low + high) / 2 for low, high in pairwise(ends)]
-            candidates = chain(candidates, ends, middles)
         for number in candidates:
             if all(
                 factor * number < rest or (factor * number == rest and not strict)
@@ -97,12 +82,6 @@ def _remaining_limit(bound: LinearBound, solution: Mapping[Term, Fraction]) -> F
         if name in solution:
             left -= factor * solution[name]
     return left
-
-
-def _n_eliminated(unknown: Term, system: Sequence[LinearBound]) -> int:
-    n_above = sum(bound.coefficients.get(unknown, 0) > 0 for bound in system)
-    n_below = sum(bound.coefficients.get(unknown, 0) < 0 for bound in system)
-    return len(system) - n_above - n_below + n_above * n_below
 
 
 def _eliminate(unknown: Term, system: Sequence[LinearBound]) -> list[LinearBound]:

@@ -157,9 +157,8 @@ def test_of_law_with_one_number_between_others_in_parts_as_together():
     several = [agree_in_parts(chance, compiled, x, one_between, 60) for x in compiled.rules]
     assert sum(several) > 10
     tables = compiled.prepared[KnownParts].tables.values()
-    met = [own for table in tables for own in table._alike.values() if own is not None]
-    # Many intervals end beside the same steps; a rule of two numbers has lines instead
-    assert any(getattr(own.kinds, "points", ()) and len(own.found) > 3 for own in met)
+    # Many intervals end in the same regions
+    assert any(len(own._known) > 3 * len(own._alike) > 3 and own._along for own in tables)
 
 
 SUMS = """

@@ -15,6 +15,10 @@ from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.number_regions import comparisons_in
+from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement import (
+    LinearPlane,
+    sample_points,
+)
 from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject, subjects_of_read
 from rulec.trace import Value
@@ -113,12 +117,6 @@ def _values_of(
     if isinstance(bounds, Interval):
         within = exact(bounds.low), exact(bounds.high)
     number = ltl.QuantityTerm(name)
-    # Arrangements of planes, 2 ms: only where a constant number is unknown.
-    from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement import (
-        LinearPlane,
-        sample_points,
-    )
-
     planes = [LinearPlane({number: Fraction(1)}, limit) for limit in limits]
     points = sample_points({number: within}, planes)
     return [] if points is None else [point[number] for point in points]

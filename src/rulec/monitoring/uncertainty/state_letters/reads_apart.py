@@ -19,8 +19,7 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.monitoring.state_view import StateView, with_values
-from rulec.monitoring.uncertainty.number_regions import number_regions
-from rulec.monitoring.uncertainty.state_letters.alike_intervals import AlikeIntervals, Cut
+from rulec.monitoring.uncertainty.number_regions import NumberRegions, number_regions
 from rulec.monitoring.uncertainty.state_letters.completions.completions import (
     Digits,
     joint_digits,
@@ -57,10 +56,6 @@ class _PossibleDigits(NamedTuple):
     exact: bool
 
 
-_FEW_INTERVALS = (1, 2)
-"""As many numbers have kinds of intervals."""
-
-
 class _PartTable:
     """The possible digits of some reads by the values of their ``subjects``, numbered."""
 
@@ -82,8 +77,8 @@ class _PartTable:
         self.possible: list[_PossibleDigits] = []
         self._numbers: dict[_PossibleDigits, int] = {}
         self._known: dict[tuple[object, ...], int] = {}
-        self._alike: dict[tuple[object, ...], AlikeIntervals[_PossibleDigits] | None] = {}
-        self._by_regions: dict[tuple[object, ...], _PossibleDigits] = {}
+        self._alike: dict[tuple[object, ...], int] = {}
+        self._along: dict[tuple[object, ...], NumberRegions | None] = {}
         alone = number_regions(tuple(reads), tuple([axiom.formula for axiom in axioms]))
         self._regions = [
             (place, alone[name]) for place, (name, _) in enumerate(subjects) if name in alone
@@ -93,88 +88,63 @@ class _PartTable:
         """The place among ``possible`` of the digits for these values. Raises MissingValueError."""
         known = self._known.get(values)
         if known is None:
-            possible = self._once_per_regions(values)
-            known = self._numbers.setdefault(possible, len(self.possible))
-            if known == len(self.possible):
-                self.possible.append(possible)
             if len(self._known) >= MOST_KNOWN:
                 self._known.clear()
-            self._known[values] = known
+                self._alike.clear()
+            known = self._known[values] = self._once_for_alike(values)
         return known
 
-    def _once_per_regions(self, values: tuple[PartialValue | None, ...]) -> _PossibleDigits:
-        """The possible digits, computed once for numbers compared alone and in the same regions."""
-        if not self._regions:
-            return self._once_per_kind(values)
-        coded: list[object] = list(values)
+    def _once_for_alike(self, values: tuple[PartialValue | None, ...]) -> int:
+        """The number, computed once for numbers in the same regions between limits."""
+        alike: list[object] = list(values)
         for place, regions in self._regions:
-            value = values[place]
-            if isinstance(value, Interval):
-                coded[place] = regions.region(exact(value.low)), regions.region(exact(value.high))
-            elif isinstance(value, int | float):
-                coded[place] = regions.region(exact(value))
-        key = tuple(coded)
-        if key not in self._by_regions:
-            if len(self._by_regions) >= MOST_KNOWN:
-                self._by_regions.clear()
-            self._by_regions[key] = self._once_per_kind(values)
-        return self._by_regions[key]
-
-    def _once_per_kind(self, values: tuple[PartialValue | None, ...]) -> _PossibleDigits:
-        """The possible digits, computed once for intervals with the same changes of reads."""
-        places = [place for place, value in enumerate(values) if isinstance(value, Interval)]
-        if len(places) not in _FEW_INTERVALS or self._axioms:
-            return self._possible(values)
-        others = tuple([None if n in places else value for n, value in enumerate(values)])
-        key = (*places, others)
+            alike[place] = _region(values[place], regions)
+        places = [place for place, value in enumerate(alike) if isinstance(value, Interval)]
+        if len(places) == 1 and not self._axioms:
+            (place,) = places
+            others = (*values[:place], None, *values[place + 1 :])
+            if others not in self._along:
+                self._along[others] = self._regions_along(self._subjects[place], others)
+            along = self._along[others]
+            if along is not None:
+                alike[place] = _region(values[place], along)
+        key = tuple(alike)
         if key not in self._alike:
-            if len(self._alike) >= MOST_KNOWN:
-                self._alike.clear()
-            cuts = self._cuts(places, others)
-            self._alike[key] = None if cuts is None else AlikeIntervals.of(len(places), cuts)
-        alike = self._alike[key]
-        if alike is None:
-            return self._possible(values)
-        kind = alike.kinds.kind(*[value for value in values if isinstance(value, Interval)])
-        if kind not in alike.found:
-            alike.found[kind] = self._possible(values)
-        return alike.found[kind]
+            possible = self._possible(values)
+            self._alike[key] = self._numbers.setdefault(possible, len(self.possible))
+            if self._alike[key] == len(self.possible):
+                self.possible.append(possible)
+        return self._alike[key]
 
-    def _cuts(
-        self, places: Sequence[int], others: Sequence[PartialValue | None]
-    ) -> list[Cut] | None:
-        """The limits with which reads compare the numbers at some places; None if more is unknown.
+    def _regions_along(
+        self, along: Subject, others: Sequence[PartialValue | None]
+    ) -> NumberRegions | None:
+        """The regions in which reads distinguish a number, given the ``others``.
 
-        ``others`` are the values of the other subjects.
+        None if more is unknown.
         """
-        known = {
-            subject: value
-            for place, (subject, value) in enumerate(zip(self._subjects, others, strict=True))
-            if place not in places
-        }
+        known = {x: value for x, value in zip(self._subjects, others, strict=True) if x != along}
         if None in known.values() or not UNKNOWN_TYPES.isdisjoint(map(type, known.values())):
             return None
-        along = [self._subjects[place] for place in places]
-        cuts: list[Cut] = []
+        limits: set[Fraction] = set()
         for read in self._reads:
             if isinstance(read, Read):
                 continue
-            factors, rest = dict.fromkeys(along, Fraction(0)), Fraction(0)
+            factor = rest = Fraction(0)
             for own, term in read.terms:
                 if not isinstance(term, ltl.QuantityTerm):
                     return None
                 subject = term.name, tuple([self._binding[item] for item in term.arguments])
-                if subject in factors:
-                    factors[subject] += own
-                    continue
                 value = known.get(subject)
-                if not isinstance(value, int | float):
+                if subject == along:
+                    factor += own
+                elif isinstance(value, int | float):
+                    rest += own * exact(value)
+                else:
                     return None
-                rest += own * exact(value)
-            cuts += [
-                (tuple(factors.values()), threshold.limit - rest) for threshold in read.thresholds
-            ]
-        return cuts
+            if factor:
+                limits.update((threshold.limit - rest) / factor for threshold in read.thresholds)
+        return NumberRegions(tuple(sorted(limits)))
 
     @cached_property
     def _read_ways(self) -> ReadWays | None:
@@ -241,6 +211,13 @@ class _PartTable:
     def _state(self, values: Sequence[PartialValue | None]) -> StateView:
         given = with_values({}, dict(zip(self._subjects, values, strict=True)))
         return StateView(given, self._objects, self._vocabulary)
+
+
+def _region(value: PartialValue | None, regions: NumberRegions) -> object:
+    """The region of a number, those of an interval's ends; anything else as it is."""
+    if isinstance(value, Interval):
+        return regions.region(exact(value.low)), regions.region(exact(value.high))
+    return regions.region(exact(value)) if isinstance(value, int | float) else value
 
 
 class _Part(NamedTuple):

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import prod
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -29,6 +29,10 @@ from rulec.monitoring.uncertainty.state_letters.completions.completion_search im
     Possible,
     digit_of,
 )
+from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement import (
+    LinearPlane,
+    sample_points,
+)
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     PartialView,
     Subject,
@@ -41,11 +45,6 @@ from rulec.rulebook.rules.axiom_instances import bound_to
 from rulec.trace import Value
 from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.partial_values import Interval, OneOf
-
-if TYPE_CHECKING:
-    from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement import (
-        LinearPlane,
-    )
 
 Digits: TypeAlias = tuple[int, ...]
 """A digit for each read."""
@@ -198,11 +197,6 @@ def _completed(
     if n_discrete > MOST_COMPLETIONS:
         return None
     planes = [plane for link in cluster.links for plane in _planes(link, reads, view)]
-    # Arrangements of planes, 2 ms: only where numbers that are compared are unknown.
-    from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement import (
-        sample_points,
-    )
-
     points = sample_points(bounds, planes)
     if points is None or n_discrete * len(points) > MOST_COMPLETIONS:
         return None
@@ -285,9 +279,4 @@ def _planes_of_sum(
                 for item in items:
                     yield from _planes_in(body, {**environment, variable: item}, view)
     if coefficients:
-        # As above.
-        from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement import (
-            LinearPlane,
-        )
-
         yield from (LinearPlane(coefficients, each) for each in limits)

@@ -1,8 +1,7 @@
 """Sample points that represent all numbers, as far as linear comparisons distinguish them.
 
 Comparisons of sums with limits divide the space of a few unknown numbers into cells (an arrangement
-of hyperplanes). One point of each cell is computed exactly: for two numbers by cutting a rectangle,
-for more by Fourier-Motzkin elimination.
+of hyperplanes). One point of each cell is computed exactly.
 """
 
 from __future__ import annotations
@@ -15,17 +14,10 @@ from math import prod
 from typing import NamedTuple
 
 from rulec.logic.formula import Term
-from rulec.monitoring.uncertainty.state_letters.completions.planar_cells import (
-    PlanarLine,
-    points_of_cells,
-)
-from rulec.witnesses.fourier_motzkin import LinearBound, TooManyBoundsError, solve
+from rulec.monitoring.uncertainty.state_letters.completions.polyhedral_cells import points_of_cells
 
 MOST_POINTS = 1 << 12
 """If there are more cells, no points are computed."""
-
-MOST_BOUNDS = 1 << 15
-"""The most inequalities that elimination may create for the cells of three or more numbers."""
 
 Point = dict[Term, Fraction]
 _Interval = tuple[Fraction, Fraction]
@@ -44,8 +36,7 @@ def sample_points(
     """A point in every cell of an arrangement; the planes themselves are cells, too.
 
     ``bounds`` has for every number the closed interval in which it lies, or None for any number.
-    None if there are more than ``MOST_POINTS`` cells, or if finding them takes more than
-    ``MOST_BOUNDS``.
+    None if there are more than ``MOST_POINTS`` cells, or if these have very many corners.
     """
     if len(bounds) == 1:
         ((number, interval),) = bounds.items()
@@ -55,33 +46,14 @@ def sample_points(
         return None if len(on_line) > MOST_POINTS else [{number: point} for point in on_line]
     distinct = {(frozenset(plane.coefficients.items()), plane.limit): plane for plane in planes}
     cutting = [plane for plane in distinct.values() if _cuts(plane, bounds)]
-    boxed = {number: interval for number, interval in bounds.items() if interval is not None}
-    if len(cutting) <= 1 and len(boxed) == len(bounds):
-        return list(_beside(cutting, boxed))
-    if len(bounds) == 2:
-        return _in_a_plane(bounds, cutting)
     counts = Counter(number for plane in cutting for number, x in plane.coefficients.items() if x)
     shared = {number: interval for number, interval in bounds.items() if counts[number] > 1}
     if len(shared) < len(bounds):
         return _by_shared_numbers(bounds, shared, cutting)
-    within = [
-        bound
-        for number, interval in bounds.items()
-        if interval is not None
-        for bound in (
-            LinearBound({number: Fraction(1)}, interval[1]),
-            LinearBound({number: Fraction(-1)}, -interval[0]),
-        )
-    ]
-    points = []
-    try:
-        for point in _cells(within, cutting, list(bounds), _Work(MOST_BOUNDS)):
-            points.append(point)
-            if len(points) > MOST_POINTS:
-                return None
-    except TooManyBoundsError:
-        return None
-    return points
+    none = Fraction(0)
+    rows = [[*[x.get(number, none) for number in bounds], limit] for x, limit in cutting]
+    points = points_of_cells(list(bounds.values()), rows, MOST_POINTS)
+    return None if points is None else [dict(zip(bounds, x, strict=True)) for x in points]
 
 
 def _by_shared_numbers(
@@ -181,31 +153,6 @@ def _between(least: Point, most: Point, way: Fraction, whole: Fraction) -> Point
     return {number: low + share * (most[number] - low) for number, low in least.items()}
 
 
-class _Work:
-    """Counts the inequalities that elimination makes."""
-
-    def __init__(self, most: int) -> None:
-        self._left = most
-
-    def __call__(self, n_bounds: int) -> None:
-        self._left -= n_bounds
-        if self._left < 0:
-            raise TooManyBoundsError
-
-
-def _in_a_plane(
-    bounds: Mapping[Term, _Interval | None], planes: Sequence[LinearPlane]
-) -> list[Point] | None:
-    first, second = bounds
-    none = Fraction(0)
-    lines = [
-        PlanarLine(coefficients.get(first, none), coefficients.get(second, none), limit)
-        for coefficients, limit in planes
-    ]
-    points = points_of_cells((bounds[first], bounds[second]), lines, MOST_POINTS)
-    return None if points is None else [{first: x, second: y} for x, y in points]
-
-
 def _cuts(plane: LinearPlane, bounds: Mapping[Term, _Interval | None]) -> bool:
     """Whether the sum reaches the limit somewhere within the bounds."""
     intervals = [bounds.get(number) for number, factor in plane.coefficients.items() if factor]
@@ -228,21 +175,6 @@ def _sum(plane: LinearPlane, point: Point) -> Fraction:
     return sum(terms, Fraction(0))
 
 
-def _beside(planes: Sequence[LinearPlane], box: Mapping[Term, _Interval]) -> Iterator[Point]:
-    """Points of a box on both sides of its only plane and on it; any point if there is no plane."""
-    if not planes:
-        yield {number: low for number, (low, _) in box.items()}
-        return
-    (plane,) = planes
-    least, most = _corners(plane, box)
-    low, high = _sum(plane, least), _sum(plane, most)
-    if low < plane.limit:
-        yield least
-    yield _between(least, most, plane.limit - low, high - low)
-    if high > plane.limit:
-        yield most
-
-
 def _on_a_line(limits: Set[Fraction], interval: tuple[Fraction, Fraction] | None) -> list[Fraction]:
     """The limits within the interval, and a number of it on each side of them."""
     if interval is None:
@@ -253,26 +185,3 @@ def _on_a_line(limits: Set[Fraction], interval: tuple[Fraction, Fraction] | None
     ends = [low, *inner, high]
     beside = [(first + second) / 2 for first, second in pairwise(ends) if first < second]
     return [*inner, *beside] or [low]
-
-
-def _cells(
-    within: list[LinearBound],
-    planes: Sequence[LinearPlane],
-    numbers: Sequence[Term],
-    work: _Work,
-) -> Iterator[Point]:
-    point = solve(within, numbers, {}, any_number=True, on_elimination=work)
-    if point is None:
-        return
-    if not planes:
-        yield point
-        return
-    (coefficients, limit), *others = planes
-    opposite = {number: -factor for number, factor in coefficients.items()}
-    below, above = LinearBound(coefficients, limit), LinearBound(opposite, -limit)
-    for side in (
-        [LinearBound(coefficients, limit, strict=True)],
-        [below, above],
-        [LinearBound(opposite, -limit, strict=True)],
-    ):
-        yield from _cells([*within, *side], others, numbers, work)
