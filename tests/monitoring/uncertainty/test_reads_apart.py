@@ -21,6 +21,7 @@ from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
 from rulec.monitoring.uncertainty.state_letters.joint_values import alike_values
 from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
 from rulec.monitoring.uncertainty.state_letters.reads_apart import KnownParts
+from rulec.monitoring.uncertainty.state_letters.related_facts import instances_of
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
@@ -53,7 +54,7 @@ def together(reads, rule, objects, vocabulary, values):
     digits = [read_digits(read).in_state(binding, state) for read in own]
     if all(one & (one - 1) == 0 for one in digits):
         return (tuple(digits),), True
-    joint = joint_digits(own, binding, state, reads._axioms)
+    joint = joint_digits(own, binding, state, instances_of(reads._axioms, state))
     return tuple(tuple(1 << n for n in one) for one in sorted(joint.digits)), joint.exact
 
 
@@ -211,8 +212,8 @@ def agree_on_who_counts(chance, compiled, rule, objects):
         return False
     binding = {variable.name: x for variable, x in zip(rule.variables, chosen, strict=True)}
     asked = rule, binding, compiled.axioms, NothingKnown(objects, compiled.vocabulary)
-    together, apart = EntangledReads(*asked), EntangledReads(*asked, counted_parts=KnownParts())
-    if apart._counts is None:
+    together, apart = EntangledReads(*asked), EntangledReads(*asked, known=KnownParts())
+    if apart._apart is None:
         return False
     declared = [compiled.vocabulary.declarations[name] for name, _ in apart.subjects]
     for _ in range(12):

@@ -20,7 +20,6 @@ from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.number_regions import number_regions
 from rulec.monitoring.uncertainty.state_letters.completions.completions import joint_digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import (
-    CountsApart,
     count_in,
     crowd_of,
 )
@@ -36,6 +35,7 @@ from rulec.monitoring.uncertainty.state_letters.reads_apart import (
 )
 from rulec.monitoring.uncertainty.state_letters.related_facts import (
     fits_or_not,
+    instances_of,
     is_of_one,
     keeps_to_its_objects,
     related_facts,
@@ -46,8 +46,8 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     subjects_in,
     subjects_of_read,
 )
-from rulec.rulebook.rules.axiom_instances import bound_to, counts
-from rulec.vocabulary import Vocabulary
+from rulec.rulebook.rules.axiom_instances import counts
+from rulec.vocabulary import Quantity, Vocabulary
 from rulec.vocabulary.partial_values import PartialValue
 
 MOST_KNOWN = 1 << 14
@@ -95,17 +95,17 @@ class EntangledReads:
         axioms: Sequence[CompiledAxiom],
         everybody: NothingKnown,
         *,
-        local_parts: KnownParts | None = None,
-        counted_parts: KnownParts | None = None,
+        known: KnownParts | None = None,
+        is_local: bool = False,
     ) -> None:
         reads = rule.machine.reads
-        self.is_local = is_local = local_parts is not None
+        self.is_local = is_local
         self._binding = binding
         self._axioms = axioms = related_facts(names_read_by(rule), axioms)
         self._everybody = everybody
         deciding = _deciding_subjects if is_local else subjects_of_read
         about = [set(deciding(read, binding, everybody)) for read in reads]
-        facts = set(_subjects_of(axioms, everybody))
+        facts = set[Subject]().union(*[x.about(everybody) for x in instances_of(axioms, everybody)])
         places = Counter(subject for own in (*about, facts) for subject in own)
         self.numbers = tuple(
             n
@@ -127,21 +127,16 @@ class EntangledReads:
             bound = frozenset(binding.values())
             self._crowd = crowd_of(self._reads, self.subjects, bound, everybody.objects)
         self._apart = None
-        if local_parts is not None:
+        if known is not None and (is_local or self._are_few_words()):
             self._apart = ReadsApart(
-                self._reads, self.subjects, binding, axioms, everybody, known=local_parts
+                self._reads,
+                self.subjects,
+                binding,
+                axioms,
+                everybody,
+                known=known,
+                counts_divided=not is_local,
             )
-        self._counts = None
-        if counted_parts is not None and len(everybody.objects) <= MOST_COUNTED:
-            with suppress(LookupError):
-                self._counts = CountsApart(
-                    self._reads,
-                    self.subjects,
-                    binding,
-                    axioms,
-                    everybody,
-                    known=counted_parts.together,
-                )
         self.regions = number_regions(
             tuple(self._reads), tuple([axiom.formula for axiom in axioms])
         )
@@ -149,6 +144,15 @@ class EntangledReads:
         self._numbers: dict[tuple[Letters, bool], int] = {}
         self._known: dict[tuple[object, ...], int] = {}
         self._places: dict[tuple[int, ...], int] = {}
+
+    def _are_few_words(self) -> bool:
+        """Whether each object of a few may be examined by itself, being counted by words."""
+        declared = self._everybody.vocabulary.declarations
+        return (
+            len(self._everybody.objects) <= MOST_COUNTED
+            and not any(isinstance(declared[name], Quantity) for name, _ in self.subjects)
+            and all(isinstance(read, Read) or _is_plain(read) for read in self._reads)
+        )
 
     def subjects_of(self, objects: Mapping[str, str]) -> list[Subject]:
         """The subjects for a binding's objects."""
@@ -165,10 +169,10 @@ class EntangledReads:
         """
         if there is None:
             return self._place_of(values, values, self._everybody.objects)
-        if self._counts is not None and len(there) == len(self._everybody.objects):
+        if self._apart is not None and len(there) == len(self._everybody.objects):
             # Missing values and contradictions of axioms are found below.
-            with suppress(LookupError):
-                return self._place((self._counts.letters(values), True))
+            with suppress(LookupError, MissingValueError):
+                return self._place(self._apart.letters_of(values))
         if self._crowd is None:
             return self._place_of((values, *there), values, there)
         if values:
@@ -217,7 +221,7 @@ class EntangledReads:
     def _letters(
         self, values: Sequence[PartialValue | None], there: Mapping[str, str]
     ) -> tuple[Letters, bool]:
-        if self._apart is not None:
+        if self._apart is not None and self.is_local:
             # The first missing value is found below.
             with suppress(MissingValueError):
                 return self._apart.letters(self._apart.key(values))
@@ -226,15 +230,10 @@ class EntangledReads:
         digits = [read.in_state(self._binding, state) for read in self._ready]
         if all(own & (own - 1) == 0 for own in digits):
             return (tuple(digits),), True
-        joint = joint_digits(self._reads, self._binding, state, self._axioms)
+        facts = instances_of(self._axioms, state)
+        joint = joint_digits(self._reads, self._binding, state, facts)
         letters = [tuple([1 << digit for digit in letter]) for letter in sorted(joint.digits)]
         return tuple(letters), joint.exact
-
-
-def _subjects_of(axioms: Sequence[CompiledAxiom], everybody: NothingKnown) -> Iterator[Subject]:
-    for axiom in axioms:
-        for environment in bound_to(axiom.variables, everybody.objects, everybody.vocabulary):
-            yield from subjects_in(axiom.formula, environment, everybody)
 
 
 def local_reads(rule: CompiledRule, rulebook: CompiledRulebook) -> EntangledReads | None:
@@ -268,7 +267,9 @@ def _local_reads(
         return None
     own = {variable.name: variable.type for variable in rule.variables}
     binding = {name: name for name in own}
-    return EntangledReads(rule, binding, facts, NothingKnown(own, vocabulary), local_parts=parts)
+    return EntangledReads(
+        rule, binding, facts, NothingKnown(own, vocabulary), known=parts, is_local=True
+    )
 
 
 def names_read_by(rule: CompiledRule) -> frozenset[str]:
@@ -281,8 +282,13 @@ def _is_coarse(read: Read | NumberRead) -> bool:
     count = count_in(read)
     if count is None or not isinstance(read, NumberRead):
         return False
-    is_plain = len(read.terms) == 1 and len(read.thresholds) == 1
-    return not is_plain or counts(count.body)
+    return len(read.thresholds) > 1 or not _is_plain(read)
+
+
+def _is_plain(read: NumberRead) -> bool:
+    """Whether a number is that of the objects with some values."""
+    count = count_in(read)
+    return count is not None and len(read.terms) == 1 and not counts(count.body)
 
 
 def _deciding_subjects(

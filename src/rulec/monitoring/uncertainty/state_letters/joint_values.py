@@ -15,7 +15,6 @@ from operator import itemgetter, or_
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
-from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import reads_in
@@ -23,14 +22,13 @@ from rulec.logic.kleene import holds
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions.completions import Digits
 from rulec.monitoring.uncertainty.state_letters.read_digits import ReadDigits
+from rulec.monitoring.uncertainty.state_letters.related_facts import FactInstance
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     MissingValueError,
-    PartialView,
     Subject,
     subjects_in,
     subjects_of_read,
 )
-from rulec.rulebook.rules.axiom_instances import bound_to
 from rulec.trace import Value
 from rulec.vocabulary import Enumeration, Quantity, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, OneOf, PartialValue
@@ -47,14 +45,6 @@ Bits: TypeAlias = int
 
 Alike: TypeAlias = tuple[tuple[Value, ...], ...]
 """The values of a word or truth value, in groups that are not distinguished."""
-
-
-class FactInstance(NamedTuple):
-    """An axiom for the objects of an ``environment``, and what it is ``about``."""
-
-    formula: ltl.Formula
-    environment: Mapping[str, str]
-    about: frozenset[Subject]
 
 
 class JointValues:
@@ -103,16 +93,15 @@ class JointValues:
         places = {subject: place for place, subject in enumerate(subjects)}
         self._facts: list[tuple[Sequence[int], Bits]] = []
         for fact in facts:
-            about = [places[subject] for subject in fact.about]
+            about = [places[subject] for subject in fact.about(self._nobody)]
             kept = dict(self.truths(fact.formula, fact.environment)).get(1, 0)
             self._facts.append((about, kept))
             self._allowed &= kept
 
-    def ways(self, values: Sequence[PartialValue | None], *, strict: bool = False) -> Bits:
+    def ways(self, values: Sequence[PartialValue | None]) -> Bits:
         """The ways that the axioms allow and that have these values of the subjects.
 
-        Axioms about known values are assumed to hold, unless ``strict``. Raises LookupError if a
-        value is missing.
+        Axioms about known values are assumed to hold. Raises LookupError if a value is missing.
         """
         ways = self._all
         for own, value in zip(self._of_places, values, strict=True):
@@ -123,7 +112,7 @@ class JointValues:
                 known = own[value] = reduce(or_, [own[single] for single in value.values])
             ways &= known
         allowed = ways & self._allowed
-        if allowed or strict:
+        if allowed:
             return allowed
         for places, kept in self._facts:
             if any(type(values[place]) in UNKNOWN_TYPES for place in places):
@@ -180,14 +169,12 @@ class ReadWays(NamedTuple):
     values: JointValues
     digits: tuple[Sequence[tuple[int, Bits]], ...]
 
-    def digits_of(
-        self, values: Sequence[PartialValue | None], *, strict: bool = False
-    ) -> frozenset[Digits]:
+    def digits_of(self, values: Sequence[PartialValue | None]) -> frozenset[Digits]:
         """The possible joint digits of the reads for these values of the subjects.
 
-        Raises LookupError if a value is missing or no digits are possible; ``strict`` as above.
+        Raises LookupError if a value is missing or no digits are possible.
         """
-        ways = self.values.ways(values, strict=strict)
+        ways = self.values.ways(values)
         if not ways:
             raise LookupError
         partial_digits: list[tuple[Digits, Bits]] = [((), ways)]
@@ -209,13 +196,6 @@ def read_ways(
     Raises LookupError if they depend on more than the values.
     """
     return ReadWays(values, tuple([values.digits(read, binding) for read in reads]))
-
-
-def instances_of(axiom: CompiledAxiom, everybody: PartialView) -> Iterator[FactInstance]:
-    """An instance of an axiom for each choice of its objects."""
-    for environment in bound_to(axiom.variables, everybody.objects, everybody.vocabulary):
-        about = frozenset(subjects_in(axiom.formula, environment, everybody))
-        yield FactInstance(axiom.formula, environment, about)
 
 
 def alike_values(

@@ -84,7 +84,7 @@ def letters_of_rule(
     key = rule.name, classes, tuple(objects.values())
     if key not in bound:
         reads = EntangledReads(
-            rule, objects, rulebook.axioms, everybody, counted_parts=known_parts(rulebook)
+            rule, objects, rulebook.axioms, everybody, known=known_parts(rulebook)
         )
         bound[key] = RuleLetters(classes, rule, reads)
     return bound[key]

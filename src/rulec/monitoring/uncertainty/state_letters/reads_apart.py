@@ -1,231 +1,60 @@
-"""Entangled reads, divided into independent parts.
+"""Reads that may depend on each other, divided into independent parts.
 
 Two reads are in the same part if they depend on a common value, or if axioms link the values of one
 to those of the other. So a part's reads are determined by the values of its own subjects, which
-have far fewer combinations than those of all subjects together.
+have far fewer combinations than those of all subjects together. A count is divided further, into a
+read for each object that may count.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import cached_property
 from itertools import product
+from math import prod
 from typing import Any, NamedTuple, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
-from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.automata.thresholds import exact
+from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
 from rulec.logic import formula as ltl
-from rulec.monitoring.state_view import StateView, with_values
-from rulec.monitoring.uncertainty.number_regions import NumberRegions, number_regions
-from rulec.monitoring.uncertainty.state_letters.completions.completions import (
-    Digits,
-    joint_digits,
-)
+from rulec.monitoring.uncertainty.state_letters.completions.completions import Digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import (
     MOST_KNOWN,
-    JointValues,
-    ReadWays,
-    alike_values,
-    instances_of,
     joined_sets,
-    read_ways,
     values_at,
 )
-from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, read_digits
+from rulec.monitoring.uncertainty.state_letters.part_table import PartTable
+from rulec.monitoring.uncertainty.state_letters.read_digits import Cube, Letters
+from rulec.monitoring.uncertainty.state_letters.related_facts import FactInstance, instances_of
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     PartialView,
     Subject,
+    candidates,
+    subjects_in,
     subjects_of_read,
 )
-from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValue
+from rulec.vocabulary.partial_values import UNKNOWN, OneOf, PartialValue
+from rulec.vocabulary.vocabulary_model import values_of
+
+MOST_SUPPOSED = 1 << 8
+"""How many joint values of the world are supposed one after the other."""
 
 
-class _PossibleDigits(NamedTuple):
-    """The joint digits of a part's reads; ``exact`` if each of them is possible.
+class _Piece(NamedTuple):
+    """What a read is ``about`` or, for a count, what decides whether an ``item`` counts."""
 
-    ``known`` are their digits, if each read by itself has only one.
-    """
-
-    known: Digits | None
-    joint: frozenset[Digits]
-    exact: bool
-
-
-class _PartTable:
-    """The possible digits of some reads by the values of their ``subjects``, numbered."""
-
-    def __init__(
-        self,
-        reads: Sequence[Read | NumberRead],
-        subjects: Sequence[Subject],
-        binding: Mapping[str, str],
-        axioms: Sequence[CompiledAxiom],
-        objects: Mapping[str, str],
-        *,
-        vocabulary: Vocabulary,
-        together: dict[object, Any],
-    ) -> None:
-        self._reads, self._ready = reads, [read_digits(read) for read in reads]
-        self._subjects, self._binding, self._axioms = subjects, binding, axioms
-        self._objects, self._vocabulary, self._together = objects, vocabulary, together
-        self._count = any(count_in(read) for read in reads)
-        self.possible: list[_PossibleDigits] = []
-        self._numbers: dict[_PossibleDigits, int] = {}
-        self._known: dict[tuple[object, ...], int] = {}
-        self._alike: dict[tuple[object, ...], int] = {}
-        self._along: dict[tuple[object, ...], NumberRegions | None] = {}
-        alone = number_regions(tuple(reads), tuple([axiom.formula for axiom in axioms]))
-        self._regions = [
-            (place, alone[name]) for place, (name, _) in enumerate(subjects) if name in alone
-        ]
-
-    def number(self, values: tuple[PartialValue | None, ...]) -> int:
-        """The place among ``possible`` of the digits for these values. Raises MissingValueError."""
-        known = self._known.get(values)
-        if known is None:
-            if len(self._known) >= MOST_KNOWN:
-                self._known.clear()
-                self._alike.clear()
-            known = self._known[values] = self._once_for_alike(values)
-        return known
-
-    def _once_for_alike(self, values: tuple[PartialValue | None, ...]) -> int:
-        """The number, computed once for numbers in the same regions between limits."""
-        alike: list[object] = list(values)
-        for place, regions in self._regions:
-            alike[place] = _region(values[place], regions)
-        places = [place for place, value in enumerate(alike) if isinstance(value, Interval)]
-        if len(places) == 1 and not self._axioms:
-            (place,) = places
-            others = (*values[:place], None, *values[place + 1 :])
-            if others not in self._along:
-                self._along[others] = self._regions_along(self._subjects[place], others)
-            along = self._along[others]
-            if along is not None:
-                alike[place] = _region(values[place], along)
-        key = tuple(alike)
-        if key not in self._alike:
-            possible = self._possible(values)
-            self._alike[key] = self._numbers.setdefault(possible, len(self.possible))
-            if self._alike[key] == len(self.possible):
-                self.possible.append(possible)
-        return self._alike[key]
-
-    def _regions_along(
-        self, along: Subject, others: Sequence[PartialValue | None]
-    ) -> NumberRegions | None:
-        """The regions in which reads distinguish a number, given the ``others``.
-
-        None if more is unknown.
-        """
-        known = {x: value for x, value in zip(self._subjects, others, strict=True) if x != along}
-        if None in known.values() or not UNKNOWN_TYPES.isdisjoint(map(type, known.values())):
-            return None
-        limits: set[Fraction] = set()
-        for read in self._reads:
-            if isinstance(read, Read):
-                continue
-            factor = rest = Fraction(0)
-            for own, term in read.terms:
-                if not isinstance(term, ltl.QuantityTerm):
-                    return None
-                subject = term.name, tuple([self._binding[item] for item in term.arguments])
-                value = known.get(subject)
-                if subject == along:
-                    factor += own
-                elif isinstance(value, int | float):
-                    rest += own * exact(value)
-                else:
-                    return None
-            if factor:
-                limits.update((threshold.limit - rest) / factor for threshold in read.thresholds)
-        return NumberRegions(tuple(sorted(limits)))
-
-    @cached_property
-    def _read_ways(self) -> ReadWays | None:
-        """The reads by the joint values of their subjects, if these are few words."""
-        vocabulary = self._vocabulary
-        alike = alike_values(
-            dict.fromkeys(name for name, _ in self._subjects),
-            self._reads,
-            [axiom.formula for axiom in self._axioms],
-            vocabulary,
-        )
-        key = self._subjects, self._axioms, (*self._objects.items(),), (*alike.items(),)
-        with suppress(LookupError):
-            if key not in self._together:
-                self._together[key] = None
-                everybody = StateView({}, self._objects, vocabulary)
-                of_all = [fact for axiom in self._axioms for fact in instances_of(axiom, everybody)]
-                facts = [fact for fact in of_all if not fact.about.isdisjoint(self._subjects)]
-                self._together[key] = JointValues(
-                    self._subjects, facts, self._objects, vocabulary, alike
-                )
-            values = self._together[key]
-            return None if values is None else read_ways(self._ready, self._binding, values)
-        return None
-
-    def _possible(self, values: Sequence[PartialValue | None]) -> _PossibleDigits:
-        if self._read_ways is not None:
-            # Missing values and contradictions of axioms are found below.
-            with suppress(LookupError):
-                joint = self._read_ways.digits_of(values)
-                known = next(iter(joint)) if len(joint) == 1 and self._are_known(values) else None
-                return _PossibleDigits(known, joint, True)
-        state = self._state(values)
-        digits = [read.in_state(self._binding, state) for read in self._ready]
-        known = None
-        if all(own & (own - 1) == 0 for own in digits):
-            known = tuple([own.bit_length() - 1 for own in digits])
-            if UNKNOWN_TYPES.isdisjoint(map(type, values)):
-                return _PossibleDigits(known, frozenset({known}), True)
-        possible = joint_digits(self._reads, self._binding, state, self._axioms)
-        return _PossibleDigits(known, possible.digits, possible.exact)
-
-    def _are_known(self, values: Sequence[PartialValue | None]) -> bool:
-        """Whether each read by itself has only one digit, regardless of axioms."""
-        unknown = [
-            read
-            for read, places in zip(self._ready, self._places, strict=True)
-            if any(type(values[place]) in UNKNOWN_TYPES for place in places)
-        ]
-        if not unknown:
-            return True
-        state = self._state(values)
-        digits = (read.in_state(self._binding, state) for read in unknown)
-        return all(own & (own - 1) == 0 for own in digits)
-
-    @cached_property
-    def _places(self) -> Sequence[Sequence[int]]:
-        """For each read the places of its subjects."""
-        places = {subject: place for place, subject in enumerate(self._subjects)}
-        everybody = StateView({}, self._objects, self._vocabulary)
-        of_reads = [subjects_of_read(read, self._binding, everybody) for read in self._reads]
-        return [[places[subject] for subject in set(own)] for own in of_reads]
-
-    def _state(self, values: Sequence[PartialValue | None]) -> StateView:
-        given = with_values({}, dict(zip(self._subjects, values, strict=True)))
-        return StateView(given, self._objects, self._vocabulary)
-
-
-def _region(value: PartialValue | None, regions: NumberRegions) -> object:
-    """The region of a number, those of an interval's ends; anything else as it is."""
-    if isinstance(value, Interval):
-        return regions.region(exact(value.low)), regions.region(exact(value.high))
-    return regions.region(exact(value)) if isinstance(value, int | float) else value
+    read: int
+    item: str | None
+    about: frozenset[Subject]
 
 
 class _Part(NamedTuple):
-    """The places of some reads among all, a getter of their subjects' values, and their table."""
+    """The places of the reads of some pieces, a getter of their values, and their table."""
 
     reads: tuple[int, ...]
     values: Callable[[Any], tuple[Any, ...]]
-    table: _PartTable
+    table: PartTable
 
 
 PartNumber: TypeAlias = "tuple[Callable[[Any], tuple[Any, ...]], Callable[[tuple[Any, ...]], int]]"
@@ -242,16 +71,19 @@ class KnownParts:
     """
 
     def __init__(self) -> None:
-        self.tables: dict[object, _PartTable] = {}
+        self.tables: dict[object, PartTable] = {}
         self.together: dict[object, Any] = {}
 
 
 class ReadsApart:
     """The reads of one rule that depend on these ``subjects``, in parts.
 
-    They are evaluated for the objects of a ``binding``, with ``everybody`` possibly present. Rules
-    with a common part share its ``known`` results. ``numbers`` has for each part a getter of its
-    subjects' values, and a function that gives their number in a ``key``.
+    They are evaluated for the objects of a ``binding``, with ``everybody`` present. Parts that
+    differ only in the names of objects share their ``known`` results. ``numbers`` has for each part
+    a getter of its subjects' values, and a function that gives their number in a ``key``.
+
+    ``counts_divided``: what decides whether an object counts is a part of its own, and the values
+    of the world in such counts are supposed, one choice after the other; they must be words.
     """
 
     def __init__(
@@ -263,12 +95,22 @@ class ReadsApart:
         everybody: PartialView,
         *,
         known: KnownParts,
+        counts_divided: bool = False,
     ) -> None:
-        self._binding, self._everybody = binding, everybody
-        self._n_reads = len(reads)
-        self._parts = tuple(self._apart(reads, subjects, axioms, known))
+        self._reads, self._subjects, self._binding = reads, subjects, binding
+        self._everybody, self._known_parts = everybody, known
+        pieces = [piece for n in range(len(reads)) for piece in self._pieces(n, counts_divided)]
+        self._counted = frozenset([piece.read for piece in pieces if piece.item is not None])
+        declared = everybody.vocabulary.declarations
+        world = {subject for piece in pieces if piece.item for subject in piece.about}
+        self._given = {
+            place: values_of(declared[subject[0]])
+            for place, subject in enumerate(subjects)
+            if subject in world and not subject[1]
+        }
+        self._parts = tuple(self._apart(pieces, list(instances_of(axioms, everybody))))
         self.numbers = tuple([(part.values, part.table.number) for part in self._parts])
-        self._letters: dict[tuple[int, ...], tuple[Letters, bool]] = {}
+        self._letters: dict[tuple[tuple[int, ...], bool], tuple[Letters, bool]] = {}
 
     def key(self, values: Sequence[PartialValue | None]) -> tuple[int, ...]:
         """The key of the letters for these values of the subjects.
@@ -277,78 +119,151 @@ class ReadsApart:
         """
         return tuple([number(pick(values)) for pick, number in self.numbers])
 
-    def letters(self, key: tuple[int, ...]) -> tuple[Letters, bool]:
-        """The joint letters of a key, and whether each of them is possible."""
-        known = self._letters.get(key)
+    def letters(self, key: tuple[int, ...], *, supposed: bool = False) -> tuple[Letters, bool]:
+        """The joint letters of a key, and whether each of them is possible.
+
+        Unless values are ``supposed``, a state whose reads are all known is taken to be possible.
+        """
+        known = self._letters.get((key, supposed))
         if known is None:
-            known = self._letters[key] = self._together(key)
+            if len(self._letters) >= MOST_KNOWN:
+                self._letters.clear()
+            parts = [part.table.possible[n] for part, n in zip(self._parts, key, strict=True)]
+            sure = [[own.known] for own in parts if own.known is not None]
+            if supposed or len(sure) < len(parts):
+                known = self._joint([own.joint for own in parts]), all(own.exact for own in parts)
+            else:
+                known = self._joint(sure), True
+            self._letters[key, supposed] = known
         return known
 
-    def _together(self, key: Sequence[int]) -> tuple[Letters, bool]:
-        parts = [part.table.possible[n] for part, n in zip(self._parts, key, strict=True)]
-        sure = [own.known for own in parts]
-        if None not in sure:
-            return (self._cube([own for own in sure if own is not None]),), True
-        letters = [self._cube(chosen) for chosen in product(*[own.joint for own in parts])]
+    def letters_of(self, values: Sequence[PartialValue | None]) -> tuple[Letters, bool]:
+        """The joint letters for these values of the subjects, and whether each is possible.
+
+        Raises LookupError if none is, or if too many values of the world are unknown.
+        """
+        options = [_may_be(values[place], own) for place, own in self._given.items()]
+        n_ways = prod(map(len, options))
+        if n_ways == 1:
+            return self.letters(self.key(values))
+        if n_ways > MOST_SUPPOSED:
+            raise LookupError
+        supposed, joint, is_exact = list(values), set[Cube](), True
+        for chosen in product(*options):
+            for place, value in zip(self._given, chosen, strict=True):
+                supposed[place] = value
+            letters, own_exact = self.letters(self.key(supposed), supposed=True)
+            joint.update(letters)
+            is_exact = is_exact and own_exact
+        if not joint:
+            raise LookupError
+        return tuple(sorted(joint)), is_exact
+
+    def _joint(self, sets: Sequence[Iterable[Digits]]) -> Letters:
+        """The joint letters of all reads, from the possible digits of the parts."""
+        sums = {(0,) * len(self._reads)}
+        for part, own in zip(self._parts, sets, strict=True):
+            sums = {_added(before, part.reads, digits) for before in sums for digits in own}
+        cubes = {tuple([1 << self._digit(n, own) for n, own in enumerate(each)]) for each in sums}
         # Each cube has one bit per read, so sorting gives the order of digits.
-        return tuple(sorted(letters)), all(own.exact for own in parts)
+        return tuple(sorted(cubes))
 
-    def _cube(self, digits: Sequence[Digits]) -> tuple[int, ...]:
-        cube = [0] * self._n_reads
-        for part, own in zip(self._parts, digits, strict=True):
-            for place, digit in zip(part.reads, own, strict=True):
-                cube[place] = 1 << digit
-        return tuple(cube)
+    def _digit(self, number: int, value: int) -> int:
+        """The digit of a read, whose parts have this sum."""
+        read = self._reads[number]
+        if number not in self._counted or isinstance(read, Read):
+            return value
+        return read.digit(read.terms[0][0] * value)
 
-    def _apart(
-        self,
-        reads: Sequence[Read | NumberRead],
-        subjects: Sequence[Subject],
-        axioms: Sequence[CompiledAxiom],
-        known: KnownParts,
-    ) -> Iterator[_Part]:
-        everybody = self._everybody
-        of_reads = [frozenset(subjects_of_read(read, self._binding, everybody)) for read in reads]
-        of_facts = [
-            (axiom, own) for axiom in axioms for _, _, own in instances_of(axiom, everybody)
-        ]
-        apart = joined_sets([*of_reads, *[own for _, own in of_facts]])
-        # Reads that depend on nothing form one more part.
+    def _pieces(self, number: int, counts_divided: bool) -> Iterator[_Piece]:
+        read, everybody = self._reads[number], self._everybody
+        count = count_in(read) if counts_divided else None
+        if count is None:
+            about = subjects_of_read(read, self._binding, everybody)
+            yield _Piece(number, None, frozenset(about))
+            return
+        for item in candidates(count, everybody):
+            inner = {**self._binding, count.variable: item}
+            yield _Piece(number, item, frozenset(subjects_in(count.body, inner, everybody)))
+
+    def _apart(self, pieces: Sequence[_Piece], facts: Sequence[FactInstance]) -> Iterator[_Part]:
+        subjects, given = self._subjects, {self._subjects[place] for place in self._given}
+        of_facts = [(fact, fact.about(self._everybody)) for fact in facts]
+        of_facts = [own for own in of_facts if not own[1].isdisjoint(subjects)]
+        apart = joined_sets([*[x.about - given for x in pieces], *[x - given for _, x in of_facts]])
+        # What depends on nothing, or only on what is given, forms one more part.
         for own in [*apart, frozenset[Subject]()]:
-            members = tuple([n for n, about in enumerate(of_reads) if about & own or about == own])
-            if not members:
-                continue
-            facts = tuple(dict.fromkeys([axiom for axiom, about in of_facts if about & own]))
-            places = [place for place, subject in enumerate(subjects) if subject in own]
-            table = self._table(
-                tuple([reads[n] for n in members]),
-                tuple([subjects[place] for place in places]),
-                facts,
-                known,
-            )
-            yield _Part(members, values_at(places), table)
+            members = [x for x in pieces if x.about & own or (x.about <= given and not own)]
+            bearing = [x for x in of_facts if x[1] & own or (x[1] <= given and not own)]
+            if members or (bearing and given):
+                there = own.union(*[x.about for x in members], *[x for _, x in bearing])
+                places = [place for place, subject in enumerate(subjects) if subject in there]
+                named = [subjects[place] for place in places]
+                table = self._table(members, named, [fact for fact, _ in bearing])
+                yield _Part(tuple([piece.read for piece in members]), values_at(places), table)
 
     def _table(
-        self,
-        reads: tuple[Read | NumberRead, ...],
-        subjects: tuple[Subject, ...],
-        facts: tuple[CompiledAxiom, ...],
-        known: KnownParts,
-    ) -> _PartTable:
-        binding, objects = self._binding, self._everybody.objects
-        is_of_world = not any(items for _, items in subjects) and not any(map(count_in, reads))
-        if is_of_world and not any(fact.variables for fact in facts):
-            binding, objects = {}, {}
-        key = reads, subjects, facts, (*binding.items(),), (*objects.items(),)
-        tables, vocabulary = known.tables, self._everybody.vocabulary
+        self, pieces: Sequence[_Piece], subjects: Sequence[Subject], facts: Sequence[FactInstance]
+    ) -> PartTable:
+        """The table of a part, with its objects numbered so that equal parts have one."""
+        binding, everybody = self._binding, self._everybody
+        items = [item for _, items in subjects for item in items]
+        items += [item for fact in facts for item in fact.environment.values()]
+        items += [piece.item for piece in pieces if piece.item is not None]
+        if items or any(count_in(self._reads[piece.read]) for piece in pieces):
+            items += binding.values()
+        else:
+            binding = {}
+        names = {item: str(n) for n, item in enumerate(dict.fromkeys(items))}
+
+        def bound(environment: Mapping[str, str]) -> dict[str, str]:
+            return {variable: names[item] for variable, item in environment.items()}
+
+        about = tuple([(name, tuple([names[item] for item in items])) for name, items in subjects])
+        reads = [
+            self._reads[read] if item is None else _one_counts(self._reads[read], names[item])
+            for read, item, _ in pieces
+        ]
+        # Those who may count are variables, too, which have no such names.
+        own = bound(binding) | {name: name for name in names.values()}
+        instances = [FactInstance(formula, bound(chosen)) for formula, chosen in facts]
+        objects = {name: everybody.objects[item] for item, name in names.items()}
+        formulas = tuple([(formula, *chosen.items()) for formula, chosen in instances])
+        key = tuple(reads), about, formulas, (*own.items(),), (*objects.items(),)
+        tables, together = self._known_parts.tables, self._known_parts.together
         if key not in tables:
-            tables[key] = _PartTable(
+            tables[key] = PartTable(
                 reads,
-                subjects,
-                binding,
-                facts,
+                about,
+                own,
+                instances,
                 objects,
-                vocabulary=vocabulary,
-                together=known.together,
+                vocabulary=everybody.vocabulary,
+                together=together,
             )
         return tables[key]
+
+
+def _one_counts(read: Read | NumberRead, item: str) -> NumberRead:
+    """Whether an object counts, as a read."""
+    count = count_in(read)
+    assert count is not None, "the read is divided because it is a count"
+    body = ltl.Binary(ltl.BinaryOperator.AND, ltl.Same(count.variable, item), count.body)
+    only = ltl.Count(count.variable, count.type, body)
+    return NumberRead(((Fraction(1), only),), (Threshold(Fraction(1), inclusive=True),))
+
+
+def _added(before: Digits, reads: Sequence[int], digits: Digits) -> Digits:
+    after = list(before)
+    for read, digit in zip(reads, digits, strict=True):
+        after[read] += digit
+    return tuple(after)
+
+
+def _may_be(value: PartialValue | None, values: Sequence[Any]) -> Sequence[PartialValue | None]:
+    """The values that a word or truth value may have, given what is known of ``value``.
+
+    They remain unknown values, so that axioms about them have to hold.
+    """
+    among = values if value is UNKNOWN else value.values if isinstance(value, OneOf) else None
+    return [value] if among is None else [OneOf(frozenset({own})) for own in among]

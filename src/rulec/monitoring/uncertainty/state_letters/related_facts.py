@@ -2,15 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
+from typing import NamedTuple
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_of, reads_in
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
+    PartialView,
+    Subject,
+    subjects_in,
+)
 from rulec.rulebook.rulebook_model import Variable
-from rulec.rulebook.rules.axiom_instances import counts
+from rulec.rulebook.rules.axiom_instances import bound_to, counts
 from rulec.vocabulary import Vocabulary
+
+
+class FactInstance(NamedTuple):
+    """An axiom for the objects of an ``environment``."""
+
+    formula: ltl.Formula
+    environment: Mapping[str, str]
+
+    def about(self, everybody: PartialView) -> frozenset[Subject]:
+        """What it refers to."""
+        return frozenset(subjects_in(self.formula, self.environment, everybody))
+
+
+def instances_of(axioms: Iterable[CompiledAxiom], everybody: PartialView) -> Iterator[FactInstance]:
+    """An instance of each axiom for each choice of its objects."""
+    for axiom in axioms:
+        for environment in bound_to(axiom.variables, everybody.objects, everybody.vocabulary):
+            yield FactInstance(axiom.formula, environment)
 
 
 def related_facts(

@@ -33,6 +33,7 @@ from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement i
     LinearPlane,
     sample_points,
 )
+from rulec.monitoring.uncertainty.state_letters.related_facts import FactInstance, instances_of
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     PartialView,
     Subject,
@@ -41,10 +42,10 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     unknown_in_read,
     unknown_subjects,
 )
-from rulec.rulebook.rules.axiom_instances import bound_to
 from rulec.trace import Value
-from rulec.vocabulary import Enumeration, Quantity
+from rulec.vocabulary import Quantity
 from rulec.vocabulary.partial_values import Interval, OneOf
+from rulec.vocabulary.vocabulary_model import values_of
 
 Digits: TypeAlias = tuple[int, ...]
 """A digit for each read."""
@@ -71,11 +72,11 @@ def joint_digits(
     reads: Sequence[Read | NumberRead],
     binding: Mapping[str, str],
     view: PartialView,
-    axioms: Sequence[CompiledAxiom],
+    facts: Iterable[FactInstance],
 ) -> PossibleDigits:
     """The joint digits of ``reads`` for the objects of a binding.
 
-    There are none if the state contradicts an axiom. Raises MissingValueError.
+    There are none if the state contradicts one of the ``facts``. Raises MissingValueError.
     """
     fixed: dict[int, int] = {}
     counted: dict[int, int] = {}
@@ -86,7 +87,9 @@ def joint_digits(
             fixed[number] = digit_of(read, binding, view)
     combinations = {Possible((), ())}
     is_exact = True
-    for cluster in _clusters(links, axioms, view):
+    for cluster in _joined_links([*links, *_links_of_facts(facts, view)]):
+        if reads and all(link.read is None for link in cluster.links):
+            continue  # axioms on which no read depends are irrelevant
         possible = _completed(cluster, reads, view)
         if possible is None:
             is_exact = False
@@ -106,7 +109,7 @@ def joint_digits(
 
 def can_be(view: PartialView, axioms: Sequence[CompiledAxiom]) -> bool:
     """Whether some completion of a state satisfies all axioms; False also if there are too many."""
-    clusters = _joined_links(_links_of_axioms(axioms, view))
+    clusters = _joined_links(_links_of_facts(instances_of(axioms, view), view))
     return all(_completed(cluster, (), view) for cluster in clusters)
 
 
@@ -143,15 +146,6 @@ def _is_sure(read: Read | NumberRead, binding: Mapping[str, str], view: PartialV
     return read.digit(total.low) == read.digit(total.high)
 
 
-def _clusters(
-    links: Sequence[Link], axioms: Sequence[CompiledAxiom], view: PartialView
-) -> Iterator[_Cluster]:
-    """The links in groups that share no subjects, with the axioms about these."""
-    clusters = _joined_links([*links, *_links_of_axioms(axioms, view)])
-    # Axioms on which no read depends are irrelevant.
-    return (cluster for cluster in clusters if any(x.read is not None for x in cluster.links))
-
-
 def _joined_links(links: Iterable[Link]) -> list[_Cluster]:
     clusters: list[_Cluster] = []
     for link in links:
@@ -164,13 +158,12 @@ def _joined_links(links: Iterable[Link]) -> list[_Cluster]:
     return clusters
 
 
-def _links_of_axioms(axioms: Sequence[CompiledAxiom], view: PartialView) -> Iterator[Link]:
-    for axiom in axioms:
-        for environment in bound_to(axiom.variables, view.objects, view.vocabulary):
-            truth = holds(axiom.formula, environment, view)
-            if truth is not True:
-                about = unknown_subjects(axiom.formula, environment, view)
-                yield Link(about, None, environment, axiom.formula)
+def _links_of_facts(facts: Iterable[FactInstance], view: PartialView) -> Iterator[Link]:
+    for formula, environment in facts:
+        truth = holds(formula, environment, view)
+        if truth is not True:
+            about = unknown_subjects(formula, environment, view)
+            yield Link(about, None, environment, formula)
 
 
 def _completed(
@@ -182,17 +175,15 @@ def _completed(
     for subject in sorted(cluster.subjects):
         declaration = view.vocabulary.declarations[subject[0]]
         given = view.given(*subject)
-        match declaration:
-            case Enumeration():
-                among = given.values if isinstance(given, OneOf) else declaration.values
-                values[subject] = [value for value in declaration.values if value in among]
-            case Quantity():
-                number = ltl.QuantityTerm(*subject)
-                bounds[number] = None
-                if isinstance(given, Interval):
-                    bounds[number] = exact(given.low), exact(given.high)
-            case _:
-                values[subject] = (False, True)
+        if isinstance(declaration, Quantity):
+            number = ltl.QuantityTerm(*subject)
+            bounds[number] = None
+            if isinstance(given, Interval):
+                bounds[number] = exact(given.low), exact(given.high)
+        else:
+            every = values_of(declaration)
+            among = given.values if isinstance(given, OneOf) else every
+            values[subject] = [value for value in every if value in among]
     n_discrete = prod(len(each) for each in values.values())
     if n_discrete > MOST_COMPLETIONS:
         return None
