@@ -135,24 +135,15 @@ def _comes_out(state: JointState, universe: ObjectUniverse, counted: Mapping[Cou
 class CountedObjectKinds:
     """The kinds of additional objects of a universe that counts distinguish.
 
-    There are many states, so what does not depend on the state is computed once. It is derived from
-    another universe's kinds (``before``) if that universe's axioms are the first ones of this.
-    ``known`` are the subjects that the states tell; if it is given, UndecidedError is raised where
-    anything else decides which objects there can be.
+    There are many states, so what does not depend on the state is computed once. ``known`` are the
+    subjects that the states tell; if it is given, UndecidedError is raised where anything else
+    decides which objects there can be.
     """
 
-    def __init__(
-        self,
-        universe: ObjectUniverse,
-        before: CountedObjectKinds | None = None,
-        known: Set[Subject] | None = None,
-    ) -> None:
+    def __init__(self, universe: ObjectUniverse, known: Set[Subject] | None = None) -> None:
         self.universe = universe
-        self._before = before
-        self._known: Set[Subject] | None = before._known if before else known
-        first = len(before.universe.axioms) if before else 0
-        self._own = replace(universe, axioms=universe.axioms[first:])
-        self._fitting: dict[object, list[_FittingType]] = {}
+        self._known = known
+        self._fitting: dict[object, list[_CountedType]] = {}
 
     def of(self, state: JointState, types: Sequence[str] = ()) -> list[CountedObject]:
         """The kinds for a state, most general types first.
@@ -161,8 +152,8 @@ class CountedObjectKinds:
         """
         return [
             candidate
-            for fitting in self._types(tuple(_counts_of(state)), tuple(types))
-            for candidate in self._of_type(fitting.counted, state)
+            for counted in self._types(tuple(_counts_of(state)), tuple(types))
+            for candidate in self._of_type(counted, state)
         ]
 
     def may_miss_some(self, state: JointState) -> bool:
@@ -171,50 +162,32 @@ class CountedObjectKinds:
         That is so if their numbers are compared with the state's, of which it has but one choice.
         """
         types = self._types(tuple(_counts_of(state)), ())
-        return any(rest for fitting in types for _, rest in fitting.counted.inputs)
+        return any(rest for counted in types for _, rest in counted.inputs)
 
-    def _types(self, counts: tuple[Count, ...], types: tuple[str, ...]) -> Sequence[_FittingType]:
+    def _types(self, counts: tuple[Count, ...], types: tuple[str, ...]) -> Sequence[_CountedType]:
         key = counts, types
         if key not in self._fitting:
-            self._fitting[key] = (
-                [self._with_own(known) for known in self._before._types(counts, types)]
-                if self._before
-                else list(self._first_types(counts, types))
-            )
-            for fitting in self._fitting[key]:
-                if can_add(fitting.bodies):
-                    self._require_known(fitting.counted)
+            self._fitting[key] = list(self._distinct_types(counts, types))
         return self._fitting[key]
+
+    def _distinct_types(
+        self, counts: Sequence[Count], types: Sequence[str]
+    ) -> Iterator[_CountedType]:
+        vocabulary = self.universe.vocabulary
+        for kind in types_counted(counts, types, vocabulary):
+            bodies = bodies_for(kind, counts, vocabulary)
+            about = axioms_about(kind, self.universe)
+            places, own = (len(counts), *bodies), tuple(bodies.values())
+            counted = _fitting_type(kind, places, own, about, Itself(vocabulary))
+            if can_add(own):
+                self._require_known(counted)
+            yield counted
 
     def _require_known(self, counted: _CountedType) -> None:
         """Raise UndecidedError if a state would be asked for a value that it does not tell."""
         read = tuple([counted.reads[place] for place, rest in counted.inputs if rest is None])
         if self._known is not None and not subjects_read(read) <= self._known:
             raise UndecidedError("which objects count depends on facts about too much else")
-
-    def _first_types(self, counts: Sequence[Count], types: Sequence[str]) -> Iterator[_FittingType]:
-        vocabulary = self.universe.vocabulary
-        for kind in types_counted(counts, types, vocabulary):
-            bodies = bodies_for(kind, counts, vocabulary)
-            places = len(counts), *bodies
-            yield _fitting_type(
-                kind,
-                places,
-                tuple(bodies.values()),
-                axioms_about(kind, self._own),
-                Itself(vocabulary),
-            )
-
-    def _with_own(self, known: _FittingType) -> _FittingType:
-        """A type known from the universe before, adapted to this universe's further axioms."""
-        own = axioms_about(known.counted.type, self._own)
-        if all(
-            axiom.holds_by_default and known.reached.isdisjoint(axiom.subjects) for axiom in own
-        ):
-            return known  # nothing reads what they are about
-        axioms = (*known.axioms, *own)
-        vocabulary = Itself(self.universe.vocabulary)
-        return _fitting_type(known.counted.type, known.places, known.bodies, axioms, vocabulary)
 
     def _of_type(self, counted: _CountedType, state: JointState) -> tuple[CountedObject, ...]:
         vocabulary = self.universe.vocabulary
@@ -254,22 +227,6 @@ class _CountedType:
     by_given: dict[object, tuple[CountedObject, ...]] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
-class _FittingType:
-    """A type of additional objects, and what decides which axioms matter to it.
-
-    The first of the ``places`` is the number of all counts, the others are those of the ``bodies``.
-    ``axioms`` are those about such an object; ``reached`` are the subjects of the bodies and of the
-    axioms relevant to them.
-    """
-
-    counted: _CountedType
-    places: tuple[int, ...]
-    bodies: tuple[Formula, ...]
-    axioms: tuple[GroundAxiom, ...]
-    reached: Set[Subject]
-
-
 # Cached: most rules of two rulebooks are compared with the same objects and axioms.
 @lru_cache(maxsize=1024)
 def _fitting_type(
@@ -278,14 +235,11 @@ def _fitting_type(
     bodies: tuple[Formula, ...],
     axioms: tuple[GroundAxiom, ...],
     vocabulary: Itself[Vocabulary],
-) -> _FittingType:
-    read = [reads_of(body, vocabulary.item) for body in bodies]
+) -> _CountedType:
     # Irrelevant axioms would only multiply the states: what they read can have its defaults.
-    relevant = relevant_axioms(axioms, read)
+    relevant = relevant_axioms(axioms, [reads_of(body, vocabulary.item) for body in bodies])
     about = (*bodies, *(axiom.formula for axiom in relevant))
-    counted = _counted_type(kind, places, about, vocabulary)
-    reached = frozenset().union(*map(subjects_read, read), *(axiom.subjects for axiom in relevant))
-    return _FittingType(counted, places, bodies, axioms=axioms, reached=reached)
+    return _counted_type(kind, places, about, vocabulary)
 
 
 # Cached: small universes of one vocabulary have the same additional objects.

@@ -88,7 +88,8 @@ class JointAlphabet:
         self._usual = 0
         self.is_exact = True
         self._plain = KnownWays()
-        self._object_kinds = CountedObjectKinds(universe, None, subjects_read(self._joint.reads))
+        self._subjects = subjects_read(self._joint.reads)
+        self._object_kinds = CountedObjectKinds(universe, self._subjects)
         self._numbers: dict[
             object, dict[state_synthesis.Subject, state_synthesis.Value] | None
         ] = {}
@@ -104,7 +105,7 @@ class JointAlphabet:
         """
         usual = copy(self)
         usual._universe = replace(self._universe, axioms=(*self._universe.axioms, *axioms))
-        usual._object_kinds = CountedObjectKinds(usual._universe, self._object_kinds)
+        usual._object_kinds = CountedObjectKinds(usual._universe, self._subjects)
         usual._defaults, usual._digits = [*self._defaults], [*self._digits]
         reads = list(self._joint.reads)
         levels = {subject_of(read): level for level, read in enumerate(reads)}
@@ -115,7 +116,7 @@ class JointAlphabet:
             if level is None or default is None or not instance.holds_by_default:
                 # What nothing reads has its default; what only sums read may not.
                 usual.is_exact &= instance.holds_by_default and instance.subjects.isdisjoint(
-                    subjects_read(self._joint.reads)
+                    self._subjects
                 )
                 continue
             usual._digits[level] = (default,)
