@@ -16,9 +16,9 @@ from rulec.logic.formula import Comparison, Formula, QuantityTerm, Term, atoms_o
 from rulec.logic.kleene import ObjectBinding, PartialState, Unknown, weighted_sum
 from rulec.logic.linear_comparison import stands
 from rulec.rulebook.rulebook_model import ExampleState
+from rulec.valuations.fourier_motzkin import LinearBound
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.coverage_witness import asks_whether_told, can_be, go_together
-from rulec.witnesses.fourier_motzkin import LinearBound
 from rulec.witnesses.letter_functions import counts_read, digits_of
 from rulec.witnesses.state_synthesis import numbers_beside
 

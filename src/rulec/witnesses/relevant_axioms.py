@@ -14,6 +14,7 @@ from rulec.automata.mealy_monitor import Read
 from rulec.logic.formula import Formula, QuantityTerm
 from rulec.logic.free_names import variables_of
 from rulec.rulebook.rulebook_model import Axiom
+from rulec.valuations.connections import reached
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_functions import LetterFunction, Reads, axiom_function
 from rulec.witnesses.object_universe import EXTRA, Itself, ObjectUniverse, applied_to, counts_in
@@ -105,22 +106,15 @@ def relevant_axioms(axioms: Sequence[GroundAxiom], read: Iterable[Reads]) -> lis
 
     Axioms that defaults violate, and those that count objects, are included. Raises UndecidedError.
     """
-    reached = {subject for reads in read for subject in subjects_read(reads)}
-    waiting = {number: axiom.subjects for number, axiom in enumerate(axioms)}
-    taken: set[int] = set()
-    while True:
-        more = [
-            number
-            for number, group in waiting.items()
-            if not group.isdisjoint(reached)
-            or axioms[number].is_counting
-            or not axioms[number].holds_by_default
-        ]
-        if not more:
-            return [axiom for number, axiom in enumerate(axioms) if number in taken]
-        for number in more:
-            reached |= waiting.pop(number)
-            taken.add(number)
+    always = {
+        place
+        for place, axiom in enumerate(axioms)
+        if axiom.is_counting or not axiom.holds_by_default
+    }
+    start = {subject for reads in read for subject in subjects_read(reads)}
+    start = start.union(*[axioms[place].subjects for place in always])
+    about = [axiom.subjects for axiom in axioms]
+    return [axioms[place] for place in sorted(always.union(reached(start, about)))]
 
 
 def subjects_read(reads: Reads) -> frozenset[Subject]:

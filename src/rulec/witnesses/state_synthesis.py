@@ -15,9 +15,10 @@ from itertools import product
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
 from rulec.logic.formula import Count, QuantityTerm, Term
+from rulec.valuations.connections import connected
+from rulec.valuations.fourier_motzkin import LinearBound, solve
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 from rulec.vocabulary.vocabulary_model import default_value
-from rulec.witnesses.fourier_motzkin import LinearBound, solve
 
 Subject = tuple[str, tuple[str, ...]]
 """A declaration and the objects that it is applied to."""
@@ -159,18 +160,7 @@ def _terms_of(reads: Sequence[NumberRead]) -> list[Term]:
 
 def apart(reads: Sequence[NumberRead]) -> list[list[int]]:
     """The indices of sums in groups that share no term."""
-    groups: list[tuple[set[Term], list[int]]] = []
-    for place, read in enumerate(reads):
-        terms, places = {term for _, term in read.terms}, [place]
-        others = []
-        for own, members in groups:
-            if own.isdisjoint(terms):
-                others.append((own, members))
-            else:
-                terms |= own
-                places += members
-        groups = [*others, (terms, places)]
-    return [sorted(places) for _, places in groups]
+    return [places for _, places in connected([{x for _, x in read.terms} for read in reads])]
 
 
 @lru_cache(maxsize=1 << 12)

@@ -14,14 +14,11 @@ from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_view import StateView
-from rulec.monitoring.uncertainty.number_regions import comparisons_in
-from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement import (
-    LinearPlane,
-    sample_points,
-)
 from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject, subjects_of_read
 from rulec.trace import Value
+from rulec.valuations.linear_arrangement import points_on_line
+from rulec.valuations.number_regions import comparisons_in
 from rulec.vocabulary import Declaration, Quantity, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValue
 from rulec.vocabulary.vocabulary_model import choices, values_of
@@ -116,7 +113,4 @@ def _values_of(
     within = None
     if isinstance(bounds, Interval):
         within = exact(bounds.low), exact(bounds.high)
-    number = ltl.QuantityTerm(name)
-    planes = [LinearPlane({number: Fraction(1)}, limit) for limit in limits]
-    points = sample_points({number: within}, planes)
-    return [] if points is None else [point[number] for point in points]
+    return points_on_line(limits, within)

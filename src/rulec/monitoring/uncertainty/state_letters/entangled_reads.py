@@ -17,7 +17,6 @@ from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule,
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic.kleene import Unknown, holds
 from rulec.monitoring.state_view import StateView, with_values
-from rulec.monitoring.uncertainty.number_regions import number_regions
 from rulec.monitoring.uncertainty.state_letters.completions.completions import joint_digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import (
     count_in,
@@ -47,6 +46,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     subjects_of_read,
 )
 from rulec.rulebook.rules.axiom_instances import counts
+from rulec.valuations.number_regions import number_regions
 from rulec.vocabulary import Quantity, Vocabulary
 from rulec.vocabulary.partial_values import PartialValue
 

@@ -235,17 +235,6 @@ def _atoms_in(formula: ltl.Formula) -> Iterator[ltl.Atom]:
             yield from _atoms_in(read.body)
 
 
-def joined_sets(sets: Sequence[frozenset[Subject]]) -> list[frozenset[Subject]]:
-    """The unions of sets that have members in common."""
-    unions: list[frozenset[Subject]] = []
-    for own in sets:
-        if own:
-            touched = [other for other in unions if other & own]
-            unions = [other for other in unions if not other & own]
-            unions.append(own.union(*touched))
-    return unions
-
-
 def values_at(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
     """A getter of the values at these keys or places; LookupError if one is missing.
 

@@ -12,7 +12,6 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.monitoring.state_view import StateView, with_values
-from rulec.monitoring.uncertainty.number_regions import NumberRegions, number_regions
 from rulec.monitoring.uncertainty.state_letters.completions.completions import (
     Digits,
     joint_digits,
@@ -27,6 +26,7 @@ from rulec.monitoring.uncertainty.state_letters.joint_values import (
 from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
 from rulec.monitoring.uncertainty.state_letters.related_facts import FactInstance
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject, subjects_of_read
+from rulec.valuations.number_regions import NumberRegions, number_regions
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValue
 

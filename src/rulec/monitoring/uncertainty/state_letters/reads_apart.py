@@ -19,11 +19,7 @@ from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
 from rulec.logic import formula as ltl
 from rulec.monitoring.uncertainty.state_letters.completions.completions import Digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
-from rulec.monitoring.uncertainty.state_letters.joint_values import (
-    MOST_KNOWN,
-    joined_sets,
-    values_at,
-)
+from rulec.monitoring.uncertainty.state_letters.joint_values import MOST_KNOWN, values_at
 from rulec.monitoring.uncertainty.state_letters.part_table import PartTable
 from rulec.monitoring.uncertainty.state_letters.read_digits import Cube, Letters
 from rulec.monitoring.uncertainty.state_letters.related_facts import FactInstance, instances_of
@@ -34,6 +30,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     subjects_in,
     subjects_of_read,
 )
+from rulec.valuations.connections import connected
 from rulec.vocabulary.partial_values import UNKNOWN, OneOf, PartialValue
 from rulec.vocabulary.vocabulary_model import values_of
 
@@ -190,9 +187,9 @@ class ReadsApart:
         subjects, given = self._subjects, {self._subjects[place] for place in self._given}
         of_facts = [(fact, fact.about(self._everybody)) for fact in facts]
         of_facts = [own for own in of_facts if not own[1].isdisjoint(subjects)]
-        apart = joined_sets([*[x.about - given for x in pieces], *[x - given for _, x in of_facts]])
+        apart = connected([*[x.about - given for x in pieces], *[x - given for _, x in of_facts]])
         # What depends on nothing, or only on what is given, forms one more part.
-        for own in [*apart, frozenset[Subject]()]:
+        for own in [*[union for union, _ in apart if union], frozenset[Subject]()]:
             members = [x for x in pieces if x.about & own or (x.about <= given and not own)]
             bearing = [x for x in of_facts if x[1] & own or (x[1] <= given and not own)]
             if members or (bearing and given):

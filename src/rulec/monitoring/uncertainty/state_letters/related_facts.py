@@ -16,6 +16,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
 )
 from rulec.rulebook.rulebook_model import Variable
 from rulec.rulebook.rules.axiom_instances import bound_to, counts
+from rulec.valuations.connections import reached
 from rulec.vocabulary import Vocabulary
 
 
@@ -41,16 +42,8 @@ def related_facts(
     names: Iterable[str], axioms: Sequence[CompiledAxiom]
 ) -> tuple[CompiledAxiom, ...]:
     """The axioms about some of these names, or about names in such axioms, and so on."""
-    about = set(names)
-    related: set[int] = set()
-    waiting = [(number, names_of(axiom.formula)) for number, axiom in enumerate(axioms)]
-    while True:
-        met = [(number, own) for number, own in waiting if not own.isdisjoint(about)]
-        if not met:
-            return tuple([axiom for number, axiom in enumerate(axioms) if number in related])
-        related.update(number for number, _ in met)
-        about.update(*[own for _, own in met])
-        waiting = [each for each in waiting if each[0] not in related]
+    about = [names_of(axiom.formula) for axiom in axioms]
+    return tuple([axioms[place] for place in reached(names, about)])
 
 
 @lru_cache(maxsize=1 << 10)  # asked of each fact by each rule

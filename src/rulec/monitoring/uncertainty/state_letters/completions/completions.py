@@ -7,7 +7,7 @@ counted object or one axiom refers to both.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
 from typing import TypeAlias
@@ -29,10 +29,6 @@ from rulec.monitoring.uncertainty.state_letters.completions.completion_search im
     Possible,
     digit_of,
 )
-from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement import (
-    LinearPlane,
-    sample_points,
-)
 from rulec.monitoring.uncertainty.state_letters.related_facts import FactInstance, instances_of
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     PartialView,
@@ -43,6 +39,11 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     unknown_subjects,
 )
 from rulec.trace import Value
+from rulec.valuations.connections import connected
+from rulec.valuations.linear_arrangement import (
+    LinearPlane,
+    sample_points,
+)
 from rulec.vocabulary import Quantity
 from rulec.vocabulary.partial_values import Interval, OneOf
 from rulec.vocabulary.vocabulary_model import values_of
@@ -60,12 +61,6 @@ class PossibleDigits:
 
     digits: frozenset[Digits]
     exact: bool = True
-
-
-@dataclass(slots=True)
-class _Cluster:
-    subjects: set[Subject] = field(default_factory=set)
-    links: list[Link] = field(default_factory=list)
 
 
 def joint_digits(
@@ -87,8 +82,8 @@ def joint_digits(
             fixed[number] = digit_of(read, binding, view)
     combinations = {Possible((), ())}
     is_exact = True
-    for cluster in _joined_links([*links, *_links_of_facts(facts, view)]):
-        if reads and all(link.read is None for link in cluster.links):
+    for cluster in _clusters([*links, *_links_of_facts(facts, view)]):
+        if reads and all(link.read is None for link in cluster):
             continue  # axioms on which no read depends are irrelevant
         possible = _completed(cluster, reads, view)
         if possible is None:
@@ -109,7 +104,7 @@ def joint_digits(
 
 def can_be(view: PartialView, axioms: Sequence[CompiledAxiom]) -> bool:
     """Whether some completion of a state satisfies all axioms; False also if there are too many."""
-    clusters = _joined_links(_links_of_facts(instances_of(axioms, view), view))
+    clusters = _clusters(list(_links_of_facts(instances_of(axioms, view), view)))
     return all(_completed(cluster, (), view) for cluster in clusters)
 
 
@@ -146,16 +141,10 @@ def _is_sure(read: Read | NumberRead, binding: Mapping[str, str], view: PartialV
     return read.digit(total.low) == read.digit(total.high)
 
 
-def _joined_links(links: Iterable[Link]) -> list[_Cluster]:
-    clusters: list[_Cluster] = []
-    for link in links:
-        joined = _Cluster(set(link.subjects), [link])
-        for cluster in [x for x in clusters if x.subjects & link.subjects]:
-            clusters.remove(cluster)
-            joined.subjects |= cluster.subjects
-            joined.links = [*cluster.links, *joined.links]
-        clusters.append(joined)
-    return clusters
+def _clusters(links: Sequence[Link]) -> list[list[Link]]:
+    """The links in groups that share no subjects."""
+    apart = connected([link.subjects for link in links])
+    return [[links[place] for place in places] for _, places in apart]
 
 
 def _links_of_facts(facts: Iterable[FactInstance], view: PartialView) -> Iterator[Link]:
@@ -167,12 +156,12 @@ def _links_of_facts(facts: Iterable[FactInstance], view: PartialView) -> Iterato
 
 
 def _completed(
-    cluster: _Cluster, reads: Sequence[Read | NumberRead], view: PartialView
+    cluster: Sequence[Link], reads: Sequence[Read | NumberRead], view: PartialView
 ) -> set[Possible] | None:
     """The results of a cluster's completions; None if there are too many."""
     values: dict[Subject, Sequence[Value]] = {}
     bounds: dict[ltl.Term, tuple[Fraction, Fraction] | None] = {}
-    for subject in sorted(cluster.subjects):
+    for subject in sorted(frozenset[Subject]().union(*[link.subjects for link in cluster])):
         declaration = view.vocabulary.declarations[subject[0]]
         given = view.given(*subject)
         if isinstance(declaration, Quantity):
@@ -187,7 +176,7 @@ def _completed(
     n_discrete = prod(len(each) for each in values.values())
     if n_discrete > MOST_COMPLETIONS:
         return None
-    planes = [plane for link in cluster.links for plane in _planes(link, reads, view)]
+    planes = [plane for link in cluster for plane in _planes(link, reads, view)]
     points = sample_points(bounds, planes)
     if points is None or n_discrete * len(points) > MOST_COMPLETIONS:
         return None
@@ -198,7 +187,7 @@ def _completed(
             assert isinstance(term, ltl.QuantityTerm)
             supposed[term.name, term.arguments] = value
         numbers.append(supposed)
-    return CompletionSearch(cluster.links, reads, view, values, numbers).possible()
+    return CompletionSearch(cluster, reads, view, values, numbers).possible()
 
 
 def _joined(first: Possible, second: Possible) -> Possible:
@@ -209,10 +198,10 @@ def _joined(first: Possible, second: Possible) -> Possible:
     return Possible(digits, tuple(sorted(more.items())))
 
 
-def _independent(cluster: _Cluster, reads: Sequence[Read | NumberRead]) -> set[Possible]:
+def _independent(cluster: Sequence[Link], reads: Sequence[Read | NumberRead]) -> set[Possible]:
     """A superset of a cluster's results: all its links independently, without axioms."""
     combinations = {Possible((), ())}
-    for link in cluster.links:
+    for link in cluster:
         if link.read is None:
             continue
         if link.counted:

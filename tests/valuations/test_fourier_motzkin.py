@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.logic.formula import QuantityTerm
-from rulec.witnesses.fourier_motzkin import LinearBound, solve
+from rulec.valuations.fourier_motzkin import LinearBound, solve
 
 X, Y, Z = (QuantityTerm(name) for name in "xyz")
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.logic.formula import QuantityTerm
-from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement import (
+from rulec.valuations.linear_arrangement import (
     LinearPlane,
     sample_points,
 )

@@ -14,7 +14,7 @@ from math import prod
 from typing import NamedTuple
 
 from rulec.logic.formula import Term
-from rulec.monitoring.uncertainty.state_letters.completions.polyhedral_cells import points_of_cells
+from rulec.valuations.polyhedral_cells import points_of_cells
 
 MOST_POINTS = 1 << 12
 """If there are more cells, no points are computed."""
@@ -42,7 +42,7 @@ def sample_points(
         ((number, interval),) = bounds.items()
         own = [(plane.limit, plane.coefficients[number]) for plane in planes]
         limits = {limit / factor for limit, factor in own if factor}
-        on_line = _on_a_line(limits, interval)
+        on_line = points_on_line(limits, interval)
         return None if len(on_line) > MOST_POINTS else [{number: point} for point in on_line]
     distinct = {(frozenset(plane.coefficients.items()), plane.limit): plane for plane in planes}
     cutting = [plane for plane in distinct.values() if _cuts(plane, bounds)]
@@ -175,7 +175,9 @@ def _sum(plane: LinearPlane, point: Point) -> Fraction:
     return sum(terms, Fraction(0))
 
 
-def _on_a_line(limits: Set[Fraction], interval: tuple[Fraction, Fraction] | None) -> list[Fraction]:
+def points_on_line(
+    limits: Set[Fraction], interval: tuple[Fraction, Fraction] | None
+) -> list[Fraction]:
     """The limits within the interval, and a number of it on each side of them."""
     if interval is None:
         known = [*limits, *([] if limits else [Fraction(0)])]
