@@ -1,7 +1,7 @@
 """Reads looked at in parts come to what they do when all are looked at together."""
 
 from fractions import Fraction
-from itertools import chain, product
+from itertools import product
 from random import Random
 
 import pytest
@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rulec
-from rulec.automata.mealy_monitor import Read
 from rulec.automata.outcome_machine import bits_of
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions.completions import joint_digits
@@ -18,7 +17,6 @@ from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     NothingKnown,
     local_reads,
 )
-from rulec.monitoring.uncertainty.state_letters.joint_values import alike_values
 from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
 from rulec.monitoring.uncertainty.state_letters.reads_apart import KnownParts
 from rulec.monitoring.uncertainty.state_letters.related_facts import instances_of
@@ -131,25 +129,6 @@ def test_of_parts_one_is_decided_by_facts_and_another_contradicts_them():
         return tuple(known[name] for name, _ in local_reads(rule, compiled).subjects)
 
     assert agree_in_parts(None, compiled, rule, draw, 1)
-
-
-@given(seeds)
-def test_values_alike_are_told_apart_by_nothing(chance):
-    compiled = compile_here(rulebook(chance, Fraction(1)), Fraction(1))
-    facts = [axiom.formula for axiom in compiled.axioms]
-    names = list(compiled.vocabulary.declarations)
-    for rule in compiled.rules:
-        found = alike_values(names, rule.machine.reads, facts, compiled.vocabulary)
-        for name, groups in found.items():
-            values = compiled.vocabulary.declarations[name].values
-            assert sorted(chain.from_iterable(groups)) == sorted(values)
-            own = [one for one in rule.machine.reads if isinstance(one, Read) and one.name == name]
-            for first, *others in groups:
-                for other in others:
-                    assert all(read.digit(first) == read.digit(other) for read in own)
-                    # Nobody speaks of two values that are one
-                    spoken = str([*facts, *rule.machine.reads])
-                    assert f"value={first!r}" not in spoken or f"value={other!r}" not in spoken
 
 
 def test_of_law_with_one_number_between_others_in_parts_as_together():

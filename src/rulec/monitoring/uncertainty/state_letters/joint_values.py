@@ -8,29 +8,25 @@ conjunctions show what a partly known state allows, even if it was never met bef
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
 from functools import reduce
-from itertools import product
-from math import prod
+from itertools import chain
 from operator import itemgetter, or_
-from types import MappingProxyType
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
-from rulec.logic.free_names import reads_in
-from rulec.logic.kleene import holds
-from rulec.monitoring.state_view import StateView, with_values
+from rulec.logic.fold import bit_sets, fold
 from rulec.monitoring.uncertainty.state_letters.completions.completions import Digits
-from rulec.monitoring.uncertainty.state_letters.read_digits import ReadDigits
 from rulec.monitoring.uncertainty.state_letters.related_facts import FactInstance
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
-    MissingValueError,
+    PartialView,
     Subject,
-    subjects_in,
-    subjects_of_read,
+    candidates,
 )
 from rulec.trace import Value
-from rulec.vocabulary import Enumeration, Quantity, Vocabulary
+from rulec.vocabulary import Quantity
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, OneOf, PartialValue
 from rulec.vocabulary.vocabulary_model import values_of
 
@@ -43,196 +39,164 @@ MOST_WAYS = 1 << 15
 Bits: TypeAlias = int
 """A set of ways to give all subjects values."""
 
-Alike: TypeAlias = tuple[tuple[Value, ...], ...]
-"""The values of a word or truth value, in groups that are not distinguished."""
-
 
 class JointValues:
-    """All ways to give ``subjects`` values, and which of them the ``facts`` about them allow.
+    """The digits of reads by the ways to give ``subjects`` values that ``facts`` about them allow.
 
-    Values in one group of ``alike`` are treated as one; names without groups have none. Raises
-    LookupError if there are too many ways, if some subject is a number, or if an axiom is about
-    more subjects than these.
+    Raises LookupError if there are too many ways, if something is a number that does not count, or
+    if a fact is about more than the subjects.
     """
 
     def __init__(
         self,
+        reads: Sequence[Read | NumberRead],
         subjects: Sequence[Subject],
-        facts: Iterable[FactInstance],
-        objects: Mapping[str, str],
-        vocabulary: Vocabulary,
-        alike: Mapping[str, Alike] = MappingProxyType({}),
+        facts: Sequence[FactInstance],
+        binding: Mapping[str, str],
+        everybody: PartialView,
     ) -> None:
-        self._objects, self._vocabulary = objects, vocabulary
-        self._nobody = StateView({}, objects, vocabulary)
-        declared = [vocabulary.declarations[name] for name, _ in subjects]
-        if any(isinstance(declaration, Quantity) for declaration in declared):
-            raise LookupError
-        values = [
-            alike.get(name) or tuple([(value,) for value in values_of(declaration)])
-            for (name, _), declaration in zip(subjects, declared, strict=True)
+        conditions = [list(_conditions(read, binding, everybody)) for read in reads]
+        formulas = [formula for formula, _ in chain(facts, *conditions)]
+        self._all = 1
+        self._ways: list[dict[Any, Bits]] = []
+        """For each subject the ways that have a value."""
+        for groups in _told_apart([name for name, _ in subjects], formulas, everybody):
+            before, size = self._all, self._all.bit_length()
+            if size * len(groups) > MOST_WAYS:
+                raise LookupError
+            # Each way so far is repeated for each group of values
+            self._all = (1 << size * len(groups)) - 1
+            self._ways = [
+                {value: _repeated(ways, size, len(groups)) for value, ways in own.items()}
+                for own in self._ways
+            ]
+            own: dict[Any, Bits] = {
+                value: before << n * size for n, group in enumerate(groups) for value in group
+            }
+            self._ways.append(own)
+        for own in self._ways:
+            own[UNKNOWN] = self._all
+        self._places = {subject: place for place, subject in enumerate(subjects)}
+        about = [[self._places[x] for x in fact.about(everybody)] for fact in facts]
+        self._facts = list(zip(about, map(self._truth, facts), strict=True))
+        self._allowed = reduce(int.__and__, [kept for _, kept in self._facts], self._all)
+        self._digits = [
+            self._digits_of(read, [self._truth(own) for own in deciding])
+            for read, deciding in zip(reads, conditions, strict=True)
         ]
-        n_ways = prod(map(len, values))
-        if n_ways > MOST_WAYS:
-            raise LookupError
-        self._all = (1 << n_ways) - 1
-        self._ways: dict[Subject, dict[Value, Bits]] = {}
-        """For each subject the ways that have a value, which represents its group."""
-        self._of_places: list[dict[Any, Bits]] = []
-        stride = 1
-        for subject, groups in zip(subjects, values, strict=True):
-            period = stride * len(groups)
-            first = ((1 << stride) - 1) * (self._all // ((1 << period) - 1))
-            ways = [first << n * stride for n in range(len(groups))]
-            self._ways[subject] = {own[0]: bits for own, bits in zip(groups, ways, strict=True)}
-            self._of_places.append({UNKNOWN: self._all})
-            for own, bits in zip(groups, ways, strict=True):
-                self._of_places[-1].update(dict.fromkeys(own, bits))
-            stride = period
-        self._allowed = self._all
-        places = {subject: place for place, subject in enumerate(subjects)}
-        self._facts: list[tuple[Sequence[int], Bits]] = []
-        for fact in facts:
-            about = [places[subject] for subject in fact.about(self._nobody)]
-            kept = dict(self.truths(fact.formula, fact.environment)).get(1, 0)
-            self._facts.append((about, kept))
-            self._allowed &= kept
 
-    def ways(self, values: Sequence[PartialValue | None]) -> Bits:
-        """The ways that the axioms allow and that have these values of the subjects.
+    def digits(
+        self, values: Sequence[PartialValue | None]
+    ) -> tuple[Digits | None, frozenset[Digits]]:
+        """The digits of the reads for these values of the subjects.
 
-        Axioms about known values are assumed to hold. Raises LookupError if a value is missing.
+        First those that each read by itself has, if it has only one, then the possible joint ones.
+        Axioms about known values are assumed to hold. Raises LookupError if a value is missing or
+        no digits are possible.
         """
-        ways = self._all
-        for own, value in zip(self._of_places, values, strict=True):
-            known = own.get(value)
-            if known is None:
-                if not isinstance(value, OneOf):
-                    raise LookupError
-                known = own[value] = reduce(or_, [own[single] for single in value.values])
-            ways &= known
-        allowed = ways & self._allowed
-        if allowed:
-            return allowed
-        for places, kept in self._facts:
-            if any(type(values[place]) in UNKNOWN_TYPES for place in places):
-                ways &= kept
-        return ways
-
-    def digits(self, read: ReadDigits, binding: Mapping[str, str]) -> Sequence[tuple[int, Bits]]:
-        """Each digit of a read for a binding's objects, and the ways that have it.
-
-        Raises LookupError if it depends on more than the subjects.
-        """
-
-        def digit(view: StateView) -> int:
-            return read.in_state(binding, view)
-
-        ways_of: dict[int, Bits] = {}
-        for bit, ways in self._by(subjects_of_read(read.read, binding, self._nobody), digit):
-            if bit & (bit - 1):
-                raise LookupError
-            ways_of[bit] = ways_of.get(bit, 0) | ways
-        return [(bit.bit_length() - 1, ways) for bit, ways in ways_of.items()]
-
-    def truths(
-        self, formula: ltl.Formula, environment: Mapping[str, str]
-    ) -> Sequence[tuple[int, Bits]]:
-        """The ways in which a formula does not hold, and in which it does, as for ``digits``."""
-        ways_of = {False: 0, True: 0}
-        about = subjects_in(formula, environment, self._nobody)
-        for truth, ways in self._by(about, lambda view: holds(formula, environment, view)):
-            if truth is not False and truth is not True:
-                raise LookupError
-            ways_of[truth] |= ways
-        return [(int(truth), ways) for truth, ways in ways_of.items() if ways]
-
-    def _by(
-        self, about: Iterable[Subject], evaluate: Callable[[StateView], Any]
-    ) -> Iterable[tuple[Any, Bits]]:
-        """The results of ``evaluate`` for each choice of the subjects' values, with its ways."""
-        own = [subject for subject in dict.fromkeys(about) if subject in self._ways]
-        for chosen in product(*[self._ways[subject].items() for subject in own]):
-            ways = self._all
-            for _, bits in chosen:
-                ways &= bits
-            given = with_values({}, dict(zip(own, [value for value, _ in chosen], strict=True)))
-            try:
-                yield evaluate(StateView(given, self._objects, self._vocabulary)), ways
-            except MissingValueError:
-                raise LookupError from None
-
-
-class ReadWays(NamedTuple):
-    """Reads of some ``values``, each with the ways that have each of its digits."""
-
-    values: JointValues
-    digits: tuple[Sequence[tuple[int, Bits]], ...]
-
-    def digits_of(self, values: Sequence[PartialValue | None]) -> frozenset[Digits]:
-        """The possible joint digits of the reads for these values of the subjects.
-
-        Raises LookupError if a value is missing or no digits are possible.
-        """
-        ways = self.values.ways(values)
+        given = self._all
+        for own, value in zip(self._ways, values, strict=True):
+            if value not in own and isinstance(value, OneOf):
+                own[value] = reduce(or_, [own[single] for single in value.values])
+            given &= own[value]
+        ways = given & self._allowed
         if not ways:
-            raise LookupError
-        partial_digits: list[tuple[Digits, Bits]] = [((), ways)]
-        for own in self.digits:
+            ways = given
+            for places, kept in self._facts:
+                if any(type(values[place]) in UNKNOWN_TYPES for place in places):
+                    ways &= kept
+        partial_digits: list[tuple[Digits, Bits]] = [((), ways)] if ways else []
+        for own_digits in self._digits:
             partial_digits = [
                 ((*before, digit), both)
-                for before, ways in partial_digits
-                for digit, bits in own
-                if (both := ways & bits)
+                for before, so_far in partial_digits
+                for digit, bits in own_digits.items()
+                if (both := so_far & bits)
             ]
-        return frozenset([digits for digits, _ in partial_digits])
+        if not partial_digits:
+            raise LookupError
+        alone = [[x for x, bits in own.items() if bits & given] for own in self._digits]
+        known = tuple([x for x, *more in alone if not more])
+        joint = frozenset([digits for digits, _ in partial_digits])
+        return known if len(known) == len(alone) else None, joint
+
+    def _digits_of(self, read: Read | NumberRead, truths: Sequence[Bits]) -> Mapping[int, Bits]:
+        """Each digit of a read, and the ways that have it, given those of its conditions."""
+        if isinstance(read, Read):
+            some = reduce(or_, truths, 0)
+            ways = enumerate(
+                (*truths, self._all ^ some) if read.values else (some ^ self._all, some)
+            )
+            return {digit: own for digit, own in ways if own}
+        often = {0: self._all}
+        for truth in truths:
+            more: dict[int, Bits] = {}
+            for number, own in often.items():
+                for after, both in ((number, own & ~truth), (number + 1, own & truth)):
+                    more[after] = more.get(after, 0) | both
+            often = {number: own for number, own in more.items() if own}
+        ways_of: dict[int, Bits] = {}
+        for number, own in often.items():
+            digit = read.digit(read.terms[0][0] * Fraction(number))
+            ways_of[digit] = ways_of.get(digit, 0) | own
+        return ways_of
+
+    def _truth(self, condition: tuple[ltl.Formula, Mapping[str, str]]) -> Bits:
+        """The ways in which a formula holds for the objects of an environment."""
+        formula, environment = condition
+
+        def ways(proposition: ltl.Proposition) -> Bits:
+            if not isinstance(proposition, ltl.Atom):
+                raise LookupError
+            items = tuple([environment[variable] for variable in proposition.arguments])
+            place = self._places.get((proposition.name, items))
+            # Of anything else the value decides nothing
+            return 0 if place is None else self._ways[place][proposition.value or True]
+
+        def are_same(pair: ltl.Same) -> Bits:
+            return self._all * (environment[pair.left] == environment[pair.right])
+
+        sets = replace(bit_sets({}, self._all), proposition=ways, identity=are_same)
+        return fold(formula, sets)
 
 
-def read_ways(
-    reads: Iterable[ReadDigits], binding: Mapping[str, str], values: JointValues
-) -> ReadWays:
-    """The reads for a binding's objects.
-
-    Raises LookupError if they depend on more than the values.
-    """
-    return ReadWays(values, tuple([values.digits(read, binding) for read in reads]))
+def _repeated(ways: Bits, size: int, times: int) -> Bits:
+    """The ways of ``size`` bits, for each of several values of one more subject."""
+    return ways * (((1 << size * times) - 1) // ((1 << size) - 1))
 
 
-def alike_values(
-    names: Iterable[str],
-    reads: Sequence[Read | NumberRead],
-    facts: Sequence[ltl.Formula],
-    vocabulary: Vocabulary,
-) -> dict[str, Alike]:
-    """The values of words, in groups that neither reads nor axioms distinguish."""
-    bodies = [
-        term.body
-        for read in reads
-        if isinstance(read, NumberRead)
-        for _, term in read.terms
-        if isinstance(term, ltl.Count)
-    ]
-    atoms = {(atom.name, atom.value) for part in (*facts, *bodies) for atom in _atoms_in(part)}
-    groups_of: dict[str, Alike] = {}
+def _conditions(
+    read: Read | NumberRead, binding: Mapping[str, str], everybody: PartialView
+) -> Iterator[tuple[ltl.Formula, Mapping[str, str]]]:
+    """What decides a read: whether a word has each value, or whether each object counts."""
+    if isinstance(read, Read):
+        for value in read.values or (None,):
+            yield ltl.Atom(read.name, read.variables, value), binding
+        return
+    match read.terms:
+        case ((_, ltl.Count() as count),):
+            for item in candidates(count, everybody):
+                yield count.body, {**binding, count.variable: item}
+        case _:
+            raise LookupError
+
+
+def _told_apart(
+    names: Iterable[str], formulas: Iterable[ltl.Formula], everybody: PartialView
+) -> Iterator[Sequence[Sequence[Value]]]:
+    """The values of each word, in groups that no formula distinguishes."""
+    propositions = chain.from_iterable(map(ltl.atoms_of, formulas))
+    told = {(x.name, x.value) for x in propositions if isinstance(x, ltl.Atom)}
     for name in names:
-        declaration = vocabulary.declarations[name]
-        if isinstance(declaration, Enumeration):
-            own = [read for read in reads if isinstance(read, Read) and read.name == name]
-            groups: dict[object, list[Value]] = {}
-            for value in declaration.values:
-                apart = (name, value) in atoms and value
-                groups.setdefault((apart, *[read.digit(value) for read in own]), []).append(value)
-            groups_of[name] = tuple(map(tuple, groups.values()))
-    return groups_of
-
-
-def _atoms_in(formula: ltl.Formula) -> Iterator[ltl.Atom]:
-    """The atoms of a formula, including those within counts."""
-    for read in reads_in(formula):
-        if isinstance(read, ltl.Atom):
-            yield read
-        elif isinstance(read, ltl.Count):
-            yield from _atoms_in(read.body)
+        declaration = everybody.vocabulary.declarations[name]
+        if isinstance(declaration, Quantity):
+            raise LookupError
+        values = values_of(declaration)
+        rest = [value for value in values if (name, value) not in told]
+        if (name, None) in told or not rest:
+            yield [[value] for value in values]
+        else:
+            yield [*[[value] for value in values if value not in rest], rest]
 
 
 def values_at(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:

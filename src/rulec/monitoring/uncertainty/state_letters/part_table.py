@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
@@ -16,16 +16,10 @@ from rulec.monitoring.uncertainty.state_letters.completions.completions import (
     Digits,
     joint_digits,
 )
-from rulec.monitoring.uncertainty.state_letters.joint_values import (
-    MOST_KNOWN,
-    JointValues,
-    ReadWays,
-    alike_values,
-    read_ways,
-)
+from rulec.monitoring.uncertainty.state_letters.joint_values import MOST_KNOWN, JointValues
 from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
 from rulec.monitoring.uncertainty.state_letters.related_facts import FactInstance
-from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject, subjects_of_read
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.valuations.number_regions import NumberRegions, number_regions
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValue
@@ -54,11 +48,10 @@ class PartTable:
         objects: Mapping[str, str],
         *,
         vocabulary: Vocabulary,
-        together: dict[object, Any],
     ) -> None:
         self._reads, self._ready = reads, [read_digits(read) for read in reads]
         self._subjects, self._binding, self._facts = subjects, binding, facts
-        self._objects, self._vocabulary, self._together = objects, vocabulary, together
+        self._objects, self._vocabulary = objects, vocabulary
         self.possible: list[PartDigits] = []
         self._numbers: dict[PartDigits, int] = {}
         self._known: dict[tuple[object, ...], int] = {}
@@ -132,34 +125,18 @@ class PartTable:
         return NumberRegions(tuple(sorted(limits)))
 
     @cached_property
-    def _read_ways(self) -> ReadWays | None:
+    def _joint_values(self) -> JointValues | None:
         """The reads by the joint values of their subjects, if these are few words."""
-        vocabulary = self._vocabulary
-        alike = alike_values(
-            dict.fromkeys(name for name, _ in self._subjects),
-            self._reads,
-            [fact.formula for fact in self._facts],
-            vocabulary,
-        )
-        facts = tuple([(formula, *own.items()) for formula, own in self._facts])
-        key = self._subjects, facts, (*self._objects.items(),), (*alike.items(),)
+        everybody = StateView({}, self._objects, self._vocabulary)
         with suppress(LookupError):
-            if key not in self._together:
-                self._together[key] = None
-                self._together[key] = JointValues(
-                    self._subjects, self._facts, self._objects, vocabulary, alike
-                )
-            values = self._together[key]
-            return None if values is None else read_ways(self._ready, self._binding, values)
+            return JointValues(self._reads, self._subjects, self._facts, self._binding, everybody)
         return None
 
     def _possible(self, values: Sequence[PartialValue | None]) -> PartDigits:
-        if self._read_ways is not None:
+        if self._joint_values is not None:
             # Missing values and contradictions of axioms are found below.
             with suppress(LookupError):
-                joint = self._read_ways.digits_of(values)
-                known = next(iter(joint)) if len(joint) == 1 and self._are_known(values) else None
-                return PartDigits(known, joint, True)
+                return PartDigits(*self._joint_values.digits(values), exact=True)
         state = self._state(values)
         digits = [read.in_state(self._binding, state) for read in self._ready]
         known = None
@@ -169,27 +146,6 @@ class PartTable:
                 return PartDigits(known, frozenset({known}), True)
         possible = joint_digits(self._reads, self._binding, state, self._facts)
         return PartDigits(known, possible.digits, possible.exact)
-
-    def _are_known(self, values: Sequence[PartialValue | None]) -> bool:
-        """Whether each read by itself has only one digit, regardless of axioms."""
-        unknown = [
-            read
-            for read, places in zip(self._ready, self._places, strict=True)
-            if any(type(values[place]) in UNKNOWN_TYPES for place in places)
-        ]
-        if not unknown:
-            return True
-        state = self._state(values)
-        digits = (read.in_state(self._binding, state) for read in unknown)
-        return all(own & (own - 1) == 0 for own in digits)
-
-    @cached_property
-    def _places(self) -> Sequence[Sequence[int]]:
-        """For each read the places of its subjects."""
-        places = {subject: place for place, subject in enumerate(self._subjects)}
-        everybody = StateView({}, self._objects, self._vocabulary)
-        of_reads = [subjects_of_read(read, self._binding, everybody) for read in self._reads]
-        return [[places[subject] for subject in set(own)] for own in of_reads]
 
     def _state(self, values: Sequence[PartialValue | None]) -> StateView:
         given = with_values({}, dict(zip(self._subjects, values, strict=True)))

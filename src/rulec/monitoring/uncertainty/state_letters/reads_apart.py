@@ -62,14 +62,10 @@ Raises MissingValueError.
 
 
 class KnownParts:
-    """Cached results for parts of all rules.
-
-    ``tables`` are those of parts of reads, ``together`` the joint values of subjects.
-    """
+    """The cached ``tables`` of the parts of all rules."""
 
     def __init__(self) -> None:
         self.tables: dict[object, PartTable] = {}
-        self.together: dict[object, Any] = {}
 
 
 class ReadsApart:
@@ -227,7 +223,7 @@ class ReadsApart:
         objects = {name: everybody.objects[item] for item, name in names.items()}
         formulas = tuple([(formula, *chosen.items()) for formula, chosen in instances])
         key = tuple(reads), about, formulas, (*own.items(),), (*objects.items(),)
-        tables, together = self._known_parts.tables, self._known_parts.together
+        tables = self._known_parts.tables
         if key not in tables:
             tables[key] = PartTable(
                 reads,
@@ -236,7 +232,6 @@ class ReadsApart:
                 instances,
                 objects,
                 vocabulary=everybody.vocabulary,
-                together=together,
             )
         return tables[key]
 
