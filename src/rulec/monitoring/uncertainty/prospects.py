@@ -12,9 +12,6 @@ from rulec.automata.outcome_machine import OutcomeMachine
 MOST_TABLES = 1 << 12
 """How many tables of outcomes are kept before all are discarded."""
 
-BYTES = 1 << 8
-"""The number of different bytes."""
-
 
 class Prospects:
     """The outcomes, as bits, that words from each state may have, in numbered tables.
@@ -25,9 +22,6 @@ class Prospects:
     def __init__(self, machine: OutcomeMachine) -> None:
         # By classes of letters, one after the other.
         self._successors = list(zip(*machine.successors, strict=True))
-        # If there are few states, their numbers fit in bytes and are translated all at once.
-        self._are_few = len(machine.successors) <= BYTES
-        self._small = [bytes(targets) for targets in self._successors] if self._are_few else []
         self._outcomes = [
             bytes([1 << outcome for outcome in column])
             for column in zip(*machine.outputs, strict=True)
@@ -67,9 +61,6 @@ class Prospects:
         symbols = [n for n in range(classes.bit_length()) if classes >> n & 1]
         if after < 0:
             columns = {self._outcomes[symbol] for symbol in symbols}
-        elif self._are_few:
-            table = self._tables[after].ljust(BYTES, b"\0")
-            columns = {targets.translate(table) for targets in {self._small[n] for n in symbols}}
         else:
             behind = self._tables[after].__getitem__
             columns = {

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence, Set
-from functools import cached_property
 from itertools import product
 from typing import TypeAlias
 
@@ -42,7 +41,6 @@ class RunPairs:
         self._prospects = Prospects(machine)
         self._safe = sum(1 << state for state in machine.safe)
         self._starts: dict[bool, Pairs] = {}
-        self._below: dict[int, int] = {}
         self._forget()
 
     def _forget(self) -> None:
@@ -197,47 +195,17 @@ class RunPairs:
         if len(rows) == 1:
             ((state, others),) = rows.items()
             return frozenset([(state, machine.greatest(others))])
-        ranks = self._ranks
-        own = {ranks[row]: row for row in rows}
-        firsts = sum(1 << rank for rank in own)
-        # By rank what its own second states reach, and those of all whose first one is no worse
+        # By first state what its own second states reach, and those of all that are no worse
         reached: dict[int, int] = {}
-        for rank in sorted(own):
-            state = own[rank]
+        # Of equivalent states the first one represents all
+        for state in sorted(rows, key=lambda own: (below[own].bit_count(), own)):
+            beyond = _united([own for other, own in reached.items() if below[state] >> other & 1])
             others = rows[state]
-            better = self._ranks_below(state) & firsts & (1 << rank) - 1
-            beyond = 0
-            while better:
-                nearest = better.bit_length() - 1
-                beyond |= reached[nearest]
-                better &= ~self._ranks_below(own[nearest])
-            reached[rank] = beyond | _reach(others, below)
+            reached[state] = beyond | _reach(others, below)
             others &= ~beyond
             if others:
                 furthest.append((state, machine.greatest(others)))
         return frozenset(furthest)
-
-    @cached_property
-    def _ranks(self) -> list[int]:
-        """For each state its rank, after all states with lesser outcomes.
-
-        Of equivalent states the first one represents all.
-        """
-        below = self._machine.below
-        order = sorted(range(len(below)), key=lambda state: (below[state].bit_count(), state))
-        ranks = [0] * len(order)
-        for rank, state in enumerate(order):
-            ranks[state] = rank
-        return ranks
-
-    def _ranks_below(self, state: int) -> int:
-        """The ranks, as bits, of a state and of the states whose outcomes are no greater."""
-        ranks_below = self._below.get(state)
-        if ranks_below is None:
-            ranks = self._ranks
-            ranks_below = sum([1 << ranks[other] for other in bits_of(self._machine.below[state])])
-            self._below[state] = ranks_below
-        return ranks_below
 
     def agree(self, pairs: Pairs, choices: int) -> bool:
         """Whether, on a last letter, no first run has a lesser outcome than the second."""
