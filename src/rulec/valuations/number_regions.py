@@ -6,14 +6,13 @@ from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import lru_cache
 
-from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
-from rulec.automata.thresholds import floor_of
+from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class NumberRegions:
     """The regions of numbers that comparisons with these ascending ``limits`` distinguish.
 
@@ -22,21 +21,10 @@ class NumberRegions:
 
     limits: tuple[Fraction, ...]
 
-    @cached_property
-    def floors(self) -> tuple[float, ...]:
-        """The smallest float in each region except the first; floats stand for their decimals."""
-        thresholds = [Threshold(x, inclusive) for x in self.limits for inclusive in (True, False)]
-        return tuple(map(floor_of, thresholds))
-
     def region(self, number: Fraction) -> int:
         """The region of a number."""
         below = bisect_left(self.limits, number)
         return 2 * below + (number in self.limits[below : below + 1])
-
-    @property
-    def size(self) -> int:
-        """How many regions there are."""
-        return 2 * len(self.limits) + 1
 
 
 @lru_cache(maxsize=1 << 10)

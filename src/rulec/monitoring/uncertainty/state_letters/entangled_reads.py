@@ -46,7 +46,6 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     subjects_of_read,
 )
 from rulec.rulebook.rules.axiom_instances import counts
-from rulec.valuations.number_regions import number_regions
 from rulec.vocabulary import Quantity, Vocabulary
 from rulec.vocabulary.partial_values import PartialValue
 
@@ -83,9 +82,8 @@ class EntangledReads:
     their places among the rule's reads, ``subjects`` what they depend on. Local reads depend only
     on the rule's own objects; their subjects are variables, with a ``binding`` of each to itself.
     If none of the ``shared`` subjects is unknown, and no other one an interval, each read may have
-    any of its digits independently of the others. For a number that is only compared by itself only
-    its region among ``regions`` matters. ``joint_letters`` has the possible joint digits as cubes,
-    and whether each of them is possible.
+    any of its digits independently of the others. ``joint_letters`` has the possible joint digits
+    as cubes, and whether each of them is possible.
     """
 
     def __init__(
@@ -137,9 +135,6 @@ class EntangledReads:
                 known=known,
                 counts_divided=not is_local,
             )
-        self.regions = number_regions(
-            tuple(self._reads), tuple([axiom.formula for axiom in axioms])
-        )
         self.joint_letters: list[tuple[Letters, bool]] = []
         self._numbers: dict[tuple[Letters, bool], int] = {}
         self._known: dict[tuple[object, ...], int] = {}

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from functools import reduce
 from itertools import chain
 from operator import itemgetter, or_
@@ -18,6 +17,7 @@ from typing import Any, TypeAlias
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
 from rulec.logic.fold import bit_sets, fold
+from rulec.monitoring.uncertainty.state_letters.completions.completion_search import digit_of_count
 from rulec.monitoring.uncertainty.state_letters.completions.completions import Digits
 from rulec.monitoring.uncertainty.state_letters.related_facts import FactInstance
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
@@ -137,7 +137,7 @@ class JointValues:
             often = {number: own for number, own in more.items() if own}
         ways_of: dict[int, Bits] = {}
         for number, own in often.items():
-            digit = read.digit(read.terms[0][0] * Fraction(number))
+            digit = digit_of_count(read, number)
             ways_of[digit] = ways_of.get(digit, 0) | own
         return ways_of
 

@@ -17,6 +17,10 @@ from typing import Any, NamedTuple, TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
 from rulec.logic import formula as ltl
+from rulec.monitoring.uncertainty.state_letters.completions.completion_search import (
+    added,
+    digit_of_count,
+)
 from rulec.monitoring.uncertainty.state_letters.completions.completions import Digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import MOST_KNOWN, values_at
@@ -156,17 +160,15 @@ class ReadsApart:
         """The joint letters of all reads, from the possible digits of the parts."""
         sums = {(0,) * len(self._reads)}
         for part, own in zip(self._parts, sets, strict=True):
-            sums = {_added(before, part.reads, digits) for before in sums for digits in own}
-        cubes = {tuple([1 << self._digit(n, own) for n, own in enumerate(each)]) for each in sums}
+            more = [tuple(zip(part.reads, digits, strict=True)) for digits in own]
+            sums = {added(before, digits) for before in sums for digits in more}
+        cubes = [tuple([1 << self._digit(n, x) for n, x in enumerate(numbers)]) for numbers in sums]
         # Each cube has one bit per read, so sorting gives the order of digits.
-        return tuple(sorted(cubes))
+        return tuple(sorted(set(cubes)))
 
     def _digit(self, number: int, value: int) -> int:
-        """The digit of a read, whose parts have this sum."""
         read = self._reads[number]
-        if number not in self._counted or isinstance(read, Read):
-            return value
-        return read.digit(read.terms[0][0] * value)
+        return digit_of_count(read, value) if number in self._counted else value
 
     def _pieces(self, number: int, counts_divided: bool) -> Iterator[_Piece]:
         read, everybody = self._reads[number], self._everybody
@@ -243,13 +245,6 @@ def _one_counts(read: Read | NumberRead, item: str) -> NumberRead:
     body = ltl.Binary(ltl.BinaryOperator.AND, ltl.Same(count.variable, item), count.body)
     only = ltl.Count(count.variable, count.type, body)
     return NumberRead(((Fraction(1), only),), (Threshold(Fraction(1), inclusive=True),))
-
-
-def _added(before: Digits, reads: Sequence[int], digits: Digits) -> Digits:
-    after = list(before)
-    for read, digit in zip(reads, digits, strict=True):
-        after[read] += digit
-    return tuple(after)
 
 
 def _may_be(value: PartialValue | None, values: Sequence[Any]) -> Sequence[PartialValue | None]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TypeAlias
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
@@ -33,12 +34,8 @@ class Link:
     counted: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Possible:
-    """Digits of single reads, and how many more objects count for reads that are counts."""
-
-    digits: tuple[tuple[int, int], ...]
-    more: tuple[tuple[int, int], ...]
+Numbers: TypeAlias = tuple[tuple[int, int], ...]
+"""Reads by their places, each with its digit or, if it is a count, how many more objects count."""
 
 
 class CompletionSearch:
@@ -61,22 +58,21 @@ class CompletionSearch:
         ]
         self._reads, self._view = reads, view
         self._values, self._points = values, points
-        self._possible: set[Possible] = set()
+        self._possible: set[Numbers] = set()
 
-    def possible(self) -> set[Possible]:
+    def possible(self) -> set[Numbers]:
         """The results of the completions. Raises MissingValueError."""
-        self._go_on(0, {}, {}, {})
+        self._go_on(0, {}, {})
         return self._possible
 
     def _go_on(
         self,
         number: int,
         supposed: Mapping[Subject, Value | Fraction],
-        digits: Mapping[int, int],
-        more: Mapping[int, int],
+        found: Mapping[int, int],
     ) -> None:
         """Evaluate the links from a number on, given the supposed values and earlier results."""
-        digits, more = dict(digits), dict(more)
+        numbers = dict(found)
         view = CompletedView(self._view, supposed)
         for link, evaluate in self._links[number:]:
             deciding = None
@@ -84,21 +80,21 @@ class CompletionSearch:
                 assert link.read is not None
                 deciding = self._unsupposed(link, supposed)
                 if deciding is None:
-                    digits[link.read] = digit_of(self._reads[link.read], link.environment, view)
+                    numbers[link.read] = digit_of(self._reads[link.read], link.environment, view)
             else:
                 truth = evaluate(link.environment, view)
                 if isinstance(truth, Unknown):
                     deciding = self._deciding(truth, link, supposed)
                 elif link.read is not None:
-                    more[link.read] = more.get(link.read, 0) + truth
+                    numbers[link.read] = numbers.get(link.read, 0) + truth
                 elif not truth:
                     return  # no state is so
             if deciding is not None:
                 for values in self._alternatives(deciding):
-                    self._go_on(number, {**supposed, **values}, digits, more)
+                    self._go_on(number, {**supposed, **values}, numbers)
                 return
             number += 1
-        self._possible.add(Possible(tuple(sorted(digits.items())), tuple(sorted(more.items()))))
+        self._possible.add(tuple(sorted(numbers.items())))
 
     def _deciding(
         self, truth: Unknown, link: Link, supposed: Mapping[Subject, Value | Fraction]
@@ -137,3 +133,17 @@ def digit_of(
     if isinstance(total, Unknown):
         raise MissingValueError(total.name, total.objects)  # all else has been supposed
     return read.digit(total)
+
+
+def digit_of_count(read: Read | NumberRead, number: int) -> int:
+    """The digit of a read that is a count, if so many objects count."""
+    assert isinstance(read, NumberRead), "it counts"
+    return read.digit(read.terms[0][0] * number)
+
+
+def added(before: tuple[int, ...], more: Iterable[tuple[int, int]]) -> tuple[int, ...]:
+    """The numbers of all reads, with some added."""
+    after = list(before)
+    for read, number in more:
+        after[read] += number
+    return tuple(after)

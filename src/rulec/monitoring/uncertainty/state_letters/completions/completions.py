@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 from math import prod
 from typing import TypeAlias
 
@@ -26,8 +27,10 @@ from rulec.logic.kleene import (
 from rulec.monitoring.uncertainty.state_letters.completions.completion_search import (
     CompletionSearch,
     Link,
-    Possible,
+    Numbers,
+    added,
     digit_of,
+    digit_of_count,
 )
 from rulec.monitoring.uncertainty.state_letters.related_facts import FactInstance, instances_of
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
@@ -73,32 +76,27 @@ def joint_digits(
 
     There are none if the state contradicts one of the ``facts``. Raises MissingValueError.
     """
-    fixed: dict[int, int] = {}
     counted: dict[int, int] = {}
     links = list(_links_of_reads(reads, binding, view, counted))
-    touched = {link.read for link in links}
-    for number, read in enumerate(reads):
-        if number not in touched and number not in counted:
-            fixed[number] = digit_of(read, binding, view)
-    combinations = {Possible((), ())}
+    touched = {link.read: 0 for link in links} | counted
+    surely = [
+        touched[number] if number in touched else digit_of(read, binding, view)
+        for number, read in enumerate(reads)
+    ]
+    sums = {tuple(surely)}
     is_exact = True
     for cluster in _clusters([*links, *_links_of_facts(facts, view)]):
         if reads and all(link.read is None for link in cluster):
             continue  # axioms on which no read depends are irrelevant
-        possible = _completed(cluster, reads, view)
+        possible: Iterable[Numbers] | None = _completed(cluster, reads, view)
         if possible is None:
             is_exact = False
             possible = _independent(cluster, reads)
-        combinations = {_joined(before, after) for before in combinations for after in possible}
-    digits = set()
-    for possible_digits in combinations:
-        by_read = {**fixed, **dict(possible_digits.digits)}
-        more = dict(possible_digits.more)
-        for number, count in counted.items():
-            read = reads[number]
-            assert isinstance(read, NumberRead)
-            by_read[number] = read.digit(read.terms[0][0] * (count + more.get(number, 0)))
-        digits.add(tuple([by_read[number] for number in range(len(reads))]))
+        sums = {added(before, after) for before in sums for after in possible}
+    digits = [
+        tuple([digit_of_count(reads[n], x) if n in counted else x for n, x in enumerate(numbers)])
+        for numbers in sums
+    ]
     return PossibleDigits(frozenset(digits), is_exact)
 
 
@@ -157,7 +155,7 @@ def _links_of_facts(facts: Iterable[FactInstance], view: PartialView) -> Iterato
 
 def _completed(
     cluster: Sequence[Link], reads: Sequence[Read | NumberRead], view: PartialView
-) -> set[Possible] | None:
+) -> set[Numbers] | None:
     """The results of a cluster's completions; None if there are too many."""
     values: dict[Subject, Sequence[Value]] = {}
     bounds: dict[ltl.Term, tuple[Fraction, Fraction] | None] = {}
@@ -190,26 +188,14 @@ def _completed(
     return CompletionSearch(cluster, reads, view, values, numbers).possible()
 
 
-def _joined(first: Possible, second: Possible) -> Possible:
-    more = dict(first.more)
-    for number, count in second.more:
-        more[number] = more.get(number, 0) + count
-    digits = tuple(sorted((*first.digits, *second.digits)))
-    return Possible(digits, tuple(sorted(more.items())))
-
-
-def _independent(cluster: Sequence[Link], reads: Sequence[Read | NumberRead]) -> set[Possible]:
+def _independent(cluster: Sequence[Link], reads: Sequence[Read | NumberRead]) -> list[Numbers]:
     """A superset of a cluster's results: all its links independently, without axioms."""
-    combinations = {Possible((), ())}
-    for link in cluster:
-        if link.read is None:
-            continue
-        if link.counted:
-            alone = [Possible((), ((link.read, n),)) for n in (0, 1)]
-        else:
-            alone = [Possible(((link.read, n),), ()) for n in range(reads[link.read].size)]
-        combinations = {_joined(before, after) for before in combinations for after in alone}
-    return combinations
+    alone = [
+        [(link.read, number) for number in range(2 if link.counted else reads[link.read].size)]
+        for link in cluster
+        if link.read is not None
+    ]
+    return list(product(*alone))
 
 
 def _planes(
