@@ -97,7 +97,7 @@ class ReadsApart:
         self._reads, self._subjects, self._binding = reads, subjects, binding
         self._everybody, self._known_parts = everybody, known
         pieces = [piece for n in range(len(reads)) for piece in self._pieces(n, counts_divided)]
-        self._counted = frozenset([piece.read for piece in pieces if piece.item is not None])
+        self._counted = {n for n, read in enumerate(reads) if counts_divided and count_in(read)}
         declared = everybody.vocabulary.declarations
         world = {subject for piece in pieces if piece.item for subject in piece.about}
         self._given = {
