@@ -1,6 +1,7 @@
 """Points that stand for all numbers within intervals, which planes cut into cells."""
 
 from fractions import Fraction
+from math import comb
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -96,6 +97,21 @@ def test_many_lines_are_as_many_cells_as_counted_by_hand():
     ]
     found = {sides(lines, one) for one in sample_points(dict.fromkeys(NUMBERS), lines)}
     assert len(found) == n * (n - 1) // 2 + n * n + n * (n + 1) // 2 + 1
+
+
+def test_planes_in_space_are_as_many_cells_as_counted_by_hand():
+    """Planes of which three meet in one point, and no four: as lines cut a plane, they cut space.
+
+    There are the points where three meet, pieces of the lines where two do, of each plane, and of
+    space. A polynomial of third degree has at most three roots, so no four of these planes meet.
+    """
+    n = 9
+    powers = [[Fraction(k**power) for power in range(4)] for k in range(n)]
+    planes = [LinearPlane(dict(zip(FOUR[:3], own, strict=False)), own[3]) for own in powers]
+    found = [sides(planes, one) for one in sample_points(dict.fromkeys(FOUR[:3]), planes)]
+    points, lines = comb(n, 3), comb(n, 2) * (n - 1)
+    pieces = n * (1 + (n - 1) + comb(n - 1, 2))
+    assert len(found) == len(set(found)) == points + lines + pieces + 1 + n + comb(n, 2) + points
 
 
 def test_cells_of_too_many_numbers_are_not_looked_for():
