@@ -172,3 +172,25 @@ def test_columns_of_one_shape(ends, change):
     verdicts = judged(joined, ordered, compiled)
     assert len(verdicts) == len(own)
     same_as_alone(verdicts, ordered, compiled)
+
+
+THREE = """rulebook three
+type car
+signal between(u: car, v: car, w: car) default false
+signal rain default false
+hard rule dry (u: car, v: car) { require never (between(u, v, u) and rain) }
+hard rule calm { require never rain }
+"""
+
+
+@pytest.mark.parametrize("shape", [1, 3])
+def test_values_of_three_objects(shape):
+    """They are judged one by one, as few books say anything of so many."""
+    compiled = compile_here(parse_rulebook(THREE))
+    cars = {"a": "car", "b": "car"}
+    own = []
+    for number in range(12):
+        said = {"between": {"a": {"b": {"a": UNKNOWN if number % 2 else number > 6}}}, "rain": True}
+        states = (said,) * (1 + number % shape)
+        own.append(Trace(f"t{number}", 0.5, cars, states, ends="cut"))
+    assert list(verify_many(own, compiled)) == [verify_or_reason(one, compiled) for one in own]

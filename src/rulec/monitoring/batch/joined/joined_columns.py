@@ -26,7 +26,7 @@ _Stretch: TypeAlias = tuple[int, int | None]
 def joined_columns(alike: AlikeTraces, vocabulary: Vocabulary) -> JoinedTraces:
     """Traces of one shape, in the order of their columns.
 
-    Raises UnencodableError if a value about two objects is missing.
+    Raises UnencodableError if a value about two objects is missing, or one about more is there.
     """
     own, layout = alike.columns, alike.columns.layout
     n_traces, objects = layout.n_traces, list(own.objects)
@@ -81,7 +81,9 @@ def _both(columns: TraceColumns, first: str, second: str) -> _Stretch | None:
 
 
 def _check_pairs(columns: TraceColumns, vocabulary: Vocabulary) -> None:
-    """Raise UnencodableError if a value about two objects is missing."""
+    """Raise UnencodableError if a value about two objects is missing, or one about more is there."""
+    if any(len(items) > 2 for _, items in columns.values):
+        raise UnencodableError
     for name in {name for name, items in columns.values if len(items) == 2}:
         declaration = vocabulary.declarations[name]
         if declaration.default is not None:

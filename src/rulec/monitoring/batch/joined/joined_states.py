@@ -27,8 +27,8 @@ _NOBODY: _ByObject = {}
 def joined_states(traces: Sequence[Trace], vocabulary: Vocabulary) -> JoinedTraces:
     """Traces of one kind that have passed ``check_frame``, with what follows from their values.
 
-    Raises UnencodableError if ``check_state`` would refuse a state, and in some cases also for a
-    value of an unusual type.
+    Raises UnencodableError if ``check_state`` would refuse a state, for values about more than two
+    objects, and in some cases for a value of an unusual type.
     """
     states = list(chain.from_iterable([trace.states for trace in traces]))
     if set(map(type, states)) != {dict}:
@@ -39,7 +39,7 @@ def joined_states(traces: Sequence[Trace], vocabulary: Vocabulary) -> JoinedTrac
     of_pairs: list[tuple[Declaration, Sequence[Sequence[_ByObject]]]] = []
     for name in set().union(*states):
         declaration = vocabulary.declarations.get(name)
-        if declaration is None:
+        if declaration is None or len(declaration.parameters) > 2:
             raise UnencodableError
         given = [state.get(name, NOT_GIVEN) for state in states]
         kinds = declaration.parameters
