@@ -8,6 +8,7 @@ from unittest.mock import patch
 import pytest
 from hypothesis import Phase, given, settings
 
+import rulec
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.alike_traces import traces_placed
@@ -18,9 +19,10 @@ from rulec.monitoring.batch.joined.joined_states import joined_states
 from rulec.monitoring.batch.stacked import instances, stacked_rule
 from rulec.monitoring.batch.stacked.stacked_run import judge_joined
 from rulec.monitoring.implied_values import with_derived_values
+from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.verdict import NotJudged
-from rulec.monitoring.verify import verify_or_reason
+from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
@@ -194,3 +196,16 @@ def test_values_of_three_objects(shape):
         states = (said,) * (1 + number % shape)
         own.append(Trace(f"t{number}", 0.5, cars, states, ends="cut"))
     assert list(verify_many(own, compiled)) == [verify_or_reason(one, compiled) for one in own]
+
+
+@pytest.mark.parametrize("n_states", [63, 64, 200])
+def test_a_long_trace_alone(n_states):
+    """Whoever asks about one trace gets what its states say, in arrays or not."""
+    book = compile_here(parse_rulebook(TWO))
+    chance = Random(n_states)
+    for number in range(4):
+        parts = [drive(chance, number, cut=True) for _ in range(n_states)]
+        states = tuple(chance.choice(one.states[1:]) for one in parts if len(one.objects) == 3)
+        own = Trace("t", 0.5, dict(next(x for x in parts if len(x.objects) == 3).objects), states)
+        own = replace(own, states=(states * n_states)[:n_states], ends="cut")
+        assert rulec.verify(own, book) == replace(verify(own, book), law=edition_of(book))

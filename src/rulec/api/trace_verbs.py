@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from rulec.api.rulebook_compilation import Rules
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.extraction.moment_search import DriveMoments
     from rulec.extraction.recording_verdicts import RecordingVerdicts
     from rulec.extraction.selection import RequestedDrives
@@ -35,6 +36,20 @@ if TYPE_CHECKING:
     from rulec.scoring.scores import Scores
     from rulec.scoring.traffic_world import TrafficWorld
     from rulec.trace.trace_columns import TraceCells, TraceColumns
+
+
+def _verdict(trace: Trace, compiled: CompiledRulebook) -> Verdict:
+    """The verdict on one trace. Raises RulecError."""
+    from rulec.monitoring.verdict import Verdict
+    from rulec.monitoring.verify import LONG, verify_contained
+
+    if isinstance(trace, Trace) and isinstance(trace.states, tuple) and len(trace.states) >= LONG:
+        from rulec.monitoring.batch.batch_verify import verify_chunk
+
+        (answer,) = verify_chunk([trace], compiled)
+        if isinstance(answer, Verdict):
+            return answer
+    return verify_contained(trace, compiled)
 
 
 class TraceVerbs(SessionSettings):
@@ -80,13 +95,12 @@ class TraceVerbs(SessionSettings):
         """
         from rulec.monitoring.assumptions import check_assumed
         from rulec.monitoring.rulebook_edition import edition_of
-        from rulec.monitoring.verify import verify_contained
 
         compiled = self._compiled(rules)
         if assumptions is not None:
             check_assumed(assumptions.values, compiled.vocabulary, "values")
             trace = assumptions.applied(trace)
-        return replace(verify_contained(trace, compiled), law=edition_of(compiled))
+        return replace(_verdict(trace, compiled), law=edition_of(compiled))
 
     def verify_many(
         self,

@@ -24,6 +24,9 @@ from rulec.resource_limits import BudgetSpentError
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_frame, check_trace
 
+LONG = 1 << 6
+"""So many states are judged in arrays, which is faster, even if they are those of one trace."""
+
 
 def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     """Verify a trace against every rule, for every binding of its variables.

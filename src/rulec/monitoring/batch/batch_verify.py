@@ -44,7 +44,7 @@ from rulec.monitoring.state_validation import (
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.monitoring.verify import rulebook_for_trace, said, verify_or_reason
+from rulec.monitoring.verify import LONG, rulebook_for_trace, said, verify_or_reason
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import LineBlock
@@ -58,9 +58,6 @@ if TYPE_CHECKING:
 
 FEWEST = 4
 """Fewer traces of one shape are judged one by one."""
-
-_LONG = 1 << 6
-"""Fewer traces are judged together, too, if they have at least this many states."""
 
 _MADE_TOGETHER = 1 << 12
 """How many reasons for refusing traces are built at once.
@@ -152,7 +149,7 @@ def _verify_chunk(
 
 
 def _are_many(placed: Sequence[Placed], fewest: int) -> bool:
-    return len(placed) >= fewest or sum(_n_states(trace) for _, trace in placed) >= _LONG
+    return len(placed) >= fewest or sum(_n_states(trace) for _, trace in placed) >= LONG
 
 
 def _verify_together(

@@ -81,7 +81,7 @@ def _both(columns: TraceColumns, first: str, second: str) -> _Stretch | None:
 
 
 def _check_pairs(columns: TraceColumns, vocabulary: Vocabulary) -> None:
-    """Raise UnencodableError if a value about two objects is missing, or one about more is there."""
+    """Raise UnencodableError if a value about a pair is missing, or one about more is there."""
     if any(len(items) > 2 for _, items in columns.values):
         raise UnencodableError
     for name in {name for name, items in columns.values if len(items) == 2}:
