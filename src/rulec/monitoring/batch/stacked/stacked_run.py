@@ -33,7 +33,6 @@ from rulec.monitoring.batch.stacked.stacked_outcomes import StackedOutcomes, out
 from rulec.monitoring.batch.stacked.stacked_rule import ReadKeys, StackedRule
 from rulec.monitoring.state_validation import check_objects, check_told
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules, judged_rules
-from rulec.resource_limits import OBJECTS
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
@@ -237,4 +236,5 @@ def _check_objects(traces: JoinedTraces, vocabulary: Vocabulary) -> None:
     """Check the objects of all traces, each type once. Raises RulecError."""
     kinds = frozenset(traces.types)
     check_objects({kind: kind for kind in kinds}, vocabulary)
-    OBJECTS.within(max(traces.n_objects), None)
+    most = map(str, range(max(traces.n_objects)))
+    check_objects(dict.fromkeys(most, min(kinds, default="")), vocabulary)
