@@ -53,7 +53,17 @@ def test_time_that_is_spent_is_an_error_and_no_rule_is_too_large(monkeypatch):
         prefix_machines.prefix_machines(compiled("2.13"))
 
 
-@pytest.mark.parametrize("name", available_rulebooks(()))
+USUAL = ("at", "de", "jp", "un-r157")
+"""Without `--long`: the book that takes longest, and what the others are made of."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[] if name in USUAL else pytest.mark.long)
+        for name in available_rulebooks(())
+    ],
+)
 def test_cut_words_of_what_ships_need_no_spot(name):
     book = StepCompiler(load_rulebook(name)).at_own_steps()
     jobs = [job for rule in book.rules for job in prefix_machines._jobs(rule, book)]

@@ -8,6 +8,7 @@ from rulec.diagnostics import RulecError
 from rulec.resource_limits import in_force
 from rulec.rulebook.files.referenced_files import MOST_BASES
 from rulec.rulebook.loader import diagnose, load_rulebook
+from rulec.rulebook.names.atom_messages import MOST_SEARCHED
 
 START = """rulebook r
 type car
@@ -93,6 +94,21 @@ def test_what_no_one_would_write(name):
     if codes != {"R0202"}:
         # One cause, few messages.
         assert len(errors) < 20
+
+
+def test_only_for_the_first_unknown_names_similar_ones_are_looked_for():
+    """With thousands it would take longer than anybody waits, and nobody reads so many."""
+    lines = [f"hard rule r{at} {{ require always speeed{at} < 1 km/h }}" for at in range(130)]
+    found = errors_of(
+        START + "\n".join([*lines, "hard rule l { require always speeed0 < 1 km/h }"])
+    )
+    helps = [str(one.help) for one in found]
+    assert len(helps) == 131
+    are_searched = ["did you mean `speed`" in text for text in helps]
+    assert are_searched == [True] * MOST_SEARCHED + [False] * 30 + [True]
+    assert all(
+        "declare it" in text for text, done in zip(helps, are_searched, strict=True) if not done
+    )
 
 
 def test_types_in_a_chain_that_is_too_long_are_cut_where_it_is():

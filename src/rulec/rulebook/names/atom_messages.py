@@ -114,6 +114,9 @@ NUMBER_OR_FORMULA = Code(
 _ALIKE = 0.75
 """The least similarity of a misspelt name; less similar ones are usually other words."""
 
+MOST_SEARCHED = 100
+"""For so many unknown names of a rulebook known ones are looked for, which takes milliseconds."""
+
 _COMPARED = re.compile(r"\s*(?:[<>]=?|!?=)\s*[\d.]+[ \t]*([^\W\d][\w/^%]*|%)?")
 _PARTED_UNIT = re.compile(r"\d[ \t]*([^\W\d]+)[ \t]*/[ \t]*\Z")
 _ATOM = "expected a signal or a value"
@@ -176,7 +179,10 @@ def _unknown(
         way_out = NO_ABSOLUTE_VALUE
     elif glued:
         way_out = offering(f"write `{glued}`", glued)
+    elif len(symbols.searched) >= MOST_SEARCHED and name not in symbols.searched:
+        way_out = _to_be_declared(use, variables)
     else:
+        symbols.searched.add(name)
         way_out = (
             ("" if use.arguments else _short_form(name, symbols, list(variables)))
             or in_other_letters(name, spelt)

@@ -42,6 +42,8 @@ class SymbolTable:
     mistakes: list[Diagnostic] = field(default_factory=list)
     shared: dict[tuple[Source, Source], list[str]] = field(default_factory=dict)
     """Names declared by two vocabularies: the earlier one, the later one, and the names."""
+    searched: set[str] = field(default_factory=set)
+    """Unknown names for which known ones were looked for that may be meant."""
 
     def twice(self, kind: str, again: tree.Name, first: Span) -> None:
         """Note that something is declared twice."""
