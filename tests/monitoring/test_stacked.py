@@ -21,7 +21,7 @@ from rulec.monitoring.batch.verify_arrays import verify_arrays
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify_or_reason
 from rulec.trace import Trace
-from rulec.trace.trace_arrays import TraceArrays
+from rulec.trace.trace_arrays import TraceArrays, said_by
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.array_traces import CannotSayError, in_arrays
 from support.builders.rulebooks import compile_here
@@ -99,7 +99,7 @@ def test_a_rule_comes_to_the_same_without_others_and_what_these_read(chance):
         except CannotSayError:
             continue
         answers = verify_arrays([arrays], compiled) + verify_arrays(
-            [arrays.said_by(names)], smaller
+            said_by([arrays], names), smaller
         )
         if not isinstance(answers[0], NotJudged):
             every, some = answers

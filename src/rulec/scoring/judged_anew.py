@@ -6,7 +6,7 @@ half of a candidate is left to end it. What is violated later than that is viola
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -37,7 +37,7 @@ from rulec.monitoring.verdict import (
 )
 from rulec.scoring.candidate_score import CandidateScore
 from rulec.scoring.charges import at
-from rulec.trace.trace_arrays import TraceArrays
+from rulec.trace.trace_arrays import TraceArrays, said_by
 
 
 def verdicts_of(
@@ -99,14 +99,17 @@ def apart_from_past(
         return list(scores)
     books, names = _after_any_past(frozenset(rule for rule, _ in known), roundings)
     doubtful = [{rule_for(result) for result in score.open} & set(known) for score in scores]
-    futures = [
-        _Future(number, drive.first_step, trace.said_by(names))
-        for number, score in enumerate(scores)
-        if doubtful[number]
-        for drive, _ in verdicts_of(score.drives)
-        if drive.first_step + drive.arrays.n_states > first
-        for trace in (drive.arrays, *drive.otherwise)
-    ]
+    futures = _saying(
+        names,
+        [
+            _Future(number, drive.first_step, trace)
+            for number, score in enumerate(scores)
+            if doubtful[number]
+            for drive, _ in verdicts_of(score.drives)
+            if drive.first_step + drive.arrays.n_states > first
+            for trace in (drive.arrays, *drive.otherwise)
+        ],
+    )
     answers = agreed_answers([future.since(first) for future in futures], books)
     for future, answer in zip(futures, answers, strict=True):
         own = doubtful[future.number]
@@ -197,12 +200,15 @@ def _anew(
     """The scores, with the ``known`` rules judged anew."""
     first, begin = steps
     books, names = some_rules(frozenset(rule for rule, _ in known), roundings)
-    futures = [
-        _Future(number, drive.first_step, drive.arrays.said_by(names))
-        for number, found in enumerate(scores)
-        for drive, _ in verdicts_of(found.drives)
-        if drive.first_step + drive.arrays.n_states > begin
-    ]
+    futures = _saying(
+        names,
+        [
+            _Future(number, drive.first_step, drive.arrays)
+            for number, found in enumerate(scores)
+            for drive, _ in verdicts_of(found.drives)
+            if drive.first_step + drive.arrays.n_states > begin
+        ],
+    )
     answers = agreed_answers([one.since(begin) for one in futures], books)
     late = _mended_after(futures, known, books, steps)
     new, ended = _violated_again(futures, known, books, steps)
@@ -256,6 +262,12 @@ class _Future(NamedTuple):
     def at(self, step: int) -> TraceArrays:
         """One state of the drive, as if nothing before and after were known."""
         return self.trace.at([max(step - self.first_step, 0)])
+
+
+def _saying(names: Set[str], futures: Sequence[_Future]) -> list[_Future]:
+    """The drives with the values of these names only."""
+    traces = said_by([future.trace for future in futures], names)
+    return [future._replace(trace=trace) for future, trace in zip(futures, traces, strict=True)]
 
 
 def _mended_after(

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Flags
 from rulec.diagnostics import RulecError
+from rulec.trace.shared_columns import SharedColumns
 from rulec.trace.trace_columns import Array
 from rulec.trace.trace_model import Ending, Trace
 from rulec.value_display import short_repr
@@ -138,11 +139,6 @@ class TraceArrays:
             given &= self.only[name].repeat(np.diff(self.starts))
         return given
 
-    def said_by(self, names: Set[str]) -> TraceArrays:
-        """The trace with the values of these names only."""
-        every = np.ones(len(self.objects), dtype=bool)
-        return self._cut(slice(None), slice(None), every, names)
-
     def part(self, names: Set[str], items: Set[str]) -> TraceArrays:
         """The trace with these names and objects only."""
         kept = np.array([item in items for item in self.objects], dtype=bool)
@@ -198,6 +194,31 @@ class TraceArrays:
                 for place in flags[name].nonzero()[0].tolist():
                     values[place] = instead
         return values
+
+
+def said_by(traces: Sequence[TraceArrays], names: Set[str]) -> list[TraceArrays]:
+    """The traces with the values of these names only; those that share columns still do."""
+    known: dict[int, dict[str, Any]] = {}
+
+    def of(values: Mapping[str, Any]) -> Mapping[str, Any]:
+        columns = values.columns if isinstance(values, SharedColumns) else values
+        if id(columns) not in known:
+            known[id(columns)] = {name: columns[name] for name in columns if name in names}
+        chosen = known[id(columns)]
+        return replace(values, columns=chosen) if isinstance(values, SharedColumns) else chosen
+
+    return [
+        replace(
+            trace,
+            world=of(trace.world),
+            about=of(trace.about),
+            unknown=of(trace.unknown),
+            absent=of(trace.absent),
+            bounds=of(trace.bounds),
+            only=of(trace.only),
+        )
+        for trace in traces
+    ]
 
 
 def starts_of(spans: NDArray[np.intp]) -> NDArray[np.intp]:
