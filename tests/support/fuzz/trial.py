@@ -4,6 +4,7 @@ import contextlib
 import io
 import os
 import re
+import resource
 import shutil
 import signal
 import sys
@@ -24,6 +25,8 @@ LONGEST_S = 10
 LONGEST_S_OF_ALL_PAIRS = 120
 """``diff --all`` of all books compares 11,000 pairs of rules; a terminal shows how far it is."""
 LONGEST_WAIT_S = 600
+REFUSALS = ("R0401", "R0718")
+"""Who asks for more than a limit is told which; it may take longer until that is known."""
 MOST_MIB = 2 << 10
 COMMANDS = re.compile(r"^::(?!error |warning |notice )", re.MULTILINE)
 """What a runner of workflows would obey, but for annotations."""
@@ -74,6 +77,21 @@ def _peak_mib(*, begin=False):
     return int(re.search(r"^VmHWM:\s+(\d+) kB$", status, re.MULTILINE)[1]) >> 10
 
 
+def _workers_s():
+    """The processor time (s) of the processes that this one has started, where Linux tells it."""
+    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+    taken, waiting = ended.ru_utime + ended.ru_stime, [os.getpid()]
+    for pid in waiting:
+        # A process may end while it is looked at.
+        with contextlib.suppress(OSError):
+            begun = [x.read_text() for x in Path(f"/proc/{pid}/task").glob("*/children")]
+            waiting += [int(child) for text in begun for child in text.split()]
+            if pid != os.getpid():
+                fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+                taken += sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
+    return taken
+
+
 @cache
 def _filled():
     """A folder with sound files: they are made once for all targets."""
@@ -85,7 +103,7 @@ def _filled():
 
 def _try_one(trial, place, seed):
     words = TARGETS[trial.target](place, Random(seed))
-    started = time.monotonic()
+    started, workers_s = time.monotonic(), _workers_s()
     status, problem = None, ""
     file = place.folder / STANDARD_INPUT
     typed = file.read_bytes() if file.exists() else b'{"b": ["v"]}\n'
@@ -110,6 +128,10 @@ def _try_one(trial, place, seed):
             signal.setitimer(signal.ITIMER_PROF, 0)
             signal.alarm(0)
     said = "".join(stream.getvalue() for stream in streams)
+    workers_s = _workers_s() - workers_s
+    if not problem and workers_s > LONGEST_S and "--all" not in str(words):
+        refused = any(f"[{code}]" in said for code in REFUSALS)
+        problem = "" if refused else f"workers took {workers_s:.0f} s of processor time"
     trial.inputs += 1
     took_s = time.monotonic() - started
     if took_s > trial.longest_s:
