@@ -25,6 +25,15 @@ SURE = ("de", "at", "ch", "fr", "gb", "jp", "nl", "be", "it", "es", "pl", "au", 
 OPEN = ("us", "us-ca", "us-tx", "us-fl", "us-az", "us-nv", "kr", "cn", "se", "ie", "in")
 """Where trams are no vehicles in the words of the law, or it is not known whether they are."""
 
+USUAL = ("de", "fr", "gb", "jp", "nl", "us", "us-ca", "kr", "ie")
+"""The books that are asked without `--long`: laws of all families, on both sides of the road."""
+
+
+def asked_of(books):
+    """The books as parameters."""
+    return [x if x in USUAL else pytest.param(x, marks=pytest.mark.long) for x in books]
+
+
 LEFT = ("gb", "jp", "au", "au-nsw", "ie", "in")
 
 
@@ -76,7 +85,7 @@ SCENES = pytest.mark.parametrize(("sign", "from_left"), [("YIELD", False), ("STO
 
 
 @SCENES
-@pytest.mark.parametrize("book", SURE)
+@pytest.mark.parametrize("book", asked_of(SURE))
 def test_who_cuts_off_a_tram_at_a_sign_violates(book, sign, from_left):
     violated, _ = judged(book, sign, "tram", from_left, True)
     by_trams = {"rail_priority_at_signs"} & {x.name for x in read(book).rulebook.rules}
@@ -84,7 +93,7 @@ def test_who_cuts_off_a_tram_at_a_sign_violates(book, sign, from_left):
 
 
 @SCENES
-@pytest.mark.parametrize("book", OPEN)
+@pytest.mark.parametrize("book", asked_of(OPEN))
 def test_where_trams_may_be_no_vehicles_it_is_open(book, sign, from_left):
     assert judged(book, sign, "tram", from_left, True) == (set(), asked(book, sign))
 

@@ -16,7 +16,7 @@ from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.batch.columns.columnize import UnencodableError
 from rulec.monitoring.batch.joined.joined_columns import joined_columns
 from rulec.monitoring.batch.joined.joined_states import joined_states
-from rulec.monitoring.batch.stacked import instances, stacked_rule
+from rulec.monitoring.batch.stacked import instances, stacked_rule, stacked_run
 from rulec.monitoring.batch.stacked.stacked_run import judge_joined
 from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.rulebook_edition import edition_of
@@ -209,3 +209,18 @@ def test_a_long_trace_alone(n_states):
         own = Trace("t", 0.5, dict(next(x for x in parts if len(x.objects) == 3).objects), states)
         own = replace(own, states=(states * n_states)[:n_states], ends="cut")
         assert rulec.verify(own, book) == replace(verify(own, book), law=edition_of(book))
+
+
+@pytest.mark.parametrize("most", [0, 50, 1 << 20])
+def test_traces_that_contradict_facts(most):
+    """Whether they are examined together, or by their states, they get the same answers."""
+    compiled, chance = compile_here(parse_rulebook(TWO)), Random(11)
+    own = [drive(chance, number, cut=True) for number in range(40)]
+    for number in range(0, 40, 3):
+        fast = dict.fromkeys(own[number].states[0]["place"], 95.0)
+        state = {**own[number].states[0], "speed": fast, "place": dict.fromkeys(fast, "left")}
+        own[number] = replace(own[number], states=(state, *own[number].states[1:]))
+    with patch.object(stacked_run, "_MOST_EXAMINED", most):
+        answers = list(verify_many(own, compiled))
+    assert answers == [verify_or_reason(one, compiled) for one in own]
+    assert any(answer.violations for answer in answers if not isinstance(answer, NotJudged))

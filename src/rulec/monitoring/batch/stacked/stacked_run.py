@@ -41,8 +41,8 @@ if TYPE_CHECKING:
     from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 
 
-_MOST_OBJECTS = 1 << 6
-"""A trace of more objects that contradicts facts is judged by its states."""
+_MOST_EXAMINED = 1 << 20
+"""Of traces that contradict facts at most so many pairs of objects times states are examined."""
 
 
 def judge_joined(traces: JoinedTraces, rulebook: CompiledRulebook) -> Sequence[JudgedTrace | None]:
@@ -97,13 +97,18 @@ class _StackedRun:
         ]
 
     def _suspects(self, contradicted: Set[int]) -> Flags:
-        """The traces among these that are examined closely, unless they are crowded.
+        """The traces among these that are examined closely, unless there is too much in them.
 
         Without the values that follow by facts, which a state may leave out, none is.
         """
         suspects: Flags = np.zeros(self._n_traces, dtype=bool)
+        if not contradicted:
+            return suspects
         suspects[list(contradicted)] = True
-        odd = np.bincount(self._stack.trace_of, minlength=self._n_traces) > _MOST_OBJECTS
+        stack = self._stack
+        n_objects = np.bincount(stack.trace_of, minlength=self._n_traces)
+        n_pairs = n_objects**2 * (stack.begins[1:] - stack.begins[:-1])
+        odd: Flags = (n_pairs * suspects).cumsum() > _MOST_EXAMINED
         odd |= not self._is_derived
         self._odd.update((suspects & odd).nonzero()[0].tolist())
         return suspects & ~odd
