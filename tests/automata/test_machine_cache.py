@@ -123,16 +123,23 @@ def test_another_rulec_asks_anew(asked, monkeypatch, name):
     assert len(asked) == 2
 
 
-def test_what_is_no_machine_is_not_kept(asked, monkeypatch):
-    monkeypatch.setattr(
-        compiler, "_ask", lambda _, one, __: (asked.append(one) or Failed("memory"), 0)
-    )
-    assert ASKED([job()]) == ASKED([job()]) == ([Failed("memory")], "2.13")
+@pytest.mark.parametrize("why", ["memory", "time", "bug", "check", "facts"])
+def test_what_another_machine_might_answer_otherwise_is_not_kept(asked, monkeypatch, why):
+    """And what says more than its reason."""
+    monkeypatch.setattr(compiler, "_ask", lambda _, one, __: (asked.append(one) or Failed(why), 0))
+    assert ASKED([job()]) == ASKED([job()]) == ([Failed(why)], "2.13")
     assert len(asked) == 2
     monkeypatch.setattr(compiler, "_ask", lambda _, one, __: (asked.append(one), 0))
     assert ASKED([job(), job()]) == ([None, None], "2.13")
     assert len(asked) == 4
     assert not cache_folder().exists()
+
+
+@pytest.mark.parametrize("why", ["letters", "steps", "size", "sets", "reach"])
+def test_a_refusal_that_the_job_decides_is_kept(asked, monkeypatch, why):
+    monkeypatch.setattr(compiler, "_ask", lambda _, one, __: (asked.append(one) or Failed(why), 0))
+    assert ASKED([job()]) == ASKED([job()]) == ([Failed(why)], "2.13")
+    assert len(asked) == 1
 
 
 @pytest.mark.parametrize("data", [b"", b"{}", b"\xff", bytes(50)])

@@ -56,6 +56,11 @@ class Done:
     hoa: str
 
 
+FailedWhy: TypeAlias = Literal[
+    "letters", "steps", "size", "sets", "memory", "check", "facts", "reach", "time", "bug"
+]
+
+
 @dataclass(frozen=True, slots=True)
 class Failed:
     """The reason why there is no monitor.
@@ -67,9 +72,7 @@ class Failed:
     error, with its traceback.
     """
 
-    why: Literal[
-        "letters", "steps", "size", "sets", "memory", "check", "facts", "reach", "time", "bug"
-    ]
+    why: FailedWhy
     traceback: str = ""
     contradiction: tuple[AxiomInstance, ...] = ()
 
