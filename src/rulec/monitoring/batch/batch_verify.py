@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     from rulec.monitoring.batch.findings import JudgedTrace
 
 FEWEST = 4
-"""Fewer traces of one shape are judged one by one."""
+"""Fewer traces of one shape or kind are judged one by one, unless they are long."""
 
 _MADE_TOGETHER = 1 << 12
 """How many reasons for refusing traces are built at once.
@@ -106,7 +106,7 @@ def _n_states(item: Trace | RulecError) -> int:
 def verify_chunk(
     items: Sequence[Trace | RulecError], rulebook: CompiledRulebook, fewest: int = FEWEST
 ) -> list[Answer]:
-    """Answers for some traces; at least ``fewest`` of one shape are judged together."""
+    """Answers for some traces; at least ``fewest`` of one kind are judged together."""
     try:
         return _verify_chunk(items, rulebook, fewest)
     except Exception as problem:

@@ -41,21 +41,23 @@ def joined_columns(alike: AlikeTraces, vocabulary: Vocabulary) -> JoinedTraces:
         if stretch is not None:
             of_pairs[objects[x], objects[y]] = stretch
     of_world: dict[_Items, _Stretch] = {(): (0, None)}
-    rooms = [_Room.of(stretches, layout) for stretches in (of_world, of_each, of_pairs)]
+    places_by_arity = [
+        _GroupPlaces.of(stretches, layout) for stretches in (of_world, of_each, of_pairs)
+    ]
     columns = PieceColumns()
     for name in dict.fromkeys(name for name, _ in own.values):
         declaration = vocabulary.declarations[name]
         arity = len(declaration.parameters)
-        room = rooms[arity]
-        given = [items for items in room.groups if (name, items) in own.values]
+        places = places_by_arity[arity]
+        given = [items for items in places.groups if (name, items) in own.values]
         if not given:
             continue  # about two that never meet
         suits = absent = None
         if arity == 1:
-            suits = np.tile([items in given for items in room.groups], n_traces)
-        elif arity == 2 and len(given) < len(room.groups) and declaration.default is not None:
-            absent = room.without(given)
-        columns.add_encoded(room.column(own, name, given), declaration, suits, absent)
+            suits = np.tile([items in given for items in places.groups], n_traces)
+        elif arity == 2 and len(given) < len(places.groups) and declaration.default is not None:
+            absent = places.without(given)
+        columns.add_encoded(places.column(own, name, given), declaration, suits, absent)
     begins = len(objects) * np.arange(n_traces)[:, None, None]
     met = [(numbers[first], numbers[second]) for first, second in of_pairs]
     chosen = np.array(met, dtype=np.intp).reshape(1, -1, 2) + begins
@@ -63,7 +65,7 @@ def joined_columns(alike: AlikeTraces, vocabulary: Vocabulary) -> JoinedTraces:
         kind=TraceKind(own.step_s, alike.ends, alike.told),
         lengths=layout.lengths.astype(np.intp),
         n_objects=[len(objects)] * n_traces,
-        spans=rooms[1].spans,
+        spans=places_by_arity[1].spans,
         types=[*own.objects.values()] * n_traces,
         names=list(chain.from_iterable(map(alike.names, range(n_traces)))),
         pieces=(columns.piece(len(objects) * n_traces, chosen.reshape(-1, 2)),),
@@ -98,7 +100,7 @@ def _check_pairs(columns: TraceColumns, vocabulary: Vocabulary) -> None:
                 raise UnencodableError
 
 
-class _Room(NamedTuple):
+class _GroupPlaces(NamedTuple):
     """The places of values about some ``groups`` of objects: trace by trace, group by group.
 
     ``spans`` are the first and last state of each; ``places`` has for each value its place in
@@ -111,7 +113,7 @@ class _Room(NamedTuple):
     of_groups: Sequence[Indices]
 
     @staticmethod
-    def of(stretches: Mapping[_Items, _Stretch], layout: Layout) -> _Room:
+    def of(stretches: Mapping[_Items, _Stretch], layout: Layout) -> _GroupPlaces:
         """The places for groups that are present in these stretches."""
         n_traces, n_groups = layout.n_traces, len(stretches)
         of_traces: Any = np.empty((n_traces, n_groups, 2), dtype=np.intp)
@@ -125,7 +127,7 @@ class _Room(NamedTuple):
         traces = np.arange(n_traces).repeat(n_groups).repeat(lengths)
         group_of = np.tile(np.arange(n_groups), n_traces).repeat(lengths)
         of_groups = [(group_of == number).nonzero()[0] for number in range(n_groups)]
-        return _Room(list(stretches), spans, layout.starts[steps] + traces, of_groups)
+        return _GroupPlaces(list(stretches), spans, layout.starts[steps] + traces, of_groups)
 
     def column(self, columns: TraceColumns, name: str, given: Sequence[_Items]) -> PartlyKnown:
         """A name's values about the groups that it is given for."""

@@ -33,7 +33,7 @@ def joined_states(traces: Sequence[Trace], vocabulary: Vocabulary) -> JoinedTrac
     states = list(chain.from_iterable([trace.states for trace in traces]))
     if set(map(type, states)) != {dict}:
         raise UnencodableError
-    casts = [_Cast(trace, vocabulary) for trace in traces]
+    casts = [_TraceObjects(trace, vocabulary) for trace in traces]
     columns = PieceColumns()
     pairs: list[tuple[int, int]] = []
     of_pairs: list[tuple[Declaration, Sequence[Sequence[_ByObject]]]] = []
@@ -77,7 +77,7 @@ def _indices(pairs: Sequence[tuple[int, int]]) -> Indices:
 
 
 @dataclass(frozen=True, eq=False)
-class _Cast:
+class _TraceObjects:
     """The objects of a trace, and when each is present."""
 
     trace: Trace
@@ -115,7 +115,7 @@ def _by_object(value: Any, fitting: frozenset[str]) -> _ByObject:
 
 
 def _about_objects(
-    maps: Sequence[Sequence[_ByObject]], declaration: Declaration, casts: Sequence[_Cast]
+    maps: Sequence[Sequence[_ByObject]], declaration: Declaration, casts: Sequence[_TraceObjects]
 ) -> tuple[list[Any], Declaration, Flags]:
     """A name's values for each object in each of its states, and the objects it can be about."""
     values: list[Any] = []
@@ -136,7 +136,7 @@ _OfPairs: TypeAlias = tuple[Declaration, Sequence[Sequence[_ByObject]]]
 
 
 def _add_pairs(
-    of_pairs: Sequence[_OfPairs], casts: Sequence[_Cast], columns: PieceColumns
+    of_pairs: Sequence[_OfPairs], casts: Sequence[_TraceObjects], columns: PieceColumns
 ) -> list[tuple[int, int]]:
     """Add the columns about pairs of objects, and return these."""
     values: list[list[Any]] = [[] for _ in of_pairs]
@@ -164,7 +164,7 @@ def _add_pairs(
 def _of_pair(
     pair: tuple[str, str],
     found: Mapping[tuple[str, str], Sequence[_ByObject]],
-    cast: _Cast,
+    cast: _TraceObjects,
     declaration: Declaration,
 ) -> list[Any]:
     """A name's values about a pair in all states; anything where they are never read."""
@@ -178,7 +178,7 @@ def _of_pair(
 
 
 def _by_pair(
-    declaration: Declaration, maps: Sequence[_ByObject], cast: _Cast
+    declaration: Declaration, maps: Sequence[_ByObject], cast: _TraceObjects
 ) -> Mapping[tuple[str, str], Sequence[_ByObject]]:
     """For each pair what the states say of its second object, asked of its first one."""
     firsts, seconds = map(cast.fitting, declaration.parameters)
