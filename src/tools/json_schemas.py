@@ -24,6 +24,7 @@ from rulec.report.rulebooks.lineage_tree import ForestDocument, LineageDocument
 from rulec.report.rulebooks.matrix_report import MatrixDocument
 from rulec.report.rulebooks.proof_report import ProofsDocument
 from rulec.report.rulebooks.rule_json import RulesDocument
+from rulec.report.rulebooks.rule_list import RuleListDocument
 from rulec.report.rulebooks.word_texts import WordData
 from rulec.report.tests.example_json import ExamplesRun
 from rulec.report.text.listing import ListingDocument
@@ -49,6 +50,7 @@ SCHEMAS: Mapping[str, tuple[Any, ...]] = {
     "monitor": (SavedMonitor,),
     "proofs": (ProofsDocument,),
     "rates": (RatesDocument,),
+    "rules": (RuleListDocument,),
     "show": (RulesDocument,),
     "state": (StateVerdict, StateRefused),
     "test": (ExamplesRun,),

@@ -25,7 +25,7 @@ def test_everything_but_codes(capsys):
         "scenarios",
     ]
     assert "  esterle2019  Traffic rules of Esterle, Aravantinos and Knoll (2019)" in lines
-    assert all(len(line) < 130 for line in lines)
+    assert all(len(line) <= 80 for line in lines)
 
 
 @pytest.mark.parametrize(
@@ -50,8 +50,38 @@ def test_one_kind(kind, names, capsys):
 
 
 def test_a_kind_that_there_is_not(capsys):
-    assert main(["list", "rules"]) == 2
+    assert main(["list", "rulbooks"]) == 2
     assert "did you mean `rulebooks`?" in capsys.readouterr().err
+
+
+def test_rules_of_several_books(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for name, rules in (("one", "ab"), ("two", "bc")):
+        (tmp_path / f"{name}.rules").write_text(
+            f'rulebook {name}\nsignal p\ntopics {{ mud "Mud" of b }}\n'
+            + "".join(f'hard rule {x} {{ cite "{name} 1" require never p }}\n' for x in rules)
+        )
+    books = ["./one.rules", "./two.rules"]
+    assert listed(capsys, "rules", *books).splitlines() == [
+        "one: no law is named; 2 rules (2 hard)",
+        "two: no law is named; 2 rules (2 hard)",
+        "Mud",
+        "  b  one two  never p",
+        "other",
+        "  a  one      never p",
+        "  c  two      never p",
+    ]
+    assert listed(capsys, "rules", books[1]).splitlines()[-1] == "  c  two 1  never p"
+    (only,) = json.loads(listed(capsys, "rules", *books, "--topic", "mud", "--json"))["rules"]
+    assert only["books"] == {"one": "one 1", "two": "two 1"}
+
+
+@pytest.mark.parametrize(
+    "words", [["codes", "de"], ["--topic", "lights"], ["codes", "--at", "2020-01-01"]]
+)
+def test_only_rules_are_those_of_a_book(words, capsys):
+    assert main(["list", *words]) == 2
+    assert "only rules are those of a RULEBOOK" in capsys.readouterr().err
 
 
 def test_a_file_that_cannot_be_read_is_listed_without_a_title(tmp_path):

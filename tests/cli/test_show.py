@@ -9,7 +9,8 @@ import pytest
 from rulec import compile_rulebook
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.cli.main import main
-from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.loader import load_rulebook, parse_rulebook
+from rulec.rulebook.vocabulary_phrases import topic_groups
 
 TWO = """\
 rulebook two
@@ -39,14 +40,15 @@ hard rule R3 (p: pedestrian)
   says  Stop if pedestrians are using or intend to use a pedestrian crossing.
 
 in English
-  For every pedestrian p: at all times it is not the case that both the surface is “R_pc” and the
-  position of p is “f”.
+  For every pedestrian p: at all times it is not the case that both the surface
+  is “R_pc” and the position of p is “f”.
 
 formula
   always not (R_pc and f(p))
 
 automaton
-  2 states; a trace starts in state 0, and is accepted or rejected as written after its last step
+  2 states; a trace starts in state 0, and is accepted or rejected as written
+  after its last step
   state 0
     R_pc and f(p)   to state 1   rejected
     otherwise       stays        accepted
@@ -59,8 +61,51 @@ a shortest rejected trace, and an accepted one close to it
     )
 
 
-def test_without_a_rule_every_one_in_brief(two, capsys):
+def test_without_a_rule_each_has_a_line(two, capsys):
     assert main(["show", two]) == 0
+    head, *rules, way_on = capsys.readouterr().out.splitlines()
+    assert head == "two: no law is named; 2 rules (1 hard, 1 soft)"
+    assert rules[0] == "  quiet    No horn."
+    assert rules[1].startswith("  pass_by  (soft) never (")
+    assert way_on == "a RULE's name shows it in full, `--all` every one"
+
+
+def test_rules_stand_below_what_they_are_about(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "own.rules").write_text(
+        "rulebook own\nsignal p\n"
+        'topics { moon "On the Moon" of crater; lights "Lamps" of lamp; speed_limit "Limits" }\n'
+        'hard rule crater { says "Mind it." require never p }\n'
+        "hard rule lamp { topic lights require never p }\n"
+        "hard rule pace { topic speed_limit, lights require never p }\n"
+        "hard rule rest { require never p }\n"
+    )
+    assert main(["show", "./own.rules"]) == 0
+    lines = capsys.readouterr().out.splitlines()[1:-1]
+    assert [line.split()[0] for line in lines] == [
+        *("speed", "pace", "lamps", "lamp", "On", "crater", "other", "rest")
+    ]
+    for topic, rules in (("moon", ["crater"]), ("Lamps", ["lamp", "pace"]), ("on", ["crater"])):
+        assert main(["show", "./own.rules", "--topic", topic, "--json"]) == 0
+        found = json.loads(capsys.readouterr().out)["rules"]
+        assert [rule["name"] for rule in found] == rules
+    assert main(["show", "./own.rules", "--topic", "vitesse"]) == 0
+    assert "rule pace" in capsys.readouterr().out
+    assert main(["show", "./own.rules", "--topic", "limits", "--rule", "lamp"]) == 2
+    assert "own has no rule like `lamp`" in capsys.readouterr().err
+    assert main(["show", "./own.rules", "--topic", "boat"]) == 2
+    said = "there is no topic `boat`; there are `speed`, `lamps`; single ones are such as `moon`"
+    assert said in capsys.readouterr().err
+
+
+def test_every_shipped_topic_is_in_a_group():
+    book = load_rulebook("schemas")
+    topics = {topic.name for topic in book.topics}
+    assert {name for below in topic_groups().values() for name in below} == topics
+
+
+def test_with_all_every_one_in_brief(two, capsys):
+    assert main(["show", two, "--all"]) == 0
     out = capsys.readouterr().out
     assert out.startswith(
         "hard rule quiet\n  says  No horn.\n\n  At all times “horn” does not hold.\n\n\n"
@@ -284,7 +329,7 @@ def test_what_options_rule_out_is_not_told(capsys, tmp_path, monkeypatch):
         "hard rule A { require never (yes and p) unless no and q unless yes and q }\n"
         "hard rule B { require never p when no }\n"
     )
-    assert main(["show", "./a.rules"]) == 0
+    assert main(["show", "./a.rules", "--all"]) == 0
     out = capsys.readouterr().out
     assert (
         "  It never happens that “p” holds.\n"
@@ -298,7 +343,7 @@ def test_rules_are_chosen_by_pattern_as_in_other_verbs(two, capsys):
     in_full = capsys.readouterr().out
     assert main(["show", two, "quiet"]) == 0
     assert capsys.readouterr().out == in_full
-    assert main(["show", two, "--rule", "qui*", "--rule", "pass_by"]) == 0
+    assert main(["show", two, "--rule", "qui*", "--rule", "pass_by", "--all"]) == 0
     assert "rule quiet" in (both := capsys.readouterr().out)
     assert "rule pass_by" in both
     assert main(["show", two, "--rule", "quiet", "--automaton", "text"]) == 0

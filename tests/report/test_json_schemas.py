@@ -55,6 +55,7 @@ DOCUMENTS = [
     ("formats", ["formats", "--json"]),
     ("list", ["list", "--json"]),
     ("list", ["list", "codes", "--json"]),
+    ("rules", ["list", "rules", "esterle2019", "--json"]),
     ("maneuvers", ["maneuvers", "s1", "-r", "esterle2019", "--json", "--list", "2"]),
     ("maneuvers", ["maneuvers", "s2", "-r", "esterle2019", "--json", "--rank", "9", "--why"]),
     ("maneuvers", ["maneuvers", "s1", "-r", "esterle2019", "--json", "--classes", "2"]),

@@ -31,6 +31,7 @@ from rulec.report.text.console import (
 )
 from rulec.report.text.outgoing import OutgoingLines, outgoing
 from rulec.report.text.terminal_text import wants_color
+from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.rulebook.files.source_walk import LeftAlone, in_words
 from rulec.settings import exclusion, search_path
 
@@ -181,6 +182,31 @@ def rulebooks_named(references: Sequence[str]) -> tuple[str, ...]:
         raise RulecError(on_the_way.refused)
     print_left_alone(on_the_way.left_alone, verbose=False)
     return tuple(names)
+
+
+def books_and_rule(arguments: Sequence[str], verb: str) -> tuple[tuple[str, ...], str | None]:
+    """The rulebooks and the rule in a verb's arguments; the last argument may be a rule."""
+    *before, last = arguments
+    if before and has_magic(last) and "/" not in last and not any(Path().glob(last)):
+        raise click.UsageError(
+            f"`{last}` is no rulebook; for rules that match it write `--rule '{last}'`"
+        )
+    if not before and not _is_rulebook(last):
+        # Late import, only if an argument may be a rule: file search and their rules (60 ms).
+        from rulec.rulebook.files.catalogue import rulebooks_with_rule
+
+        if books := rulebooks_with_rule(last, search_path()):
+            raise click.UsageError(
+                f"`{last}` is a rule; give its rulebook, too: `rulec {verb} {books[0]} {last}`"
+            )
+    if not before or _is_rulebook(last):
+        return rulebooks_named(arguments), None
+    return rulebooks_named(before), last
+
+
+def _is_rulebook(argument: str) -> bool:
+    is_path = "/" in argument or argument.endswith((".rules", ".json")) or has_magic(argument)
+    return is_path or argument in available_rulebooks(search_path())
 
 
 def told_apart(references: Sequence[str]) -> dict[str, str]:

@@ -94,6 +94,12 @@ def topics_in(language: str) -> Mapping[str, str]:
     return topics
 
 
+def topic_groups() -> Mapping[str, Sequence[str]]:
+    """What shipped topics are about: a word, such as overtaking, and the topics below it."""
+    groups: Mapping[str, Sequence[str]] = _file("titles.en.toml")["groups"]
+    return groups
+
+
 def synonyms_of_the_field() -> Mapping[str, Sequence[str]]:
     """The words of shipped vocabularies, with synonyms in any language."""
     return _file("synonyms.toml")

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, get_args
+from functools import partial
+from typing import TYPE_CHECKING, Literal, get_args
 
 import click
 
 import rulec
 from rulec.api.rulebook_questions import Kind
+from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.rule_choice import rules_on_topic
 from rulec.cli.options.verb_class import Verb
-from rulec.cli.output import open_session, put_answer
+from rulec.cli.output import open_session, put_answer, sources_of_rulebooks, width_of
+from rulec.rulebook.batch.answer_cache import AnswerQuestion
+from rulec.rulebook.files.search_path import available_rulebooks
+from rulec.settings import search_path
 
 if TYPE_CHECKING:
     from rulec.report.text.listing import Listed
@@ -20,10 +26,29 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 
 
 @click.command(cls=Verb)
-@click.argument("kind", type=click.Choice(KINDS), required=False)
+@click.argument("kind", type=click.Choice([*KINDS, "rules"]), required=False)
+@shared.rulebooks_argument("[RULEBOOK]...", required=False)
 @output_options(endings_of("text", "json"), "the list")
-def command(kind: Kind | None, to: Output) -> None:
-    """List everything that can be named, with its title; without KIND all kinds except codes."""
+@shared.topic_option("With `rules`: list only those on a topic")
+@shared.at_option
+def command(
+    kind: Kind | Literal["rules"] | None,
+    rulebooks: tuple[str, ...],
+    to: Output,
+    topic: str | None,
+    at: str,
+) -> None:
+    """List everything that can be named, with its title; without KIND all kinds except codes.
+
+    `rules` are those of RULEBOOKs, by default of all: by topic, with the books that have each.
+    """
+    if kind == "rules":
+        width = 0 if to.form == "json" else width_of(to)
+        question = AnswerQuestion(("list", *rulebooks, repr((topic, at, width))), search_path())
+        put_answer(question.answer(partial(_rules, rulebooks, topic, at, width)), to)
+        return
+    if rulebooks or topic or at:
+        raise click.UsageError("only rules are those of a RULEBOOK: `rulec list rules de`")
     # Late import, not for --help: msgspec (7 ms).
     from rulec.report.text.listing import as_json, as_text
 
@@ -33,4 +58,20 @@ def command(kind: Kind | None, to: Output) -> None:
 
     kinds = KINDS[:-1] if kind is None else (kind,)
     lists: dict[str, Sequence[Listed]] = {kind: session(kind).list(kind) for kind in kinds}
-    put_answer(as_json(lists) if to.form == "json" else as_text(lists), to)
+    put_answer(as_json(lists) if to.form == "json" else as_text(lists, width_of(to)), to)
+
+
+def _rules(
+    rulebooks: Sequence[str], topic: str | None, at: str, width: int
+) -> tuple[str, Sequence[str]]:
+    """The rules of rulebooks as text of a width, or JSON if that is 0, and the files read."""
+    # Late import, not for --help: rulebooks (130 ms).
+    from rulec.report.rulebooks import rule_list
+    from rulec.rulebook.loader import read_rulebook
+
+    named = sources_of_rulebooks(rulebooks, "has no list") or available_rulebooks(search_path())
+    read = [read_rulebook(name, search_path(), at) for name in named]
+    books = [loaded.rulebook for loaded in read if loaded.rulebook.rules]
+    books = books if topic is None else [*rules_on_topic(books, topic)]
+    text = rule_list.as_text(books, width, "") if width else rule_list.as_json(books)
+    return text, [path for loaded in read for path in loaded.paths]

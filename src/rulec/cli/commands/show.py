@@ -6,9 +6,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import fields, replace
 from functools import partial
-from glob import has_magic
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
@@ -17,13 +16,13 @@ from rulec.automata.bundle.required_signature import refuse_source
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.rule_choice import rules_on_topic
 from rulec.cli.options.shell_completion import complete_rules
 from rulec.cli.options.verb_class import Verb
-from rulec.cli.output import errors_told, put_answer, rulebooks_named, width_of
+from rulec.cli.output import books_and_rule, errors_told, put_answer, rulebooks_named, width_of
 from rulec.diagnostics import first_of, named, nearest_name
 from rulec.report.text.console import print_remark
 from rulec.rulebook.batch.answer_cache import AnswerQuestion
-from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.settings import search_path
 
 if TYPE_CHECKING:
@@ -51,11 +50,16 @@ _MOST_NAMED = 6
     alias="automaton",
 )
 @shared.rules_option("Show only rules that match PATTERN")
+@shared.topic_option("Show only rules on a topic")
+@click.option("--all", "every", is_flag=True, help="Show every rule in plain English, not a list.")
 @shared.at_option
 def command(
     rulebook: str,
     others: tuple[str, ...],
+    *,
     patterns: tuple[str, ...],
+    topic: str | None,
+    every: bool,
     automaton: str | None,
     to: Output,
     at: str,
@@ -63,28 +67,30 @@ def command(
     """Show a RULE of a RULEBOOK: in plain English, as a formula, as an automaton, with examples.
 
     The English sentence is generated from the formula and is unambiguous. Without RULE every rule
-    is shown briefly; the only rule of a rulebook, or the only one that matches --rule, is shown in
-    full. With several RULEBOOKs, folders or patterns, the RULE is shown for each; JSON has one line
-    each.
+    has a line, by topic; the only rule of a rulebook, or the only one that matches --rule or
+    --topic, is shown in full. With several RULEBOOKs, folders or patterns, the RULE is shown for
+    each; JSON has one line each.
     """
     if patterns:
         books, rule = rulebooks_named((rulebook, *others)), None
     else:
-        books, rule = _books_and_rule((rulebook, *others))
+        books, rule = books_and_rule((rulebook, *others), "show")
+    asked = Asked(rule, patterns, topic, every, to, at)
     if automaton is not None or to.form in ("dot", "svg"):
         if len(books) > 1:
             raise click.UsageError("an automaton is of one rule; give one RULEBOOK")
-        put_answer(_automaton_of(books[0], rule, patterns, to, at), to)
+        put_answer(_automaton_of(books[0], asked), to)
         return ExitStatus.OK
     if len(books) == 1:
-        put_answer(_known(books[0], rule, patterns, to, at, several=False), to)
+        put_answer(_known(books[0], asked, several=False), to)
         return ExitStatus.OK
     shown: list[str] = []
     missing: list[click.UsageError] = []
     for book in books:
         with errors_told(), _collected(missing):
-            text = _known(book, rule, patterns, to, at, several=True)
-            shown.append(text if to.form == "json" else f"{book}\n\n{text}\n")
+            text = _known(book, asked, several=True)
+            alone = to.form == "json" or (rule is None and not every)
+            shown.append(text if alone else f"{book}\n\n{text}\n")
     if missing and not shown:
         raise missing[0]
     put_answer("\n".join(shown), to)
@@ -102,69 +108,54 @@ def _collected(problems: list[click.UsageError]) -> Iterator[None]:
         problems.append(problem)
 
 
-def _books_and_rule(arguments: Sequence[str]) -> tuple[tuple[str, ...], str | None]:
-    """The rulebooks and the rule in the arguments; the last argument may be a rule."""
-    *before, last = arguments
-    if before and has_magic(last) and "/" not in last and not any(Path().glob(last)):
-        raise click.UsageError(
-            f"`{last}` is no rulebook; for rules that match it write `--rule '{last}'`"
-        )
-    if not before and not _is_rulebook(last):
-        # Late import, only if an argument may be a rule: file search and their rules (60 ms).
-        from rulec.rulebook.files.catalogue import rulebooks_with_rule
+class Asked(NamedTuple):
+    """The rules to show, and how."""
 
-        if books := rulebooks_with_rule(last, search_path()):
-            raise click.UsageError(
-                f"`{last}` is a rule; give its rulebook, too: `rulec show {books[0]} {last}`"
-            )
-    if not before or _is_rulebook(last):
-        return rulebooks_named(arguments), None
-    return rulebooks_named(before), last
+    name: str | None
+    patterns: tuple[str, ...]
+    topic: str | None
+    every: bool
+    to: Output
+    at: str
 
 
-def _is_rulebook(argument: str) -> bool:
-    is_path = "/" in argument or argument.endswith((".rules", ".json")) or has_magic(argument)
-    return is_path or argument in available_rulebooks(search_path())
-
-
-def _known(reference: str, *asked: Any, several: bool) -> str:
+def _known(reference: str, asked: Asked, *, several: bool) -> str:
     """A rule as text or JSON, or all that match in brief; one JSON line each if ``several``."""
-    shown = partial(_shown, reference, *asked, several=several)
+    shown = partial(_shown, reference, asked, several=several)
     if Path(reference).suffix == ".json":
         return shown()[0]
     refuse_source(reference)
-    words = ("show", reference, repr((asked, width_of(asked[2]), several)))
+    words = ("show", reference, repr((*asked, width_of(asked.to), several)))
     return str(AnswerQuestion(words, search_path()).answer(shown))
 
 
-def _shown(
-    reference: str,
-    name: str | None,
-    patterns: Sequence[str],
-    to: Output,
-    at: str,
-    *,
-    several: bool,
-) -> tuple[str, Sequence[str]]:
+def _shown(reference: str, asked: Asked, *, several: bool) -> tuple[str, Sequence[str]]:
     """What to show, and the files that it comes from; none for a compiled rulebook."""
+    whole, compiled, paths = _read(reference, asked.at)
+    book = _matching(whole, asked)
+    chosen = _chosen(book, asked.name, reference)
+    if book.rules and chosen is None and asked.to.form == "text" and not asked.every:
+        # Late import, not for --help: topics (20 ms).
+        from rulec.report.rulebooks import rule_list
+
+        some = "" if asked.topic or not book.topics else ", `--topic overtaking` some"
+        ways_on = f"a RULE's name shows it in full{some}, `--all` every one"
+        return rule_list.as_text([book], width_of(asked.to), ways_on), paths
     # Late import, not for --help: rules and automata (60 ms).
     from rulec.report.json_document import as_indented, as_line
     from rulec.report.rulebooks import rule_json, rule_page
     from rulec.report.rulebooks.spoken_rules import spoken_book
 
-    whole, compiled, paths = _read(reference, at)
-    book = _matching(whole, patterns)
-    chosen = _chosen(book, name, reference)
     page = None if chosen is None else _page(book, compiled, chosen)
     spoken = spoken_book(book)
     rules = spoken.rules
     if chosen is not None and page is not None:
         rules = tuple(rule for rule in spoken.rules if rule.name == chosen.name)
         page = replace(page, rule=rules[0])
-    if to.form == "json":
+    if asked.to.form == "json":
         document = rule_json.as_document(book.name, rules, book.vocabulary, page)
         return as_line(document) if several else as_indented(document), paths
-    width = width_of(to)
+    width = width_of(asked.to)
     if page is not None:
         return rule_page.as_text(page, book.name, book.vocabulary, width), paths
     if not rules:
@@ -173,30 +164,31 @@ def _shown(
     return "\n\n\n".join(pages), paths
 
 
-def _matching(book: Rulebook, patterns: Sequence[str]) -> Rulebook:
-    """The rulebook with only the rules that match one of the patterns, if there are any."""
-    if not patterns:
+def _matching(book: Rulebook, asked: Asked) -> Rulebook:
+    """The rulebook with only the rules on the topic that match one of the patterns, if any."""
+    if asked.topic is not None:
+        book = rules_on_topic([book], asked.topic)[0]
+    if not asked.patterns:
         return book
     # Late import, not for --help: comparisons of rulebooks.
     from rulec.analysis.diff.rulebook_comparison import rules_matching
 
-    rules = tuple(rules_matching(book, patterns).values())
+    rules = tuple(rules_matching(book, asked.patterns).values())
     if not rules:
-        raise click.UsageError(f"{book.name} has no rule like {named(patterns)}")
+        raise click.UsageError(f"{book.name} has no rule like {named(asked.patterns)}")
     return replace(book, rules=rules)
 
 
-def _automaton_of(
-    reference: str, name: str | None, patterns: Sequence[str], to: Output, at: str
-) -> str:
+def _automaton_of(reference: str, asked: Asked) -> str:
     """The automaton of a rule, in the requested format."""
-    whole, compiled, _ = _read(reference, at)
-    book = _matching(whole, patterns)
-    chosen = _chosen(book, name, reference)
+    whole, compiled, _ = _read(reference, asked.at)
+    book = _matching(whole, asked)
+    chosen = _chosen(book, asked.name, reference)
     if chosen is None:
         raise click.UsageError(f"give the RULE whose automaton to show: {_names(book)}")
     page = _page(book, compiled, chosen)
-    return _automaton(page.automaton, to.form, f"{book.name} {chosen.name}", width_of(to))
+    name = f"{book.name} {chosen.name}"
+    return _automaton(page.automaton, asked.to.form, name, width_of(asked.to))
 
 
 def _page(book: Rulebook, compiled: CompiledRulebook | None, chosen: Rule) -> RulePage:
@@ -227,7 +219,8 @@ def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None, S
     names = {field.name for field in fields(CompiledRule)} & {field.name for field in fields(Rule)}
     rules = [Rule(**{name: getattr(rule, name) for name in names}) for rule in compiled.rules]
     in_books = tuple(replace(rule, book=rule.book or compiled.name) for rule in rules)
-    return Rulebook(compiled.name, compiled.vocabulary, in_books), compiled, ()
+    about = {name: getattr(compiled, name) for name in ("title", "law", "as_of")}
+    return Rulebook(compiled.name, compiled.vocabulary, in_books, **about), compiled, ()
 
 
 def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:

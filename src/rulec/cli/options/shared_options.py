@@ -217,6 +217,16 @@ def rules_option(help_text: str, former: Sequence[str] = ()) -> Callable[[Decora
     )
 
 
+def topic_option(help_text: str) -> Callable[[Decorated], Decorated]:
+    """``--topic TOPIC``."""
+    return click.option(
+        "--topic",
+        metavar="TOPIC",
+        help=f"{help_text}: a topic of the rulebook, a part of its title, or a group of topics, "
+        "such as overtaking.",
+    )
+
+
 end_option = click.option(
     "--end",
     "ends",

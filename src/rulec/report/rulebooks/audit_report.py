@@ -16,6 +16,7 @@ from rulec.analysis.audit.source_audit import SourceAudit
 from rulec.report.json_document import JsonDocument, as_indented
 from rulec.report.rulebooks import source_report
 from rulec.report.rulebooks.document_language import IN_ENGLISH, DocumentLanguage
+from rulec.report.rulebooks.rule_list import law_of
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.markdown import code, escaped, table
 from rulec.report.text.terminal_text import fact_lines, styled, visible
@@ -120,12 +121,6 @@ def provision_table(
     rows = [[*map(escaped, provision_row(article, words))] for article in provisions]
     head = [words.say("article"), words.say("heading"), words.say("what has become of it")]
     return table(head, rows)
-
-
-def law_of(audit: Audit) -> str:
-    """The rulebook's law and its date."""
-    since = f", as of {audit.as_of}" if audit.as_of else ""
-    return f"{audit.law}{since}" if audit.law else "no law is named"
 
 
 def _as_text(audit: Audit, compared: AuditChanges | None, width: int) -> str:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 REFRESH_S = 0.2
 
-PAGE_WIDTH = 100
+PAGE_WIDTH = 80
 """The width of a text that is not shown on a terminal."""
 
 

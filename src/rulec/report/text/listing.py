@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice
-from textwrap import shorten
 from typing import Any
 
 from msgspec import UNSET, UnsetType
 
 from rulec.report.json_document import JsonDocument, as_indented
-from rulec.report.text.terminal_text import table_lines, visible
-
-LONGEST_TITLE = 90
+from rulec.report.text.terminal_text import column_lines, visible
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,21 +30,16 @@ class ListingDocument(JsonDocument, frozen=True, kw_only=True):
     codes: Sequence[Listed] | UnsetType = UNSET
 
 
-def as_text(kinds: Mapping[str, Sequence[Listed]]) -> str:
-    """Write a line for each name, below its kind if there are several."""
-    rows = [
-        (visible(item.name), visible(shorten(item.title, LONGEST_TITLE, placeholder=" …")))
-        for listed in kinds.values()
-        for item in listed
-    ]
-    table = iter(table_lines(rows))
-    blocks = []
+def as_text(kinds: Mapping[str, Sequence[Listed]], width: int) -> str:
+    """Write a line for each name, cut to a width, below its kind if there are several."""
+    indent = "  " if len(kinds) > 1 else ""
+    rows = [(visible(x.name), visible(x.title)) for listed in kinds.values() for x in listed]
+    table = iter(column_lines(rows, width, indent=indent))
+    lines = []
     for kind, listed in kinds.items():
-        lines = list(islice(table, len(listed)))
-        if len(kinds) > 1:
-            lines = [kind, *(f"  {line}" for line in lines or ["none"])]
-        blocks.append("\n".join(lines))
-    return "\n".join(blocks)
+        lines += [kind] if indent else []
+        lines += [next(table) for _ in listed] or [f"{indent}none"]
+    return "\n".join(lines)
 
 
 def as_json(kinds: Mapping[str, Sequence[Listed]]) -> str:

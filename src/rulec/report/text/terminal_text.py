@@ -17,8 +17,11 @@ MOST_DIGITS = 30
 
 _PLAIN, _COLORED = "NO_COLOR", "FORCE_COLOR"
 
-_JOINT = "\0"
-"""Stands for a space at which no line may be broken, in texts without control characters."""
+_JOINT, _SECOND_COLUMN = "\0", "\1"
+"""Stand for a space at which no line may be broken, and for the second half of a wide character."""
+
+_LONGEST_CUT = 12
+"""A beginning of a word that is longer than this is shown where a line ends."""
 
 _KEPT_TOGETHER = re.compile(
     r"(?:§|\b(?:Abs|Art|No|Nr|Reg|Sec)\.|\b(?:Rule|state)) (?=\d)"
@@ -129,18 +132,72 @@ def table_lines(
     return lines
 
 
-def broken(text: str, width: int, first: str = "", later: str = "") -> list[str]:
+def broken(
+    text: str, width: int, first: str = "", later: str = "", *, cuts_words: bool = True
+) -> list[str]:
     """A text wrapped to a width, never between "§" and its number, or "30" and "km/h".
 
     Args:
         text: the text to wrap.
-        width: the most characters in a line, except for longer words.
+        width: the most columns of a line.
         first: the beginning of the first line.
         later: the beginning of the other lines.
+        cuts_words: whether a word that is wider than a line is broken, rather than left whole.
     """
     joined = _KEPT_TOGETHER.sub(lambda match: match[0][:-1] + _JOINT, text)
-    lines = wrap(joined, width, initial_indent=first, subsequent_indent=later)
-    return [line.replace(_JOINT, " ") for line in lines]
+    # What takes two columns counts as two characters.
+    wide = joined if joined.isascii() else "".join(map(_padded, joined))
+    lines = wrap(
+        wide,
+        max(width, cell_width(first) + 20, cell_width(later) + 20) - (wide != joined),
+        initial_indent=first,
+        subsequent_indent=later,
+        break_long_words=cuts_words,
+        break_on_hyphens=False,
+    )
+    return [line.replace(_JOINT, " ").replace(_SECOND_COLUMN, "") for line in lines]
+
+
+def _padded(character: str) -> str:
+    return character + _SECOND_COLUMN * (unicodedata.east_asian_width(character) in "WF")
+
+
+def cut(text: str, width: int) -> str:
+    """A plain text on one line of at most this width, which ends in "…" where it goes on."""
+    if cell_width(text) <= width:
+        return text
+    line, used = "", 0
+    for character in text:
+        used += cell_width(character)
+        if used > width - 2:
+            break
+        line += character
+    head, _, word = line.rpartition(" ")
+    return f"{head if head.strip() and len(word) <= _LONGEST_CUT else line} …"
+
+
+def column_lines(rows: Sequence[Sequence[str]], width: int, *, indent: str = "") -> list[str]:
+    """Plain rows with columns, a line each, cut to a width.
+
+    A column is as wide as nine in ten of its cells; a wider cell moves those to its right. One
+    without any text is left out.
+    """
+    rows = list(zip(*(column for column in zip(*rows, strict=True) if any(column)), strict=True))
+    widths = [
+        sorted(map(cell_width, column))[len(column) * 9 // 10 if len(column) > 9 else -1]
+        for column in list(zip(*rows, strict=True))[:-1]
+    ]
+    lines = []
+    for row in rows:
+        line = indent
+        end = len(indent)
+        for cell, column in zip(row, widths, strict=False):
+            end += column + 2
+            line += cell + " " * max(2, end - cell_width(line) - cell_width(cell))
+        room = width - cell_width(line)
+        last = cut(row[-1], room) if room >= _LONGEST_CUT else ""
+        lines.append(cut(f"{line}{last}".rstrip(), width))
+    return lines
 
 
 def fact_lines(facts: Sequence[tuple[str, str]], width: int) -> list[str]:
