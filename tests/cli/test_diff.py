@@ -43,8 +43,95 @@ def books(tmp_path, monkeypatch):
     (tmp_path / "new.rules").write_text(NEW)
 
 
-def test_the_answer(capsys):
+def test_a_rule_that_differs_has_a_line(capsys):
     assert main(["diff", "./new.rules", "./old.rules"]) == 1
+    assert capsys.readouterr().out.splitlines() == [
+        "new compared to old; the law of 2020-01-01",
+        "3 shared rules: 1 equal, 1 stricter, 1 laxer, 1 only in old",
+        "leave_room  new stricter  old § 5 | § 5",
+        "no_passing  old stricter  old",
+        "only in old: no_horn",
+        "set otherwise: parameter least: 2 m in new, 1.5 m in old",
+        "a RULE's name, too, shows traces on which it differs, -v those of all",
+    ]
+    assert main(["diff", "./new.rules", "./old.rules", "no_passing"]) == 1
+    out = capsys.readouterr().out
+    assert "old forbids, new allows" in out
+    assert "1 shared rule: 1 laxer" in out
+    assert main(["diff", "./new.rules", "./old.rules", "--rule", "no_passing"]) == 1
+    assert capsys.readouterr().out == out
+
+
+def test_that_a_rule_is_soft_in_one_of_them_is_a_difference(tmp_path, capsys):
+    (tmp_path / "mild.rules").write_text(
+        'rulebook mild\nextends old\nsoften rule no_passing because "seldom"\n'
+    )
+    for books, soft in ((["mild", "old"], "mild"), (["old", "mild"], "mild")):
+        assert main(["diff", *(f"./{name}.rules" for name in books)]) == 1
+        assert f"no_passing  soft in {soft}" in capsys.readouterr().out
+
+
+ON_MUD = """\
+rulebook {name}
+signal p
+topics {{ mud "Deep mud" of ford; lights "Lamps" of lamp }}
+{rules}
+silent on lamp because "it is day"
+"""
+
+
+def test_any_number_of_books_side_by_side(tmp_path, capsys):
+    for name, says in (("a", "Wade."), ("b", "Wade."), ("c", "Walk " + 20 * "on ")):
+        rules = [f'hard rule ford {{ cite "1, 2" says "{says}" require never p }}']
+        if name == "b":
+            rules.append('hard rule ford_at_night { says "Do not." require never p }')
+        text = ON_MUD.format(name=name, rules="\n".join(rules))
+        (tmp_path / f"{name}.rules").write_text(text)
+    asked = ["diff", "./c.rules", "./a.rules", "./b.rules", "--topic", "mud"]
+    assert main(asked) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "c, a, b on mud: 1, 1, 2 rules (-v: every sentence)",
+        "ford",
+        "  c  1, 2  Walk on on on on on on on on on on on on on on on on on on on on",
+        "  a, b  1, 2  Wade.",
+        "ford_at_night",
+        "  b  Do not.",
+        "  c, a  no such rule",
+    ]
+    assert main([*asked, "--output-format", "markdown"]) == 0
+    assert "| `a` | none |  |" in (page := capsys.readouterr().out)
+    assert "| `b` | 1, 2 | Wade. |" in page
+    assert main([*asked, "--output-format", "csv"]) == 0
+    rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
+    assert [(row["rule"], row["rulebook"]) for row in rows] == [
+        *(("ford", "c"), ("ford", "a"), ("ford", "b"), ("ford_at_night", "b"))
+    ]
+    assert main([*asked, "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["rules"]) == 2
+    assert main([*asked, "--all"]) == main(asked[:2] + asked[-2:]) == 2
+    assert main([*asked[:-1], "moon"]) == 2
+    assert "there is no topic `moon`; there are `lamps`" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("topic", "title", "n_lines"),
+    [
+        ("speed_advantage", "speed_advantage, only de: ", 40),
+        ("lamps", "lights_at_night", 40),
+        ("overtaking", "Near-side passing", 40),
+    ],
+)
+def test_a_topic_fits_on_a_screen(topic, title, n_lines, capsys):
+    """Whole sentences, a line for each rule, or a line for each topic, whatever fits."""
+    assert main(["diff", "de", "fr", "gb", "--topic", topic]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) <= n_lines
+    assert any(line.startswith(title.split(",")[0]) for line in lines)
+    assert max(map(len, lines)) <= 80
+
+
+def test_the_answer_in_full(capsys):
+    assert main(["diff", "./new.rules", "./old.rules", "-v"]) == 1
     assert (
         capsys.readouterr().out
         == """\
@@ -65,9 +152,11 @@ no_passing: new is laxer: it allows all that old allows, and more
     station(v)   behind   beside    in_front_of
     lateral(v)   left_of  right_of  left_of
     congested    F        T         F
-    0: ego is behind v, ego is to the left of v and “traffic is not slow and dense”
+    0: ego is behind v, ego is to the left of v and “traffic is not slow and
+      dense”
     1: ego is beside v, ego is to the right of v and “traffic is slow and dense”
-    2: ego is in front of v, ego is to the left of v and “traffic is not slow and dense”
+    2: ego is in front of v, ego is to the left of v and “traffic is not slow
+      and dense”
 
 only in old
   soft rule no_horn; new is silent on it: "in the act on noise"
@@ -188,11 +277,11 @@ def test_other_types_of_variables(tmp_path, capsys):
     head = "use road hard rule r"
     (tmp_path / "a.rules").write_text(f"rulebook a {head} (v: car) {{ require never beside(v) }}")
     (tmp_path / "b.rules").write_text(f"rulebook b {head} (w: vehicle) {{ require G !beside_w }}")
-    assert main(["diff", "./a.rules", "./b.rules"]) == 1
+    assert main(["diff", "./a.rules", "./b.rules", "r"]) == 1
     assert (
         "r: a is laxer: it allows all that b allows, and more\n"
-        "  a speaks of (v: car), b speaks of (w: vehicle); "
-        "of (car), which both speak of: equal\n"
+        "  a speaks of (v: car), b speaks of (w: vehicle); of (car), which both speak of:\n"
+        "    equal\n"
     ) in capsys.readouterr().out
 
 
@@ -201,14 +290,11 @@ def test_types_that_the_other_rulebook_lacks(tmp_path, capsys):
         words = f"type t type {kind} is t signal near(c: t) default false"
         rule = f"hard rule r (c: {kind}) {{ require never near(c) }}"
         (tmp_path / f"{name}.rules").write_text(f"rulebook {name} {words} {rule}")
-    assert main(["diff", "./a.rules", "./b.rules"]) == 1
-    types = (
-        "a speaks of (c: car), b speaks of (c: bus); no objects are of both kinds; "
-        "a has no type bus, b has no type car"
-    )
-    assert capsys.readouterr().out.splitlines()[2:14] == [
+    assert main(["diff", "./a.rules", "./b.rules", "r"]) == 1
+    assert capsys.readouterr().out.splitlines()[2:15] == [
         "r: each forbids something that the other allows",
-        f"  {types}",
+        "  a speaks of (c: car), b speaks of (c: bus); no objects are of both kinds; a",
+        "    has no type bus, b has no type car",
         "  a forbids, b allows",
         "    state       0",
         "    " + "─" * 15,
@@ -231,7 +317,9 @@ def test_words_that_mean_different_things(tmp_path, capsys):
             f"rulebook {name} quantity gap in {unit} hard rule r {{ require always gap > 1 m }}"
         )
     assert main(["diff", "./a.rules", "./b.rules"]) == 2
-    out = capsys.readouterr().out
+    assert "\nr  not decided\n" in capsys.readouterr().out
+    assert main(["diff", "./a.rules", "./b.rules", "-v"]) == 2
+    out = " ".join(capsys.readouterr().out.split())
     assert "r: not decided: `gap` is declared differently in the two" in out
 
 
@@ -248,7 +336,7 @@ def test_all(tmp_path, capsys):
     )
     assert main(["diff", "--all", "./new.rules", "./old.rules", "./third.rules"]) == 1
     lines = capsys.readouterr().out.splitlines()
-    rules = dict(line.split(maxsplit=1) for line in lines[3:8])
+    rules = dict(line.split(maxsplit=1) for line in lines[4:9])
     assert rules == {
         "old": "new  third",
         "leave_room": "A    B    C",
@@ -256,7 +344,7 @@ def test_all(tmp_path, capsys):
         "no_horn": "a    /    a",
         "no_crowd": "a    a    /",
     }
-    pairs = [line.split() for line in lines[13:16]]
+    pairs = [line.split() for line in lines[14:17]]
     assert pairs == [
         ["old", "1=", "1+", "1-", "2=", "1+"],
         ["new", "1=", "1+", "1-", "1+", "1-"],
@@ -363,7 +451,7 @@ def test_what_was_found_is_kept_until_a_source_changes(tmp_path, monkeypatch, ca
 
 def test_what_a_rulebook_leaves_unsaid_as_its_parent_does_is_said_so(tmp_path, capsys):
     (tmp_path / "newer.rules").write_text("rulebook newer\nextends new\n")
-    assert main(["diff", "./newer.rules", "./old.rules"]) == 1
+    assert main(["diff", "./newer.rules", "./old.rules", "-v"]) == 1
     assert (
         '  soft rule no_horn; newer is silent on it, as new is: "in the act on noise"\n'
         in capsys.readouterr().out
@@ -375,5 +463,5 @@ def test_no_limit_is_said_in_words(tmp_path, capsys):
     for name, bound in (("strict", "30 km/h"), ("signed", "limit")):
         text = f"rulebook {name}\nuse road\n" + rule.format(bound)
         (tmp_path / f"{name}.rules").write_text(text, encoding="utf-8")
-    assert main(["diff", "./strict.rules", "./signed.rules"]) == 1
+    assert main(["diff", "./strict.rules", "./signed.rules", "-v"]) == 1
     assert "limit in km/h   no sign" in capsys.readouterr().out

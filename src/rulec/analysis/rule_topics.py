@@ -22,7 +22,7 @@ def by_group(books: Sequence[Rulebook]) -> dict[str, list[str]]:
     titles = {topic.name: topic.title for book in books for topic in book.topics}
     groups = {group.replace("_", " "): topics for group, topics in topic_groups().items()}
     order = [*groups, *titles.values(), OTHER]
-    places: dict[str, tuple[int, int]] = {}
+    places: dict[str, tuple[int, int, bool]] = {}
     for rule in (rule for book in books for rule in book.rules):
         heading, place = OTHER, 0
         for group, topics in groups.items():
@@ -31,7 +31,7 @@ def by_group(books: Sequence[Rulebook]) -> dict[str, list[str]]:
                 break
         else:
             heading = titles[rule.topics[0]] if rule.topics else OTHER
-        places.setdefault(rule.name, (order.index(heading), place))
+        places.setdefault(rule.name, (order.index(heading), place, rule.name not in rule.topics))
     names = sorted(places, key=lambda name: places[name])
     return {
         order[heading]: list(below)

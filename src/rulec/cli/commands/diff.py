@@ -6,6 +6,7 @@ import sys
 from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import click
@@ -14,9 +15,10 @@ import rulec
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.options.rule_choice import refuse_unmatched
+from rulec.cli.options.rule_choice import refuse_unmatched, rules_on_topic
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import (
+    books_and_rule,
     errors_told,
     output_stream,
     put_answer,
@@ -37,7 +39,7 @@ if TYPE_CHECKING:
 
 
 @click.command(cls=Verb)
-@shared.rulebooks_argument(required=False)
+@shared.rulebooks_argument("RULEBOOK... [RULE]", required=False)
 @click.option(
     "--all",
     "every",
@@ -45,6 +47,10 @@ if TYPE_CHECKING:
     help="Compare every pair of the named rulebooks, or of all available ones.",
 )
 @shared.rules_option("Compare only rules that match PATTERN")
+@shared.topic_option("Show what any number of RULEBOOKs say on a topic")
+@click.option(
+    "-v", "--verbose", is_flag=True, help="Show traces of every rule, and all sentences of a topic."
+)
 @click.option(
     "--pair",
     "paired",
@@ -78,8 +84,11 @@ if TYPE_CHECKING:
 @shared.at_option
 def command(
     rulebooks: tuple[str, ...],
+    *,
     every: bool,
     patterns: tuple[str, ...],
+    topic: str | None,
+    verbose: bool,
     paired: tuple[str, ...],
     step_s: Fraction | None,
     n_witnesses: int,
@@ -90,28 +99,48 @@ def command(
 ) -> int:
     """Compare two RULEBOOKs: which rules of the first are stricter or laxer than the second's.
 
-    Both are names or paths of sources. Every difference is shown by short traces that one rulebook
-    forbids and the other allows. With --all, many rulebooks are compared in an overview.
+    Both are names or paths of sources. Every rule that differs has a line; for a RULE, or one of
+    --rule or --pair, short traces show it that one rulebook forbids and the other allows. With
+    --topic, any number of rulebooks are laid side by side in their own words; with --all, each is
+    compared with each in an overview.
 
-    Exit status: 0 no difference, 1 differences found, 2 a question could not be answered.
+    Exit status: 0 no difference, 1 differences found, 2 a question could not be answered; with
+    --topic 0.
     """
+    if len(rulebooks) > 2 and not every and topic is None:
+        rulebooks, rule = books_and_rule(rulebooks, "diff")
+        patterns = patterns if rule is None else (*patterns, rule)
     rulebooks = sources_of_rulebooks(rulebooks, "cannot be compared")
+    if topic is not None:
+        if every or paired or patterns or witness is not None or len(rulebooks) < 2:
+            raise click.UsageError(
+                "--topic lays the words of two or more rulebooks side by side, without --rule, "
+                "--pair, --all and --witness"
+            )
+        width = width_of(to)
+        asked = ("diff", "on", topic, at, str((to.form, width, verbose)), *rulebooks)
+        question = AnswerQuestion(asked, search_path())
+        on_topic = partial(_on_topic, rulebooks, (topic, at), to, in_full=verbose)
+        put_answer(on_topic()[0] if no_cache else question.answer(on_topic), to)
+        return ExitStatus.OK
     if every:
         if paired:
             raise click.UsageError("--pair is for two rulebooks, not for --all")
         if witness is not None:
             raise click.UsageError("--witness is for two rulebooks, not for --all")
-        pairs = AllPairs(tuple(patterns), step_s, at, to.form)
+        pairs = AllPairs(tuple(patterns), step_s, at, to.form, width_of(to))
         return _compared(rulebooks, pairs, to, recalls=not no_cache)
     if len(rulebooks) != 2:
         books = " ".join(rulebooks)
         raise click.UsageError(
-            f"it compares two rulebooks; for {len(rulebooks)}, use `rulec diff --all {books}`"
+            f"it compares two rulebooks; for {len(rulebooks)}, use `rulec diff --all {books}`, or "
+            f"`rulec diff {books} --topic overtaking`"
             if len(rulebooks) > 2
             else f"with which rulebook is it to be compared? As in `rulec diff {books or 'de'} nl`"
         )
     two = TwoBooks(patterns, paired, step_s, n_witnesses)
-    shown = (to.form, width_of(to), wants_color(sys.stdout))
+    in_full = verbose or bool(patterns or paired)
+    shown = (to.form, width_of(to), in_full, wants_color(sys.stdout))
     question_words = ("diff", at, *map(str, (*two, *shown)), *rulebooks)
     question = AnswerQuestion(question_words, search_path())
     known = question.recall() if witness is None and not no_cache else None
@@ -120,7 +149,8 @@ def command(
         difference = _difference(rulebooks, two, at, warned)
         if witness is not None:
             _write_witnesses(difference, witness)
-        known = _text_of(difference, to.form), difference.is_complete, difference.is_none
+        text = _text_of(difference, to, in_full=in_full)
+        known = text, difference.is_complete, difference.is_none
         if difference.is_complete and not warned:
             question.remember(known, difference.files)
     text, is_complete, is_none = known
@@ -159,11 +189,26 @@ def _difference(
         )
 
 
-def _text_of(difference: RulebookDiff, form: str) -> str:
-    # Late import, not for cached results: rulebooks and their automata (140 ms).
-    from rulec.report.rulebooks import diff_formats
+def _on_topic(
+    rulebooks: Sequence[str], about: tuple[str, str], to: Output, *, in_full: bool
+) -> tuple[str, Sequence[str]]:
+    """What rulebooks say on a topic, by the law of a day, and the files that were read."""
+    # Late import, not for cached results: rulebooks (140 ms).
+    from rulec.report.rulebooks.comparison.topic_report import render
+    from rulec.rulebook.loader import read_rulebook
 
-    return diff_formats.render(difference, form)
+    topic, at = about
+    read = [read_rulebook(name, search_path(), at) for name in rulebooks]
+    books = rules_on_topic([loaded.rulebook for loaded in read], topic)
+    text = render(books, topic, to.form, width_of(to), in_full=in_full)
+    return text, [path for loaded in read for path in loaded.paths]
+
+
+def _text_of(difference: RulebookDiff, to: Output, *, in_full: bool) -> str:
+    # Late import, not for cached results: rulebooks and their automata (140 ms).
+    from rulec.report.rulebooks.comparison import diff_formats
+
+    return diff_formats.render(difference, to.form, width_of(to), in_full=in_full)
 
 
 def _write_witnesses(difference: RulebookDiff, path: str) -> None:
@@ -191,6 +236,7 @@ class AllPairs(NamedTuple):
     step_s: Fraction | None
     at: str
     form: str
+    width: int
 
 
 def _compared(rulebooks: Sequence[str], pairs: AllPairs, to: Output, *, recalls: bool) -> int:
@@ -224,7 +270,7 @@ def _matrix(
     """
     # Late import, not for cached results: rulebooks and their automata (140 ms).
     from rulec.analysis.diff.comparison_matrix import comparison_matrix, steps
-    from rulec.report.rulebooks import matrix_report
+    from rulec.report.rulebooks.comparison import matrix_report
     from rulec.rulebook.loader import read_rulebook
 
     read = []
@@ -246,7 +292,7 @@ def _matrix(
         matrix = comparison_matrix(books, pairs.patterns, pairs.step_s, tell)
     is_complete = len(read) == len(names) and matrix.is_complete
     paths = [path for loaded in read for path in loaded.paths]
-    text = matrix_report.render(matrix, pairs.form)
+    text = matrix_report.render(matrix, pairs.form, pairs.width)
     return text, alone, is_complete, matrix.is_uniform, paths
 
 

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 COMMONROAD = "commonroad"
 
+_WIDTH = 100
+"""The width of texts in characters."""
+
 
 @dataclass(frozen=True, slots=True)
 class ExampleAnswer:
@@ -89,14 +92,14 @@ def english(book: Rulebook, rule: Rule) -> str:
     from rulec.report.rulebooks.spoken_rules import spoken_book
 
     (spoken,) = spoken_book(replace(book, rules=(rule,))).rules
-    return summary(spoken, book.name, book.vocabulary, 100)
+    return summary(spoken, book.name, book.vocabulary, _WIDTH)
 
 
 def parent_answer(book: Rulebook, parent: Rulebook, rule: str) -> ParentAnswer:
     """Whether a rule is stricter or laxer than its parent. Raises RulecError."""
     from rulec.analysis.diff.rulebook_comparison import diff_rulebooks
-    from rulec.report.rulebooks.diff_text import as_text
+    from rulec.report.rulebooks.comparison.diff_text import as_text
 
     diff = diff_rulebooks(first=book, second=parent, patterns=(rule,))
     relation = diff.pairs[0].comparison.relation if diff.pairs else "of its own"
-    return ParentAnswer(relation, parent.name, as_text(diff))
+    return ParentAnswer(relation, parent.name, as_text(diff, _WIDTH))

@@ -132,6 +132,23 @@ def table_lines(
     return lines
 
 
+def stacked_tables(
+    rows: Sequence[Sequence[str]], width: int, *, indent: str = "", ruled: Sequence[int] = ()
+) -> list[str]:
+    """A table as above; if it is wider than a width, its columns go on below, after the first."""
+    titles, *columns = zip(*rows, strict=True)
+    lines: list[str] = []
+    while columns:
+        for number in range(len(columns), 0, -1):
+            part = list(zip(titles, *columns[:number], strict=True))
+            table = table_lines(part, indent=indent, ruled=ruled)
+            if max(map(cell_width, table)) <= width:
+                break
+        lines += ["", *table] if lines else table
+        columns = columns[number:]
+    return lines
+
+
 def broken(
     text: str, width: int, first: str = "", later: str = "", *, cuts_words: bool = True
 ) -> list[str]:

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from textwrap import fill, wrap
 
 from rulec.analysis.diff.rule_comparison import RuleRelation
 from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
 from rulec.analysis.trace_display import SignalRow, TraceTable
 from rulec.logic.sentences.fact_clauses import facts_in_words
-from rulec.report.text.terminal_text import styled, table_lines, visible
+from rulec.report.text.terminal_text import broken, stacked_tables, styled, visible
 from rulec.report.verdicts.violation_table import shown
 from rulec.rulebook.vocabulary_phrases import phrases_of
 from rulec.trace import Value
 
-WIDTH = 100
-TABLE_WIDTH = 96
 _INDENT = "    "
 
 MOST_ROWS = 8
@@ -34,17 +31,17 @@ COLOURS: dict[RuleRelation, str] = {
 }
 
 
-def as_text(rulebook_diff: RulebookDiff) -> str:
-    """Write the differences first and the agreements last."""
+def as_text(rulebook_diff: RulebookDiff, width: int) -> str:
+    """Write the differences first, with traces that show them, and the agreements last."""
     first, second = rulebook_diff.first.name, rulebook_diff.second.name
-    blocks = [_head(rulebook_diff)]
+    blocks = [head(rulebook_diff)]
     blocks += [
-        "\n".join(_pair(pair, rulebook_diff))
+        "\n".join(_pair(pair, rulebook_diff, width))
         for pair in rulebook_diff.pairs
         if is_worth_a_block(pair)
     ]
     blocks += [
-        _only(rules, has, lacks, from_first=rules is rulebook_diff.only_first)
+        "\n".join(_only(rules, (has, lacks), width, from_first=rules is rulebook_diff.only_first))
         for rules, has, lacks in (
             (rulebook_diff.only_first, first, second),
             (rulebook_diff.only_second, second, first),
@@ -53,15 +50,25 @@ def as_text(rulebook_diff: RulebookDiff) -> str:
     ]
     if rulebook_diff.settings:
         written = [
-            f"  {pair.kind} {pair.name}: {pair.first} in {first}, {pair.second} in {second}"
-            for pair in rulebook_diff.settings
+            line
+            for text in settings(rulebook_diff)
+            for line in broken(visible(text), width, "  ", "    ")
         ]
-        blocks.append("\n".join([styled("set otherwise", "bold"), *map(visible, written)]))
+        blocks.append("\n".join([styled("set otherwise", "bold"), *written]))
     same = [pair.name for pair in rulebook_diff.pairs if not is_worth_a_block(pair)]
     agreeing = f"the same in both: {', '.join(same)}"
-    blocks += [fill(agreeing, WIDTH, subsequent_indent="  ")] if same else []
-    blocks.append(summary(rulebook_diff))
+    blocks += ["\n".join(broken(visible(agreeing), width, later="  "))] if same else []
+    blocks.append("\n".join(broken(summary(rulebook_diff), width)))
     return "\n\n".join(blocks)
+
+
+def settings(rulebook_diff: RulebookDiff) -> list[str]:
+    """What the two set differently, a text for each option or parameter."""
+    first, second = rulebook_diff.first.name, rulebook_diff.second.name
+    return [
+        f"{pair.kind} {pair.name}: {pair.first} in {first}, {pair.second} in {second}"
+        for pair in rulebook_diff.settings
+    ]
 
 
 def is_worth_a_block(pair: RulePair) -> bool:
@@ -69,7 +76,8 @@ def is_worth_a_block(pair: RulePair) -> bool:
     return pair.relation != "equal" or bool(pair.notes)
 
 
-def _head(rulebook_diff: RulebookDiff) -> str:
+def head(rulebook_diff: RulebookDiff) -> str:
+    """The names of both rulebooks, the days of their laws, and the sides of traffic."""
     first, second = rulebook_diff.first, rulebook_diff.second
     title = styled(f"{first.name} compared to {second.name}", "bold")
     days = f"the law of {first.at}"
@@ -126,33 +134,32 @@ def about_types(pair: RulePair, rulebook_diff: RulebookDiff) -> str:
     return "; ".join([heads, shared, *([", ".join(lacks)] if lacks else [])])
 
 
-def _pair(pair: RulePair, rulebook_diff: RulebookDiff) -> Iterator[str]:
-    name = styled(pair.name, "bold")
-    words = styled(visible(verdict(pair, rulebook_diff)), COLOURS[pair.relation])
-    yield f"{name}: {words}"
+def _pair(pair: RulePair, rulebook_diff: RulebookDiff, width: int) -> Iterator[str]:
+    said = visible(f"{pair.name}: {verdict(pair, rulebook_diff)}")
+    yield from (styled(line, COLOURS[pair.relation]) for line in broken(said, width, later="  "))
     types = about_types(pair, rulebook_diff)
     if types:
-        yield f"  {visible(types)}"
+        yield from broken(visible(types), width, "  ", "    ")
     book, other = rulebook_diff.first.name, rulebook_diff.second.name
     for part, ours, theirs in pair.notes:
-        first, *rest = wrap(visible(f"{part}: {ours} in {book}, {theirs} in {other}"))
-        yield f"  {first}"
-        yield from (f"    {line}" for line in rest)
+        note = f"{part}: {ours} in {book}, {theirs} in {other}"
+        yield from broken(visible(note), width, "  ", "    ")
     phrases = phrases_of(rulebook_diff.first)
     for forbids, allows, table in rulebook_diff.tables(pair):
         yield f"  {forbids} forbids, {allows} allows"
         if table.rows:
-            yield from _table_lines(table)
-            yield from _in_words(table, rulebook_diff, phrases)
+            yield from _table_lines(table, width)
+            for line in in_words(table, rulebook_diff, phrases):
+                yield from broken(visible(line), width, _INDENT, f"{_INDENT}  ")
         else:
             start, end = table.columns[0]
             yield f"    any trace of {end - start + 1} states"
 
 
-def _in_words(
+def in_words(
     table: TraceTable, rulebook_diff: RulebookDiff, phrases: Mapping[str, str]
 ) -> Iterator[str]:
-    """What changes in each state, as sentences."""
+    """What changes in each state, as a sentence for each."""
     for place, title in enumerate(state_titles(table)):
         facts = []
         for row in table.rows:
@@ -162,21 +169,21 @@ def _in_words(
                 facts.append((row.title, value, shown(value)))
         words = facts_in_words(facts, rulebook_diff.first.vocabulary, phrases)
         if words:
-            line = f"{title}: {visible(words)}"
-            yield from wrap(line, TABLE_WIDTH, initial_indent=_INDENT, subsequent_indent="      ")
+            yield f"{title}: {words}"
 
 
-def _only(rules: Sequence[OneSided], has: str, lacks: str, *, from_first: bool) -> str:
-    lines = []
+def _only(
+    rules: Sequence[OneSided], names: tuple[str, str], width: int, *, from_first: bool
+) -> Iterator[str]:
+    """The rules that the first of two rulebooks has, and the second lacks."""
+    has, lacks = names
+    yield styled(f"only in {has}", "bold")
     for rule in rules:
-        lines.append(
-            f"  {rule.rule.strength} rule {rule.rule.name}{visible(only_why(rule, lacks))}"
-        )
+        about = f"{rule.rule.strength} rule {rule.rule.name}{only_why(rule, lacks)}"
+        yield from broken(visible(about), width, "  ", "    ")
         # Once for both: the other rulebook would offer the same pairs.
         if from_first and rule.alike:
-            lines.append(f"    {visible(offered(rule))}")
-    title = styled(f"only in {has}", "bold")
-    return "\n".join([title, *lines])
+            yield from broken(visible(offered(rule)), width, "    ", "      ")
 
 
 def only_why(one_sided: OneSided, lacks: str) -> str:
@@ -242,10 +249,9 @@ def left_out(table: TraceTable) -> list[str]:
     return usual if len(table.rows) > MOST_ROWS else []
 
 
-def _table_lines(table: TraceTable) -> list[str]:
+def _table_lines(table: TraceTable, width: int) -> list[str]:
     whole = [("state", state_titles(table)), *table_rows(table)]
     titled = [(f"{title} ", *cells) for title, cells in whole]
-    lines = table_lines(titled, indent=_INDENT, ruled=(0,))
+    lines = stacked_tables(titled, width, indent=_INDENT, ruled=(0,))
     rest = left_out(table)
-    words = f"by default: {', '.join(rest)}" if rest else ""
-    return lines + [f"{_INDENT}{line}" for line in wrap(words, TABLE_WIDTH - len(_INDENT))]
+    return lines + broken(f"by default: {', '.join(rest)}" if rest else "", width, _INDENT, _INDENT)

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from string import ascii_uppercase, digits
-from textwrap import fill
 
 from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule, pairs
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
-from rulec.report.rulebooks.diff_json import BookData
-from rulec.report.rulebooks.diff_text import WIDTH
+from rulec.report.rulebooks.comparison.diff_json import BookData
 from rulec.report.text.csv_text import csv_text
 from rulec.report.text.markdown import anchors, code, escaped
 from rulec.report.text.markdown import table as markdown_table
-from rulec.report.text.terminal_text import styled, table_lines, visible
+from rulec.report.text.terminal_text import broken, stacked_tables, styled, visible
 from rulec.rulebook.rulebook_model import Strength
 
 SIGNS = {"equal": "=", "stricter": "+", "laxer": "-", "incomparable": "~", "undecided": "?"}
@@ -72,8 +70,8 @@ class MatrixDocument(JsonDocument, frozen=True, kw_only=True):
     pairs: Sequence[BookPairData]
 
 
-def render(matrix: ComparisonMatrix, output_format: str) -> str:
-    """The matrix in the requested format."""
+def render(matrix: ComparisonMatrix, output_format: str, width: int) -> str:
+    """The matrix in the requested format; text has a width in characters."""
     match output_format:
         case "json":
             return _as_json(matrix)
@@ -87,24 +85,24 @@ def render(matrix: ComparisonMatrix, output_format: str) -> str:
 
             return as_html(_as_markdown(matrix), PageTexts(TITLE), cell_class=_cell_class)
         case _:
-            return _as_text(matrix)
+            return _as_text(matrix, width)
 
 
-def _as_text(matrix: ComparisonMatrix) -> str:
+def _as_text(matrix: ComparisonMatrix, width: int) -> str:
     head = ["", *(book.name for book in matrix.books)]
     blocks = [
-        fill(RULES, WIDTH),
-        _columns([head, *_by_rule(matrix)]),
-        fill(PAIRS, WIDTH),
-        _columns([head, *_by_pair(matrix)]),
-        _summary(matrix),
+        broken(RULES, width),
+        _columns([head, *_by_rule(matrix)], width),
+        broken(PAIRS, width),
+        _columns([head, *_by_pair(matrix)], width),
+        broken(_summary(matrix), width),
     ]
-    return "\n\n".join(blocks)
+    return "\n\n".join("\n".join(block) for block in blocks)
 
 
-def _columns(rows: Sequence[Sequence[str]]) -> str:
-    head, *lines = table_lines([[visible(cell) for cell in row] for row in rows])
-    return "\n".join([styled(head, "bold"), *lines])
+def _columns(rows: Sequence[Sequence[str]], width: int) -> list[str]:
+    head, *lines = stacked_tables([[visible(cell) for cell in row] for row in rows], width)
+    return [styled(head, "bold"), *lines]
 
 
 def _by_rule(matrix: ComparisonMatrix) -> list[list[str]]:

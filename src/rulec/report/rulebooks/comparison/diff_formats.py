@@ -5,16 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rulec.analysis.diff.rulebook_comparison import RulebookDiff, RulePair
-from rulec.report.rulebooks import diff_text
-from rulec.report.rulebooks.diff_json import as_json
+from rulec.report.rulebooks.comparison import diff_text
+from rulec.report.rulebooks.comparison.diff_json import as_json
+from rulec.report.rulebooks.comparison.diff_overview import as_overview
 from rulec.report.text.csv_text import csv_text
 from rulec.report.text.markdown import code, escaped, table
 
 CSV_COLUMNS = ("rule", "relation", "strength 1", "strength 2", "cite 1", "cite 2")
 
 
-def render(diff: RulebookDiff, output_format: str) -> str:
-    """Write the difference as ``text``, ``markdown``, ``json``, ``html`` or ``csv``."""
+def render(diff: RulebookDiff, output_format: str, width: int, *, in_full: bool) -> str:
+    """Write the difference as ``text``, ``markdown``, ``json``, ``html`` or ``csv``.
+
+    Text has a width in characters, and traces only ``in_full``.
+    """
     match output_format:
         case "json":
             return as_json(diff)
@@ -30,7 +34,7 @@ def render(diff: RulebookDiff, output_format: str) -> str:
             rows = (row.values() for row in diff.rows())
             return csv_text([CSV_COLUMNS, *rows], "\n").rstrip("\n")
         case _:
-            return diff_text.as_text(diff)
+            return diff_text.as_text(diff, width) if in_full else as_overview(diff, width)
 
 
 def _as_markdown(rulebook_diff: RulebookDiff) -> str:

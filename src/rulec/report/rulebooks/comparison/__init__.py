@@ -1,0 +1,1 @@
+"""Two or more rulebooks side by side."""
