@@ -20,8 +20,8 @@ from rulec.report.rates.rates_json import RatesDocument
 from rulec.report.recordings.format_listing import FormatsDocument
 from rulec.report.rulebooks.audit_report import AuditDocument
 from rulec.report.rulebooks.comparison.diff_json import DiffDocument, TraceData
-from rulec.report.rulebooks.lineage_tree import ForestDocument, LineageDocument
 from rulec.report.rulebooks.comparison.matrix_report import MatrixDocument
+from rulec.report.rulebooks.lineage_tree import ForestDocument, LineageDocument
 from rulec.report.rulebooks.proof_report import ProofsDocument
 from rulec.report.rulebooks.rule_json import RulesDocument
 from rulec.report.rulebooks.rule_list import RuleListDocument

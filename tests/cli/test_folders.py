@@ -41,9 +41,9 @@ def run(capsys, *arguments):
     [["laws"], [], ["laws/**/*.rules"], ["laws/one.rules", "laws/old"], ["laws", "laws/one.rules"]],
 )
 def test_a_folder_stands_for_its_rulebooks(references, project, capsys):
-    status, out, err = run(capsys, "test", *references)
+    status, out, err = run(capsys, "test", "-v", *references)
     assert (status, err) == (0, "")
-    assert out.splitlines()[-1] == "4 examples: 4 passed, 0 failed"
+    assert out.splitlines()[-1].startswith("4 examples passed in ")
     assert {line.split()[1] for line in out.splitlines()[:-1]} == {"one", "two"}
 
 
@@ -72,8 +72,8 @@ def test_what_is_excluded_is_left_alone_in_folders_and_taken_by_name(project, ca
         left,
     )
     assert run(capsys, "fmt", "--check", "laws")[2].endswith(left)
-    assert run(capsys, "test", "laws")[1].splitlines()[-1] == "2 examples: 2 passed, 0 failed"
-    assert run(capsys, "test", "laws/old/two.rules")[1].count("pass  two") == 2
+    assert run(capsys, "test", "laws")[1].startswith("2 examples passed in ")
+    assert run(capsys, "test", "-v", "laws/old/two.rules")[1].count("pass  two") == 2
     # Its patterns are relative to the file of settings, wherever one is.
     monkeypatch.chdir("laws/old")
     left = "left alone: 2 excluded (../old, ../new.draft.rules)\n"
@@ -135,7 +135,7 @@ def test_after_a_change_it_is_done_again(verb, project, capsys, monkeypatch):
     done = (
         "4 files checked, no mistakes found; `rulec test` runs the examples"
         if verb == "check"
-        else "4 examples: 4 passed, 0 failed"
+        else "4 examples passed"
     )
     assert out.count(done) == 2
 

@@ -14,7 +14,7 @@ def test_what_it_writes_checks_tests_and_compiles(tmp_path, monkeypatch, capsys)
     assert capsys.readouterr().out == "wrote atlantis.rules; next: rulec test ./atlantis.rules\n"
     assert main(["check", "./atlantis.rules", "--fail-on", "warning"]) == 0
     assert main(["test", "./atlantis.rules"]) == 0
-    assert "3 examples: 3 passed, 0 failed" in capsys.readouterr().out
+    assert "3 examples passed" in capsys.readouterr().out
     assert main(["compile", "./atlantis.rules", "-o", "out"]) == 0
     assert main(["maneuvers", "s1", "--rulebook", "./atlantis.rules"]) == 0
 

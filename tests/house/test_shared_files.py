@@ -124,7 +124,7 @@ def action_step(name, **inputs):
         ("Canonical form", UNTIDY, 1, "would change lane.rules"),
         ("Findings", GOOD, 0, ""),
         ("Findings", MISSPELT, 1, "::error file=lane.rules,line=5,"),
-        ("Examples", GOOD, 0, "2 passed, 0 failed"),
+        ("Examples", GOOD, 0, "2 examples passed"),
         ("Examples", FAILING, 1, "1 passed, 1 failed"),
     ],
 )

@@ -33,5 +33,5 @@ class Snapshots:
 
 def timeless(text: str) -> str:
     """The text without how long it took, and without digests, which change with each word."""
-    text = re.sub(r"computed in [0-9.]+ s", "computed in … s", text)
+    text = re.sub(r"(computed|passed|failed) in [0-9.]+ s", r"\1 in … s", text)
     return re.sub(r"^(by .*)\[[0-9a-f]{8}\]$", r"\1[…]", text, flags=re.MULTILINE)

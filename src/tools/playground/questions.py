@@ -23,7 +23,8 @@ from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.explain.margins import Margin
 from rulec.report.findings import diagnostics_json
 from rulec.report.json_document import as_builtins
-from rulec.report.rulebooks.comparison import diff_json, rule_json
+from rulec.report.rulebooks import rule_json
+from rulec.report.rulebooks.comparison import diff_json
 from rulec.report.tests import example_json
 from rulec.report.verdicts import verdict_json
 from rulec.report.verdicts.state_times import StateTimes

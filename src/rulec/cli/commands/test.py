@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
+from time import monotonic
 from typing import TYPE_CHECKING
 
 import click
@@ -15,7 +16,7 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, RenamedOption, endings_of, output_options
 from rulec.cli.options.verb_class import Verb
-from rulec.cli.output import print_lost, put_answer, sources_of_rulebooks
+from rulec.cli.output import print_lost, put_answer, sources_of_rulebooks, width_of
 from rulec.cli.watching import watch as watch_sources
 from rulec.cli.watching import watch_option
 from rulec.diagnostics import Diagnostic, RulecError
@@ -54,16 +55,21 @@ if TYPE_CHECKING:
     metavar="PERCENT",
     help="Fail if the examples cover less than this of a rulebook's own rules; implies --coverage.",
 )
+@click.option(
+    "-v", "--verbose", is_flag=True, help="List every example, and all that coverage misses."
+)
 @shared.jobs_option("Test N rulebooks in parallel")
 @watch_option
 @shared.at_option
 def command(
     rulebooks: tuple[str, ...],
+    *,
     patterns: tuple[str, ...],
     to: Output,
     fail_on_empty: bool,
     with_coverage: bool,
     percent: float | None,
+    verbose: bool,
     jobs: Jobs,
     watch: bool,
     at: str,
@@ -80,7 +86,9 @@ def command(
     measured = with_coverage or percent is not None
 
     def run() -> int:
-        wanted = WantedExamples(patterns, at, measured=measured, fails_empty=fail_on_empty)
+        wanted = WantedExamples(
+            patterns, at, measured=measured, fails_empty=fail_on_empty, in_full=verbose
+        )
         return _tested(references, wanted, percent, to, jobs)
 
     if watch:
@@ -96,6 +104,7 @@ class WantedExamples:
     at: str
     measured: bool
     fails_empty: bool
+    in_full: bool
 
 
 def _tested(
@@ -112,6 +121,7 @@ def _tested(
     from rulec.report.tests.example_formats import render
     from rulec.report.tests.example_text import Besides, shortcomings
 
+    begun = monotonic()
     rulebooks = sources_of_rulebooks(references, "has no examples")
     runs: list[ExampleRun] = []
     coverages: list[tuple[RuleCoverage, ...]] = []
@@ -139,7 +149,10 @@ def _tested(
     covered = coverages if wanted.measured else None
     short = shortcomings(runs, covered, percent, fail_on_empty=wanted.fails_empty)
     if runs or to.form != "full":
-        put_answer(render(runs, covered, to.form, Besides(unread, short)), to)
+        besides = Besides(unread, short, monotonic() - begun)
+        width, in_full = width_of(to), wanted.in_full
+        text = render(runs, covered, to.form, besides, width=width, in_full=in_full)
+        put_answer(text, to)
     for sentence in short.values():
         print_remark(f"rulec: {sentence}")
     failed = any(not outcome.passed for run in runs for outcome in run.outcomes)

@@ -15,10 +15,14 @@ def render(
     covered: Sequence[Sequence[RuleCoverage]] | None,
     output_format: str,
     besides: Besides,
+    *,
+    width: int,
+    in_full: bool,
 ) -> str:
     """Write runs as ``full``, ``json`` or ``junit``, with coverage unless it is None.
 
-    ``besides`` is written only as ``junit``, whose reader may see nothing but the file.
+    Text has a width in characters, and names every example only ``in_full``. ``besides`` are
+    written only as ``junit``, whose reader may see nothing but the file.
     """
     match output_format:
         case "json":
@@ -29,4 +33,4 @@ def render(
         case "junit":
             return as_junit(runs, covered, besides)
         case _:
-            return as_text(runs, covered)
+            return as_text(runs, covered, besides, width, in_full=in_full)

@@ -20,12 +20,22 @@ from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Atom, Constant
 from rulec.logic.printing import formula_text, number_in_words
 from rulec.report.findings.diagnostics_text import excerpt_width, render_diagnostics
-from rulec.report.text.terminal_text import counted, styled, visible, wants_color
+from rulec.report.text.terminal_text import (
+    broken,
+    column_lines,
+    counted,
+    styled,
+    visible,
+    wants_color,
+)
 from rulec.rulebook.rulebook_model import ExampleState
 from rulec.vocabulary import Quantity, Vocabulary
 
 MOST_MISSING = 5
 """Number of a rule's missing edges shown as text; JSON has all of them."""
+
+MOST_RULES = 30
+"""The number of rules shown that miss something, unless all are wanted."""
 
 LONGEST_CONDITION = 200
 """The most characters of a condition that text shows; JSON has all of it."""
@@ -33,43 +43,88 @@ LONGEST_CONDITION = 200
 
 @dataclass(frozen=True, slots=True)
 class Besides:
-    """Problems of a run other than failing examples.
+    """What there is to say about a run besides its examples.
 
-    ``unread``: rulebook -> why it could not be tested; ``short``: result of ``shortcomings``.
+    ``unread``: rulebook -> why it could not be tested; ``short``: result of ``shortcomings``;
+    ``seconds``: how long it took.
     """
 
     unread: Mapping[str, Sequence[Diagnostic]]
     short: Mapping[str, str]
+    seconds: float = 0.0
 
 
-def as_text(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None) -> str:
-    """A line for each example, details of failures, and the totals."""
-    verdicts = {True: styled("pass", "green"), False: styled("FAIL", "bold red")}
-    lines = [
-        f"{verdicts[outcome.passed]}  " + visible(f"{run.name} {outcome.rule.name}/{outcome.name}")
-        for run in runs
-        for outcome in run.outcomes
-    ]
+def as_text(
+    runs: Sequence[ExampleRun],
+    covered: Sequence[Sequence[RuleCoverage]] | None,
+    besides: Besides,
+    width: int,
+    *,
+    in_full: bool,
+) -> str:
+    """Details of failures, coverage, and the totals; ``in_full`` also a line for each example."""
+    outcomes = [(run.name, outcome) for run in runs for outcome in run.outcomes]
+    lines = []
+    if in_full:
+        verdicts = {True: styled("pass", "green"), False: styled("FAIL", "bold red")}
+        for name, outcome in outcomes:
+            example = visible(f"{name} {outcome.rule.name}/{outcome.name}")
+            first, *rest = broken(example, width - len("pass  "), "", "  ")
+            lines += [f"{verdicts[outcome.passed]}  {first}", *(f"      {line}" for line in rest)]
     problems = [problem for run in runs for problem in failures(run).values()]
     if problems:
         details = render_diagnostics(
             problems, wants_color(sys.stdout), summary=False, columns=excerpt_width(sys.stdout)
         )
-        lines += ["", details.rstrip("\n"), ""]
+        lines += [*([""] if lines else []), details.rstrip("\n"), ""]
     if covered is not None:
         for run, rules in zip(runs, covered, strict=True):
-            asked = asked_of(rules, run.patterns)
-            lines += [
-                f"{run.name} {line}" for line in coverage_lines(asked, run.rulebook.vocabulary)
-            ]
-            if len(asked) < len(rules):
-                left_out = counted(len(rules) - len(asked), "inherited rule")
-                lines.append(f"{run.name}: without {left_out}; --rule '*' shows them, too")
+            lines += (_coverage_in_full if in_full else _least_covered)(run, rules, width)
         lines.append(coverage_in_words(runs, covered))
-    outcomes = [outcome for run in runs for outcome in run.outcomes]
-    passed = sum(outcome.passed for outcome in outcomes)
-    counts = f"{passed:,} passed, {len(outcomes) - passed:,} failed"
-    return "\n".join([*lines, f"{counted(len(outcomes), 'example')}: {counts}"])
+    failed = sum(not outcome.passed for _, outcome in outcomes)
+    passed = f": {len(outcomes) - failed:,} passed, {failed:,} failed" if failed else " passed"
+    lines.append(f"{counted(len(outcomes), 'example')}{passed} in {besides.seconds:.1f} s")
+    return "\n".join(lines)
+
+
+def _coverage_in_full(run: ExampleRun, rules: Sequence[RuleCoverage], width: int) -> Iterator[str]:
+    asked = asked_of(rules, run.patterns)
+    for text in coverage_lines(asked, run.rulebook.vocabulary):
+        first, *rest = text.split("\n")
+        yield from broken(visible(f"{run.name} {first}"), width, later="  ")
+        for line in rest:
+            yield from broken(visible(line.strip()), width, "  ", "    ")
+    if len(asked) < len(rules):
+        left_out = counted(len(rules) - len(asked), "inherited rule")
+        yield f"{run.name}: without {left_out}; --rule '*' shows them, too"
+
+
+def _least_covered(run: ExampleRun, rules: Sequence[RuleCoverage], width: int) -> Iterator[str]:
+    """The rules that examples cover least, a line each, and how many more miss something."""
+    asked = asked_of(rules, run.patterns)
+    short = sorted((rule for rule in asked if rule.covered < rule.total), key=_part)
+    others = len(rules) - len(asked)
+    inherited = f", besides {others:,} that it inherits" if others else ""
+    whole = len(asked) - len(short)
+    yield f"{run.name}: {whole:,} of {counted(len(asked), 'rule')} covered as a whole{inherited}"
+    rows = [(f"{as_percent(_part(rule)):>6}", rule.rule, _missing_parts(rule)) for rule in short]
+    yield from column_lines(rows[:MOST_RULES], width, indent="  ")
+    more = f"and {len(short) - MOST_RULES:,} more; " if len(short) > MOST_RULES else ""
+    if short:
+        yield f"  {more}-v says what each misses, with examples to add"
+
+
+def _part(rule: RuleCoverage) -> float:
+    return percent([rule])
+
+
+def _missing_parts(rule: RuleCoverage) -> str:
+    parts = (
+        (rule.missing_edges, "edge"),
+        (rule.missing_values, "value"),
+        (rule.missing_limits, "limit"),
+    )
+    return f"misses {', '.join(counted(len(part), noun) for part, noun in parts if part)}"
 
 
 def asked_rules(
