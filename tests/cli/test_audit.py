@@ -31,8 +31,30 @@ def folder(tmp_path, monkeypatch):
 
 
 def run(capsys, *arguments):
-    status = main(["audit", *arguments])
+    status = main(["audit", "--all", *arguments])
     return status, *capsys.readouterr()
+
+
+def test_each_kind_of_finding_is_counted(folder, capsys):
+    assert main(["audit", "island.rules", "--examples"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "island: Rules of the island"
+    for title, names in (
+        ("softened (1): an inherited hard rule that was made soft", "softer"),
+        ("dropped (1): an inherited rule that was dropped", "taken_out"),
+        # What an option has asked for comes in full.
+        ("failing (1): an example does not have the result that it states", "changed  example 1"),
+    ):
+        assert lines[lines.index(title) + 1] == f"  {names}"
+    assert "no sirens" not in "".join(lines)
+    assert lines[-1].startswith("`--all` has every note")
+
+
+def test_an_overview_fits_on_a_screen(capsys):
+    assert main(["audit", "de"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) <= 40
+    assert max(map(len, lines)) <= 80
 
 
 def test_nothing_to_find(folder, capsys):
@@ -232,7 +254,7 @@ def test_a_compiled_rulebook_is_not_enough(folder, capsys):
 
 
 def test_a_narrow_page():
-    text = render([rulec.audit("at")], {}, "text", 80)
+    text = render([rulec.audit("at")], {}, "text", 80, in_full=True)
     assert all(len(line) <= 80 for line in text.splitlines())
     assert (
         """

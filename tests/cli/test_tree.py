@@ -22,8 +22,42 @@ def run(capsys, *arguments):
     return status, *capsys.readouterr()
 
 
-def test_the_whole_tree(folder, capsys):
+def test_what_the_last_book_did(folder, capsys):
     status, out, err = run(capsys, "village", "--at", "2024-06-01")
+    assert (status, err) == (0, "")
+    assert out.splitlines() == [
+        "village ← island ← mainland: 1 overridden · 2 own · 6 only inherited",
+        "overridden",
+        "  changed  says",
+        "own: own, expired",
+        "set: strict = on",
+        "`--all` shows every rule, option, parameter and definition",
+    ]
+    out = run(capsys, "island", "--at", "2024-06-01")[1]
+    lines = [
+        "taken_out  there are no sirens",
+        "softer  only recommended",
+        "left_open  nobody knows",
+    ]
+    assert all(f"\n  {line}\n" in out for line in lines)
+
+
+def test_where_a_list_is_too_long_names_stand_in_lines(folder, capsys):
+    rules = "".join(f"hard rule R{n} {{ require never p }}\n" for n in range(50))
+    changes = "".join(f'override rule R{n} {{ says "So." }}\n' for n in range(45))
+    (folder / "old.rules").write_text(f"rulebook old\nsignal p\n{rules}")
+    (folder / "new.rules").write_text(
+        f'rulebook new\nextends old\n{changes}drop rule R49 because "none"\n'
+    )
+    lines = run(capsys, "./new.rules")[1].splitlines()
+    assert lines[0] == "new ← old: 45 overridden · 1 dropped · 4 only inherited"
+    assert lines[1].startswith("overridden: R0, R1, ")
+    assert lines[-3:-1] == ["dropped", "  R49  none"]
+    assert len(lines) < 10
+
+
+def test_the_whole_tree(folder, capsys):
+    status, out, err = run(capsys, "village", "--all", "--at", "2024-06-01")
     assert (status, err) == (0, "")
     assert (
         out
@@ -44,7 +78,8 @@ rules
 │   └── overridden by island: cite, source, require
 ├── softer  softened by island, not confirmed, because only recommended
 │   └── declared by mainland
-├── agreed  inherited from island, which confirms mainland: cite, source, certainty, examples
+├── agreed  inherited from island, which confirms mainland: cite, source,
+│   certainty, examples
 ├── taken_out  dropped by island, because there are no sirens
 │   └── declared by mainland
 ├── left_open  silent, as island is, because nobody knows
@@ -89,7 +124,7 @@ def test_a_definition_with_other_parameters_than_its_base_gives_it(folder, capsy
     (folder / "old.rules").write_text(f"rulebook old\n{words}define d(c: car) = near(c)\n")
     new = "rulebook new\nextends old\nredefine d(v: car) = near(v) and p\n"
     (folder / "new.rules").write_text(new)
-    status, out, _ = run(capsys, "./new.rules")
+    status, out, _ = run(capsys, "./new.rules", "--all")
     assert status == 0
     assert out.endswith(
         """
@@ -106,7 +141,7 @@ def test_a_value_for_no_day(folder, capsys):
     )
     assert (
         "\n└── a  no value in force\n    └── 1 in force from 2030-01-01  own\n"
-        in (run(capsys, "late", "--at", "2024-01-01")[1])
+        in (run(capsys, "late", "--all", "--at", "2024-01-01")[1])
     )
 
 

@@ -46,6 +46,7 @@ _FOUND_WITH = {
 @click.option(
     "--examples", "run", is_flag=True, help="Also run the examples and name those that fail."
 )
+@click.option("--all", "every", is_flag=True, help="Show every finding's note, and all articles.")
 @click.option(
     "--compare",
     metavar="OLD",
@@ -75,9 +76,11 @@ _FOUND_WITH = {
 @shared.at_option
 def command(
     rulebooks: tuple[str, ...],
+    *,
     to: Output,
     fatal: tuple[str, ...],
     run: bool,
+    every: bool,
     compare: str | None,
     source: str | None,
     law: str | None,
@@ -128,7 +131,8 @@ def command(
             audits.append(done)
     against = {} if older is None else compare_audits(audits, older)
     if audits or to.form == "json":
-        put_answer(render(audits, against, to.form, width_of(to), sources), to)
+        text = render(audits, against, to.form, width_of(to), sources, in_full=every)
+        put_answer(text, to)
     findings = [
         finding
         for done in audits

@@ -21,19 +21,25 @@ from rulec.settings import search_path
 @click.command(cls=Verb)
 @shared.rulebooks_argument("[RULEBOOK...]", required=False)
 @shared.rules_option("Show only rules that match PATTERN")
+@click.option(
+    "--all", "every", is_flag=True, help="Show the history of all rules and of what can be set."
+)
 @output_options(endings_of("text", "json"), "the tree")
 @shared.at_option
-def command(rulebooks: tuple[str, ...], patterns: tuple[str, ...], to: Output, at: str) -> None:
-    """Show what a RULEBOOK inherits, overrides, softens and drops, and from which book.
+def command(
+    rulebooks: tuple[str, ...], patterns: tuple[str, ...], every: bool, to: Output, at: str
+) -> None:
+    """Show what a RULEBOOK overrides, softens and drops, has of its own, and only inherits.
 
-    RULEBOOK is a name or the path of a source. With several RULEBOOKs, or none for all available
-    ones, show which one extends which.
+    RULEBOOK is a name or the path of a source. The histories of all rules, or of those that match
+    --rule, are shown with --all. With several RULEBOOKs, or none for all available ones, show
+    which one extends which.
     """
     rulebooks = sources_of_rulebooks(rulebooks, "cannot be taken apart")
     if patterns and len(rulebooks) != 1:
         raise click.UsageError("--rule chooses among the rules of one RULEBOOK; give one")
     width, color = width_of(to), wants_color(sys.stdout)
-    words = ("tree", *rulebooks, repr((patterns, to.form, width, color, at)))
+    words = ("tree", *rulebooks, repr((patterns, every, to.form, width, color, at)))
 
     def made() -> tuple[str, Sequence[str]]:
         """What to show, and its sources; none with warnings, or of several rulebooks."""
@@ -51,6 +57,8 @@ def command(rulebooks: tuple[str, ...], patterns: tuple[str, ...], to: Output, a
             if patterns and not inherited.rules:
                 raise click.UsageError(f"{inherited.book} has no rule like {named(patterns)}")
             sources = () if loaded.warnings else loaded.paths
+            if to.form == "text" and not every and not patterns:
+                return lineage_tree.as_overview(inherited, width), sources
             if to.form == "text":
                 return lineage_tree.as_text(inherited, width, color=color), sources
             return lineage_tree.as_json(inherited), sources

@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import groupby
-from textwrap import fill
 from typing import get_args
 
 from rulec.analysis.audit.audit_kinds import KINDS
@@ -19,7 +18,10 @@ from rulec.report.rulebooks.document_language import IN_ENGLISH, DocumentLanguag
 from rulec.report.rulebooks.rule_list import law_of
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.markdown import code, escaped, table
-from rulec.report.text.terminal_text import fact_lines, styled, visible
+from rulec.report.text.terminal_text import broken, cut, fact_lines, styled, visible
+
+ASKED_FOR = frozenset({"failing", "not-found", "unread", "law-changed"})
+"""Kinds of findings that only an option looks for."""
 
 Compared = Mapping[str, AuditChanges]
 """Rulebook -> the changes since an older audit of it."""
@@ -45,8 +47,13 @@ def render(
     output_format: str,
     width: int = PAGE_WIDTH,
     sources: Sequence[SourceAudit] = (),
+    *,
+    in_full: bool,
 ) -> str:
-    """All audits as ``text`` of a width, ``markdown`` or ``json``, then those of sources."""
+    """All audits as ``text`` of a width, ``markdown`` or ``json``, then those of sources.
+
+    Text has every finding and article only ``in_full``.
+    """
     pairs = [(audit, compared.get(audit.rulebook)) for audit in audits]
     match output_format:
         case "json":
@@ -56,7 +63,7 @@ def render(
             parts = [_as_markdown(*pair) for pair in pairs]
             return "\n\n".join([*parts, *map(source_report.as_markdown, sources)])
         case _:
-            parts = [_as_text(*pair, width) for pair in pairs]
+            parts = [(_as_text if in_full else _as_overview)(*pair, width) for pair in pairs]
             parts += [source_report.as_text(source, width) for source in sources]
             return "\n\n\n".join(parts)
 
@@ -123,48 +130,68 @@ def provision_table(
     return table(head, rows)
 
 
-def _as_text(audit: Audit, compared: AuditChanges | None, width: int) -> str:
+def _as_overview(audit: Audit, compared: AuditChanges | None, width: int) -> str:
+    """The counts, and two lines for each kind of finding; in full what an option has asked for."""
+    lines = _head(audit, width)
+    for kind, grouped in groupby(audit.findings, key=lambda finding: finding.kind):
+        findings = list(grouped)
+        lines += _titled(kind, f" ({len(findings):,}): {KINDS[kind]}", width)
+        if kind in ASKED_FOR:
+            lines.append(_lines(findings, width))
+        else:
+            lines.append(cut("  " + visible(", ".join(x.name for x in findings)), width))
+    lines.append("`--all` has every note, and the articles that rules rest on")
+    return "\n".join([*lines, *(_changes_as_text(compared, width) if compared else ())])
+
+
+def _head(audit: Audit, width: int) -> list[str]:
     title = f": {audit.title}" if audit.title else ""
     rows = [("law", law_of(audit)), ("judged by the law of", audit.at), *counts(audit)]
-    head = styled(visible(f"{audit.rulebook}{title}"), "bold")
-    blocks = ["\n".join([head, *fact_lines(rows, width)])]
+    return [styled(visible(f"{audit.rulebook}{title}"), "bold"), *fact_lines(rows, width)]
+
+
+def _as_text(audit: Audit, compared: AuditChanges | None, width: int) -> str:
+    blocks = ["\n".join(_head(audit, width))]
     for kind, findings in groupby(audit.findings, key=lambda finding: finding.kind):
-        title = f"{styled(kind, 'bold')}: {KINDS[kind]}"
-        blocks.append(f"{title}\n{_lines(list(findings), width)}")
+        title = _titled(kind, f": {KINDS[kind]}", width)
+        blocks.append("\n".join([*title, _lines(list(findings), width)]))
     if audit.provisions:
-        title = f"{styled('articles', 'bold')} of the law, and the rules that rest on them"
+        title = _titled("articles", " of the law, and the rules that rest on them", width)
         rows = [
             (number, f"{heading}: {state}")
             for number, heading, state in map(provision_row, audit.provisions)
         ]
-        blocks.append("\n".join([title, *fact_lines(rows, width)]))
+        blocks.append("\n".join([*title, *fact_lines(rows, width)]))
     for book, articles in groupby(audit.articles, key=lambda article: article.book):
-        title = f"{styled('provisions', 'bold')} cited in {book}, and the rules they are in"
+        title = _titled("provisions", f" cited in {book}, and the rules they are in", width)
         rows = [(article.cite, ", ".join(article.rules)) for article in articles]
-        blocks.append("\n".join([title, *fact_lines(rows, width)]))
+        blocks.append("\n".join([*title, *fact_lines(rows, width)]))
     if compared is not None:
-        blocks.append(_changes_as_text(compared))
+        blocks.append("\n".join(_changes_as_text(compared, width)))
     return "\n\n".join(blocks)
+
+
+def _titled(kind: str, rest: str, width: int) -> list[str]:
+    first, *others = broken(visible(f"{kind}{rest}"), width, later="  ")
+    return [f"{styled(kind, 'bold')}{first[len(kind) :]}", *others]
 
 
 def _lines(findings: Sequence[AuditFinding], width: int) -> str:
     if not any(finding.note for finding in findings):
-        names = ", ".join(visible(finding.name) for finding in findings)
-        return fill(names, width, initial_indent="  ", subsequent_indent="  ")
+        names = visible(", ".join(finding.name for finding in findings))
+        return "\n".join(broken(names, width, "  ", "  "))
     facts = [(finding.name, finding.note) for finding in findings]
     return "\n".join(fact_lines(facts, width))
 
 
-def _changes_as_text(compared: AuditChanges) -> str:
-    lines = [
-        f"{sign} {finding.kind}: {visible(finding.name)}"
+def _changes_as_text(compared: AuditChanges, width: int) -> list[str]:
+    changes = [
+        line
         for sign, findings in (("+", compared.appeared), ("-", compared.vanished))
         for finding in findings
+        for line in broken(visible(f"{sign} {finding.kind}: {finding.name}"), width, "  ", "    ")
     ]
-    title = styled("changed", "bold")
-    return f"{title}: + is new, - is gone\n" + "\n".join(
-        f"  {line}" for line in lines or ["nothing"]
-    )
+    return [f"{styled('changed', 'bold')}: + is new, - is gone", *(changes or ["  nothing"])]
 
 
 def _as_markdown(audit: Audit, compared: AuditChanges | None) -> str:

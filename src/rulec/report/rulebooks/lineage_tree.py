@@ -13,7 +13,7 @@ from rich.tree import Tree
 from rulec.analysis.lineage import rule_lineage
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 from rulec.report.rulebooks.rule_provenance import provenance
-from rulec.report.text.terminal_text import visible
+from rulec.report.text.terminal_text import broken, column_lines, cut, visible
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_in_force
 
@@ -25,6 +25,21 @@ _DEEDS = {
     "dropped": "dropped by",
     "silent": "passed over in silence by",
 }
+
+
+_TITLES = {
+    "confirmed": "confirmed",
+    "overridden": "overridden",
+    "declared": "own",
+    "softened": "softened",
+    "dropped": "dropped",
+    "silent": "silent",
+    "": "only inherited",
+}
+"""What a book itself has done with a rule, nothing last, as an overview calls it."""
+
+MOST_LINES = 38
+"""The most lines of an overview, so that it fits on a screen."""
 
 
 class LineageStepData(JsonPart, frozen=True, kw_only=True):
@@ -97,6 +112,48 @@ def as_text(inherited: rule_lineage.BookLineage, width: int, *, color: bool) -> 
                 _provision(constant_history, inherited.book, provisions)
         trees += [provisions] if provisions.children else []
     return "\n\n".join(_drawn(tree_, width, color=color) for tree_ in trees)
+
+
+def as_overview(inherited: rule_lineage.BookLineage, width: int) -> str:
+    """How many rules the last book of a chain has in which way, and a line for each it changed."""
+    book = inherited.book
+    by_deed: dict[str, list[rule_lineage.RuleHistory]] = {deed: [] for deed in _TITLES}
+    for history in inherited.rules:
+        by_deed[history.last.deed if history.last.book == book else ""].append(history)
+    counts = [f"{len(found):,} {_TITLES[deed]}" for deed, found in by_deed.items() if found]
+    chain = " ← ".join(header.name for header in inherited.books[::-1])
+    lines = broken(visible(f"{chain}: {' · '.join(counts) or 'no rules'}"), width, later="  ")
+    packed = {"declared"}
+    changed = [deed for deed in _TITLES if deed not in ("", "confirmed") and by_deed[deed]]
+    for pack in ("", *changed):
+        packed.add(pack)
+        parts = [_changed(deed, by_deed[deed], width, deed in packed) for deed in changed]
+        if sum(map(len, parts)) < MOST_LINES - len(lines):
+            break
+    set_here = [
+        f"{constant.head} = {value.text}"
+        for constant in inherited.provisions
+        for value in constant.settings
+        if value.book == book and value.current and constant.kind != "definition"
+    ]
+    lines += [line for part in parts for line in part]
+    if set_here:
+        lines.append(cut(visible(f"set: {', '.join(set_here)}"), width))
+    return "\n".join([*lines, "`--all` shows every rule, option, parameter and definition"])
+
+
+def _changed(
+    deed: str, found: Sequence[rule_lineage.RuleHistory], width: int, packed: bool
+) -> list[str]:
+    """The rules that a book changed in one way: a line each, or packed into lines."""
+    if packed:
+        names = ", ".join(history.name for history in found)
+        return broken(visible(f"{_TITLES[deed]}: {names}"), width, later="  ")
+    rows = [
+        (visible(history.name), visible(history.last.because or ", ".join(history.last.clauses)))
+        for history in found
+    ]
+    return [_TITLES[deed], *column_lines(rows, width, indent="  ")]
 
 
 def forest_as_text(

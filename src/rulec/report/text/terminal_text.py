@@ -163,20 +163,24 @@ def broken(
     """
     joined = _KEPT_TOGETHER.sub(lambda match: match[0][:-1] + _JOINT, text)
     # What takes two columns counts as two characters.
-    wide = joined if joined.isascii() else "".join(map(_padded, joined))
+    wide = _as_wide(joined)
     lines = wrap(
         wide,
         max(width, cell_width(first) + 20, cell_width(later) + 20) - (wide != joined),
-        initial_indent=first,
-        subsequent_indent=later,
+        initial_indent=_as_wide(first),
+        subsequent_indent=_as_wide(later),
         break_long_words=cuts_words,
         break_on_hyphens=False,
     )
     return [line.replace(_JOINT, " ").replace(_SECOND_COLUMN, "") for line in lines]
 
 
-def _padded(character: str) -> str:
-    return character + _SECOND_COLUMN * (unicodedata.east_asian_width(character) in "WF")
+def _as_wide(text: str) -> str:
+    """As many characters as the text takes columns."""
+    if text.isascii():
+        return text
+    wide = (x + _SECOND_COLUMN * (unicodedata.east_asian_width(x) in "WF") for x in text)
+    return "".join(wide)
 
 
 def cut(text: str, width: int) -> str:
@@ -218,15 +222,18 @@ def column_lines(rows: Sequence[Sequence[str]], width: int, *, indent: str = "")
 
 
 def fact_lines(facts: Sequence[tuple[str, str]], width: int) -> list[str]:
-    """Names with texts beside them, which are wrapped to a width."""
-    text_width = max(
-        20, width - max((cell_width(visible(name)) for name, _ in facts), default=0) - 4
-    )
-    rows = []
-    for name, text in facts:
-        first, *rest = broken(visible(text), text_width) or [""]
-        rows += [(visible(name), first), *(("", line) for line in rest)]
-    return table_lines(rows, indent="  ")
+    """Names with texts beside them, or below long names, which are wrapped to a width."""
+    shown = [(visible(name), visible(text)) for name, text in facts]
+    widths = [cell_width(name) for name, _ in shown]
+    column = max((own for own in widths if own <= width * 3 // 5), default=0)
+    lines = []
+    for (name, text), own in zip(shown, widths, strict=True):
+        if own > column:
+            lines += broken(name, width, "  ", "  ")
+            name, own = "", 0
+        beside = f"  {name}{' ' * (column - own)}  "
+        lines += broken(text, width, beside, " " * (column + 4)) or [beside.rstrip()]
+    return lines
 
 
 def shown_count(count: int) -> str:
