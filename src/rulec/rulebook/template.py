@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from datetime import date
 from pathlib import Path
+from textwrap import wrap
 
 from rulec.diagnostics import RulecError
 from rulec.rulebook.loader import Loaded, parse_rulebook, read_rulebook
 from rulec.rulebook.names.doc_comments import description
-from rulec.rulebook.overlay.rulebook_overlay import in_force
 from rulec.rulebook.rulebook_model import Rule
+from rulec.rulebook.rules.rule_topics import by_group
 from rulec.rulebook.template_messages import no_name
 from rulec.syntax import decode, parse, tree
-from rulec.syntax.tree_printer import print_formula
 
 _TEXT = """\
 # {name}: a rulebook to start from. `rulec check` says what is wrong in it, `rulec test` runs its
@@ -61,6 +61,9 @@ title   "What this rulebook is about"
 law     "The law that it puts into rules" as of {today}
 """
 
+_WIDTH = 96
+"""The width of lists of names, in characters."""
+
 
 def new_rulebook(name: str, today: date) -> str:
     """Text of a new rulebook that checks, tests and compiles.
@@ -105,42 +108,45 @@ def _changes(loaded: Loaded) -> Iterator[str]:
         other = "left" if base.traffic == "right" else "right"
         yield f"# traffic {other}   # belongs into the header; `{base.name}` says {base.traffic}"
         yield ""
-    settings = _settings(loaded)
-    if settings:
-        yield from (*settings, "")
-    for rule in base.rules:
-        yield from _rule(rule)
+    options = _options(loaded)
+    if options:
+        yield f"# What laws differ in; `rulec tree {base.name} --all` has numbers to set, too."
+        yield from (*options, "")
+    if base.rules:
+        yield "# A rule becomes your own law by its article, is left out, or may yield, as these:"
+        yield from _changed(base.rules)
+        yield f"# The rules of `{base.name}`, whose sentences `rulec show {base.name}` has:"
+        for heading, names in by_group([base]).items():
+            yield from wrap(
+                f"{heading}: {', '.join(names)}",
+                _WIDTH,
+                initial_indent="#   ",
+                subsequent_indent="#     ",
+                break_on_hyphens=False,
+            )
+        yield ""
     yield '# silent on TOPIC because "…"'
     yield ""
 
 
-def _settings(loaded: Loaded) -> list[str]:
-    values: dict[str, str] = {}
-    notes: dict[str, str] = {}
+def _options(loaded: Loaded) -> list[str]:
+    """The options as they are set, each with what is said about it."""
+    values: dict[str, tuple[bool, str]] = {}
     for item in (item for book in loaded.books for item in book.items):
-        match item:
-            case tree.OptionItem(name, value) | tree.SetItem(name, bool() as value):
-                text = "on" if value else "off"
-            case tree.ParamItem() | tree.SetItem():
-                if not in_force(item.in_force, loaded.rulebook.at):
-                    continue
-                assert not isinstance(item.value, bool), "that is an option's"
-                name, text = item.name, print_formula(item.value, "written")
-            case _:
-                continue
-        values[name.text] = text
-        notes[name.text] = description(item.span) or notes.get(name.text, "")
-    comments = {name: f"  # {note}" if note else "" for name, note in notes.items()}
-    return [f"# set {name} = {value}{comments[name]}" for name, value in values.items()]
+        if isinstance(item, tree.OptionItem | tree.SetItem) and isinstance(item.value, bool):
+            _, known = values.get(item.name.text, (False, ""))
+            values[item.name.text] = item.value, description(item.span) or known
+    return [
+        f"# set {name} = {'on' if value else 'off'}{note and f'  # {note}'}"
+        for name, (value, note) in values.items()
+    ]
 
 
-def _rule(rule: Rule) -> Iterator[str]:
-    about = ", ".join(f"{variable.name}: {variable.type}" for variable in rule.variables)
-    if rule.says or rule.cite:
-        yield f"# {' '.join(filter(None, (rule.cite, rule.says)))}"
-    head = f"{rule.name} ({about})" if about else rule.name
-    yield f'# override rule {head} {{ cite "…" }}'
-    yield f'# drop rule {rule.name} because "…"'
-    if rule.strength == "hard":
-        yield f'# soften rule {rule.name} because "…"'
-    yield ""
+def _changed(rules: Sequence[Rule]) -> Iterator[str]:
+    """The ways to change a rule, shown for the first one, and for a hard one."""
+    first = rules[0]
+    about = ", ".join(f"{variable.name}: {variable.type}" for variable in first.variables)
+    yield f'# override rule {first.name}{f" ({about})" if about else ""} {{ cite "…" }}'
+    yield f'# drop rule {first.name} because "…"'
+    hard = next((rule.name for rule in rules if rule.strength == "hard"), "")
+    yield from [f'# soften rule {hard} because "…"'] if hard else []

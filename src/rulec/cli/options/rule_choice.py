@@ -38,7 +38,7 @@ def refuse_unmatched(
 def rules_on_topic(books: Sequence[Rulebook], topic: str) -> tuple[Rulebook, ...]:
     """The rulebooks with only their rules on a topic. Raises click.BadParameter: there is none."""
     # Late import, only if a topic is given: the phrases of vocabularies (10 ms).
-    from rulec.analysis.rule_topics import on_topic
+    from rulec.rulebook.rules.rule_topics import on_topic
 
     try:
         chosen = on_topic(books, topic)

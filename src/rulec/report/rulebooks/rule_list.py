@@ -6,11 +6,11 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from rulec.analysis.rule_topics import OTHER, by_group
 from rulec.logic.printing import formula_text
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 from rulec.report.text.terminal_text import broken, column_lines, counted, styled, visible
 from rulec.rulebook.rulebook_model import Rule, Rulebook, cited_law
+from rulec.rulebook.rules.rule_topics import OTHER, by_group
 
 MOST_HEADS = 5
 """More rulebooks are only counted."""

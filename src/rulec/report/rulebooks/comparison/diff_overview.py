@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from rulec.analysis.diff.rulebook_comparison import RulebookDiff, RulePair
-from rulec.analysis.rule_topics import OTHER, by_group
 from rulec.report.rulebooks.comparison import diff_text
 from rulec.report.rulebooks.rule_list import first_provision
 from rulec.report.text.terminal_text import broken, cell_width, column_lines, visible
+from rulec.rulebook.rules.rule_topics import OTHER, by_group
 
 
 def as_overview(rulebook_diff: RulebookDiff, width: int) -> str:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from rulec.analysis.rule_topics import by_group
 from rulec.report.rulebooks.rule_list import as_json, first_provision, rules_named
 from rulec.report.text.csv_text import csv_text
 from rulec.report.text.markdown import code, escaped
 from rulec.report.text.markdown import table as markdown_table
 from rulec.report.text.terminal_text import broken, column_lines, cut, styled, visible
 from rulec.rulebook.rulebook_model import Rule, Rulebook, cited_law
+from rulec.rulebook.rules.rule_topics import by_group
 
 MOST_LINES = 40
 """A text has at most as many lines as fit on a screen, unless it is wanted in full."""

@@ -20,7 +20,7 @@ def by_group(books: Sequence[Rulebook]) -> dict[str, list[str]]:
     A heading is the first group that has one of the rule's topics, else the title of its topic.
     """
     titles = {topic.name: topic.title for book in books for topic in book.topics}
-    groups = {group.replace("_", " "): topics for group, topics in topic_groups().items()}
+    groups = {group.replace("_", " and "): topics for group, topics in topic_groups().items()}
     order = [*groups, *titles.values(), OTHER]
     places: dict[str, tuple[int, int, bool]] = {}
     for rule in (rule for book in books for rule in book.rules):
