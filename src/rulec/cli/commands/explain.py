@@ -12,7 +12,7 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_codes
 from rulec.cli.options.verb_class import Verb
-from rulec.cli.output import put_answer
+from rulec.cli.output import put_answer, width_of
 from rulec.cli.verb_table import VERBS
 from rulec.diagnostics import any_of, first_of, nearest_name
 from rulec.diagnostics.code import Code
@@ -42,9 +42,9 @@ _SLIP = 3
 def command(names: tuple[str, ...], every: bool, to: Output) -> int:
     """Explain each CODE, such as R0104: what it means, with a bad example and its correction.
 
-    For a WORD of a vocabulary, such as `gap`, show how it is declared, what it means, and which
-    recordings provide it; for a definition or a parameter of a rulebook, its text and its place.
-    Vocabularies and rulebooks in the working folder are searched, too.
+    For a WORD of a vocabulary, such as `gap`, show how it is declared, what it means, which
+    recordings provide it, and which rules read it; for a definition or a parameter of a rulebook,
+    its text and its place. Vocabularies and rulebooks in the working folder are searched, too.
     """
     if every == bool(names):
         raise click.UsageError("give a code or a word, such as `R0104` or `gap`, or --all")
@@ -66,9 +66,11 @@ def command(names: tuple[str, ...], every: bool, to: Output) -> int:
                 f"# {code.code}: {code.title}\n\n{code_registry.as_markdown(code)}"
                 for code in codes
             ]
-            text = "\n\n".join([*pages, *_texts(found_words, "markdown")])
+            text = "\n\n".join([*pages, *_texts(found_words, None)])
         case _:
-            text = "\n\n\n".join([*map(code_registry.as_text, codes), *_texts(found_words, "text")])
+            width = width_of(to)
+            pages = [code_registry.as_text(code, width) for code in codes]
+            text = "\n\n\n".join([*pages, *_texts(found_words, width)])
     put_answer(text, to)
     for name in unknown:
         print_remark(f"rulec: {_unknown(name)}")
@@ -91,13 +93,15 @@ def _unknown(name: str) -> str:
     return f"there is no code and no word `{name}`; {_way_out(name)}"
 
 
-def _texts(words: Sequence[FoundWord], form: str) -> list[str]:
+def _texts(words: Sequence[FoundWord], width: int | None) -> list[str]:
+    """The texts about words, of a width, or as Markdown for None."""
     if not words:
         return []
     # Late import, as above: not needed for codes.
-    from rulec.report.rulebooks import word_texts
+    from rulec.report.rulebooks.word_texts import as_markdown, as_text, readers_of
 
-    return [*map(word_texts.as_text if form == "text" else word_texts.as_markdown, words)]
+    told = [(word, readers_of(word, _places())) for word in words]
+    return [as_markdown(*one) if width is None else as_text(*one, width) for one in told]
 
 
 def _as_json(codes: Sequence[Code], words: Sequence[FoundWord]) -> str:
@@ -105,9 +109,9 @@ def _as_json(codes: Sequence[Code], words: Sequence[FoundWord]) -> str:
         if codes:
             raise click.UsageError("as JSON codes and words are two lists; ask for either")
         # Late import, as above.
-        from rulec.report.rulebooks.word_texts import words_as_json
+        from rulec.report.rulebooks.word_texts import readers_of, words_as_json
 
-        return words_as_json(words)
+        return words_as_json((word, readers_of(word, _places())) for word in words)
     # Late import, only for this format: msgspec (8 of the command's 54 ms).
     from rulec.report.findings.diagnostics_json import codes_as_json
 
@@ -136,9 +140,8 @@ def _way_out(name: str) -> str:
     topics = texts.topics_of_rulebooks(places)
     if name in topics:
         of = f" of rules such as {any_of([f'`{rule}`' for rule in topics[name]])}"
-        return (
-            f"it is a topic{of if topics[name] else ''}: docs/coverage.md shows who has rules on it"
-        )
+        topic = f"it is a topic{of if topics[name] else ''}"
+        return f"{topic}: `rulec list rules --topic {name}` shows who has rules on it"
     words = texts.words_of_vocabularies(places)
     known = sorted(frozenset[str]().union(*words.values()))
     defined = frozenset[str]().union(*texts.definitions_of_rulebooks(places).values())

@@ -7,9 +7,10 @@ import os
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from textwrap import fill, indent
+from textwrap import indent
 
 from rulec.diagnostics.code import Code, ExampleKind
+from rulec.report.text.terminal_text import broken
 
 STAGES = (
     "Syntax",
@@ -94,9 +95,9 @@ by the tests. `rulec explain --all --output-format markdown` writes this page.
 """
 
 
-def as_text(code: Code) -> str:
-    """An explanation for a terminal."""
-    parts = [f"{code.code}: {code.title}", fill(code.why, 80)]
+def as_text(code: Code, width: int = 80) -> str:
+    """An explanation for a terminal; its examples keep their lines, however wide."""
+    parts = ["\n".join(broken(text, width)) for text in (f"{code.code}: {code.title}", code.why)]
     for head, example in _examples(code):
         parts.append(f"{head}:\n\n{indent(example, '    ')}")
     return "\n\n".join(parts)
@@ -109,7 +110,7 @@ def as_plain_text(code: Code) -> str:
 
 def as_markdown(code: Code) -> str:
     """The explanation without its title, in Markdown."""
-    parts = [fill(code.why, 100, break_on_hyphens=False)]
+    parts = ["\n".join(broken(code.why, 100))]
     for head, example in _examples(code):
         # The word after the language marks samples of mistakes, so that they are not read as
         # correct ones.

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from textwrap import fill, indent
+from pathlib import Path
 
-from rulec.diagnostics import Span
+from rulec.diagnostics import Span, first_of
 from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.report.json_document import JsonDocument, as_indented
 from rulec.report.text import markdown
-from rulec.report.text.terminal_text import visible
+from rulec.report.text.terminal_text import broken, counted, visible
+from rulec.rulebook.files.words_in_files import rules_reading
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.word_search import FoundWord, definition_in
@@ -26,6 +28,12 @@ SUPPLIERS = {
 }
 """First word of a comment in the shared vocabulary -> what supplies the word declared."""
 
+Readers = Mapping[str, Sequence[str]]
+"""Rulebook -> the rules whose text reads a word."""
+
+MOST_READERS = 6
+"""The number of rules that are named as reading a word; JSON has all of them."""
+
 RECORDED_VOCABULARIES = frozenset(("road", "paper"))
 """The vocabularies whose words recordings can provide."""
 
@@ -39,12 +47,16 @@ class WordText:
 
 
 class WordData(JsonDocument, frozen=True, kw_only=True):
-    """A word: the file that declares it, its declaration, and paragraphs about it."""
+    """A word: the file that declares it, its declaration, paragraphs about it, and who reads it.
+
+    ``read_by`` has the rules of each rulebook whose own text reads it.
+    """
 
     word: str
     declared_in: str
     declaration: str
     says: tuple[str, ...]
+    read_by: Readers
 
 
 def word_text(name: str, symbols: SymbolTable, *, recorded: bool) -> WordText:
@@ -110,24 +122,50 @@ def _declared(item: Declaration, span: Span) -> str:
             return f"signal {item.name}{about}{_default(item.default)}"
 
 
-def as_text(word: FoundWord) -> str:
+def as_text(word: FoundWord, readers: Readers, width: int) -> str:
     """The text about a word for a terminal."""
     text = _known(word)
     paragraphs = [
         f"{word.name}: {_kind_of(word)} of {_file_of(word)}",
-        *(visible(sentence) for sentence in text.sentences),
+        *map(visible, (*text.sentences, *_readers_in_words(readers))),
     ]
-    head, *rest = (fill(paragraph, 80, break_on_hyphens=False) for paragraph in paragraphs)
-    lines = text.declaration
-    declaration = "\n".join(map(visible, lines.splitlines())) if "\n" in lines else fill(lines, 90)
-    return "\n\n".join([head, indent(declaration, "    "), *rest])
+    head, *rest = ("\n".join(broken(paragraph, width)) for paragraph in paragraphs)
+    declaration = [
+        part
+        for line in text.declaration.splitlines()
+        for part in broken(visible(line.strip()), width, _indent(line), f"{_indent(line)}  ")
+    ]
+    return "\n\n".join([head, "\n".join(declaration), *rest])
 
 
-def as_markdown(word: FoundWord) -> str:
+def _indent(line: str) -> str:
+    return " " * (4 + len(line) - len(line.lstrip()))
+
+
+def as_markdown(word: FoundWord, readers: Readers) -> str:
     """The text about a word as Markdown."""
     text = _known(word)
     head = f"# {markdown.escaped(word.name)}: {_kind_of(word)} of {_file_of(word)}"
-    return "\n\n".join([head, *as_paragraphs(text)])
+    said = (markdown.escaped(sentence) for sentence in _readers_in_words(readers))
+    return "\n\n".join([head, *as_paragraphs(text), *said])
+
+
+def readers_of(word: FoundWord, search_path: Sequence[Path]) -> Readers:
+    """The rules of each rulebook whose text reads a word, or a value of it."""
+    declared = word.symbols.items.get(word.name)
+    values = declared.values if isinstance(declared, Enumeration) else ()
+    return rules_reading((word.name, *values), search_path)
+
+
+def _readers_in_words(readers: Readers) -> Iterator[str]:
+    counts = Counter(rule for rules in readers.values() for rule in rules).most_common()
+    if counts:
+        rules = [f"{rule} ({number})" if number > 1 else rule for rule, number in counts]
+        yield (
+            f"{counted(sum(map(len, readers.values())), 'rule')} in the texts of "
+            f"{counted(len(readers), 'rulebook')} read it, also by definitions: "
+            f"{first_of(rules, MOST_READERS)}."
+        )
 
 
 def as_paragraphs(text: WordText) -> Iterator[str]:
@@ -136,18 +174,19 @@ def as_paragraphs(text: WordText) -> Iterator[str]:
     yield from text.sentences
 
 
-def words_as_json(words: Iterable[FoundWord]) -> str:
+def words_as_json(words: Iterable[tuple[FoundWord, Readers]]) -> str:
     """Write a list with an object for each word."""
-    return as_indented([_data(word) for word in words])
+    return as_indented([_data(*word) for word in words])
 
 
-def _data(word: FoundWord) -> WordData:
+def _data(word: FoundWord, readers: Readers) -> WordData:
     text = _known(word)
     return WordData(
         word=word.name,
         declared_in=_file_of(word).replace("`", "").removeprefix("the "),
         declaration=text.declaration,
         says=text.sentences,
+        read_by=readers,
     )
 
 

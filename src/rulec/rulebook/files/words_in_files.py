@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -17,6 +17,17 @@ _NO_WORDS = re.compile(r"#[^\n]*|\([^()]*\)|\bin\s+\S+|\bdefault\s+\S+|\bvocabul
 _DEFINED = re.compile(r"^[ \t]*(?:define|param|option)[ \t]+([^\W\d]\w*)", re.MULTILINE)
 
 _RULE = re.compile(r"^[ \t]*(?:hard|soft|override)[ \t]+rule[ \t]+([^\W\d]\w*)", re.MULTILINE)
+
+_ITEM = re.compile(
+    r"^[ \t]*(?:(?:hard|soft|override)[ \t]+(rule)|(?:re)?define|param|set)[ \t]+([^\W\d]\w*)"
+    r"(.*?)(?=^[ \t]*(?:hard|soft|override|soften|drop|silent|define|redefine|param|set)\b|\Z)",
+    re.MULTILINE | re.DOTALL,
+)
+"""A rule, or what gives a name a meaning, with its text."""
+
+_NOT_READ = re.compile(r'"[^"\n]*"|#[^\n]*|\b(?:accept|reject)\b[^{]*\{[^}]*\}')
+
+_EXTENDS = re.compile(r"^[ \t]*extends[ \t]+([\w-]+)", re.MULTILINE)
 
 _TOPICS = re.compile(r"^[ \t]*topics\s*\{(.*?)\}", re.MULTILINE | re.DOTALL)
 _TOPIC = re.compile(r'([^\W\d]\w*)\s+"[^"\n]*"(?:\s+of\s+([^;}]*))?')
@@ -57,6 +68,38 @@ def topics_of_rulebooks(search_path: Sequence[Path] = ()) -> dict[str, tuple[str
         for block in _TOPICS.findall(text)
         for name, rules in _TOPIC.findall(block)
     }
+
+
+def rules_reading(
+    words: Collection[str], search_path: Sequence[Path] = ()
+) -> dict[str, tuple[str, ...]]:
+    """The rules in each rulebook's own text that read one of these words.
+
+    They may also read it by a name that is defined there, or in a rulebook that it extends.
+    """
+    texts = {path.stem: text for path, text in _texts(search_path)}
+    bases = {book: _EXTENDS.findall(text) for book, text in texts.items()}
+    rules: dict[str, dict[str, frozenset[str]]] = {}
+    meanings: dict[str, dict[str, frozenset[str]]] = {}
+    for book, text in texts.items():
+        rules[book], meanings[book] = {}, {}
+        for rule, name, body in _ITEM.findall(text):
+            read = frozenset(_NAME.findall(_NOT_READ.sub(" ", body)))
+            (rules if rule else meanings)[book][name] = read
+    found = {}
+    for book in texts:
+        chain = [book]
+        while (base := next(iter(bases.get(chain[-1], ())), "")) in texts and base not in chain:
+            chain.append(base)
+        known = {name: read for one in reversed(chain) for name, read in meanings[one].items()}
+        reading, before = {*words}, 0
+        while len(reading) > before:
+            before = len(reading)
+            reading |= {name for name, read in known.items() if not read.isdisjoint(reading)}
+        own = tuple(name for name, read in rules[book].items() if not read.isdisjoint(reading))
+        if own:
+            found[book] = own
+    return found
 
 
 def _texts(search_path: Sequence[Path]) -> Iterator[tuple[Path, str]]:
