@@ -184,9 +184,9 @@ def test_a_line_is_as_wide_as_it_is_told():
     line = "x" * 600
     place = SourceLocation("f.rules", 1, 300, 1, 301, line)
     for columns in (40, 100, 160):
-        shown = render_diagnostics([Diagnostic("R0202", "m", place)], columns=columns)
+        shown = render_diagnostics([Diagnostic("R0202", "m", place)], width=columns + 9)
         assert next(row for row in shown.splitlines() if "xx" in row).count("x") == columns
-    assert render_diagnostics([Diagnostic("R0202", "m", place)], columns=700).count("…") == 0
+    assert render_diagnostics([Diagnostic("R0202", "m", place)], width=709).count("…") == 0
 
 
 def test_of_many_the_same_is_said_once_and_others_are_counted(capsys):

@@ -20,7 +20,7 @@ from rulec.cli.options.shared_options import only_sources
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.fault_messages import fault_of
 from rulec.files.written_files import written_whole
-from rulec.report.findings.diagnostics_text import excerpt_width, print_diagnostics
+from rulec.report.findings.diagnostics_text import message_width, print_diagnostics
 from rulec.report.findings.finding_formats import render
 from rulec.report.text.console import (
     PAGE_WIDTH,
@@ -243,7 +243,7 @@ def print_findings(
         to.form,
         color=wants_color(sys.stdout),
         complete=not unread,
-        columns=0 if to.is_file else excerpt_width(sys.stdout),
+        width=0 if to.is_file else message_width(sys.stdout),
     )
     if not text and to.form == "full" and not unread:
         text = nothing

@@ -14,13 +14,13 @@ from rulec.cli.options.shared_options import (
 from rulec.cli.options.shell_completion import complete_sources
 from rulec.cli.options.standard_input import standard_input
 from rulec.cli.options.verb_class import Verb
-from rulec.cli.output import print_findings, print_left_alone
+from rulec.cli.output import print_findings, print_left_alone, width_of
 from rulec.cli.watching import watch as watch_sources
 from rulec.cli.watching import watch_option
 from rulec.diagnostics import named
 from rulec.files.read_files import MAX_SOURCE_BYTES
 from rulec.report.text.console import print_remark
-from rulec.report.text.terminal_text import counted
+from rulec.report.text.terminal_text import broken, counted
 from rulec.rulebook.batch.batch_check import Checked, check
 from rulec.rulebook.batch.shipped_lock import not_as_locked, write_lock
 from rulec.settings import exclusion, search_path
@@ -85,7 +85,7 @@ def command(
         status = print_findings(
             (*done.findings, *not_as_locked()),
             done.unread,
-            nothing=_nothing_found(done),
+            nothing=_nothing_found(done, width_of(to)),
             to=to,
             fail_on=fail_on,
         )
@@ -97,7 +97,7 @@ def command(
     return run()
 
 
-def _nothing_found(done: Checked) -> str:
+def _nothing_found(done: Checked, width: int) -> str:
     files = counted(len(done.files), "file")
     lines = [f"{files} checked, no mistakes found; `rulec test` runs the examples"]
     for rules, lack in ((done.uncited, "cites no provision"), (done.untested, "has no example")):
@@ -108,7 +108,7 @@ def _nothing_found(done: Checked) -> str:
                 if len(rules) == 1
                 else f"{len(rules)} rules {many}: {named(rules)}"
             )
-    return "\n".join(lines)
+    return "\n".join(part for line in lines for part in broken(line, width, later="  "))
 
 
 def _checked(sources: tuple[str, ...], at: str, *, recalls: bool) -> Checked:

@@ -17,7 +17,7 @@ from rulec.diagnostics.fault_messages import FAULT
 from rulec.diagnostics.source_text import SourceLocation, address
 from rulec.files.work_trees import leads_out
 from rulec.report.text.console import page_width, print_aside
-from rulec.report.text.terminal_text import cell_width, styled, visible, wants_color
+from rulec.report.text.terminal_text import broken, cell_width, styled, visible, wants_color
 
 MAX_WIDTH = 100
 """Width of a shown source line outside a terminal; a longer line is cut around the place."""
@@ -38,9 +38,9 @@ class Underline:
     sign: str
 
 
-def excerpt_width(stream: TextIO) -> int:
-    """Columns for a shown source line on a stream; on a terminal, what the frame leaves."""
-    return page_width(stream) - _FRAME_COLUMNS if stream.isatty() else MAX_WIDTH
+def message_width(stream: TextIO) -> int:
+    """The columns of a terminal to which messages are wrapped; elsewhere 0: they stay one line."""
+    return page_width(stream) if stream.isatty() else 0
 
 
 def excerpt_lines(marks: Sequence[Underline], columns: int) -> Iterator[tuple[str, str]]:
@@ -56,8 +56,13 @@ def excerpt_lines(marks: Sequence[Underline], columns: int) -> Iterator[tuple[st
         begin = len(before) + cell_width("".join(cells[: max(0, start)]))
         inside = cells[max(0, start) : max(0, end)]
         length = max(1, cell_width("".join(inside)))
-        words = f" {visible(mark.words)}" if mark.words else ""
-        yield " " * begin + mark.sign * length + words, mark.sign
+        line, words = " " * begin + mark.sign * length, visible(mark.words)
+        if begin + length + 1 + cell_width(words) <= columns:
+            yield f"{line} {words}".rstrip(), mark.sign
+            continue
+        yield line, mark.sign
+        indent = " " * min(begin, columns // 2)
+        yield from ((part, mark.sign) for part in broken(words, columns, indent, indent))
 
 
 def _end_column(place: SourceLocation, length: int) -> int:
@@ -108,8 +113,8 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True
     """Print errors and warnings on standard error, with their numbers."""
     printed.update([one.message for one in diagnostics if one.code == FAULT.code])
     if diagnostics:
-        columns = excerpt_width(sys.stderr)
-        text = render_diagnostics(diagnostics, wants_color(sys.stderr), summary, columns)
+        width = message_width(sys.stderr)
+        text = render_diagnostics(diagnostics, wants_color(sys.stderr), summary, width)
         print_aside(text.rstrip("\n"))
 
 
@@ -144,18 +149,19 @@ def render_diagnostics(
     diagnostics: Iterable[Diagnostic],
     color: bool = False,
     summary: bool = True,
-    columns: int = MAX_WIDTH,
+    width: int = 0,
 ) -> str:
     """All diagnostics and a line with their numbers; an empty text if there are none.
 
     Control characters in messages and in the shown lines are escaped, so that a hostile file cannot
-    control the terminal. ``color`` adds escape sequences; ``columns`` is the width of source lines.
+    control the terminal. ``color`` adds escape sequences. All is fitted to a ``width``; if that is
+    0, messages have one line, and source lines at most MAX_WIDTH columns.
     """
     every = list(diagnostics)
     if not every:
         return ""
     paint = partial(styled, color=color)
-    blocks = ["\n".join(_block(diagnostic, paint, columns)) for diagnostic in every]
+    blocks = ["\n".join(_block(diagnostic, paint, width)) for diagnostic in every]
     return "\n\n".join([*blocks, _summary(every)] if summary else blocks) + "\n"
 
 
@@ -199,8 +205,10 @@ def _is_behind_link(file: str) -> bool:
 def _block(diagnostic: Diagnostic, paint: _Paint, columns: int) -> Iterator[str]:
     diagnostic = _without_others_lines(diagnostic)
     severity = _STYLES[diagnostic.severity]
-    head = paint(f"{diagnostic.severity}[{diagnostic.code}]", severity)
-    yield f"{head}{paint(f': {visible(diagnostic.message)}', 'bold')}"
+    head = f"{diagnostic.severity}[{diagnostic.code}]"
+    first, *rest = _wrapped(f"{head}: {visible(diagnostic.message)}", columns, "  ")
+    yield f"{paint(head, severity)}{paint(first[len(head) :], 'bold')}"
+    yield from (paint(line, "bold") for line in rest)
     files = _by_file(diagnostic)
     width = max((len(str(mark.place.line or 0)) for marks in files for mark in marks), default=1)
     gutter = " " * width
@@ -215,14 +223,23 @@ def _block(diagnostic: Diagnostic, paint: _Paint, columns: int) -> Iterator[str]
         if not shown:
             continue
         yield paint(f"{gutter} |", _FRAME)
-        for left, text, style in _lines(shown, severity, columns):
+        excerpt = columns - _FRAME_COLUMNS if columns else MAX_WIDTH
+        for left, text, style in _lines(shown, severity, excerpt):
             yield f"{paint(f'{left:>{width}} |', _FRAME)} {paint(text, style)}".rstrip()
     # Without a shown line there is no underlined place beside which it could be.
     unplaced = "" if _is_shown(diagnostic.place) else diagnostic.expected
     notes = (("note", note) for note in diagnostic.notes)
     for word, text in (("note", unplaced), ("help", diagnostic.help), *notes):
         if text:
-            yield f"{gutter} {paint('=', _FRAME)} {paint(f'{word}:', 'bold')} {visible(text)}"
+            head = f"{gutter} = {word}:"
+            first, *rest = _wrapped(f"{head} {visible(text)}", columns, f"{gutter}   ")
+            painted = f"{gutter} {paint('=', _FRAME)} {paint(f'{word}:', 'bold')}"
+            yield f"{painted}{first[len(head) :]}"
+            yield from rest
+
+
+def _wrapped(text: str, width: int, later: str) -> list[str]:
+    return broken(text, width, later=later) if width else [text]
 
 
 def _by_file(diagnostic: Diagnostic) -> list[list[Underline]]:

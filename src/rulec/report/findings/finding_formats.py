@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.source_text import address
 from rulec.files.read_files import from_here
-from rulec.report.findings.diagnostics_text import MAX_WIDTH, render_diagnostics
+from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.report.text.terminal_text import visible
 
 FORMATS = ("full", "concise", "json", "github", "sarif")
@@ -19,12 +19,11 @@ def render(
     *,
     color: bool,
     complete: bool,
-    columns: int = 0,
+    width: int = 0,
 ) -> str:
     """Render diagnostics in one of FORMATS.
 
-    ``complete``: all inputs could be read; ``columns`` is the width of source lines, 0 for the
-    width used outside a terminal.
+    ``complete``: all inputs could be read; ``width`` is that of a terminal, 0 elsewhere.
     """
     match output_format:
         case "concise":
@@ -42,8 +41,7 @@ def render(
 
             return as_sarif(diagnostics, complete=complete)
         case _:
-            shown = render_diagnostics(diagnostics, color, columns=columns or MAX_WIDTH)
-            return shown.rstrip("\n")
+            return render_diagnostics(diagnostics, color, width=width).rstrip("\n")
 
 
 def as_lines(diagnostics: Iterable[Diagnostic]) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from textwrap import wrap
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.diagnostics.diagnostic import at
@@ -23,13 +22,16 @@ from rulec.report.automata import automaton_text
 from rulec.report.automata.automaton_model import Automaton, automaton_of
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.guard_text import GuardWording
-from rulec.report.text.terminal_text import fact_lines, styled, visible
+from rulec.report.text.terminal_text import broken, fact_lines, styled, visible
 from rulec.rulebook.rulebook_model import Rule, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_witness import WitnessTrace
 from rulec.witnesses.shortest_traces import shortest_traces
 
 INDENT = "  "
+
+NARROW = 70
+"""The columns below which parts of sentences are indented less."""
 
 MOST_LISTED = 60
 """A page lists an automaton's transitions if there are at most this many."""
@@ -140,7 +142,8 @@ def head(rule: Rule, rulebook: str, width: int) -> str:
     variables = ", ".join(f"{variable.name}: {variable.type}" for variable in rule.variables)
     title = f"{rule.strength} rule {rule.name}{f' ({variables})' if variables else ''}"
     facts = [(name, value) for name, value in _facts(rule, rulebook) if value]
-    return "\n".join([styled(title, "bold"), *fact_lines(facts, width)])
+    shown = (styled(line, "bold") for line in broken(visible(title), width, later="  "))
+    return "\n".join([*shown, *fact_lines(facts, width)])
 
 
 def _facts(rule: Rule, rulebook: str) -> Iterator[tuple[str, str]]:
@@ -173,13 +176,12 @@ def _untold(rule: Rule) -> str:
 def in_english(phrase: Phrase, width: int) -> str:
     """The sentence with its lists, indented and wrapped to a width."""
     shown = []
+    step = "    " if width > NARROW else "  "
     for line in lines(phrase):
         indent = INDENT
         if line.label:
-            indent += "    " * (line.depth - 1) + f"  {line.label:<3} "
-        blank = " " * len(indent)
-        texts = wrap(visible(line.text), max(20, width - len(indent)), break_long_words=False)
-        shown += [f"{indent if not n else blank}{text}" for n, text in enumerate(texts)]
+            indent += step * (line.depth - 1) + f"  {line.label:<3} "
+        shown += broken(visible(line.text), width, indent, " " * len(indent))
     return "\n".join(shown)
 
 
@@ -205,7 +207,7 @@ def as_text(page: RulePage, rulebook: str, vocabulary: Vocabulary, width: int) -
         ("automaton", _indented(automaton.split("\n"))),
         (
             "a shortest rejected trace, and an accepted one close to it",
-            _indented(list(_examples(page))),
+            "\n".join(_examples(page, width)),
         ),
     ]
     blocks = [f"{styled(title, 'bold')}\n{text}" for title, text in sections]
@@ -216,14 +218,16 @@ def _indented(texts: Sequence[str]) -> str:
     return "\n".join(f"{INDENT}{text}" for text in texts)
 
 
-def _examples(page: RulePage) -> Iterator[str]:
+def _examples(page: RulePage, width: int) -> Iterator[str]:
     for word, trace, never in (
         ("accept", page.accepted, "no trace is accepted: nothing can satisfy this rule"),
         ("reject", page.rejected, "no trace is rejected: nothing can violate this rule"),
     ):
         if trace is None:
-            yield never
+            yield f"{INDENT}{never}"
             continue
         objects = ", ".join(f"{object_.name}: {object_.type}" for object_ in trace.objects)
-        yield f"{word}{f' ({objects})' if objects else ''} {{ {'; '.join(trace.states)} }}"
-        yield from (f"  # where {remark}" for remark in trace.remarks)
+        example = f"{word}{f' ({objects})' if objects else ''} {{ {'; '.join(trace.states)} }}"
+        yield from broken(example, width, INDENT, 2 * INDENT)
+        for remark in trace.remarks:
+            yield from broken(f"# where {remark}", width, 2 * INDENT, f"{2 * INDENT}# ")

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from rulec.analysis.audit.source_audit import Basis, RuleBasis, SourceAudit
 from rulec.report.text import terminal_text
 from rulec.report.text.markdown import code, table
-from rulec.report.text.terminal_text import fact_lines, styled, visible
+from rulec.report.text.terminal_text import broken, fact_lines, styled, visible
 
 _TITLES: Mapping[Basis, str] = {
     "evidence": "judged on evidence",
@@ -27,8 +27,8 @@ def counted(audit: SourceAudit) -> str:
 
 def as_text(audit: SourceAudit, width: int) -> str:
     """The totals, then the rules by what they rest on, with the names that matter."""
-    source = visible(audit.source)
-    blocks = [f"{styled('source', 'bold')} {source}: {counted(audit)}"]
+    first, *rest = broken(visible(f"source {audit.source}: {counted(audit)}"), width, later="  ")
+    blocks = ["\n".join([first.replace("source", styled("source", "bold"), 1), *rest])]
     for basis, title in _TITLES.items():
         facts = [(rule.rule, _note(rule)) for rule in audit.rules if rule.basis == basis]
         if facts:

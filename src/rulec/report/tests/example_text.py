@@ -19,7 +19,7 @@ from rulec.diagnostics import Diagnostic
 from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Atom, Constant
 from rulec.logic.printing import formula_text, number_in_words
-from rulec.report.findings.diagnostics_text import excerpt_width, render_diagnostics
+from rulec.report.findings.diagnostics_text import message_width, render_diagnostics
 from rulec.report.text.terminal_text import (
     broken,
     column_lines,
@@ -74,13 +74,13 @@ def as_text(
     problems = [problem for run in runs for problem in failures(run).values()]
     if problems:
         details = render_diagnostics(
-            problems, wants_color(sys.stdout), summary=False, columns=excerpt_width(sys.stdout)
+            problems, wants_color(sys.stdout), summary=False, width=message_width(sys.stdout)
         )
         lines += [*([""] if lines else []), details.rstrip("\n"), ""]
     if covered is not None:
         for run, rules in zip(runs, covered, strict=True):
             lines += (_coverage_in_full if in_full else _least_covered)(run, rules, width)
-        lines.append(coverage_in_words(runs, covered))
+        lines += broken(coverage_in_words(runs, covered), width)
     failed = sum(not outcome.passed for _, outcome in outcomes)
     passed = f": {len(outcomes) - failed:,} passed, {failed:,} failed" if failed else " passed"
     lines.append(f"{counted(len(outcomes), 'example')}{passed} in {besides.seconds:.1f} s")
@@ -96,7 +96,8 @@ def _coverage_in_full(run: ExampleRun, rules: Sequence[RuleCoverage], width: int
             yield from broken(visible(line.strip()), width, "  ", "    ")
     if len(asked) < len(rules):
         left_out = counted(len(rules) - len(asked), "inherited rule")
-        yield f"{run.name}: without {left_out}; --rule '*' shows them, too"
+        without = f"{run.name}: without {left_out}; --rule '*' shows them, too"
+        yield from broken(visible(without), width, later="  ")
 
 
 def _least_covered(run: ExampleRun, rules: Sequence[RuleCoverage], width: int) -> Iterator[str]:
@@ -106,7 +107,8 @@ def _least_covered(run: ExampleRun, rules: Sequence[RuleCoverage], width: int) -
     others = len(rules) - len(asked)
     inherited = f", besides {others:,} that it inherits" if others else ""
     whole = len(asked) - len(short)
-    yield f"{run.name}: {whole:,} of {counted(len(asked), 'rule')} covered as a whole{inherited}"
+    counts = f"{run.name}: {whole:,} of {counted(len(asked), 'rule')} covered as a whole{inherited}"
+    yield from broken(visible(counts), width, later="  ")
     rows = [(f"{as_percent(_part(rule)):>6}", rule.rule, _missing_parts(rule)) for rule in short]
     yield from column_lines(rows[:MOST_RULES], width, indent="  ")
     more = f"and {len(short) - MOST_RULES:,} more; " if len(short) > MOST_RULES else ""

@@ -14,7 +14,7 @@ from rulec.rulebook.rules.rule_topics import OTHER, by_group
 def as_overview(rulebook_diff: RulebookDiff, width: int) -> str:
     """Counts, a line for each rule that differs, by topic, and what only one of the two has."""
     first, second = rulebook_diff.first.name, rulebook_diff.second.name
-    lines = diff_text.head(rulebook_diff).splitlines()
+    lines = diff_text.head(rulebook_diff, width)
     rows = list(_rows(rulebook_diff))
     lines += [diff_text.summary(rulebook_diff), *column_lines(rows, width)]
     for book, rules in ((first, rulebook_diff.only_first), (second, rulebook_diff.only_second)):

@@ -34,7 +34,7 @@ COLOURS: dict[RuleRelation, str] = {
 def as_text(rulebook_diff: RulebookDiff, width: int) -> str:
     """Write the differences first, with traces that show them, and the agreements last."""
     first, second = rulebook_diff.first.name, rulebook_diff.second.name
-    blocks = [head(rulebook_diff)]
+    blocks = ["\n".join(head(rulebook_diff, width))]
     blocks += [
         "\n".join(_pair(pair, rulebook_diff, width))
         for pair in rulebook_diff.pairs
@@ -76,14 +76,14 @@ def is_worth_a_block(pair: RulePair) -> bool:
     return pair.relation != "equal" or bool(pair.notes)
 
 
-def head(rulebook_diff: RulebookDiff) -> str:
+def head(rulebook_diff: RulebookDiff, width: int) -> list[str]:
     """The names of both rulebooks, the days of their laws, and the sides of traffic."""
     first, second = rulebook_diff.first, rulebook_diff.second
-    title = styled(f"{first.name} compared to {second.name}", "bold")
     days = f"the law of {first.at}"
     if first.at != second.at:
         days = f"{first.name} is the law of {first.at}, {second.name} that of {second.at}"
-    return "\n".join([f"{title}; {days}", *sides(rulebook_diff)])
+    texts = [f"{first.name} compared to {second.name}; {days}", *sides(rulebook_diff)]
+    return [line for text in texts for line in broken(visible(text), width, later="  ")]
 
 
 def sides(rulebook_diff: RulebookDiff) -> list[str]:
