@@ -73,7 +73,9 @@ def test_rules_of_several_books(tmp_path, monkeypatch, capsys):
     ]
     assert listed(capsys, "rules", books[1]).splitlines()[-1] == "  c  two 1  never p"
     (only,) = json.loads(listed(capsys, "rules", *books, "--topic", "mud", "--json"))["rules"]
-    assert only["books"] == {"one": "one 1", "two": "two 1"}
+    assert only["books"] == {
+        name: {"strength": "hard", "cite": f"{name} 1", "says": ""} for name in ("one", "two")
+    }
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rulec.logic.printing import formula_text
-from rulec.report.json_document import JsonDocument, JsonPart, as_indented
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 from rulec.report.text.terminal_text import broken, column_lines, counted, styled, visible
-from rulec.rulebook.rulebook_model import Rule, Rulebook, cited_law
+from rulec.rulebook.rulebook_model import Rule, Rulebook, Strength, cited_law
 from rulec.rulebook.rules.rule_topics import OTHER, by_group
 
 MOST_HEADS = 5
@@ -19,13 +19,20 @@ if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit
 
 
+class ListedSide(JsonPart, frozen=True, kw_only=True):
+    """A rule as one rulebook has it."""
+
+    strength: Strength
+    cite: str
+    says: str
+
+
 class ListedRule(JsonPart, frozen=True, kw_only=True):
-    """A rule, what it is about, the sentence of its first book, and each book's provisions."""
+    """A rule, what it is about, and what each rulebook that has it says."""
 
     name: str
     about: str
-    says: str
-    books: Mapping[str, str]
+    books: Mapping[str, ListedSide]
 
 
 class RuleListDocument(JsonDocument, frozen=True, kw_only=True):
@@ -57,14 +64,13 @@ def as_json(books: Sequence[Rulebook]) -> str:
         ListedRule(
             name=name,
             about=heading,
-            says=next(iter(having.values())).says,
             books={
-                book: cited_law(rule.cite, rule.inherited_from) for book, rule in having.items()
+                book: filled(ListedSide, rule, cite=cited_law(rule.cite, rule.inherited_from))
+                for book, rule in rules_named(name, books).items()
             },
         )
         for heading, names in by_group(books).items()
         for name in names
-        for having in (rules_named(name, books),)
     ]
     return as_indented(RuleListDocument(rules=rules))
 
