@@ -53,7 +53,7 @@ def test_what_the_file_leaves_open_is_said(files, capfd):
     assert scene["reference"] == "in_1"
     assert [said.partition("note        ")[2]] == scene["remarks"]
     assert main(["verify", file, "-r", "gb", "--map", net]) == 0
-    assert said in capfd.readouterr().out
+    assert f"note: {scene['remarks'][0]}" in capfd.readouterr().out
     assert main(["verify", file, "-r", "gb", "--map", net, "--json"]) == 0
     assert json.loads(capfd.readouterr().out)["remarks"] == scene["remarks"]
 

@@ -48,16 +48,17 @@ def verify(tmp_path, capsys, monkeypatch):
 A = "drives/DEU_Road-1_1_T-1.xml"
 # 3 drives 43.2 km/h, 4 drives 50.4 km/h; whether it is wet the file does not say.
 TABLE = """\
-drives/DEU_Road-1_1_T-1.xml: 3 drives: 0 satisfied, 1 violated, 2 open (slow 1)
-drives/b.xml.gz: 3 drives: 0 satisfied, 1 violated, 2 open (slow 1)
+drives/DEU_Road-1_1_T-1.xml: 3 drives: 1 violated, 2 nothing found (slow 1)
+drives/b.xml.gz: 3 drives: 1 violated, 2 nothing found (slow 1)
 
 altogether  2 recordings with 6 drives
 not read    1 file, as said above
 rules       2 rules: 1 judged, 1 cannot be judged from these recordings
 
-violated              drives   recordings  first
-slow [Art. 1]  hard      2/6          2/2  4 at 0 s in drives/DEU_Road-1_1_T-1.xml
-6 drives: 0 satisfied, 2 violated, 4 open
+violated              drives   recordings
+slow [Art. 1]  hard      2/6          2/2
+  first: 4 at 0 s in drives/DEU_Road-1_1_T-1.xml
+6 drives: 2 violated, 4 nothing found
 """
 
 
@@ -69,13 +70,13 @@ def test_a_folder_is_a_line_for_each_recording_and_one_table(verify):
     assert "drives/broken.xml" in err
 
 
-def test_a_single_recording_is_shown_as_ever(verify):
+def test_a_single_recording_has_no_table_and_is_explained_on_request(verify):
     status, out, _ = verify(A)
     assert status == 1
-    assert out.startswith("recording   DEU_Road-1_1_T-1: 3 drives")
+    assert out.startswith("DEU_Road-1_1_T-1: 3 drives")
     assert "altogether" not in out
-    # The first violation is explained.
-    assert "kept if" in out
+    assert "kept if" not in out
+    assert "kept if" in verify(A, "--explain", "1")[1]
 
 
 def test_explanations_are_counted_by_file(verify):
@@ -128,7 +129,7 @@ def test_findings_on_standard_output(verify):
 def test_text_and_json_go_to_files_too(verify):
     status, out, _ = verify(A, "-o", "a.txt", "-o", "a.json")
     assert (status, out) == (1, "wrote the answer to a.txt\nwrote the answer to a.json\n")
-    assert Path("a.txt").read_text().endswith("3 drives: 0 satisfied, 1 violated, 2 open\n")
+    assert "\n1 drive broke a hard rule\n" in Path("a.txt").read_text()
     assert len(Path("a.json").read_text().splitlines()) == 3
 
 
@@ -218,15 +219,14 @@ def test_several_rulebooks_side_by_side(verify):
         "by                slower         other  tiny",
     ]
     # 3 drives 43.2 km/h, 4 drives 50.4 km/h, another one slower; of none it is known to be dry.
-    assert out.splitlines()[-9:] == [
+    assert out.splitlines()[-8:] == [
         "by                slower         other  tiny",
         "─" * 44,
         "slow                   2  no such rule     1",
         "─" * 44,
         "satisfied              0             3     0",
         "violated               2             0     1",
-        "open                   1             0     2",
-        "not judged             0             0     0",
+        "nothing found          1             0     2",
         "rules not judged       1             0     1",
     ]
 
@@ -310,7 +310,7 @@ def test_editions_of_one_rulebook_are_told_apart(verify):
         ("2020-01-01", "by dated: Act as of 2020-01-01 ["),
         (
             "2026-11-29",
-            "by dated: Act as of 2020-01-01, without what has changed until 2026-11-29 [",
+            "by dated: Act as of 2020-01-01, without what has changed until 2026-11-29\n  [",
         ),
         ("2019-05-01", "by dated: Act as of 2020-01-01, as in force on 2019-05-01 ["),
     ],

@@ -26,7 +26,9 @@ soft rule distance (v: vehicle) {
 """
 
 DEFAULTS = ("--assume", "defaults")
-MIRRORED = "mirrored    recorded where traffic keeps to the right, judged as if it kept to the left"
+MIRRORED = [
+    "  recorded where traffic keeps to the right, judged as if it kept to the left",
+]
 
 
 @pytest.fixture
@@ -43,30 +45,33 @@ def verify(tmp_path, capsys):
     return run
 
 
-def test_a_table_of_rules_and_vehicles(verify):
+def test_what_was_found_comes_first(verify):
     # 4 drives 50.4 km/h, and is 4 m behind 3, which gets 2 m/s nearer
-    status, out, err = verify("--explain", "0", *DEFAULTS)
-    assert (status, out.splitlines()) == (
+    status, out, err = verify(*DEFAULTS)
+    assert (status, out.partition("see it: ")[0].splitlines()) == (
         1,
         [
-            "recording   DEU_Road-1_1_T-1: 3 drives in steps of 0.1 s",
-            MIRRORED,
-            "by default  built_up: the recording does not say",
-            "assumed     defaults, and that nothing comes after the recording's end",
-            "rules       2 rules: 2 judged",
-            "",
-            "violated              drives     first  by",
-            "slow [Art. 1]  hard      1/3       0 s  4",
-            "  by default: built_up",
-            "distance       soft      1/3       0 s  4",
-            "3 drives: 2 satisfied, 1 violated",
+            "DEU_Road-1_1_T-1: 3 drives in steps of 0.1 s",
+            *MIRRORED,
+            "  assumed: defaults, and that nothing comes after the recording's end",
+            "1 drive broke a hard rule",
+            "  slow [Art. 1]: 1 drive",
+            "    Drive slowly out of town.",
+            "    by default: built_up",
+            "    4  0-2.9 s  speed 50.4 km/h > 45.0 km/h",
+            "1 drive broke a soft rule",
+            "  distance: 1 drive",
+            "    Keep 5 m.",
+            "    4  0-2 s  gap(3) 4 m < 5 m",
+            "2 drives: nothing against all 2 rules",
+            "more: --explain 1 (the first one)",
         ],
     )
     assert err == ""
 
 
 def test_the_first_violation_is_explained(verify):
-    _, out, _ = verify(*DEFAULTS)
+    _, out, _ = verify("--explain", "1", *DEFAULTS)
     assert "4: violated" in out.splitlines()
     assert (
         "  hard rule slow [Art. 1]: cannot be kept any more after state 0 (0 s)" in out.splitlines()
@@ -75,7 +80,7 @@ def test_the_first_violation_is_explained(verify):
     assert "mirrored" not in out
 
 
-def test_the_first_row_is_the_one_that_is_explained(tmp_path, capsys):
+def test_the_first_rule_is_the_one_that_is_explained(tmp_path, capsys):
     # 3 drives 43 km/h; 4, the next one of the file, is as fast, and alone has somebody near ahead
     book = tmp_path / "rows.rules"
     distance = (
@@ -83,9 +88,11 @@ def test_the_first_row_is_the_one_that_is_explained(tmp_path, capsys):
     )
     slow = "hard rule slow { require always speed <= 20 km/h }"
     book.write_text(f"rulebook rows\nuse road\n{distance}\n{slow}\n")
-    main(["verify", three_cars(tmp_path), "-r", str(book), *DEFAULTS])
+    main(["verify", three_cars(tmp_path), "-r", str(book), "--explain", "1", *DEFAULTS])
     lines = capsys.readouterr().out.splitlines()
-    rows = [line.split()[0] for line in lines if " hard " in line and "/3" in line]
+    rows = [
+        line.split(":")[0].strip() for line in lines if line.endswith((": 2 drives", ": 1 drive"))
+    ]
     explained = next(line for line in lines if line.startswith("  hard rule "))
     assert len(rows) == 2
     assert explained.split()[2].rstrip(":") == rows[0] == "slow"
@@ -109,7 +116,7 @@ def test_what_is_assumed_is_not_missing(verify):
     status, out, _ = verify("--assume", "built_up=true")
     assert status == 0
     assert "by default" not in out
-    assert out.splitlines()[-1] == "3 drives: 3 satisfied, 0 violated"
+    assert "2 drives: nothing against all 2 rules" in out.splitlines()
 
 
 def test_a_line_of_json_for_each_drive(verify):
@@ -158,10 +165,9 @@ def test_recordings_and_traces_together(verify, tmp_path):
     traces.write_text('{"id": "t", "step_s": 0.1, "states": [{"speed": 20}]}\n')
     status, out, _ = verify("--explain", "0", *DEFAULTS, files=(str(traces), file))
     assert status == 1
-    assert out.splitlines()[-2:] == [
-        "3 drives: 2 satisfied, 1 violated",
-        "1 trace: 1 satisfied, 0 violated",
-    ]
+    lines = out.splitlines()
+    assert "2 drives: nothing against all 2 rules" in lines
+    assert lines[-1] == "1 trace: 1 satisfied, 0 violated"
 
 
 def test_what_is_no_recording(verify, tmp_path):
@@ -177,17 +183,19 @@ def test_a_single_rule_is_counted_as_one(tmp_path, capsys):
     (tmp_path / "one.rules").write_text(text)
     book = str(tmp_path / "one.rules")
     assert main(["verify", three_cars(tmp_path), "-r", book, "--explain", "0"]) == 0
-    assert "rules       1 rule: 1 judged" in capsys.readouterr().out.splitlines()
+    assert "3 drives: nothing against the rule" in capsys.readouterr().out.splitlines()
 
 
 def test_what_is_not_told_is_not_taken_for_its_default(verify):
     # Nothing says whether the road is in a town, so nobody can be known to be too fast
-    status, out, _ = verify("--explain", "0")
+    status, out, _ = verify()
     assert status == 0
-    rules = "rules       2 rules: 1 judged, 1 cannot be judged from this recording"
-    assert rules in out.splitlines()
-    assert "no verdict  hard: slow (built_up)" in out.splitlines()
-    assert out.splitlines()[-1] == "3 drives: 0 satisfied, 0 violated, 3 open"
+    lines = out.splitlines()
+    at = lines.index("1 of 2 rules not judged: 1 want built_up")
+    assert lines[at - 1] == "2 drives: nothing found in 1 judged rule"
+    assert lines[at + 1] == "  `--assume built_up=VALUE` would let 1 of them be judged"
+    assert "satisfied" not in out
+    assert "  built_up: slow" in verify("--why")[1].splitlines()
     _, out, _ = verify("--json", "--ego", "4")
     (line,) = map(json.loads, out.splitlines())
     assert line["satisfied"] is None
@@ -205,7 +213,9 @@ def test_strictly_what_is_open_counts_as_violated(verify, tmp_path):
     traces.write_text('{"id": "t", "states": [{"speed": 50, "built_up": null}]}\n')
     status, out, _ = verify(files=(str(traces),))
     assert (status, out.splitlines()[0]) == (0, "t: open")
-    assert "depends on built_up: violated if not built_up, kept if built_up" in out
+    assert "depends on built_up: violated if not built_up, kept if built_up" in " ".join(
+        out.split()
+    )
     assert verify("--strict", files=(str(traces),))[0] == 1
 
 
@@ -238,20 +248,20 @@ hard rule thick_fog {
 def test_rules_without_a_verdict_are_named_hard_ones_first(tmp_path, capsys, monkeypatch):
     book = tmp_path / "untold.rules"
     book.write_text(UNTOLD)
-    assert main(["verify", three_cars(tmp_path), "-r", str(book), "--explain", "0"]) == 2
+    assert main(["verify", three_cars(tmp_path), "-r", str(book), "--why"]) == 2
     lines = capsys.readouterr().out.splitlines()
-    at = lines.index("rules       4 rules: 0 judged, 4 cannot be judged from this recording")
-    assert lines[at + 1 : at + 4] == [
-        "no verdict  hard: fog, thick_fog (visibility); loaded (ego_mass)",
-        "no verdict  soft: comfort (visibility)",
-        "            `rulec explain WORD` says which recordings can provide a word in brackets",
+    at = lines.index("4 of 4 rules not judged: 3 want visibility, 1 ego_mass")
+    # Neither is a word that one would give a value throughout
+    assert lines[at + 1 : at + 5] == [
+        "not judged, for lack of (`rulec explain WORD` says what can provide a word):",
+        "  visibility: fog, thick_fog",
+        "  ego_mass: loaded",
+        "  visibility: comfort (soft)",
     ]
     monkeypatch.setattr("rulec.cli.commands.verify.page_width", lambda: 40)
-    main(["verify", three_cars(tmp_path), "-r", str(book), "--explain", "0"])
+    main(["verify", three_cars(tmp_path), "-r", str(book)])
     lines = capsys.readouterr().out.splitlines()
-    assert lines[lines.index("no verdict  hard: fog, thick_fog") + 1] == (
-        " " * 12 + "(visibility); loaded"
-    )
+    assert lines[lines.index("4 of 4 rules not judged: 3 want") + 1] == "  visibility, 1 ego_mass"
 
 
 def test_of_what_is_known_as_an_interval_evidence_has_the_bounds(tmp_path, capsys):
@@ -280,9 +290,8 @@ def test_a_packed_file_that_was_cut_short_does_not_keep_others_from_being_judged
     packed = gzip.compress(b"track,t,x,y\n" * 9_000)
     broken.write_bytes(packed[:20])  # before its first letter
     whole = three_cars(tmp_path)
-    _, alone, _ = verify("--explain", "0")
     status, out, err = verify("--explain", "0", files=(str(broken), whole))
     assert status == 2
     assert err.count("R0701]: the file cannot be read: it is packed, and ends too soon") == 1
-    assert alone.splitlines()[-1] in out.splitlines()
+    assert "3 drives: 0 violated, 1 only soft rules, 2 nothing found" in " ".join(out.split())
     assert "not read    1 file, as said above" in out

@@ -9,7 +9,7 @@ import rulec
 from rulec.extraction.possible_types import PossibleTypes
 from rulec.extraction.recording_verdicts import ViolationTally
 from rulec.recordings.mending.mended_recording import mended
-from rulec.report.verdicts.recording_table import as_text
+from rulec.report.verdicts.recording_answer import AnswerLayout, RecordingAnswer
 
 T = np.arange(0, 12.05, 0.1)
 KINDS = ("vehicle", "bicycle", "pedestrian")
@@ -105,12 +105,13 @@ def test_what_is_known_is_so_whatever_it_is(rules):
     assert any(isinstance(names, tuple) and "pedestrian" in names for names in unknown.values())
 
 
-def test_the_table_names_the_types():
+def test_the_answer_names_the_types_on_request():
     recorded = rulec.verify_recording(scene("unknown"), book())
     tally = ViolationTally()
     for answer in recorded.answers():
         tally.add(answer, [rule.name for rule in book().rules])
-    assert "pedestrian" in as_text(recorded, tally, 100)
+    answer = RecordingAnswer(recorded, tally, {}, AnswerLayout(80, why=True))
+    assert "pedestrian" in answer.as_text()
 
 
 def test_defaults_leave_nothing_open():

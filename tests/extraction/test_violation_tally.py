@@ -37,8 +37,7 @@ def test_drives_are_counted_by_their_verdict():
         # Soft rules do not decide
         verdict(drive("3"), ("gentle", "soft", 1)),
     )
-    assert counted.satisfied == ["1", "3"]
-    assert counted.violated == ["2"]
+    assert counted.drives == {"satisfied": ["1", "3"], "violated": ["2"]}
     assert counted.judged == 3
 
 
@@ -86,7 +85,8 @@ def test_a_rule_that_is_open_or_not_judged_does_not_count_as_judged():
     assert list(counted.open_rules) == ["late"]
     assert counted.open_on == {"built_up", "indicator"}
     assert list(counted.untold["fast"]) == ["light"]
-    assert (counted.satisfied, counted.doubtful, counted.open_hard) == (["2"], ["1"], 1)
+    assert counted.drives == {"satisfied": ["2"], "open": ["1"]}
+    assert counted.open_hard == 1
 
 
 def test_names_are_counted_without_finding_reasons():

@@ -82,8 +82,6 @@ def test_several_rulebooks_side_by_side(tmp_path, monkeypatch, capsys):
         ["slow", "1", "kept"],
         ["satisfied", "0", "1"],
         ["violated", "1", "0"],
-        ["open", "0", "0"],
-        ["not", "judged", "0", "0"],
         ["rules", "not", "judged", "0", "0"],
     ]
     outcomes = {

@@ -15,6 +15,7 @@ from rulec.extraction.recording_parts import egos_of
 from rulec.extraction.selection import RequestedDrives
 from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
+from rulec.report.verdicts.recording_answer import AnswerLayout
 from rulec.rulebook.loader import parse_rulebook
 from support.worlds.stored import StoredWorld
 
@@ -47,8 +48,7 @@ def pieces(rules, jobs, to_explain, **more):
         RecordingSource(Path("-"), world.net),
         to_explain=to_explain,
         every_part=False,
-        width=100,
-        text=True,
+        layout=AnswerLayout(80),
         lines=True,
         findings=True,
     )
@@ -72,7 +72,7 @@ def test_parts_are_put_together(rules, to_explain, monkeypatch):
     usual, _ = pieces(rules, Jobs(1), to_explain)
     whole = usual[-1]
     assert isinstance(whole, JudgedRecording)
-    assert whole.tally.violated
+    assert whole.tally.drives["violated"]
     assert bool(whole.explained) == (to_explain > 0)
     each_alone(monkeypatch)
     asked = []

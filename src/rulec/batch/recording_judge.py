@@ -23,8 +23,14 @@ from rulec.monitoring.verdict import NotJudged
 from rulec.recordings.recording import Participant, Recording
 from rulec.recordings.recording_files import read_recordings
 from rulec.recordings.recording_format import RecordingSource
-from rulec.report.text.terminal_text import visible
-from rulec.report.verdicts import recording_table, verdict_report
+from rulec.report.text.terminal_text import broken, visible
+from rulec.report.verdicts import verdict_report
+from rulec.report.verdicts.recording_answer import (
+    MOST_SHOWN,
+    AnswerLayout,
+    RecordingAnswer,
+    summary,
+)
 from rulec.report.verdicts.state_times import StateTimes
 from rulec.resource_limits import BudgetSpentError
 
@@ -45,8 +51,8 @@ class JudgeSettings:
     """How files are judged, and which results are wanted.
 
     ``source`` says how to read each file; its path is replaced. The first ``to_explain`` violations
-    of each file are explained in ``width`` columns, part by part if ``every_part``. The results may
-    be ``text``, ``lines`` (of JSON, one per drive) and ``findings``. ``labels`` are names for files
+    of each file are explained, part by part if ``every_part``. The results may be text in this
+    ``layout``, ``lines`` (of JSON, one per drive) and ``findings``. ``labels`` are names for files
     whose paths mean nothing to a reader. ``to_rows``, if given, makes the rows of drives and rules
     for tables of findings.
     """
@@ -56,8 +62,7 @@ class JudgeSettings:
     source: RecordingSource
     to_explain: int
     every_part: bool
-    width: int
-    text: bool
+    layout: AnswerLayout | None
     lines: bool
     findings: bool
     labels: Mapping[str, str] = field(default_factory=dict)
@@ -66,7 +71,7 @@ class JudgeSettings:
 
 @dataclass(frozen=True, slots=True)
 class JudgedRecording:
-    """A judged recording: its counts, its table as text, and its findings, if wanted.
+    """A judged recording: its counts, the answer as text, and its findings, if wanted.
 
     ``explained`` are the blocks of text that explain its first violations.
     """
@@ -74,7 +79,7 @@ class JudgedRecording:
     file: str
     name: str
     tally: ViolationTally
-    table: str
+    answer: str
     explained: tuple[str, ...]
     findings: RecordingFindings | None
 
@@ -147,7 +152,7 @@ def _relabelled(error: RulecError, path: str, label: str) -> RulecError:
 class _JudgedDrives:
     """The results of some drives, each by itself and all together.
 
-    ``pieces`` are the results of single drives.
+    ``pieces`` are the results of single drives, ``shown`` the first findings of each violated rule.
     """
 
     tally: ViolationTally = field(default_factory=ViolationTally)
@@ -155,6 +160,7 @@ class _JudgedDrives:
     rows: list[Mapping[str, object]] = field(default_factory=list)
     pieces: list[Piece] = field(default_factory=list)
     findings: GatheredFindings | None = None
+    shown: dict[str, list[VerdictFinding]] = field(default_factory=dict)
     n_explained: int = 0
 
 
@@ -230,6 +236,9 @@ class _RecordingJudge:
         self._judged.tally.include(later.tally)
         self._judged.blocks += later.blocks
         self._judged.rows += later.rows
+        for rule, findings in later.shown.items():
+            own = self._judged.shown.setdefault(rule, [])
+            own += findings[: MOST_SHOWN - len(own)]
         if self._findings is not None and later.findings is not None:
             self._findings.gathered.include(later.findings)
 
@@ -254,6 +263,8 @@ class _RecordingJudge:
                 yield DriveProblem(with_place(fault, SourceLocation(self._file)))
             explained = self._explained(answer)
         own = None if self._findings is None else self._findings.add(answer, explained)
+        if self._settings.layout is not None:
+            self._show(answer, explained, own)
         if self._settings.to_rows is not None:
             judged.rows += self._settings.to_rows(answer, verdicts, self._file, own)
         if self._settings.lines:
@@ -263,11 +274,34 @@ class _RecordingJudge:
             yield recording_json.as_json(answer, verdicts, explained)
         judged.tally.add(answer, [rule.name for rule in verdicts.rules.rules])
 
+    def _show(
+        self,
+        answer: DriveVerdict | NoDrive,
+        explained: Sequence[Explanation],
+        findings: Sequence[VerdictFinding] | None,
+    ) -> None:
+        """Keep the first findings of each violated rule; ``findings`` are the drive's, if made."""
+        if isinstance(answer, NoDrive) or isinstance(answer.answer, NotJudged):
+            return
+        for number, violation in enumerate(answer.answer.violations):
+            shown = self._judged.shown.setdefault(violation.rule, [])
+            if len(shown) < MOST_SHOWN:
+                if findings is None:
+                    # Evidence, 20 ms: only where something is violated.
+                    from rulec.report.verdict_findings.findings_of_drives import violated
+
+                    explanation = explained[number] if number < len(explained) else None
+                    own = violated(violation, answer.drive, self._verdicts, explanation)
+                else:
+                    own = findings[number]
+                shown.append(own)
+
     def _whole(self) -> JudgedRecording:
         verdicts, judged = self._verdicts, self._judged
-        table = ""
-        if self._settings.text:
-            table = recording_table.as_text(verdicts, judged.tally, self._settings.width)
+        text = ""
+        if self._settings.layout is not None:
+            answer = RecordingAnswer(verdicts, judged.tally, judged.shown, self._settings.layout)
+            text = answer.as_text()
         findings = None
         if self._findings is not None:
             findings = replace(self._findings.whole(), rows=tuple(judged.rows))
@@ -275,7 +309,7 @@ class _RecordingJudge:
             self._file,
             verdicts.recording.name,
             judged.tally,
-            table,
+            text,
             explained=tuple(judged.blocks),
             findings=findings,
         )
@@ -297,13 +331,13 @@ class _RecordingJudge:
             explain(violation, trace_for(violation, drive, rules), rules, drive.decided_by)
             for violation in chosen
         ]
-        if self._settings.text:
+        if self._settings.layout is not None:
             details = verdict_report.as_text(
                 verdict,
                 rules,
                 explained,
                 every_part=self._settings.every_part,
-                width=self._settings.width,
+                width=self._settings.layout.width,
                 doubts=False,
                 whom=[whom_of(explanation, drive) for explanation in explained],
                 times=StateTimes(drive.start_s, drive.arrays.step_s),
@@ -333,9 +367,10 @@ def _findings(verdicts: RecordingVerdicts, file: str) -> DriveFindings:
     return DriveFindings(verdicts, file)
 
 
-def in_a_line(judged: JudgedRecording) -> str:
-    """One of many recordings in a line: drives by outcome, and per violated rule."""
+def in_short(judged: JudgedRecording, width: int) -> str:
+    """One of many recordings: drives by outcome, and per violated rule."""
     where = f"{judged.file}: {judged.name}" if judged.name not in judged.file else judged.file
-    counts = recording_table.summary(judged.tally)
+    counts = summary(judged.tally)
     violated = ", ".join(f"{rule} {len(drives)}" for rule, drives in judged.tally.first_s.items())
-    return visible(f"{where}: {counts}" + (f" ({violated})" if violated else ""))
+    text = visible(f"{where}: {counts}" + (f" ({violated})" if violated else ""))
+    return "\n".join(broken(text, width, later="  ", at_hyphens=False))

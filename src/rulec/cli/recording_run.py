@@ -14,7 +14,7 @@ from rulec.batch.recording_judge import (
     JudgedRecording,
     JudgeSettings,
     Piece,
-    in_a_line,
+    in_short,
     judge_with_progress,
 )
 from rulec.cli.options.standard_input import copied
@@ -23,9 +23,8 @@ from rulec.cli.verdict_outputs import VerdictOutputs
 from rulec.diagnostics import RulecError
 from rulec.recordings.recording_inputs import STANDARD_INPUT
 from rulec.report.findings.diagnostics_text import Complaints
-from rulec.report.text.console import progress
+from rulec.report.text.console import page_width, progress
 from rulec.report.verdicts.batch_table import BatchTally, as_text
-from rulec.report.verdicts.recording_table import summary
 
 
 @dataclass
@@ -51,7 +50,7 @@ class RecordingRun:
             for file, piece in self._aloud(files, jobs):
                 self._take(labels.get(file, file), piece, several=several)
         if several or self.total.judged_recordings > 1:
-            self.to.text(f"\n{as_text(self.total, self.settings.rules, self.unread)}")
+            self.to.text(f"\n{as_text(self.total, self.settings.rules, self.unread, page_width())}")
 
     def not_read(self, error: RulecError, file: str = "") -> None:
         """Record that a file, by default the one that the error is about, could not be read."""
@@ -107,9 +106,8 @@ class RecordingRun:
             self.complete &= bool(piece.tally.judged)
             self.open_hard |= bool(piece.tally.open_hard)
             if self.to.wants_text:
-                first = in_a_line(piece) if several else piece.table
-                last = [] if several else [summary(piece.tally)]
-                self.to.text("\n".join([first, *piece.explained, *last]))
+                first = in_short(piece, page_width()) if several else piece.answer
+                self.to.text("\n".join([first, *piece.explained]))
             if piece.findings is not None:
                 self.to.add(piece.findings)
         else:

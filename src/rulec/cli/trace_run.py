@@ -95,7 +95,7 @@ class TraceRun:
                 drives = self.total.judged - traces_before
                 self.to.add(RecordingFindings(file, "", drives, tuple(findings), tuple(rows)))
         if self.total.judged or self.opened:
-            self.to.text(verdict_report.summary(self.total.counts, self.total.not_judged))
+            self.to.text(verdict_report.summary(self.total.outcomes, self.total.not_judged))
         if self.pending and assumed.ends is None:
             print_remark(_GOES_ON)
 

@@ -19,7 +19,14 @@ from rulec.monitoring.batch.rounded_verify import judge_rounded
 from rulec.monitoring.batch.verify_arrays import answer_to
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
-from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed_by_type, with_law
+from rulec.monitoring.verdict import (
+    NotJudged,
+    Verdict,
+    VerdictOutcome,
+    Violation,
+    agreed_by_type,
+    with_law,
+)
 from rulec.monitoring.verify import without
 from rulec.recordings.recording import Recording
 from rulec.trace.trace_arrays import TraceArrays
@@ -156,6 +163,11 @@ class RecordingVerdicts(Rows):
             rule: tuple([name for name in have if name in names]) for rule, names in missing.items()
         }
 
+    def defaulted(self, words: frozenset[str]) -> list[str]:
+        """The names of ``by_default``, of all rules together."""
+        missing = {name for names in self.by_default(words).values() for name in names}
+        return [name for name in self.rules.vocabulary.declarations if name in missing]
+
     def rows(self) -> list[dict[str, Any]]:
         """One row per drive; ``why`` says why a drive has no verdict."""
         return [_row(answer) for answer in self.answers()]
@@ -274,6 +286,7 @@ def _row(answer: DriveVerdict | NoDrive) -> dict[str, Any]:
 class ViolationTally:
     """Verdicts, counted drive by drive.
 
+    ``drives``: outcome -> the drives with it.
     ``first_s``: rule -> drive -> time of its first violation (s of the recording). ``open_rules``
     are open in some drive; ``open_on`` has all names on which open rules depend. ``untold``: rule
     -> the missing names because of which it is not judged in some drive; ``reasons``: rule ->
@@ -283,9 +296,7 @@ class ViolationTally:
     every drive supplies. ``faults`` of rulec cost rules in some drives, or drives.
     """
 
-    satisfied: list[str] = field(default_factory=list)
-    violated: list[str] = field(default_factory=list)
-    doubtful: list[str] = field(default_factory=list)
+    drives: dict[VerdictOutcome, list[str]] = field(default_factory=dict)
     not_judged: list[NoDrive] = field(default_factory=list)
     first_s: dict[str, dict[str, float]] = field(default_factory=dict)
     open_rules: dict[str, None] = field(default_factory=dict)
@@ -301,13 +312,12 @@ class ViolationTally:
     @property
     def judged(self) -> int:
         """The number of drives that have a verdict."""
-        return len(self.satisfied) + len(self.violated) + len(self.doubtful)
+        return sum(map(len, self.drives.values()))
 
     def include(self, later: ViolationTally) -> None:
         """Add the counts of later drives."""
-        self.satisfied += later.satisfied
-        self.violated += later.violated
-        self.doubtful += later.doubtful
+        for outcome, drives in later.drives.items():
+            self.drives.setdefault(outcome, []).extend(drives)
         self.not_judged += later.not_judged
         for rule, times in later.first_s.items():
             self.first_s.setdefault(rule, {}).update(times)
@@ -318,8 +328,8 @@ class ViolationTally:
         self.reasons.update(later.reasons)
         for rule, causes in later.causes.items():
             about = self.causes.setdefault(rule, {})
-            for objects, drives in causes.items():
-                about.setdefault(objects, []).extend(drives)
+            for objects, members in causes.items():
+                about.setdefault(objects, []).extend(members)
         self.judged_in.update(later.judged_in)
         self.open_hard += later.open_hard
         self.faults.update(later.faults)
@@ -337,8 +347,7 @@ class ViolationTally:
             return
         self.words = drive.words if self.words is None else self.words & drive.words
         self.faults.update({fault.diagnostics[0].message: None for fault in answer.faults})
-        by_outcome = {True: self.satisfied, False: self.violated, None: self.doubtful}
-        by_outcome[answer.satisfied].append(drive.arrays.id)
+        self.drives.setdefault(answer.outcome, []).append(drive.arrays.id)
         for violation in answer.violations:
             times = self.first_s.setdefault(violation.rule, {})
             at = drive.time_s(violation.step)

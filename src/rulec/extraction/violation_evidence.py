@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -40,6 +41,13 @@ class ViolationEvidence:
     margins: tuple[Margin, ...]
     place: Place | None
     whom: tuple[str, ...] = ()
+
+    @property
+    def rests_on(self) -> Literal["measured", "assumed", "default"]:
+        """The weakest ground of the violation."""
+        if self.assumed:
+            return "assumed"
+        return "default" if self.by_default else "measured"
 
 
 def evidence_of(

@@ -119,6 +119,12 @@ class OpenVerdict:
         return dict(self.__dict__)
 
 
+VerdictOutcome: TypeAlias = Literal[
+    "satisfied", "violated", "only soft rules", "open", "nothing found"
+]
+"""The outcome of a verdict as a whole: see ``Verdict.outcome``."""
+
+
 @dataclass(frozen=True, slots=True)
 class RuleNotJudged:
     """A rule that no trace from this source can be known to violate, for lack of ``untold``.
@@ -161,6 +167,19 @@ class Verdict(Rows):
             return False
         doubtful: tuple[OpenVerdict | RuleNotJudged, ...] = (*self.open, *self.not_judged)
         return None if any(rule.strength == "hard" for rule in doubtful) else True
+
+    @property
+    def outcome(self) -> VerdictOutcome:
+        """What ``satisfied`` says; without an answer, what was found instead.
+
+        That is a violation of soft rules only, an open hard rule, or nothing in the rules that
+        could be judged.
+        """
+        if self.satisfied is not None:
+            return "satisfied" if self.satisfied else "violated"
+        if self.violations:
+            return "only soft rules"
+        return "open" if any(rule.strength == "hard" for rule in self.open) else "nothing found"
 
     def rows(self) -> list[dict[str, Any]]:
         """One row per violation."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -52,13 +53,18 @@ _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
 @shared.number_option(
     "--explain",
     "n_explained",
-    "Explain the first N violations of each file state by state.  [default: 1 for a single file, "
-    "0 with --json]",
+    "Explain the first N violations of each file state by state.  [default: 1 for a single file of "
+    "traces, 0 with --json]",
 )
 @click.option(
     "--every-part",
     is_flag=True,
     help="Show every part of the formula and every state in explanations, however large the table.",
+)
+@click.option(
+    "--why",
+    is_flag=True,
+    help="Say which rules are open or not judged, and which words are missing for them.",
 )
 @click.option(
     "--strict",
@@ -94,6 +100,7 @@ def command(
     patterns: tuple[str, ...],
     n_explained: int | None,
     every_part: bool,
+    why: bool,
     strict: bool,
     ends: Ending | None,
     step_s: Fraction | None,
@@ -137,7 +144,8 @@ def command(
     form = scenario_options.trace_format(options)
     recordings = _recordings(inputs, form, named=options["input_format"] is not None)
     is_json_alone = to == (Output(STANDARD_OUTPUT, "json"),)
-    usual = 0 if is_json_alone or len(inputs.paths) > 1 or len(books) > 1 else 1
+    is_small = len(inputs.paths) == len(books) == 1 and not recordings
+    usual = 1 if is_small and not is_json_alone else 0
     request = VerifyRequest(
         inputs=inputs,
         recordings=recordings,
@@ -150,6 +158,7 @@ def command(
         jobs=jobs,
         n_explained=usual if n_explained is None else n_explained,
         every_part=every_part,
+        why=why,
         strict=strict,
     )
     _check_inputs(request)
@@ -163,21 +172,23 @@ def command(
     with verdict_outputs(to, books[0], with_rows=exposure) as outputs:
         complaints = Complaints()
         results = []
-        for rules, rows_of in zip(books, own, strict=True):
+        for rules, rows_of, reference in zip(books, own, references, strict=True):
             if rules.law or len(books) > 1:
                 # Late import, only where it is said: verdicts, and the hash of rulebooks (30 ms).
                 from rulec.report.verdicts.verdict_report import headline
 
-                outputs.heading(f"{'' if rules is books[0] else chr(10)}{headline(rules)}")
+                outputs.heading(
+                    f"{'' if rules is books[0] else chr(10)}{headline(rules, page_width())}"
+                )
             if exposure:
                 outputs.to_rows = _to_rows(rows_of, rules.name, egos, options, ends)
-            results.append(_judge(request, rules, outputs, complaints))
+            results.append(_judge(request, rules, outputs, complaints, reference))
         if len(books) > 1:
             # Late import, only if there are recordings: verdicts and recordings.
             from rulec.report.verdicts import side_by_side
 
             tallies = [(rules, result.total) for rules, result in zip(books, results, strict=True)]
-            outputs.text(f"\n{side_by_side.as_text(tallies)}")
+            outputs.text(f"\n{side_by_side.as_text(tallies, page_width())}")
     complaints.close()
     return ExitStatus.after(
         answered=all(result.judged and result.complete for result in results),
@@ -210,6 +221,7 @@ class VerifyRequest:
     jobs: Jobs
     n_explained: int
     every_part: bool
+    why: bool
     strict: bool
 
 
@@ -264,14 +276,15 @@ def _judge(
     rules: CompiledRulebook,
     outputs: VerdictOutputs,
     complaints: Complaints,
+    reference: str,
 ) -> VerifyResult:
-    """Judge all files by one rulebook."""
+    """Judge all files by one rulebook, which ``reference`` names."""
     # Late import, not for --help: formats of recordings (80 ms).
     from rulec.report.verdicts.batch_table import BatchTally
 
     result = VerifyResult(BatchTally())
     if request.recordings or request.inputs.problems:
-        recorded = _judge_recordings(request, rules, outputs, complaints)
+        recorded = _judge_recordings(request, rules, outputs, complaints, reference)
         _include(result, recorded, strict=request.strict)
         result.complete &= recorded.complete
     if request.traces:
@@ -286,20 +299,22 @@ def _judge_recordings(
     rules: CompiledRulebook,
     outputs: VerdictOutputs,
     complaints: Complaints,
+    reference: str,
 ) -> RecordingRun:
     # Late import, only for recordings: NumPy and shapely (250 ms).
     from rulec.batch.recording_judge import JudgeSettings
     from rulec.cli.recording_run import RecordingRun
+    from rulec.report.verdicts.recording_answer import AnswerLayout
 
     to_rows = outputs.to_rows
+    source = shlex.join([*request.recordings, "-r", reference])
     settings = JudgeSettings(
         rules,
         scenario_options.requested_drives(request.egos, request.options, rules.vocabulary),
         scenario_options.recording_source("-", dict(request.options)),
         to_explain=request.n_explained,
         every_part=request.every_part,
-        width=page_width(),
-        text=outputs.wants_text,
+        layout=AnswerLayout(page_width(), request.why, source) if outputs.wants_text else None,
         lines=outputs.wants_lines,
         findings=outputs.wants_findings,
         to_rows=None if to_rows is None else to_rows.of_answer,
@@ -332,7 +347,7 @@ def _judge_traces(
 
 
 def _include(result: VerifyResult, run: RecordingRun | TraceRun, *, strict: bool) -> None:
-    result.violated |= bool(run.total.violated) or (strict and run.open_hard)
+    result.violated |= bool(run.total.outcomes["violated"]) or (strict and run.open_hard)
     result.judged |= run.judged
     result.total.include(run.total)
 

@@ -26,12 +26,10 @@ def compared(runs: Sequence[tuple[CompiledRulebook, FleetRun]]) -> str:
 
 def _verdicts(tally: FleetTally) -> BatchTally:
     """The tally as a tally of verdicts, without recordings."""
-    verdicts = BatchTally(
-        satisfied=tally.drives["kept"],
-        violated=tally.drives["violated"],
-        doubtful=tally.drives["open"],
-        not_judged=tally.drives["not_judged"],
-    )
+    verdicts = BatchTally(not_judged=tally.drives["not_judged"])
+    verdicts.outcomes["satisfied"] = tally.drives["kept"]
+    verdicts.outcomes["violated"] = tally.drives["violated"]
+    verdicts.outcomes["open"] = tally.drives["open"]
     for (rule, outcome), number in tally.rules.items():
         if outcome != "not_judged":
             verdicts.judged_in[rule] += number

@@ -15,7 +15,7 @@ from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.report.maneuvers import maneuver_blocks
-from rulec.report.text.terminal_text import mirrored_line, shown_count, styled, visible
+from rulec.report.text.terminal_text import mirrored, shown_count, styled, visible
 from rulec.scenario import Account, Scenario
 
 if TYPE_CHECKING:
@@ -212,7 +212,7 @@ def _scene(maneuvers: Maneuvers) -> Iterator[str]:
     kept = account.recorded - account.left_out
     out = f", {account.left_out} left out: not on this road" if account.left_out else ""
     if account.mirrored:
-        yield mirrored_line(maneuvers.rules.traffic)
+        yield f"mirrored    {mirrored(maneuvers.rules.traffic)}"
     yield f"obstacles   {kept} on the road of lanelet {account.reference}{out}"
     if float(len(maneuvers.graph.layers) * maneuvers.graph.step) > account.until_s:
         yield (

@@ -249,10 +249,7 @@ def counted(number: int, noun: str, several: str = "") -> str:
     return f"{number:,} {noun if number == 1 else several or f'{noun}s'}"
 
 
-def mirrored_line(side: str) -> str:
-    """The line of a report about a mirror image, whose traffic keeps to this side."""
+def mirrored(side: str) -> str:
+    """What a report says of a mirror image, whose traffic keeps to this side."""
     before = "right" if side == "left" else "left"
-    return (
-        f"mirrored    recorded where traffic keeps to the {before}, "
-        f"judged as if it kept to the {side}"
-    )
+    return f"recorded where traffic keeps to the {before}, judged as if it kept to the {side}"

@@ -18,6 +18,7 @@ from rulec.report.verdict_findings.verdict_finding import (
     VerdictFinding,
     left_open,
     measured,
+    named_law,
     named_rule,
     not_judged,
 )
@@ -72,7 +73,8 @@ class DriveFindings:
         self.gathered.judged += 1
         for number, violation in enumerate(answer.violations):
             explanation = explained[number] if number < len(explained) else None
-            self.gathered.findings.append(self._violated(violation, drive, explanation))
+            found = violated(violation, drive, self.verdicts, explanation, self.file)
+            self.gathered.findings.append(found)
         rules = {rule.name: rule for rule in self.verdicts.rules.rules}
         for result_ in answer.open:
             finding = VerdictFinding(
@@ -111,31 +113,38 @@ class DriveFindings:
 
     def _own(self, **fields: Any) -> dict[str, Any]:
         where = {"file": self.file, "recording": self.verdicts.recording.name}
-        return {**where, "rulebook": self.verdicts.rules.name, **fields}
+        return {**where, **named_law(self.verdicts.rules), **fields}
 
     def _about(self, rule: CompiledRule) -> dict[str, Any]:
         return self._own(**named_rule(rule))
 
-    def _violated(
-        self, violation: Violation, drive: Drive, explanation: Explanation | None
-    ) -> VerdictFinding:
-        verdicts = self.verdicts
-        evidence = evidence_of(
-            violation, drive, verdicts.rules, verdicts.request.assumed, explanation
-        )
-        place = {} if evidence.place is None else evidence.place._asdict()
-        rules = {rule.name: rule for rule in verdicts.rules.rules}
-        return VerdictFinding(
-            outcome="violated",
-            vehicle=drive.arrays.id,
-            other=(*violation.binding.values(), *evidence.whom),
-            from_s=evidence.from_s,
-            to_s=evidence.to_s,
-            at_s=evidence.at_s,
-            **measured(evidence.margins),
-            **place,
-            **self._about(rules[violation.rule]),
-        )
+
+def violated(
+    violation: Violation,
+    drive: Drive,
+    verdicts: RecordingVerdicts,
+    explanation: Explanation | None,
+    file: str = "",
+) -> VerdictFinding:
+    """The finding of a violation in a drive; ``explanation`` explains it, if already made."""
+    evidence = evidence_of(violation, drive, verdicts.rules, verdicts.request.assumed, explanation)
+    place = {} if evidence.place is None else evidence.place._asdict()
+    rules = {rule.name: rule for rule in verdicts.rules.rules}
+    return VerdictFinding(
+        file=file,
+        recording=verdicts.recording.name,
+        outcome="violated",
+        vehicle=drive.arrays.id,
+        other=(*violation.binding.values(), *evidence.whom),
+        from_s=evidence.from_s,
+        to_s=evidence.to_s,
+        at_s=evidence.at_s,
+        rests_on=evidence.rests_on,
+        **measured(evidence.margins),
+        **place,
+        **named_law(verdicts.rules),
+        **named_rule(rules[violation.rule]),
+    )
 
 
 def not_judged_file(file: str, error: RulecError, rulebook: str) -> RecordingFindings:

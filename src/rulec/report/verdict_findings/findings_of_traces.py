@@ -6,12 +6,14 @@ from collections.abc import Iterator
 from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.logic.free_names import names_in
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.report.verdict_findings.verdict_finding import (
     VerdictFinding,
     left_open,
     measured,
+    named_law,
     named_rule,
     not_judged,
 )
@@ -27,12 +29,14 @@ def trace_findings(
 ) -> Iterator[VerdictFinding]:
     """The findings of a trace; ``explained`` are explanations of its first violations."""
     rules = {rule.name: rule for rule in rulebook.rules}
+    law = named_law(rulebook)
 
     def about(rule: CompiledRule) -> dict[str, Any]:
-        own = {"file": file, "vehicle": answer.trace, "rulebook": rulebook.name}
-        return {**own, **named_rule(rule)}
+        return {"file": file, "vehicle": answer.trace, **law, **named_rule(rule)}
 
+    presumed = {*answer.presumed}
     for number, violation in enumerate(answer.violations):
+        read = names_in(rules[violation.rule].formula)
         explanation = (
             explained[number]
             if number < len(explained)
@@ -45,6 +49,7 @@ def trace_findings(
             from_s=_time_s(trace, first),
             to_s=_time_s(trace, last),
             at_s=_time_s(trace, explanation.decisive),
+            rests_on="default" if presumed.intersection(read) else "measured",
             **measured(explanation.margins()),
             **about(rules[violation.rule]),
         )

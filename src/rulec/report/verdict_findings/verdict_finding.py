@@ -10,6 +10,7 @@ import msgspec
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.monitoring.explain.margins import Margin
+from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged
 from rulec.report.json_document import JsonDocument, as_line, filled
 from rulec.rulebook.rulebook_model import cited_law
@@ -23,15 +24,18 @@ Outcome = Literal["violated", "open", "not_judged"]
 class VerdictFinding:
     """A rule that a vehicle violates, whose outcome is open, or that could not be judged.
 
-    ``file`` and ``recording`` name the source; for traces ``recording`` is empty. ``vehicle`` is
-    the drive or trace, empty for all of them; ``other`` are the objects that the rule is about. A
-    violation lasts ``from_s`` to ``to_s`` (s of the recording); an open one would be somewhere in
-    between. It is decided ``at_s``: from then on the rule cannot be kept. ``measure`` is the
-    comparison that decides most narrowly, ``by`` the difference in ``unit``. ``open_on`` are the
+    ``file`` and ``recording`` name the source; for traces ``recording`` is empty. ``rulebook`` with
+    this ``rulebook_hash`` has the text of ``law`` of the day ``as_of``. Without a ``rule``, the
+    file was not judged; ``sentence`` says what it demands. ``vehicle`` is the drive or trace, empty
+    for all of them; ``other`` are the objects that the rule is about. A violation lasts ``from_s``
+    to ``to_s`` (s of the recording); an open one would be somewhere in between. It is decided
+    ``at_s``: from then on the rule cannot be kept. ``measure`` is the comparison that decides most
+    narrowly, of ``value`` with ``limit``; ``by`` is the difference in ``unit``, ``by_at_least``
+    what of it is certain. A violation holds whatever is unknown; ``rests_on`` what was
+    ``measured`` alone, or also on what the user ``assumed`` or a ``default``. ``open_on`` are the
     unknown names on which an outcome depends, ``because`` is the reason. ``x``, ``y`` (m) and
-    ``lanelet`` are the vehicle's position ``at_s``. Without a rule, the file was not judged.
-    ``inherited_from`` is the rulebook that the rule comes from, if its own rulebook has not
-    confirmed it as its law; otherwise empty.
+    ``lanelet`` are the vehicle's position ``at_s``. ``inherited_from`` is the rulebook that the
+    rule comes from, if its own rulebook has not confirmed it as its law; otherwise empty.
     """
 
     __repr__ = short_repr
@@ -39,8 +43,12 @@ class VerdictFinding:
     file: str
     recording: str = ""
     rulebook: str = ""
+    rulebook_hash: str = ""
+    law: str = ""
+    as_of: str = ""
     rule: str = ""
     provision: str = ""
+    sentence: str = ""
     inherited_from: str = ""
     strength: Literal["hard", "soft", ""] = ""
     outcome: Outcome
@@ -49,14 +57,33 @@ class VerdictFinding:
     from_s: float | None = None
     to_s: float | None = None
     at_s: float | None = None
+    value: float | None = None
+    limit: float | None = None
     by: float | None = None
+    by_at_least: float | None = None
     unit: str = ""
     measure: str = ""
+    rests_on: Literal["measured", "assumed", "default", ""] = ""
     open_on: tuple[str, ...] = ()
     because: str = ""
     x: float | None = None
     y: float | None = None
     lanelet: str = ""
+
+    @property
+    def when(self) -> str:
+        """When a violation lasts, such as ``1.3-4 s``; empty if it has no times."""
+        if self.from_s is None:
+            return ""
+        ends = self.to_s not in (None, self.from_s)
+        return f"{self.from_s:g}-{self.to_s:g} s" if ends else f"{self.from_s:g} s"
+
+    @property
+    def in_short(self) -> str:
+        """Towards whom it is violated, and by how much, as far as there is something to say."""
+        others = [name for name in self.other if f"({name})" not in self.measure]
+        about = f"towards {', '.join(others)}" if others else ""
+        return ": ".join(filter(None, (about, self.measure)))
 
     @property
     def says(self) -> str:
@@ -77,11 +104,23 @@ class VerdictFinding:
         return f"{title} is not judged for {vehicle}{on}{why}"
 
 
+def named_law(rules: CompiledRulebook) -> dict[str, Any]:
+    """The columns of a finding that identify its rulebook and the text of the law."""
+    edition = edition_of(rules)
+    return {
+        "rulebook": rules.name,
+        "rulebook_hash": edition.rulebook_hash,
+        "law": edition.law,
+        "as_of": edition.as_of,
+    }
+
+
 def named_rule(rule: CompiledRule) -> dict[str, Any]:
     """The columns of a finding that identify its rule and the law that it comes from."""
     return {
         "rule": rule.name,
         "provision": rule.cite,
+        "sentence": rule.says,
         "inherited_from": rule.inherited_from,
         "strength": rule.strength,
     }
@@ -95,7 +134,15 @@ def measured(margins: Iterable[Margin]) -> dict[str, Any]:
     # Metres and km/h compare only as shares of what is compared.
     are_alike = len({margin.unit for margin in every}) == 1
     margin = min(every, key=lambda margin: margin.by if are_alike else margin.share)
-    return {"by": margin.rounded().by, "unit": margin.unit, "measure": str(margin)}
+    rounded = margin.rounded()
+    return {
+        "value": None if margin.value_bounds else rounded.value,
+        "limit": None if margin.limit_bounds else rounded.limit,
+        "by": rounded.by,
+        "by_at_least": rounded.at_least,
+        "unit": margin.unit,
+        "measure": str(margin),
+    }
 
 
 def left_open(result: OpenVerdict) -> dict[str, Any]:

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.monitoring.verdict import Verdict
-from rulec.report.text.terminal_text import counted, table_lines, visible
+from rulec.monitoring.verdict import Verdict, VerdictOutcome
+from rulec.report.text.console import PAGE_WIDTH
+from rulec.report.text.terminal_text import broken, counted, cut, table_lines, visible
 from rulec.report.verdicts import verdict_report
 
 if TYPE_CHECKING:
@@ -21,12 +22,10 @@ class BatchTally:
     """Verdicts on recordings, summed up per rule.
 
     ``drives`` and ``recordings``: rule -> the number of them in which it is violated; ``first``:
-    rule -> file, drive and time (s) of its first violation. ``satisfied`` etc. count drives.
+    rule -> file, drive and time (s) of its first violation. ``outcomes`` counts drives.
     """
 
-    satisfied: int = 0
-    violated: int = 0
-    doubtful: int = 0
+    outcomes: Counter[VerdictOutcome] = field(default_factory=Counter)
     not_judged: int = 0
     judged_recordings: int = 0
     drives: Counter[str] = field(default_factory=Counter)
@@ -38,9 +37,7 @@ class BatchTally:
     def add(self, file: str, tally: ViolationTally) -> None:
         """Add a recording."""
         self.judged_recordings += 1
-        self.satisfied += len(tally.satisfied)
-        self.violated += len(tally.violated)
-        self.doubtful += len(tally.doubtful)
+        self.outcomes.update({outcome: len(drives) for outcome, drives in tally.drives.items()})
         self.not_judged += len(tally.not_judged)
         self.judged_in.update(tally.judged_in)
         self.open_in.update(dict.fromkeys(tally.open_rules, 1))
@@ -52,10 +49,7 @@ class BatchTally:
 
     def add_trace(self, verdict: Verdict, rules: Collection[str]) -> None:
         """Add the verdict on a trace by these rules."""
-        satisfied = verdict.satisfied
-        self.satisfied += satisfied is True
-        self.violated += satisfied is False
-        self.doubtful += satisfied is None
+        self.outcomes[verdict.outcome] += 1
         if verdict.violations:
             self.drives.update({violation.rule for violation in verdict.violations})
         if verdict.open or verdict.not_judged:
@@ -66,12 +60,9 @@ class BatchTally:
 
     def include(self, other: BatchTally) -> None:
         """Add another tally by the same rulebook; ``first`` and ``recordings`` stay as they are."""
-        self.satisfied += other.satisfied
-        self.violated += other.violated
-        self.doubtful += other.doubtful
         self.not_judged += other.not_judged
-        for rules in ("drives", "open_in", "judged_in"):
-            getattr(self, rules).update(getattr(other, rules))
+        for counts in ("outcomes", "drives", "open_in", "judged_in"):
+            getattr(self, counts).update(getattr(other, counts))
 
     @property
     def with_verdict(self) -> set[str]:
@@ -79,39 +70,40 @@ class BatchTally:
         return {*+self.judged_in, *+self.drives}
 
     @property
-    def counts(self) -> dict[bool | None, int]:
-        """The number of drives satisfied (True), violated (False) and open (None)."""
-        return {True: self.satisfied, False: self.violated, None: self.doubtful}
-
-    @property
     def judged(self) -> int:
         """The number of drives that have a verdict."""
-        return self.satisfied + self.violated + self.doubtful
+        return self.outcomes.total()
 
 
-def as_text(total: BatchTally, rules: CompiledRulebook, unread: Sequence[str]) -> str:
+def as_text(
+    total: BatchTally, rules: CompiledRulebook, unread: Sequence[str], width: int = PAGE_WIDTH
+) -> str:
     """A table of the violations in all recordings, and the summary line of the run."""
     recordings = counted(total.judged_recordings, "recording")
     lines = [f"altogether  {recordings} with {counted(total.judged, 'drive')}"]
     if unread:
         lines.append(f"not read    {counted(len(unread), 'file')}, as said above")
-    lines.append(f"rules       {_rules(total, rules)}")
-    rows = [
-        (
-            verdict_report.short_title(rule),
-            rule.strength,
-            f"{total.drives[rule.name]:,}/{total.judged:,}",
-            f"{total.recordings[rule.name]:,}/{total.judged_recordings:,}",
-            _first(total.first[rule.name]),
-        )
-        for rule in rules.rules
-        if rule.name in total.drives
-    ]
-    if rows:
-        head = ("violated", "", " drives", " recordings", "first")
-        lines += ["", *table_lines([head, *rows], right=(2, 3))]
-    lines.append(verdict_report.summary(total.counts, total.not_judged, "drive"))
-    return "\n".join(visible(line) for line in lines)
+    lines += broken(f"rules       {_rules(total, rules)}", width, later=" " * 12)
+    violated = [rule for rule in rules.rules if rule.name in total.drives]
+    if violated:
+        rows = [("violated", "", " drives", " recordings")]
+        rows += [
+            (
+                verdict_report.short_title(rule),
+                rule.strength,
+                f"{total.drives[rule.name]:,}/{total.judged:,}",
+                f"{total.recordings[rule.name]:,}/{total.judged_recordings:,}",
+            )
+            for rule in violated
+        ]
+        head, *table = table_lines(rows, right=(2, 3))
+        lines += ["", cut(visible(head), width)]
+        for rule, line in zip(violated, table, strict=True):
+            first = visible(_first(total.first[rule.name]))
+            lines.append(cut(visible(line), width))
+            lines += broken(f"first: {first}", width, "  ", "    ", at_hyphens=False)
+    lines.append(verdict_report.summary(total.outcomes, total.not_judged, "drive"))
+    return "\n".join(lines)
 
 
 def _rules(total: BatchTally, rules: CompiledRulebook) -> str:

@@ -18,7 +18,6 @@ from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.verdict import NotJudged
 from rulec.report.json_document import JsonDocument, as_line, filled
 from rulec.report.verdicts import verdict_json
-from rulec.report.verdicts.recording_table import defaulted_names
 
 
 class RecordedVerdict(verdict_json.TraceVerdict, frozen=True, kw_only=True):
@@ -97,7 +96,7 @@ def as_json(
     recorded |= {
         "start_s": drive.start_s,
         "step_s": drive.arrays.step_s,
-        "by_default": defaulted_names(verdicts, drive.words),
+        "by_default": verdicts.defaulted(drive.words),
     }
     if isinstance(answer, NotJudged):
         error = verdict_json.error_data(answer.error)

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from rulec.logic.bounds import BOOLEAN, operations_of
 from rulec.logic.formula import Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.monitoring.explain.explained_parts import Part
+from rulec.report.text.terminal_text import cut
 
 MOST_PARTS = 20
 """Of a formula with more parts, only those that decide are shown."""
@@ -31,8 +32,8 @@ def titled(parts: Sequence[Part], widest: int) -> list[Titled]:
 def folded(parts: Sequence[Part], widest: int) -> list[Titled]:
     """The parts that decide, with their texts cut to a number of characters.
 
-    The operands of a part about a single state are omitted unless its text is cut, because the
-    facts show them. The operands of nested `and`, or of nested `or`, are on one level.
+    The operands of a part about a single state are omitted, because the facts show them. The
+    operands of nested `and`, or of nested `or`, are on one level.
     """
     return list(_folded(parts, 0, 0, widest))
 
@@ -42,15 +43,10 @@ def _folded(parts: Sequence[Part], at: int, depth: int, widest: int) -> Iterator
     text = cut(part.text, max(widest - 2 * depth, LEAST))
     yield "  " * depth + text, part
     now = all(operation.operator in BOOLEAN for operation in operations_of(part.formula))
-    if now and text == part.text:
+    if now:
         return
     for operand in _operands(parts, at):
         yield from _folded(parts, operand, depth + 1, widest)
-
-
-def cut(text: str, widest: int) -> str:
-    """A text, cut to a number of characters."""
-    return text if len(text) <= widest else f"{text[: widest - 1]}…"
 
 
 def _operands(parts: Sequence[Part], at: int) -> Iterator[int]:
@@ -80,21 +76,20 @@ def fitting(
 ) -> list[range]:
     """Columns that fit into the available width, each as a range of states.
 
-    If not all fit, adjacent equal columns are merged. If that is not enough, the first column, the
-    decisive one and the one before it are kept, and as many as fit of: the column before these, the
-    one after them, and those further back.
+    If not all fit, adjacent equal columns are merged. If that is not enough, the decisive one is
+    kept, and as many as fit of: the one before it, the first one, the one further back, the one
+    after the decisive one, and those further back still.
     """
     places = [range(n, n + 1) for n in range(len(columns))]
     if sum(width(columns, states, place) for place in places) <= columns_left:
         return places
     places = _merged(columns, states, decisive)
     at = next(n for n, place in enumerate(places) if decisive in place)
-    needed = [state for state in (0, at, at - 1) if state >= 0]
     chosen: list[int] = []
-    for state in dict.fromkeys([*needed, at - 2, at + 1, *range(at - 3, 0, -1)]):
+    for state in dict.fromkeys([at, at - 1, 0, at - 2, at + 1, *range(at - 3, 0, -1)]):
         if 0 <= state < len(places):
             columns_left -= width(columns, states, places[state])
-            if columns_left < 0 and state not in needed:
+            if columns_left < 0 and chosen:
                 break
             chosen.append(state)
     return [places[number] for number in sorted(chosen)]

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterator, Mapping, Sequence, Set
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, TooLargeRule
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.rulebook_edition import edition_of
-from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
+from rulec.monitoring.verdict import OpenVerdict, Verdict, VerdictOutcome, Violation
 from rulec.report.text.console import PAGE_WIDTH
-from rulec.report.text.terminal_text import counted, styled, visible
+from rulec.report.text.terminal_text import broken, counted, styled, visible
 from rulec.report.verdicts.outcome_cases import fewest_cases
 from rulec.report.verdicts.state_times import NUMBERS_ALONE, StateTimes
 from rulec.rulebook.rulebook_model import cited_law
@@ -44,9 +44,10 @@ def as_text(
     them, where their rules name no objects. ``times`` are the times of the states.
     """
     doubtful = [*_open_lines(verdict, rulebook), *_not_judged_lines(verdict)] if doubts else []
+    doubtful = [line for text in doubtful for line in _wrapped(text, width)]
     if not verdict.violations and not doubtful:
         return f"{visible(verdict.trace)}: {styled('satisfied', 'green')}"
-    word, style = _WORDS[verdict.satisfied]
+    word, style = _WORDS[verdict.outcome]
     word = styled(word, style)
     rules = {rule.name: rule for rule in rulebook.rules}
     lines = [f"{visible(verdict.trace)}: {word}"]
@@ -55,7 +56,7 @@ def as_text(
     for number, violation in enumerate(shown):
         line = in_a_line(violation, rules[violation.rule], rulebook.name, times)
         because = ", ".join(whom[number]) if number < len(whom) else ""
-        lines.append(visible(f"  {line}, because of {because}" if because else f"  {line}"))
+        lines += _wrapped(f"{line}, because of {because}" if because else line, width)
         if number < len(explained):
             # Explanations, 20 ms: only where there are some.
             from rulec.report.verdicts import violation_table
@@ -67,15 +68,27 @@ def as_text(
             )
             lines.append(violation_table.as_text(explained[number], options))
     if len(verdict.violations) > len(shown):
-        lines.append(f"  and {len(verdict.violations) - len(shown):,} more; --json has them all")
+        text = f"and {len(verdict.violations) - len(shown):,} more; --json has them all"
+        lines += _wrapped(text, width)
     return "\n".join([*lines, *doubtful])
 
 
-_WORDS: dict[bool | None, tuple[str, str]] = {
-    True: ("satisfied, but for soft rules", "yellow"),
-    False: ("violated", "red"),
-    None: ("open", "yellow"),
+_WORDS: Mapping[VerdictOutcome, tuple[str, str]] = {
+    "satisfied": ("satisfied, but for soft rules", "yellow"),
+    "violated": ("violated", "red"),
+    "only soft rules": ("violated, but only soft rules", "yellow"),
+    "open": ("open", "yellow"),
+    "nothing found": ("nothing found in the judged rules", "yellow"),
 }
+
+
+def _wrapped(text: str, width: int) -> list[str]:
+    """A line below a trace's name, wrapped."""
+    return broken(visible(text), width, "  ", "      ")
+
+
+OUTCOMES: Sequence[VerdictOutcome] = get_args(VerdictOutcome)
+"""The outcomes in the order in which they are listed."""
 
 
 def rule_counts(
@@ -83,7 +96,6 @@ def rule_counts(
     judged: Set[str],
     open_in: Container[str],
     source: str,
-    words: str = "",
 ) -> str:
     """How many rules have a verdict in some drive, are open at best, or cannot be judged."""
     all_open = sum(rule.name in open_in and rule.name not in judged for rule in rules)
@@ -92,15 +104,13 @@ def rule_counts(
     parts = [f"{n_judged:,} judged"]
     parts += [f"{some_open:,} of them open in some drive"] if some_open else []
     parts += [f"{all_open:,} open"] if all_open else []
-    if words and (some_open or all_open):
-        parts[-1] += f" (words: {words})"
     if never := len(rules) - n_judged - all_open:
         parts.append(f"{never:,} cannot be judged from {source}")
     return f"{counted(len(rules), 'rule')}: {', '.join(parts)}"
 
 
-def headline(rules: CompiledRulebook) -> str:
-    """The rulebook, its law and the day of its text, and which text it is, in a line."""
+def headline(rules: CompiledRulebook, width: int = PAGE_WIDTH) -> str:
+    """The rulebook, its law and the day of its text, and which text it is."""
     edition = edition_of(rules)
     law = f": {edition.law}" if edition.law else ""
     if edition.as_of:
@@ -109,7 +119,8 @@ def headline(rules: CompiledRulebook) -> str:
             law += f", without what has changed until {edition.at}"
         elif edition.at and edition.at != edition.as_of:
             law += f", as in force on {edition.at}"
-    return visible(f"by {edition.rulebook}{law} [{edition.rulebook_hash[:8]}]")
+    text = visible(f"by {edition.rulebook}{law} [{edition.rulebook_hash[:8]}]")
+    return "\n".join(broken(text, width, later="  "))
 
 
 def _open_lines(verdict: Verdict, rulebook: CompiledRulebook) -> Iterator[str]:
@@ -117,9 +128,9 @@ def _open_lines(verdict: Verdict, rulebook: CompiledRulebook) -> Iterator[str]:
     for result in verdict.open[:MOST_VIOLATIONS]:
         rule = rules[result.rule]
         title = f"{rule.strength} rule {_title(rule, rulebook.name)}{_about(result.binding)}"
-        yield f"  {visible(f'{title}: {open_in_words(result)}')}"
+        yield f"{title}: {open_in_words(result)}"
     if len(verdict.open) > MOST_VIOLATIONS:
-        yield f"  and {len(verdict.open) - MOST_VIOLATIONS:,} more open; --json has them all"
+        yield f"and {len(verdict.open) - MOST_VIOLATIONS:,} more open; --json has them all"
 
 
 def open_in_words(result: OpenVerdict, most: int = MOST_CASES) -> str:
@@ -160,8 +171,7 @@ def _not_judged_lines(verdict: Verdict) -> Iterator[str]:
         why = rule.why or f"the source does not tell {', '.join(rule.untold)}"
         by_reason.setdefault(why, []).append(rule.rule)
     for why, rules in by_reason.items():
-        text = f"{', '.join(rules)} ({why})"
-        yield f"  not judged: {visible(text)}"
+        yield f"not judged: {', '.join(rules)} ({why})"
 
 
 def _about(binding: Mapping[str, str]) -> str:
@@ -204,16 +214,19 @@ def _title(rule: CompiledRule, rulebook: str) -> str:
     return f"{title} [{place}]" if place else title
 
 
-def summary(counts: Mapping[bool | None, int], not_judged: int, noun: str = "trace") -> str:
+def summary(outcomes: Mapping[VerdictOutcome, int], not_judged: int, noun: str = "trace") -> str:
     """The summary line of a run: the numbers of traces or drives by outcome."""
-    total = sum(counts.values()) + not_judged
+    total = sum(outcomes.values()) + not_judged
     if total == not_judged == 1:
         # Also for a file that holds none
         return f"no {noun} could be judged"
-    satisfied, violated, doubtful = (counts.get(key, 0) for key in (True, False, None))
-    parts = [f"{satisfied:,} satisfied", f"{violated:,} violated"]
-    if doubtful:
-        parts.append(f"{doubtful:,} open")
-    if not_judged:
-        parts.append(f"{not_judged:,} not judged")
+    # Where some rule cannot be judged, nothing is satisfied, and it need not be said
+    some_unjudged = outcomes.get("nothing found") or outcomes.get("only soft rules")
+    always = {"violated"} if some_unjudged else {"satisfied", "violated"}
+    parts = [
+        f"{outcomes.get(outcome, 0):,} {outcome}"
+        for outcome in OUTCOMES
+        if outcomes.get(outcome) or outcome in always
+    ]
+    parts += [f"{not_judged:,} not judged"] if not_judged else []
     return f"{counted(total, noun)}: {', '.join(parts)}"

@@ -16,9 +16,9 @@ from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.explain.margins import Margin, number_with_error
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.guard_text import GuardWording, runs
-from rulec.report.text.terminal_text import broken, styled, table_lines, visible
+from rulec.report.text.terminal_text import broken, cut, styled, table_lines, visible
 from rulec.report.verdicts.state_times import NUMBERS_ALONE, StateTimes
-from rulec.report.verdicts.table_folding import MOST_PARTS, cut, fitting, folded, head, titled
+from rulec.report.verdicts.table_folding import MOST_PARTS, fitting, folded, head, titled
 from rulec.trace import Value
 from rulec.vocabulary.partial_values import Interval
 
@@ -65,18 +65,21 @@ def as_text(explanation: Explanation, options: TableOptions = DEFAULT_OPTIONS) -
     width = options.width
     decisive = explanation.states.index(explanation.decisive)
     table = _table(explanation, decisive, width, every_part=options.every_part)
+    titles = [f"{title} " for title in ("state", *table.titles)]
+    # One column may be wider than what is left, if its numbers or names are long
+    widest = width if options.every_part else width - len(INDENT) - max(map(len, titles)) - 2
     columns = [
         [
-            styled(cell, "bold" if decisive in places else "")
+            styled(cut(cell, widest), "bold" if decisive in places else "")
             for cell in (head(explanation.states, places), *table.values[places[0]])
         ]
         for places in table.columns
     ]
     lines = broken(visible(explanation.rule.says), width, INDENT, INDENT)
-    rows = [[f"{title} " for title in ("state", *table.titles)], *columns]
-    lines += table_lines(list(zip(*rows, strict=True)), indent=INDENT, ruled=(0, table.n_facts))
-    lines += [*_left_out(explanation, table), *_in_words(explanation, options)]
-    return "\n".join([*lines, *_repair(explanation, options)])
+    lines += [*_in_words(explanation, options), *_repair(explanation, options)]
+    rows = list(zip(titles, *columns, strict=True))
+    lines += table_lines(rows, indent=INDENT, ruled=(0, table.n_facts))
+    return "\n".join([*lines, *_left_out(explanation, table, width)])
 
 
 def _in_words(explanation: Explanation, options: TableOptions) -> Iterator[str]:
@@ -105,7 +108,8 @@ def _repair(explanation: Explanation, options: TableOptions) -> Iterator[str]:
     if explanation.looked_at is not None:
         first, last = explanation.looked_at
         when = options.times.of(first, last)
-        yield f"{INDENT}(states {first}-{last}{when} of this long trace were examined)"
+        text = f"(states {first}-{last}{when} of this long trace were examined)"
+        yield from broken(text, options.width, INDENT, 2 * INDENT)
         return
     changes = kept_if(explanation, options.times)
     for line in changes[:MOST_CHANGES]:
@@ -185,7 +189,7 @@ def _rows(explanation: Explanation, decisive: int, every_part: bool, widest: int
     )
 
 
-def _left_out(explanation: Explanation, table: _Table) -> Iterator[str]:
+def _left_out(explanation: Explanation, table: _Table, width: int) -> Iterator[str]:
     n_rows, n_states = len(table.titles), sum(len(places) for places in table.columns)
     of_rows, of_states = len(explanation.facts) + len(explanation.parts), len(explanation.states)
     words = [
@@ -194,7 +198,8 @@ def _left_out(explanation: Explanation, table: _Table) -> Iterator[str]:
         if some < most
     ]
     if words:
-        yield f"{INDENT}… without {' and '.join(words)}: --every-part shows them"
+        text = f"… without {' and '.join(words)}: --every-part shows them"
+        yield from broken(text, width, INDENT, 2 * INDENT)
 
 
 def _title(fact: Observation, widest: int) -> str:

@@ -1,0 +1,273 @@
+"""The answer about a recording: who broke which rule, and what was not judged."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from shlex import quote
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, TooLargeRule
+from rulec.diagnostics import first_of
+from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
+from rulec.report.text.terminal_text import broken, counted, cut, mirrored, table_lines, visible
+from rulec.report.verdict_findings.verdict_finding import VerdictFinding
+from rulec.report.verdicts import verdict_report
+from rulec.vocabulary import Quantity
+
+MOST_SHOWN = 3
+"""Number of drives of a violated rule that are shown; the findings have all of them."""
+
+MOST_NAMES = 4
+"""Number of names listed in a line."""
+
+MOST_WANTED = 2
+"""Number of missing words whose rules are counted."""
+
+MOST_UNJUDGED = 100
+"""Number of rules that ``--why`` names as not judged; JSON has all of them."""
+
+INDENT = "  "
+
+Rule = CompiledRule | TooLargeRule
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerLayout:
+    """The width of the answer in characters, and whether it says ``why`` something is unknown.
+
+    ``source`` are the arguments that name the recording and the rulebook in another command.
+    """
+
+    width: int
+    why: bool = False
+    source: str = ""
+
+
+class RecordingAnswer:
+    """The verdicts on a recording's drives as text.
+
+    ``shown`` are the first findings of each violated rule, at most ``MOST_SHOWN``.
+    """
+
+    def __init__(
+        self,
+        verdicts: RecordingVerdicts,
+        tally: ViolationTally,
+        shown: Mapping[str, Sequence[VerdictFinding]],
+        layout: AnswerLayout,
+    ) -> None:
+        self._verdicts, self._tally, self._shown, self._layout = verdicts, tally, shown, layout
+        own = verdicts.rules
+        rules: Sequence[Rule] = [*own.rules, *own.too_large]
+        self._rules = {rule.name: rule for rule in rules}
+        self._judged = {*+tally.judged_in, *tally.first_s}
+
+    def as_text(self) -> str:
+        """What was found, in how much nothing was found, and what could not be judged."""
+        lines = [*self._head(), *self._found(), *self._nothing_found()]
+        lines += [*self._not_judged(), *self._drives_not_judged(), *self._faults()]
+        lines += self._reasons() if self._layout.why else self._ways_on()
+        return "\n".join(map(visible, lines))
+
+    def _wrapped(self, text: str, indent: str = "", most: int | None = None) -> list[str]:
+        """A text in lines; of more than ``most`` lines, the last one ends in an ellipsis."""
+        width = self._layout.width
+        lines = broken(text, width, indent, indent + INDENT)
+        if most is None or len(lines) <= most:
+            return lines
+        last = broken(lines[most - 1], width - len(" …"), later=indent + INDENT)[0]
+        return [*lines[: most - 1], cut(f"{last} …", width)]
+
+    def _head(self) -> Iterator[str]:
+        recording, n_drives = self._verdicts.recording, counted(self._tally.judged, "drive")
+        yield from self._wrapped(f"{recording.name}: {n_drives} in steps of {recording.step_s:g} s")
+        if self._verdicts.mirrored:
+            yield from self._wrapped(mirrored(str(recording.side)), INDENT)
+        elif recording.side is None and self._verdicts.rules.traffic == "left":
+            text = "the side of traffic is unknown: assumed to be the left"
+            yield from self._wrapped(text, INDENT)
+        if self._verdicts.defaults:
+            text = "assumed: defaults, and that nothing comes after the recording's end"
+            yield from self._wrapped(text, INDENT)
+
+    def _found(self) -> Iterator[str]:
+        """Each violated rule with its first drives, hard rules first."""
+        by_strength: dict[str, list[str]] = {"hard": [], "soft": []}
+        for rule in self._tally.first_s:
+            by_strength[self._rules[rule].strength].append(rule)
+        for strength, rules in by_strength.items():
+            drives = {drive for rule in rules for drive in self._tally.first_s[rule]}
+            if drives:
+                yield f"{counted(len(drives), 'drive')} broke a {strength} rule"
+            for rule in rules:
+                yield from self._violated(rule)
+
+    def _violated(self, name: str) -> Iterator[str]:
+        rule = self._rules[name]
+        assert isinstance(rule, CompiledRule), "only what was compiled is judged"
+        drives = self._tally.first_s[name]
+        title = verdict_report.short_title(rule)
+        yield from self._wrapped(f"{title}: {counted(len(drives), 'drive')}", INDENT, most=1)
+        defaults = self._verdicts.by_default(self._tally.words or frozenset())[name]
+        if rule.says:
+            yield from self._wrapped(rule.says, 2 * INDENT, most=1 if defaults else 2)
+        if defaults:
+            text = f"by default: {first_of(defaults, MOST_NAMES)}"
+            yield from self._wrapped(text, 2 * INDENT, most=1)
+        every = self._shown.get(name, ())
+        shown = every if len(drives) <= len(every) <= MOST_SHOWN else every[: MOST_SHOWN - 1]
+        rows = [(one.vehicle, one.when, one.in_short) for one in shown]
+        for line in table_lines(rows, indent=2 * INDENT, right=(0,)) if rows else ():
+            yield cut(line.rstrip(), self._layout.width)
+        named = {one.vehicle for one in shown}
+        others = sorted((at, drive) for drive, at in drives.items() if drive not in named)
+        if others:
+            text = f"and {len(others):,} more: {first_of([x for _, x in others], MOST_NAMES)}"
+            yield from self._wrapped(text + self._one_cause(name), 2 * INDENT, most=1)
+
+    def _one_cause(self, rule: str) -> str:
+        """The objects that most violations of a rule are about, if several are."""
+        causes = self._tally.causes[rule].items()
+        about, drives = max(causes, key=lambda cause: len(cause[1]))
+        is_one = len(drives) > 1 and about
+        return f"; {len(drives):,} are about {', '.join(about)}" if is_one else ""
+
+    def _nothing_found(self) -> Iterator[str]:
+        tally = self._tally
+        if not tally.judged:
+            return
+        rest = tally.judged - len({drive for times in tally.first_s.values() for drive in times})
+        n_judged = len(self._judged)
+        if n_judged < len(self._rules) or tally.open_rules:
+            found = f"nothing found in {counted(n_judged, 'judged rule')}"
+        else:
+            found = f"nothing against {'the rule' if n_judged == 1 else f'all {n_judged:,} rules'}"
+        found = f"{counted(rest, 'drive')}: {found}" if rest else f"else {found}"
+        some = len(self._judged.intersection(tally.open_rules))
+        never = len(tally.open_rules.keys() - self._judged)
+        found += f", {some:,} of them open in some drive" if some else ""
+        found += f"; {counted(never, 'rule')} open in every drive" if never else ""
+        yield from self._wrapped(found)
+
+    def _not_judged(self) -> Iterator[str]:
+        """How many rules are not judged, and which words would help most."""
+        names = self._unjudged()
+        if not names:
+            return
+        text = f"{len(names):,} of {counted(len(self._rules), 'rule')} not judged"
+        left = {name: tuple(self._tally.untold.get(name, ())) for name in names}
+        parts: list[str] = []
+        while left and len(parts) < MOST_WANTED:
+            words = Counter(word for own in left.values() for word in own)
+            if not words:
+                break
+            word, number = words.most_common(1)[0]
+            parts.append(f"{number:,} want {word}" if not parts else f"{number:,} {word}")
+            left = {name: own for name, own in left.items() if word not in own}
+        if left and parts:
+            parts.append(counted(len(left), "other"))
+        yield from self._wrapped(f"{text}: {', '.join(parts)}" if parts else text)
+        yield from self._would_help(names)
+
+    def _would_help(self, names: Sequence[str]) -> Iterator[str]:
+        """The assumption of one value that lets most rules be judged."""
+        lacking = [tuple(self._tally.untold.get(name, ())) for name in names]
+        alone = Counter(words[0] for words in lacking if len(words) == 1)
+        declared = self._verdicts.rules.vocabulary.declarations
+        for word, number in alone.most_common():
+            item = declared.get(word)
+            if item is None or item.parameters or isinstance(item, Quantity):
+                continue
+            text = f"`--assume {word}=VALUE` would let {number:,} of them be judged"
+            yield from self._wrapped(text, INDENT, most=1)
+            return
+
+    def _unjudged(self) -> list[str]:
+        with_any = self._judged | {*self._tally.open_rules}
+        return [name for name in self._rules if name not in with_any] if self._tally.judged else []
+
+    def _drives_not_judged(self) -> Iterator[str]:
+        reasons: dict[str, list[str]] = {}
+        for no_drive in self._tally.not_judged:
+            reasons.setdefault(no_drive.why, []).append(no_drive.ego)
+        most = None if self._layout.why else 1
+        for why, egos in list(reasons.items())[:most]:
+            text = f"not judged: {first_of(egos, MOST_NAMES)}: {why}"
+            yield from self._wrapped(text, most=most)
+        if most and len(reasons) > most:
+            rest = sum(len(egos) for egos in list(reasons.values())[most:])
+            yield f"not judged: {counted(rest, 'vehicle')} more for other reasons"
+
+    def _faults(self) -> Iterator[str]:
+        faults = [*self._tally.faults]
+        if faults:
+            more = f", and {len(faults) - 1:,} more" if len(faults) > 1 else ""
+            yield from self._wrapped(f"fault: {faults[0]}{more}", most=2)
+
+    def _ways_on(self) -> Iterator[str]:
+        """How to see more."""
+        remarks = self._verdicts.recording.remarks
+        if remarks:
+            more = f" ({len(remarks) - 1:,} more notes)" if len(remarks) > 1 else ""
+            yield from self._wrapped(f"note: {remarks[0]}{more}", most=2)
+        ways = ["--explain 1 (the first one)"] if self._tally.first_s else []
+        if self._unjudged() or self._tally.open_rules or remarks:
+            ways.append("--why (what is open or not judged)")
+        if ways:
+            yield from self._wrapped(f"more: {', '.join(ways)}")
+        if self._tally.first_s and self._layout.source:
+            (drive, *_) = next(iter(self._tally.first_s.values()))
+            ego = quote(drive.partition("/")[0])
+            yield from self._command(
+                f"see it: rulec draw drive {self._layout.source}", f"--ego {ego} -o drive.html"
+            )
+
+    def _command(self, first: str, later: str) -> list[str]:
+        """A command that can be copied, in one or two lines; none if it does not fit."""
+        one, two = [f"{first} {later}"], [f"{first} \\", f"{INDENT}{later}"]
+        fits = [lines for lines in (one, two) if max(map(len, lines)) <= self._layout.width]
+        return next(iter(fits), [])
+
+    def _reasons(self) -> Iterator[str]:
+        """What is open and not judged, for which words, and all notes."""
+        verdicts, tally = self._verdicts, self._tally
+        vocabulary = verdicts.rules.vocabulary
+        # It may also depend on the types that participants of unknown type have
+        order = [*vocabulary.declarations, *vocabulary.types]
+        if tally.open_rules:
+            yield from self._wrapped(f"open: {', '.join(tally.open_rules)}")
+            words = sorted(tally.open_on, key=order.index)
+            if words:
+                yield from self._wrapped(f"depends on {', '.join(words)}", INDENT)
+        yield from self._by_words(self._unjudged())
+        defaults = verdicts.defaulted(tally.words or frozenset())
+        if defaults:
+            text = f"by default, as the recording does not say: {', '.join(defaults)}"
+            yield from self._wrapped(text)
+        for remark in verdicts.recording.remarks:
+            yield from self._wrapped(f"note: {remark}")
+
+    def _by_words(self, names: Sequence[str]) -> Iterator[str]:
+        """The rules that cannot be judged, hard ones first, grouped by the missing words."""
+        by_words: dict[tuple[str, tuple[str, ...]], list[str]] = {}
+        ordered = sorted(names, key=lambda name: self._rules[name].strength != "hard")
+        for name in ordered[:MOST_UNJUDGED]:
+            reasons = [self._tally.reasons[name]] if name in self._tally.reasons else []
+            words = tuple(self._tally.untold.get(name) or reasons)
+            by_words.setdefault((self._rules[name].strength, words), []).append(name)
+        if by_words:
+            text = "not judged, for lack of (`rulec explain WORD` says what can provide a word):"
+            yield from self._wrapped(text)
+        for (strength, words), rules in by_words.items():
+            kind = "" if strength == "hard" else " (soft)"
+            text = f"{', '.join(words) or 'a reason'}: {', '.join(rules)}{kind}"
+            yield from self._wrapped(text, INDENT)
+        if len(names) > MOST_UNJUDGED:
+            yield f"{INDENT}and {len(names) - MOST_UNJUDGED:,} more"
+
+
+def summary(tally: ViolationTally) -> str:
+    """The summary line of a run."""
+    counts = {outcome: len(drives) for outcome, drives in tally.drives.items()}
+    return verdict_report.summary(counts, len(tally.not_judged), "drive")
