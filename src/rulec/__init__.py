@@ -37,6 +37,10 @@ if TYPE_CHECKING:
     from rulec.analysis.diff.rulebook_comparison import SettingPair as SettingPair
     from rulec.analysis.lineage.rule_lineage import BookLineage as BookLineage
     from rulec.analysis.lineage.rule_lineage import RuleHistory as RuleHistory
+    from rulec.api.judged import Findings as Findings
+    from rulec.api.judged import JudgedDrives as JudgedDrives
+    from rulec.api.judged import JudgedTraces as JudgedTraces
+    from rulec.api.named_monitor import Monitor as Monitor
     from rulec.api.session import Session as Session
     from rulec.api.verbs import *  # noqa: F403 - every verb; each name is in the table below
     from rulec.automata.bundle.compiled_rulebook import CompiledRule as CompiledRule
@@ -68,7 +72,6 @@ if TYPE_CHECKING:
     from rulec.monitoring.online.four_valued import VerdictRange as VerdictRange
     from rulec.monitoring.online.monitor_state import SoFar as SoFar
     from rulec.monitoring.online.monitor_state import VerdictChange as VerdictChange
-    from rulec.monitoring.online.running_monitor import Monitor as Monitor
     from rulec.monitoring.verdict import ConditionalOutcome as ConditionalOutcome
     from rulec.monitoring.verdict import NotJudged as NotJudged
     from rulec.monitoring.verdict import OpenVerdict as OpenVerdict
@@ -110,6 +113,7 @@ if TYPE_CHECKING:
     from rulec.recordings.tracks.track_table import recording_from_columns as recording_from_columns
     from rulec.report.recordings.format_listing import ListedFormat as ListedFormat
     from rulec.report.text.listing import Listed as Listed
+    from rulec.report.verdict_findings.verdict_finding import VerdictFinding as VerdictFinding
     from rulec.rulebook.batch.batch_check import Checked as Checked
     from rulec.rulebook.rulebook_model import Example as Example
     from rulec.rulebook.rulebook_model import Rule as Rule
@@ -139,6 +143,8 @@ _HOME = {
     "rulec.analysis.diff.rule_comparison": "RuleComparison",
     "rulec.analysis.diff.rulebook_comparison": "OneSided RulePair RulebookDiff SettingPair",
     "rulec.analysis.lineage.rule_lineage": "BookLineage RuleHistory",
+    "rulec.api.judged": "Findings JudgedDrives JudgedTraces",
+    "rulec.api.named_monitor": "Monitor",
     "rulec.api.session": "Session",
     "rulec.api.verbs": "alternative_counts analyze audit audit_source check compile "
     "compile_rulebook coverage diff doc draw draw_drive envelope envelopes explain "
@@ -165,7 +171,6 @@ _HOME = {
     "rulec.monitoring.moments.formula_moments": "Moment",
     "rulec.monitoring.online.four_valued": "VerdictRange",
     "rulec.monitoring.online.monitor_state": "SoFar VerdictChange",
-    "rulec.monitoring.online.running_monitor": "Monitor",
     "rulec.monitoring.verdict": (
         "ConditionalOutcome NotJudged OpenVerdict RuleNotJudged Verdict Violation"
     ),
@@ -181,6 +186,7 @@ _HOME = {
     "rulec.rates.rule_rates": "Rate RuleRates ViolationRates",
     "rulec.report.recordings.format_listing": "ListedFormat",
     "rulec.report.text.listing": "Listed",
+    "rulec.report.verdict_findings.verdict_finding": "VerdictFinding",
     "rulec.rulebook.batch.batch_check": "Checked",
     "rulec.rulebook.rulebook_model": "Example Rule Rulebook Variable",
     "rulec.scenario": "Choice Scenario",

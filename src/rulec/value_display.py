@@ -103,6 +103,14 @@ class Rows:
                 columns[name] = arrow.array(values)
         return arrow.table(columns)
 
+    def to_frame(self) -> Any:
+        """The rows as a ``pandas.DataFrame``; ImportError if pandas is not installed."""
+        try:
+            pandas = import_module("pandas")
+        except ImportError as error:
+            raise ImportError("a data frame takes pandas: pip install pandas") from error
+        return pandas.DataFrame(self.rows())
+
     def _repr_html_(self) -> str:
         rows = self.rows()
         # Imported late (1 ms): only needed in notebooks.

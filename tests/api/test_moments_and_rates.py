@@ -76,13 +76,6 @@ def test_rates_are_those_of_the_command(cars, capsys):
         rulec.rates_of_findings([written, written])
 
 
-def test_what_takes_no_name_says_what_to_call():
-    with pytest.raises(TypeError, match=r"rulec\.Monitor\(rulec\.compile_rulebook"):
-        rulec.Monitor("nl")
-    with pytest.raises(TypeError, match=r"rulec\.verify_recording\(path, rules\)"):
-        rulec.verify("cars.csv", "de")
-
-
 def test_a_recorded_violation_is_explained_with_what_it_was_decided_by(tmp_path):
     book = tmp_path / "near.rules"
     book.write_text(

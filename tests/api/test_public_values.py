@@ -42,6 +42,7 @@ def values():
     so_far = monitor.step({"position": {"v1": "f"}}, {"v1": "vehicle"})
     recording = rulec.read_recording(RECORDING, NET)
     judged = rulec.verify_recording(recording, "de")
+    all_drives = rulec.verify(recording, "fr")
     drive = next(one for one in judged.answers() if isinstance(one, rulec.DriveVerdict))
     audit = rulec.audit("de")
     diff = rulec.diff("de", "gb", patterns=["crossing_overtaking*"])
@@ -131,6 +132,7 @@ def values():
         *(rates, rates.rules[0], rates.rules[0].per_hour, rates.judged_by[0]),
         *(moments, moments.moments[0]),
         *(world, scores, scores.candidates[0], scores.margins(0)[0]),
+        *(all_drives, all_drives.findings, all_drives.findings[0], rulec.verify(TRACES, rules)),
     ]
     return {type(one).__name__: one for one in known}
 

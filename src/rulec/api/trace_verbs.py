@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, get_args, overload
 
 from rulec.api.session_settings import SessionSettings
 from rulec.diagnostics import RulecError
@@ -19,6 +19,7 @@ from rulec.trace.trace_model import check_trace
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from rulec.api.judged import JudgedDrives, JudgedTraces
     from rulec.api.rulebook_compilation import Rules
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.extraction.moment_search import DriveMoments
@@ -84,23 +85,85 @@ class TraceVerbs(SessionSettings):
         with written_whole(Path(path)) as stream:
             write_traces(iter(listed), stream, str(path), form, kinds, partial=partial)
 
-    def verify(self, trace: Trace, rules: Rules, assumptions: Assumptions | None = None) -> Verdict:
-        """Judge a trace by every rule, for every binding of its variables.
+    @overload
+    def verify(
+        self, drives: Trace, rules: Rules, assumptions: Assumptions | None = None
+    ) -> Verdict: ...
 
-        ``assumptions`` give values for what is unknown in the trace, and say how it ends.
+    @overload
+    def verify(
+        self,
+        drives: str | Path | Recording,
+        rules: Rules,
+        assumptions: Assumptions | None = None,
+        *,
+        wanted: RequestedDrives | None = None,
+        map_path: str | Path | None = None,
+    ) -> JudgedDrives | JudgedTraces: ...
+
+    def verify(
+        self,
+        drives: Trace | str | Path | Recording,
+        rules: Rules,
+        assumptions: Assumptions | None = None,
+        *,
+        wanted: RequestedDrives | None = None,
+        map_path: str | Path | None = None,
+    ) -> Verdict | JudgedDrives | JudgedTraces:
+        """Judge a trace, or all drives of a recording or a file, by every rule.
+
+        ``assumptions`` give values for what is unknown in traces, and say how they end; ``wanted``
+        and ``map_path`` are for recordings, as for ``verify_recording``. A trace has a ``Verdict``;
+        anything else has all verdicts by name, with findings as rows. These stay in memory:
+        ``verify_many`` and ``verify_recording`` give them one by one.
 
         Raises:
-            RulecError: R0501 to R0508 if the trace is invalid, or the rules cannot judge it.
-            TypeError: for the path of a file, which other verbs accept.
+            RulecError: R0501 to R0508 if the trace is invalid, or the rules cannot judge it; for a
+                file or recording what ``read_traces`` and ``verify_recording`` raise.
         """
         from rulec.monitoring.assumptions import check_assumed
         from rulec.monitoring.rulebook_edition import edition_of
 
         compiled = self._compiled(rules)
+        if not isinstance(drives, Trace):
+            return self._judged(drives, compiled, assumptions, wanted, map_path=map_path)
+        trace = drives
         if assumptions is not None:
             check_assumed(assumptions.values, compiled.vocabulary, "values")
             trace = assumptions.applied(trace)
         return replace(_verdict(trace, compiled), law=edition_of(compiled))
+
+    def _judged(
+        self,
+        drives: str | Path | Recording,
+        compiled: CompiledRulebook,
+        assumptions: Assumptions | None,
+        wanted: RequestedDrives | None,
+        *,
+        map_path: str | Path | None,
+    ) -> JudgedDrives | JudgedTraces:
+        """What is found in a recording or a file. Raises RulecError, ValueError."""
+        from rulec.api.judged import JudgedDrives, JudgedTraces
+        from rulec.extraction.selection import RequestedDrives
+        from rulec.monitoring.assumptions import check_assumed
+        from rulec.recordings.recording import Recording
+        from rulec.recordings.recording_files import is_recording
+
+        if isinstance(drives, Recording) or is_recording(str(drives)):
+            if assumptions is not None:
+                raise ValueError("`assumptions` are for traces; a recording takes `wanted`")
+            read = (
+                drives if isinstance(drives, Recording) else self.read_recording(drives, map_path)
+            )
+            file = drives.name if isinstance(drives, Recording) else str(drives)
+            return JudgedDrives(read, compiled, wanted or RequestedDrives(), file)
+        if wanted is not None or map_path is not None:
+            raise ValueError("`wanted` and `map_path` are for recordings; this is a file of traces")
+        traces = list(self.read_traces(drives))
+        if assumptions is not None:
+            check_assumed(assumptions.values, compiled.vocabulary, "values")
+            traces = [assumptions.of([item])[0] for item in traces]
+        return JudgedTraces(traces, compiled, str(drives))
 
     def verify_many(
         self,

@@ -30,8 +30,7 @@ WAYS_OUT = {
     "RequestedDrives": 'rulec.RequestedDrives(egos=["12"])',
     "Rulebook": "rulec.load_rulebook(name_or_path) reads one",
     "Scenario": "rulec.load_scenario(name_or_path) reads one",
-    "Trace": "rulec.read_traces(path) yields those of a file; recorded traffic goes to "
-    "rulec.verify_recording(path, rules)",
+    "Trace": "rulec.read_traces(path) yields those of a file",
     "TrafficWorld": "rulec.TrafficWorld(recording, ego)",
     "Violation": "rulec.verify(trace, rules).violations has them",
 }

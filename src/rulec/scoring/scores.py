@@ -109,6 +109,12 @@ class Scores(Rows):
         first = (self.places == 1).nonzero()[0]
         return int(first[0])
 
+    @property
+    def best_path(self) -> NDArray[float64]:
+        """The states of the least violating candidate: x, y (m), heading (rad), speed (m/s)."""
+        path: NDArray[float64] = self.paths[self.best]
+        return path
+
     def reward(self, worth: float = 10.0) -> NDArray[float64]:
         """A number for each candidate: 0 if it violates nothing, otherwise less.
 

@@ -77,11 +77,7 @@ class Monitor:
         told: Iterable[str] | None = None,
         cut: bool = False,
     ) -> None:
-        if not isinstance(rulebook, CompiledRulebook):
-            raise TypeError(
-                f"a monitor takes a compiled rulebook, not {type(rulebook).__name__}: "
-                "rulec.Monitor(rulec.compile_rulebook(name_or_path))"
-            )
+        expected("rulebook", "CompiledRulebook", rulebook)
         finite("step_s", step_s)
         expected("told", "Iterable[str] | None", told)
         expected("cut", "bool", cut)
@@ -334,7 +330,7 @@ class Monitor:
 
     def __reduce__(self) -> tuple[Callable[..., Monitor], tuple[Any, ...]]:
         state = self.snapshot(), self._now[2], self._violations
-        return _unpickled, (self._rulebook, self._step_s, *state)
+        return _unpickled, (type(self), self._rulebook, self._step_s, *state)
 
     def __repr__(self) -> str:
         so_far = self.so_far
@@ -346,6 +342,7 @@ class Monitor:
 
 
 def _unpickled(
+    kind: type[Monitor],
     rulebook: CompiledRulebook,
     step_s: Fraction | None,
     snapshot: Any,
@@ -353,7 +350,7 @@ def _unpickled(
     violations: list[Violation],
 ) -> Monitor:
     """A monitor in the state of another one; its caches are empty."""
-    monitor = Monitor.restore(rulebook, snapshot)
+    monitor = kind.restore(rulebook, snapshot)
     monitor._step_s = step_s
     current, number, _, cache = monitor._now
     monitor._now, monitor._violations = (current, number, changes, cache), violations

@@ -13,11 +13,15 @@ from rulec.monitoring.explain.margins import Margin
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged
 from rulec.report.json_document import JsonDocument, as_line, filled
+from rulec.report.text.terminal_text import cut
 from rulec.rulebook.rulebook_model import cited_law
 from rulec.value_display import short_repr
 from rulec.version import __version__
 
 Outcome = Literal["violated", "open", "not_judged"]
+
+MOST_SHOWN = 120
+"""The most characters of a finding's sentence in its ``repr``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,8 +41,6 @@ class VerdictFinding:
     ``lanelet`` are the vehicle's position ``at_s``. ``inherited_from`` is the rulebook that the
     rule comes from, if its own rulebook has not confirmed it as its law; otherwise empty.
     """
-
-    __repr__ = short_repr
 
     file: str
     recording: str = ""
@@ -69,6 +71,9 @@ class VerdictFinding:
     x: float | None = None
     y: float | None = None
     lanelet: str = ""
+
+    def __repr__(self) -> str:
+        return f"VerdictFinding({cut(self.says, MOST_SHOWN)})"
 
     @property
     def when(self) -> str:

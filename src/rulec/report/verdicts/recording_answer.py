@@ -36,7 +36,8 @@ Rule = CompiledRule | TooLargeRule
 class AnswerLayout:
     """The width of the answer in characters, and whether it says ``why`` something is unknown.
 
-    ``source`` are the arguments that name the recording and the rulebook in another command.
+    ``source`` are the arguments that name the recording and the rulebook in another command;
+    without them, it does not say how to see more.
     """
 
     width: int
@@ -179,7 +180,8 @@ class RecordingAnswer:
             item = declared.get(word)
             if item is None or item.parameters or isinstance(item, Quantity):
                 continue
-            text = f"`--assume {word}=VALUE` would let {number:,} of them be judged"
+            value = f"`--assume {word}=VALUE`" if self._layout.source else f"a known {word}"
+            text = f"{value} would let {number:,} of them be judged"
             yield from self._wrapped(text, INDENT, most=1)
             return
 
@@ -211,14 +213,16 @@ class RecordingAnswer:
         if remarks:
             more = f" ({len(remarks) - 1:,} more notes)" if len(remarks) > 1 else ""
             yield from self._wrapped(f"note: {remarks[0]}{more}", most=2)
+        if not self._layout.source:
+            return
         ways = ["--explain 1 (the first one)"] if self._tally.first_s else []
         if self._unjudged() or self._tally.open_rules or remarks:
             ways.append("--why (what is open or not judged)")
         if ways:
             yield from self._wrapped(f"more: {', '.join(ways)}")
-        if self._tally.first_s and self._layout.source:
+        if self._tally.first_s:
             (drive, *_) = next(iter(self._tally.first_s.values()))
-            ego = quote(drive.partition("/")[0])
+            ego = quote(drive.partition("#")[0])
             yield from self._command(
                 f"see it: rulec draw drive {self._layout.source}", f"--ego {ego} -o drive.html"
             )
