@@ -37,9 +37,9 @@ if TYPE_CHECKING:
     from rulec.analysis.diff.rulebook_comparison import SettingPair as SettingPair
     from rulec.analysis.lineage.rule_lineage import BookLineage as BookLineage
     from rulec.analysis.lineage.rule_lineage import RuleHistory as RuleHistory
-    from rulec.api.judged import Findings as Findings
-    from rulec.api.judged import JudgedDrives as JudgedDrives
-    from rulec.api.judged import JudgedTraces as JudgedTraces
+    from rulec.api.judged_drives import FindingRows as FindingRows
+    from rulec.api.judged_drives import JudgedDrives as JudgedDrives
+    from rulec.api.judged_drives import JudgedTraces as JudgedTraces
     from rulec.api.named_monitor import Monitor as Monitor
     from rulec.api.session import Session as Session
     from rulec.api.verbs import *  # noqa: F403 - every verb; each name is in the table below
@@ -143,7 +143,7 @@ _HOME = {
     "rulec.analysis.diff.rule_comparison": "RuleComparison",
     "rulec.analysis.diff.rulebook_comparison": "OneSided RulePair RulebookDiff SettingPair",
     "rulec.analysis.lineage.rule_lineage": "BookLineage RuleHistory",
-    "rulec.api.judged": "Findings JudgedDrives JudgedTraces",
+    "rulec.api.judged_drives": "FindingRows JudgedDrives JudgedTraces",
     "rulec.api.named_monitor": "Monitor",
     "rulec.api.session": "Session",
     "rulec.api.verbs": "alternative_counts analyze audit audit_source check compile "

@@ -129,7 +129,7 @@ def test_as_a_table(found):
 def test_results_say_in_a_line_what_was_found(found, traced):
     assert repr(found) == "JudgedDrives(de: 3 of 6 drives broke a hard rule)"
     assert repr(traced) == "JudgedTraces(esterle2019: 1 of 2 traces broke a hard rule)"
-    assert repr(found.violations()) == "Findings(4 findings of 2 rules)"
+    assert repr(found.violations()) == "FindingRows(4 findings of 2 rules)"
 
 
 def test_traces_of_one_name_and_bad_ones(tmp_path):

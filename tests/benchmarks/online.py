@@ -22,7 +22,7 @@ from stream import streamed
 from timing import in_turns, processor_time
 
 import rulec
-from rulec.monitoring.online.running_monitor import Monitor
+from rulec.api.named_monitor import Monitor
 from rulec.rulebook.loader import parse_rulebook
 
 N_STATES = 300

@@ -19,12 +19,12 @@ from program import run
 from timing import Taken, in_turns, processor_time
 
 import rulec
+from rulec.api.named_monitor import Monitor
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.automata.thresholds import scale
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.batch_verify import verify_many
-from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.verdict import Verdict
 from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.trace import Trace

@@ -6,8 +6,8 @@ import re
 import pytest
 
 from rulec import compile_rulebook, find_maneuvers
+from rulec.api.named_monitor import Monitor
 from rulec.cli.main import main
-from rulec.monitoring.online.running_monitor import Monitor
 from support.builders.road_scenes import BEHIND_A_VAN, CHILD_AT_THE_KERB
 
 

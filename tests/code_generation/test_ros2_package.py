@@ -14,11 +14,11 @@ from mcap.reader import make_reader
 from mcap.writer import Writer
 
 import rulec
+from rulec.api.named_monitor import Monitor
 from rulec.code_generation.monitor_layout import VERDICTS, monitor_layout
 from rulec.code_generation.proof.random_drives import drives
 from rulec.code_generation.ros2_files import message_fields, ros2_texts
 from rulec.monitoring.online.four_valued import best_of, worst_of
-from rulec.monitoring.online.running_monitor import Monitor
 from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.monitored_books import WATCHED

@@ -5,7 +5,7 @@ from collections import Counter
 import pytest
 from hypothesis import Phase, given, settings
 
-from rulec.monitoring.online.running_monitor import Monitor
+from rulec.api.named_monitor import Monitor
 from rulec.planning import evaluate
 from rulec.planning.product.accepted_edges import accepted_edges
 from support.builders.rulebooks import compile_here

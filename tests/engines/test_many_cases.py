@@ -7,9 +7,9 @@ from fractions import Fraction
 
 import pytest
 
+from rulec.api.named_monitor import Monitor
 from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.diagnostics import RulecError
-from rulec.monitoring.online.running_monitor import Monitor
 from rulec.validation.file_proof import proofs_of
 from support.builders.rulebooks import compile_both_ways
 from support.engines.engine import code_of, is_right

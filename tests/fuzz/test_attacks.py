@@ -10,7 +10,7 @@ import pyarrow
 import pyarrow.parquet
 import pytest
 
-from rulec.monitoring.online.running_monitor import Monitor
+from rulec.api.named_monitor import Monitor
 from rulec.rulebook.loader import parse_rulebook
 from support.builders.recorded_cars import car
 from support.builders.recordings import ROAD_XML

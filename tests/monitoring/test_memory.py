@@ -8,12 +8,12 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from rulec.api.named_monitor import Monitor
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError
 from rulec.monitoring.online.encoding.encoded_values import breakpoints_of
 from rulec.monitoring.online.encoding.state_shape import StateShape
 from rulec.monitoring.online.rule_group import CacheSize
-from rulec.monitoring.online.running_monitor import Monitor
 from rulec.rulebook.loader import parse_rulebook
 
 RULES = compile_rulebook(

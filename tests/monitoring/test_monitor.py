@@ -7,12 +7,12 @@ from fractions import Fraction
 import pytest
 
 import rulec
+from rulec.api.named_monitor import Monitor
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Constant
 from rulec.monitoring.online.monitor_sources import replay_trace
 from rulec.monitoring.online.monitor_state import SoFar
-from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.verdict import Violation
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace

@@ -5,9 +5,9 @@ from fractions import Fraction
 
 import pytest
 
+from rulec.api.named_monitor import Monitor
 from rulec.diagnostics import RulecError
 from rulec.monitoring.online import monitor_sources
-from rulec.monitoring.online.running_monitor import Monitor
 from support.builders.rulebooks import Q, always, book, compile_here, eventually, near, rule
 from support.generators.odd_documents import ODD_VALUES, places_in, with_value
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import Phase, given, settings
 
 import rulec
+from rulec.api.named_monitor import Monitor
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.online.four_valued import WORST_FIRST, best_of, worst_of
-from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.uncertainty import untold_names
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.verify import verify

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rulec.api.named_monitor import Monitor
 from rulec.diagnostics import RulecError
 from rulec.logic.semantics import holds
 from rulec.monitoring.letter_reader import LetterReader
-from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.verdict import NotJudged
 from rulec.monitoring.verify import verify_or_reason
 from rulec.rulebook.rulebook_model import Rulebook

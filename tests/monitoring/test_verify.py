@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy
 import pytest
 
+from rulec.api.named_monitor import Monitor
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Atom, Constant, QuantityTerm, Unary, UnaryOperator
-from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.rulebook.rulebook_model import Rulebook

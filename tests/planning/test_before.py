@@ -8,10 +8,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import rulec
+from rulec.api.named_monitor import Monitor
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Unary, UnaryOperator
-from rulec.monitoring.online.running_monitor import Monitor
 from rulec.planning.product.graph_instances import instances
 from rulec.planning.trace_history import only_trace, past_of
 from rulec.trace import Trace, TraceGraph

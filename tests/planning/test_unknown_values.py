@@ -9,9 +9,9 @@ import pytest
 from hypothesis import Phase, given, settings
 
 import rulec
+from rulec.api.named_monitor import Monitor
 from rulec.automata.compiler import compile_rulebook
 from rulec.logic.free_names import names_in
-from rulec.monitoring.online.running_monitor import Monitor
 from rulec.planning.evaluation import evaluate
 from rulec.planning.product import possible_instances
 from rulec.trace import Trace, TraceGraph

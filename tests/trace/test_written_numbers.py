@@ -9,13 +9,13 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from rulec.api.named_monitor import Monitor
 from rulec.automata.compiler import compile_rulebook
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.diagnostics import RulecError
 from rulec.monitoring.batch import batch_verify
 from rulec.monitoring.batch.batch_verify import verify_items
 from rulec.monitoring.moments.name_tables import tables_of_trace
-from rulec.monitoring.online.running_monitor import Monitor
 from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rulec.api.rulebook_compilation import Rules
 
 
-class Monitor(running_monitor.Monitor):
+class Monitor(running_monitor.RunningMonitor):
     """A monitor of a trace whose states arrive one after the other.
 
     A step takes as long after a million states as after one: the past is represented by the states

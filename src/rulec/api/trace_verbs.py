@@ -19,7 +19,7 @@ from rulec.trace.trace_model import check_trace
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from rulec.api.judged import JudgedDrives, JudgedTraces
+    from rulec.api.judged_drives import JudgedDrives, JudgedTraces
     from rulec.api.rulebook_compilation import Rules
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.extraction.moment_search import DriveMoments
@@ -143,7 +143,7 @@ class TraceVerbs(SessionSettings):
         map_path: str | Path | None,
     ) -> JudgedDrives | JudgedTraces:
         """What is found in a recording or a file. Raises RulecError, ValueError."""
-        from rulec.api.judged import JudgedDrives, JudgedTraces
+        from rulec.api.judged_drives import JudgedDrives, JudgedTraces
         from rulec.extraction.selection import RequestedDrives
         from rulec.monitoring.assumptions import check_assumed
         from rulec.recordings.recording import Recording

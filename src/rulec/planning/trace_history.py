@@ -15,7 +15,7 @@ from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.online.monitor_sources import read_saved, replay_trace
-from rulec.monitoring.online.running_monitor import Monitor
+from rulec.monitoring.online.running_monitor import RunningMonitor
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import CarriedState
 from rulec.planning.planning_messages import UNFITTING_PAST
@@ -35,7 +35,7 @@ class SavedPast:
     place: SourceLocation
 
 
-Before: TypeAlias = Trace | Monitor | Mapping[str, Any] | SavedPast
+Before: TypeAlias = Trace | RunningMonitor | Mapping[str, Any] | SavedPast
 """A trace, a monitor that has taken one, or that monitor's snapshot."""
 
 
@@ -124,7 +124,7 @@ def only_trace(items: Iterable[Trace | RulecError], place: SourceLocation) -> Tr
 
 def _monitor(
     before: Before, rulebook: CompiledRulebook, step_s: Fraction, strengths: Collection[Strength]
-) -> tuple[Monitor, SourceLocation | None]:
+) -> tuple[RunningMonitor, SourceLocation | None]:
     rules = tuple(rule for rule in rulebook.rules if rule.strength in strengths)
     if isinstance(before, Trace):
         if exact_step(before.step_s) != step_s:
@@ -135,9 +135,9 @@ def _monitor(
             )
         return replay_trace(before, replace(rulebook, rules=rules)), before.place
     if isinstance(before, SavedPast):
-        return Monitor.restore(rulebook, before.saved, before.place), before.place
-    if not isinstance(before, Monitor):
-        return Monitor.restore(rulebook, before), None
+        return RunningMonitor.restore(rulebook, before.saved, before.place), before.place
+    if not isinstance(before, RunningMonitor):
+        return RunningMonitor.restore(rulebook, before), None
     known = {rule.name: rule.machine for rule in before.rulebook.rules}
     if any(known.get(rule.name) != rule.machine for rule in rules):
         raise _no_way(f"the past was judged by other rules than those of `{rulebook.name}`", None)

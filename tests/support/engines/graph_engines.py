@@ -3,7 +3,7 @@
 from dataclasses import replace
 from fractions import Fraction
 
-from rulec.monitoring.online.running_monitor import Monitor
+from rulec.api.named_monitor import Monitor
 from rulec.planning.product.graph_instances import HARD, SOFT, instances, violations
 from rulec.planning.product.node_transformers import node_transformers
 from rulec.planning.ranking.pruning import violating

@@ -2,7 +2,7 @@
 
 import json
 
-from rulec.monitoring.online.running_monitor import Monitor
+from rulec.api.named_monitor import Monitor
 from support.engines.engine import each, said
 from support.oracles.presence import there
 from support.oracles.rulebook_oracle import Said

@@ -81,7 +81,7 @@ def command(
     # Late import, not for --help: monitors and the reader of states (60 ms).
     from rulec.automata.bundle.stored_steps import StoredSteps
     from rulec.monitoring.online import monitor_sources
-    from rulec.monitoring.online.running_monitor import Monitor
+    from rulec.monitoring.online.running_monitor import RunningMonitor
     from rulec.report.verdicts import running_verdicts
     from rulec.trace.formats.json_lines import read_live
 
@@ -100,10 +100,10 @@ def command(
                 f"rulec: for states {taken} s apart; {rulebook} was also compiled for {others}, "
                 "which `--step` says"
             )
-        monitor = Monitor(rules, step_s)
+        monitor = RunningMonitor(rules, step_s)
     else:
         place = "standard input" if restore == STANDARD_INPUT else restore
-        monitor = Monitor.restore(rules, saved, SourceLocation(place))
+        monitor = RunningMonitor.restore(rules, saved, SourceLocation(place))
     complaints, refused = Complaints(), False
     form = running_verdicts.as_json if to.form == "json" else running_verdicts.as_text
     file = None if save is None or is_shown else Path(save)

@@ -13,7 +13,7 @@ from rulec.diagnostics import RulecError
 from rulec.monitoring.monitoring_messages import VIOLATED_AXIOM
 from rulec.monitoring.online.four_valued import RunningVerdict, best_of, worst_of
 from rulec.monitoring.online.monitor_state import SoFar
-from rulec.monitoring.online.running_monitor import Monitor
+from rulec.monitoring.online.running_monitor import RunningMonitor
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import State
 
@@ -65,7 +65,7 @@ class BothMonitors:
                 yield text
 
     def _steps(self, drive: Drive) -> Iterator[tuple[str, SoFar | None]]:
-        ours, theirs = Monitor(self._book), CMonitor(self._library)
+        ours, theirs = RunningMonitor(self._book), CMonitor(self._library)
         # Equal verdicts share one mapping while the same states recur.
         packed: dict[int, tuple[Mapping[str, RunningVerdict], bytes]] = {}
         for number, (state, objects) in enumerate(drive):

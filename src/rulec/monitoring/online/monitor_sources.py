@@ -21,7 +21,7 @@ from rulec.monitoring.constant_values import with_constants
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
 from rulec.monitoring.online.monitor_state import SoFar
-from rulec.monitoring.online.running_monitor import Monitor
+from rulec.monitoring.online.running_monitor import RunningMonitor
 from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.trace import Trace
 from rulec.trace.formats.json_line_problems import is_beginning
@@ -29,13 +29,13 @@ from rulec.trace.formats.json_lines import LiveState
 from rulec.trace.trace_model import check_trace
 
 
-def replay_trace(trace: Trace, rulebook: CompiledRulebook) -> Monitor:
+def replay_trace(trace: Trace, rulebook: CompiledRulebook) -> RunningMonitor:
     """A monitor after the last state of a trace.
 
     Raises RulecError R0501 to R0508 if the trace does not fit the rulebook, as in ``verify``.
     """
     check_trace(trace)
-    monitor = Monitor(rulebook, trace.step_s, told=trace.told)
+    monitor = RunningMonitor(rulebook, trace.step_s, told=trace.told)
     check_objects(trace.objects, rulebook.vocabulary, trace.place)
     for number, state in enumerate(trace.states):
         check_state(state, trace.objects, rulebook.vocabulary, f"state {number}", trace.place)
@@ -55,7 +55,7 @@ def _restricted_to(objects: Container[str], value: Any) -> Any:
     }
 
 
-def answer(monitor: Monitor, item: LiveState | RulecError) -> SoFar | RulecError:
+def answer(monitor: RunningMonitor, item: LiveState | RulecError) -> SoFar | RulecError:
     """Take a step and return the verdict, or the error that prevented it.
 
     In place of a state, ``item`` may be the error that prevented reading one.
@@ -69,7 +69,7 @@ def answer(monitor: Monitor, item: LiveState | RulecError) -> SoFar | RulecError
 
 
 def read_saved(path: Path) -> Any:
-    """Read a file for ``Monitor.restore``. Raises RulecError R0701 or R0510."""
+    """Read a file for ``RunningMonitor.restore``. Raises RulecError R0701 or R0510."""
     with opened(path) as stream:
         return saved_from(read_whole(stream, path, MAX_SAVED_BYTES), str(path))
 
@@ -96,7 +96,7 @@ def step_of(saved: Any) -> Fraction | None:
 
 
 @contextmanager
-def saved_at_the_end(monitor: Monitor, path: Path | None) -> Iterator[None]:
+def saved_at_the_end(monitor: RunningMonitor, path: Path | None) -> Iterator[None]:
     """Save a monitor at the block's end, also if it raises an error.
 
     Until then a file that is there stays as it is. Without a path this does nothing. Raises

@@ -50,7 +50,7 @@ They form one value, so that an interrupted step cannot leave them inconsistent.
 """
 
 
-class Monitor:
+class RunningMonitor:
     """A monitor of a trace whose states arrive one after the other.
 
     A step takes as long after a million states as after one: the past is represented by the states
@@ -310,7 +310,7 @@ class Monitor:
     @classmethod
     def restore(
         cls, rulebook: CompiledRulebook, snapshot: Any, place: SourceLocation | None = None
-    ) -> Monitor:
+    ) -> RunningMonitor:
         """A monitor that continues where another one stopped.
 
         Args:
@@ -328,13 +328,14 @@ class Monitor:
         monitor._now, monitor._violations = (current, number, (), TransitionCache()), violations
         return monitor
 
-    def __reduce__(self) -> tuple[Callable[..., Monitor], tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[Callable[..., RunningMonitor], tuple[Any, ...]]:
         state = self.snapshot(), self._now[2], self._violations
-        return _unpickled, (type(self), self._rulebook, self._step_s, *state)
+        return _unpickled, (type(self), self._rulebook, self._step_s, state)
 
     def __repr__(self) -> str:
         so_far = self.so_far
-        return f"Monitor({self._rulebook.name}, state={so_far.state}, verdict={so_far.verdict!r})"
+        about = f"{self._rulebook.name}, state={so_far.state}, verdict={so_far.verdict!r}"
+        return f"{type(self).__name__}({about})"
 
     def _violation(self, change: VerdictChange, number: int | None) -> Violation:
         strength = self._strengths[change.rule]
@@ -342,14 +343,13 @@ class Monitor:
 
 
 def _unpickled(
-    kind: type[Monitor],
+    kind: type[RunningMonitor],
     rulebook: CompiledRulebook,
     step_s: Fraction | None,
-    snapshot: Any,
-    changes: tuple[VerdictChange, ...],
-    violations: list[Violation],
-) -> Monitor:
-    """A monitor in the state of another one; its caches are empty."""
+    state: tuple[Any, tuple[VerdictChange, ...], list[Violation]],
+) -> RunningMonitor:
+    """A monitor with another one's snapshot, last changes and violations; its caches are empty."""
+    snapshot, changes, violations = state
     monitor = kind.restore(rulebook, snapshot)
     monitor._step_s = step_s
     current, number, _, cache = monitor._now

@@ -6,14 +6,17 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from shlex import quote
+from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, TooLargeRule
 from rulec.diagnostics import first_of
 from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
 from rulec.report.text.terminal_text import broken, counted, cut, mirrored, table_lines, visible
-from rulec.report.verdict_findings.verdict_finding import VerdictFinding
 from rulec.report.verdicts import verdict_report
 from rulec.vocabulary import Quantity
+
+if TYPE_CHECKING:
+    from rulec.report.verdict_findings.verdict_finding import VerdictFinding
 
 MOST_SHOWN = 3
 """Number of drives of a violated rule that are shown; the findings have all of them."""

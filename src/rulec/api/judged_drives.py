@@ -42,7 +42,7 @@ Answer = Verdict | NotJudged | NoDrive
 """A verdict, or why there is none."""
 
 
-class Findings(Rows, Sequence[VerdictFinding]):
+class FindingRows(Rows, Sequence[VerdictFinding]):
     """Findings in the order of their drives, also as rows of a table."""
 
     def __init__(self, findings: Sequence[VerdictFinding]) -> None:
@@ -53,10 +53,10 @@ class Findings(Rows, Sequence[VerdictFinding]):
 
     def __getitem__(self, number: Any) -> Any:
         found = self._findings[number]
-        return Findings(found) if isinstance(number, slice) else found
+        return FindingRows(found) if isinstance(number, slice) else found
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Findings) and self._findings == other._findings
+        return isinstance(other, FindingRows) and self._findings == other._findings
 
     def __hash__(self) -> int:
         return hash(self._findings)
@@ -74,7 +74,7 @@ class Findings(Rows, Sequence[VerdictFinding]):
 
     def __repr__(self) -> str:
         rules = {finding.rule for finding in self._findings}
-        return f"Findings({counted(len(self), 'finding')} of {counted(len(rules), 'rule')})"
+        return f"FindingRows({counted(len(self), 'finding')} of {counted(len(rules), 'rule')})"
 
 
 class Judged(Rows, Mapping[str, Answer]):
@@ -87,7 +87,7 @@ class Judged(Rows, Mapping[str, Answer]):
 
     def __init__(self, rules: CompiledRulebook) -> None:
         self.rules = rules
-        self.findings = Findings(())
+        self.findings = FindingRows(())
         self._answers: dict[str, Answer] = {}
 
     def __getitem__(self, name: str) -> Answer:
@@ -104,9 +104,9 @@ class Judged(Rows, Mapping[str, Answer]):
         """The names of those that violate a hard rule."""
         return tuple([name for name, answer in self.items() if _outcome(answer) == "violated"])
 
-    def violations(self) -> Findings:
+    def violations(self) -> FindingRows:
         """The violations, those of soft rules as well."""
-        return Findings([one for one in self.findings if one.outcome == "violated"])
+        return FindingRows([one for one in self.findings if one.outcome == "violated"])
 
     @property
     def worst(self) -> VerdictFinding | None:
@@ -176,7 +176,7 @@ class JudgedDrives(Judged):
                 self._answers[found.drive.arrays.id] = found.answer
             else:
                 self._answers[found.ego] = found
-        self.findings = Findings(gathered.whole().findings)
+        self.findings = FindingRows(gathered.whole().findings)
 
     def summary(self, width: int = 80) -> str:
         """What was found, as ``rulec verify`` prints it in a terminal of this width."""
@@ -246,7 +246,7 @@ class JudgedTraces(Judged):
                 findings += [replace(finding, vehicle=name) for finding in found]
             elif isinstance(judged, NotJudged):
                 findings.append(not_judged_trace(file, judged, rules.name))
-        self.findings = Findings(findings)
+        self.findings = FindingRows(findings)
 
     def summary(self, width: int = 80) -> str:
         """What was found, as ``rulec verify`` prints it in a terminal of this width."""
