@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from rulec.cli.main import main
+from support.unwrapped import unwrapped
 
 FOLLOWING = str(Path(__file__).resolve().parents[2] / "docs/samples/following.xml")
 
@@ -113,7 +114,7 @@ def test_the_bounds_are_named_where_they_close_the_way(tmp_path, capsys):
     end = json.loads(capsys.readouterr().out)["dead_end"]
     assert end == {"last_s": 1.0, "closed_by": ["c"], "opened_by": ["--bounds none"]}
     assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "1"]) == 1
-    text = capsys.readouterr().out
+    text = unwrapped(capsys.readouterr().out)
     assert "none leads on from between 1 s and 2 s within the bounds of ego's motion" in text
 
 
@@ -144,9 +145,9 @@ def test_no_way_within_bounds_leads_to_the_goal(tmp_path, capsys):
     goal = "[goal]\ns = [50, 60]\n"
     file.write_text(ego + goal + CAR.format(name="c", s=44, speed=0))
     assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "1"]) == 1
-    text = capsys.readouterr().out
+    text = unwrapped(capsys.readouterr().out)
     assert "no way leads to the goal by the end within the bounds of ego's motion" in text
-    assert "maneuvers   0 " in text
+    assert "maneuvers 0 " in text
 
 
 @pytest.mark.parametrize(
@@ -163,9 +164,9 @@ def test_a_goal_out_of_reach_is_said(goal, opened, tmp_path, capsys):
     ego = ROAD.replace("d = 0", 'd = 0\nspeed = 10\nbounds = "car"').replace("60", "120")
     file.write_text(ego.replace("horizon_s = 4", "horizon_s = 2") + f"[goal]\ns = {goal}\n")
     assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "1"]) == 1
-    text = capsys.readouterr().out
+    text = unwrapped(capsys.readouterr().out)
     assert "no way leads to the goal by the end within the bounds of ego's motion" in text
-    assert f"opened by   {opened}\n" in text
+    assert f"opened by {opened} satisfying" in text
 
 
 def test_a_rule_is_named_that_closes_every_way(tmp_path, capsys):
@@ -223,5 +224,5 @@ def test_an_emergency_after_the_end_is_said(tmp_path, capsys):
     assert "least_braking" not in told
     assert 4.08 < told["least_braking_later"] < 4.19
     assert main([*command, "--list", "1"]) == 0
-    said = "brakes by more than 4.1 m/s², or has to after 2 s for what is ahead then\n"
-    assert f"emergency   every maneuver {said}" in capsys.readouterr().out
+    said = "brakes by more than 4.1 m/s², or has to after 2 s for what is ahead then"
+    assert f"emergency every maneuver {said}" in unwrapped(capsys.readouterr().out)

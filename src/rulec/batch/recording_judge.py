@@ -373,4 +373,4 @@ def in_short(judged: JudgedRecording, width: int) -> str:
     counts = summary(judged.tally)
     violated = ", ".join(f"{rule} {len(drives)}" for rule, drives in judged.tally.first_s.items())
     text = visible(f"{where}: {counts}" + (f" ({violated})" if violated else ""))
-    return "\n".join(broken(text, width, later="  ", at_hyphens=False))
+    return "\n".join(broken(text, width, later="  "))

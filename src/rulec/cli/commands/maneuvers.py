@@ -29,7 +29,7 @@ from rulec.diagnostics import SourceLocation
 from rulec.diagnostics.fault_messages import contained
 from rulec.recordings.recording_inputs import InputFiles, input_files
 from rulec.report.findings.diagnostics_text import print_diagnostics
-from rulec.report.text.console import print_remark
+from rulec.report.text.console import page_width, print_remark
 
 if TYPE_CHECKING:
     from rulec.planning import Maneuvers
@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     "--why",
     is_flag=True,
     help="Show for every rule how many maneuvers violate it, how many violate no other hard rule, "
-    "and an example.",
+    "and an example; of listed maneuvers why each rule is open.",
 )
 @shared.number_option(
     "--classes",
@@ -182,7 +182,7 @@ def _shown(
     # Late import, already loaded here: maneuvers (130 ms).
     from rulec.report.maneuvers.maneuver_report import as_text
 
-    return as_text(maneuvers, answers, seconds) + ("\n" if several else "")
+    return as_text(maneuvers, answers, seconds, page_width()) + ("\n" if several else "")
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from fractions import Fraction
 from itertools import groupby
 from operator import itemgetter
@@ -16,7 +18,8 @@ from rulec.partition import Cell, NavigationGraph, envelope
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.penalties import PenaltyRank
-from rulec.report.text.terminal_text import broken, shown_count, table_lines, visible
+from rulec.report.text.console import PAGE_WIDTH
+from rulec.report.text.terminal_text import broken, cut, shown_count, table_lines, visible
 from rulec.report.verdicts.verdict_report import open_in_words
 from rulec.rulebook.rulebook_model import cited_law
 
@@ -29,30 +32,49 @@ if TYPE_CHECKING:
 MOST_BINDINGS = 3
 MOST_NAMED = 6
 MOST_VIOLATIONS = 20
+FEW = 3
 
-_LINE = 100
-"""Width in characters of a line that lists rules."""
+LEAST_LABEL = 16
+"""Characters of a cell's relations that are shown, however narrow the page."""
+
+_LABEL = re.compile(r"[a-z]+(?: [a-z]+)* {2,}|\d+ s  ")
+"""The label of a line, such as ``not judged  ``."""
 
 _LEAST_SHOWN = 0.005
 """Parts of a cost below this value are not shown."""
+
+
+@dataclass(frozen=True, slots=True)
+class BlockLayout:
+    """The width of a page in characters, and whether ``every`` open verdict has its reasons."""
+
+    width: int = PAGE_WIDTH
+    every: bool = False
 
 
 def maneuver_block(
     graph: NavigationGraph,
     number: int,
     maneuver: Maneuver,
-    remark: str = "",
-    details: Sequence[str] = (),
+    details: Sequence[str],
+    layout: BlockLayout,
 ) -> list[str]:
-    """A maneuver's cost and margin with a remark, details, and its cells with their bounds."""
+    """A maneuver's cost and margin, details, and its cells with their bounds.
+
+    The first of the ``details`` is a remark for the line of the cost.
+    """
+    remark, *more = details or [""]
     margin_s = maneuver.margin_s
     margin = "never changes cell" if margin_s is None else f"margin {margin_s:g} s"
     rows = [
         (
             f"{layer.start_s:g} s",
             _label(layer.cells[index]),
-            f"s {bounds.s_min:g} … {bounds.s_max:g} m",
-            f"d {min(d for _, d in bounds.d_right):g} … {max(d for _, d in bounds.d_left):g} m",
+            f"s {_metres(bounds.s_min)} … {_metres(bounds.s_max)} m",
+            (
+                f"d {_metres(min(d for _, d in bounds.d_right))} … "
+                f"{_metres(max(d for _, d in bounds.d_left))} m"
+            ),
         )
         for layer, index, bounds in zip(
             graph.layers, maneuver.nodes, envelope(graph, maneuver.nodes), strict=True
@@ -60,7 +82,28 @@ def maneuver_block(
     ]
     head = f"{number}. cost {maneuver.cost:.4g}{_cost_parts(maneuver)}{margin}{remark}"
     driven = [] if maneuver.trajectory is None else [_driven(maneuver.trajectory)]
-    return ["", head, *driven, *details, *table_lines(rows, indent="   ")]
+    too_wide = max(map(len, table_lines(rows, indent="   "))) - layout.width
+    if too_wide > 0:
+        widest = max(max(len(label) for _, label, _, _ in rows) - too_wide, LEAST_LABEL)
+        # The surface is mostly the same
+        named = [label.partition(" ")[2] or label for _, label, _, _ in rows]
+        rows = [
+            (row[0], cut(label, widest), *row[2:]) for row, label in zip(rows, named, strict=True)
+        ]
+    lines = [line for text in (head, *driven, *more) for line in wrapped(text, layout.width)]
+    return ["", *lines, *table_lines(rows, indent="   ")]
+
+
+def wrapped(text: str, width: int) -> list[str]:
+    """A line of a report, wrapped: below its label, if it has one, or else a bit further in."""
+    label = _LABEL.match(text)
+    indent = len(text) - len(text.lstrip(" "))
+    return broken(text, width, later=" " * (len(label[0]) if label else indent + 2))
+
+
+def _metres(number: float) -> str:
+    """A coordinate (m), to the centimetre."""
+    return f"{round(number, 2) + 0.0:g}"
 
 
 def _cost_parts(maneuver: Maneuver) -> str:
@@ -86,19 +129,31 @@ def _driven(trajectory: WitnessTrajectory) -> str:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class ShownVerdicts:
+    """The verdicts on maneuvers by their nodes, those on their trajectories, and the layout."""
+
+    verdicts: Mapping[tuple[int, ...], Verdict]
+    driven: TrajectoryScores | None
+    layout: BlockLayout
+
+
 def listed_block(
     maneuvers: Maneuvers,
     number: int,
     maneuver: Maneuver,
-    verdicts: Mapping[tuple[int, ...], Verdict],
-    driven: TrajectoryScores | None = None,
+    shown: ShownVerdicts,
 ) -> list[str]:
     """A maneuver of a list, with the verdict on its trajectory and its own open verdicts."""
-    verdict = verdicts.get(maneuver.nodes)
+    verdict = shown.verdicts.get(maneuver.nodes)
     doubtful = () if verdict is None else verdict.open
     remark = "; open" if any(open_verdict.strength == "hard" for open_verdict in doubtful) else ""
-    details = [*_as_driven(maneuver, driven), *_open_lines(maneuvers, doubtful)]
-    return maneuver_block(maneuvers.graph, number, maneuver, remark, details)
+    details = [
+        remark,
+        *_as_driven(maneuver, shown.driven),
+        *_open_lines(maneuvers, doubtful, shown.layout),
+    ]
+    return maneuver_block(maneuvers.graph, number, maneuver, details, shown.layout)
 
 
 def driven_counts(driven: TrajectoryScores | None) -> list[str]:
@@ -135,7 +190,14 @@ def _as_driven(maneuver: Maneuver, driven: TrajectoryScores | None) -> list[str]
     return [visible(f"   trajectory{until}: {'; '.join(parts)}")]
 
 
-def _open_lines(maneuvers: Maneuvers, doubtful: Sequence[OpenVerdict]) -> list[str]:
+def _open_lines(
+    maneuvers: Maneuvers, doubtful: Sequence[OpenVerdict], layout: BlockLayout
+) -> list[str]:
+    """The open verdicts with their reasons; of more than a few only how many each rule has."""
+    if len(doubtful) > FEW and not layout.every:
+        numbers = Counter(open_verdict.rule for open_verdict in doubtful)
+        shown = [f"{rule} ({number})" if number > 1 else rule for rule, number in numbers.items()]
+        return [f"   open: {first_of(shown, FEW)}; --why has the reasons"]
     lines = [
         f"   {visible(f'{_rule_title(maneuvers, open_verdict)}: {open_in_words(open_verdict)}')}"
         for open_verdict in doubtful[:MOST_VIOLATIONS]
@@ -145,24 +207,22 @@ def _open_lines(maneuvers: Maneuvers, doubtful: Sequence[OpenVerdict]) -> list[s
     return lines
 
 
-def ranked_block(
-    maneuvers: Maneuvers, ranked: RankedManeuver, driven: TrajectoryScores | None = None
-) -> list[str]:
+def ranked_block(maneuvers: Maneuvers, ranked: RankedManeuver, shown: ShownVerdicts) -> list[str]:
     """A ranked maneuver with the verdict on its trajectory, and its own violations."""
     surely = "surely " if ranked.open else ""
     same = f"; {shown_count(ranked.members)} {surely}violate the same" if ranked.members > 1 else ""
     penalty = _penalty(ranked.penalty)
     if ranked.open:
         penalty = f"at most {penalty}, at least {_penalty(ranked.at_least)}"
-    details = [*_as_driven(ranked.maneuver, driven), f"   violates {penalty}"]
+    details = [same, *_as_driven(ranked.maneuver, shown.driven), f"   violates {penalty}"]
     details += [
         f"     {_violation_line(maneuvers, violation)}"
         for violation in ranked.violations[:MOST_VIOLATIONS]
     ]
     if len(ranked.violations) > MOST_VIOLATIONS:
         details.append(f"     and {len(ranked.violations) - MOST_VIOLATIONS} more")
-    details += [f"  {line}" for line in _open_lines(maneuvers, ranked.open)]
-    return maneuver_block(maneuvers.graph, ranked.place, ranked.maneuver, same, details)
+    details += [f"  {line}" for line in _open_lines(maneuvers, ranked.open, shown.layout)]
+    return maneuver_block(maneuvers.graph, ranked.place, ranked.maneuver, details, shown.layout)
 
 
 def _penalty(penalty: Mapping[PenaltyRank, Fraction]) -> str:
@@ -232,8 +292,11 @@ def shown_chance(number: Fraction | None, at_most: Fraction | None = None) -> st
     return f"{float(number):.4g}{above}"
 
 
-def pruning_lines(maneuvers: Maneuvers, prunings: Sequence[RulePruning]) -> list[str]:
-    """A table of the rules that exclude maneuvers, and the names of the other rules."""
+def pruning_lines(maneuvers: Maneuvers, prunings: Sequence[RulePruning], width: int) -> list[str]:
+    """A table of the rules that exclude maneuvers, and the names of the other rules.
+
+    An example that does not fit beside its rule stands below it.
+    """
     some_open = any(pruning.open for pruning in prunings)
     rows = [("rule", "violated by", "alone by", *(["open"] if some_open else []), "for example")]
     rows += [
@@ -249,6 +312,12 @@ def pruning_lines(maneuvers: Maneuvers, prunings: Sequence[RulePruning]) -> list
     ]
     right = (1, 2, 3) if some_open else (1, 2)
     lines = table_lines(rows, right=right) if len(rows) > 1 else []
+    if any(len(line) > width for line in lines):
+        narrow = table_lines([row[:-1] for row in rows], right=right)
+        lines = narrow[:1]
+        for line, row in zip(narrow[1:], rows[1:], strict=True):
+            example = broken(f"for example {row[-1]}", width, "  ", "    ") if row[-1] else []
+            lines += [line, *example]
     not_judged = {rule.rule for rule in maneuvers.not_judged}
     idle = [
         pruning.rule.name
@@ -256,7 +325,7 @@ def pruning_lines(maneuvers: Maneuvers, prunings: Sequence[RulePruning]) -> list
         if not (pruning.violating or pruning.open or pruning.rule.name in not_judged)
     ]
     text = f"violated by none: {', '.join(idle)}"
-    return [*lines, *broken(text, _LINE, later="  ")] if idle else lines
+    return [*lines, *broken(text, width, later="  ")] if idle else lines
 
 
 def _example(maneuvers: Maneuvers, pruning: RulePruning) -> str:
@@ -276,9 +345,11 @@ def _label(cell: Cell, objects: Collection[str] | None = None) -> str:
     signature: Mapping[str, str | tuple[str, str]] = cell.signature
     if objects is not None:
         signature = {name: signature[name] for name in objects if name in signature}
+    # Those in ego's own lane first
+    relations = sorted(signature.items(), key=lambda item: "same_lane" not in item[1])
     named = [
         f"{relation if isinstance(relation, str) else ' '.join(relation)}({visible(name)})"
-        for name, relation in list(signature.items())[:MOST_NAMED]
+        for name, relation in relations[:MOST_NAMED]
     ]
     if len(signature) > MOST_NAMED:
         named.append(f"and {len(signature) - MOST_NAMED} more")

@@ -15,6 +15,7 @@ from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.report.maneuvers import maneuver_blocks
+from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.terminal_text import mirrored, shown_count, styled, visible
 from rulec.scenario import Account, Scenario
 
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
 
 MOST_VIOLATIONS = 6
 """Number of past violations named as text; JSON has all of them."""
+
+MOST_UNKNOWN = 1
+"""Number of unknown names and of rules not judged that are listed; JSON has all of them."""
 
 MOST_DEFAULTS = 4
 """Number of names listed in a line; JSON has all of them."""
@@ -101,7 +105,9 @@ def lists_none(maneuvers: Maneuvers, answers: ManeuverAnswers) -> bool:
     return is_bare and bool(maneuvers.satisfying or maneuvers.open)
 
 
-def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
+def as_text(
+    maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float, width: int = PAGE_WIDTH
+) -> str:
     """Write the counts, and a block for each maneuver requested."""
     graph, rules = maneuvers.graph, maneuvers.rules
     dark = {rule.rule for rule in maneuvers.not_judged}
@@ -150,23 +156,26 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             lines.append(visible(f"in the way  {first_of(maneuvers.in_way, MOST_DEFAULTS)}"))
         if maneuvers.in_way and graph.extent != "body":
             lines.append("opened by   `--extent body`, perhaps: it leaves more room")
+    lines = [line for text in lines for line in maneuver_blocks.wrapped(text, width)]
+    layout = maneuver_blocks.BlockLayout(width, every=answers.prunings is not None)
+    shown_verdicts = maneuver_blocks.ShownVerdicts(answers.verdicts, answers.driven, layout)
     for number, maneuver in enumerate(answers.listed or (), 1):
-        lines += maneuver_blocks.listed_block(
-            maneuvers, number, maneuver, answers.verdicts, answers.driven
-        )
+        lines += maneuver_blocks.listed_block(maneuvers, number, maneuver, shown_verdicts)
         lines += _chances(answers, maneuver)
     if answers.best:
         lines += ["", "Every maneuver violates a hard rule. No other violates less than:"]
     for ranked_maneuver in (*(answers.best or ()), *(answers.ranked or ())):
-        lines += maneuver_blocks.ranked_block(maneuvers, ranked_maneuver, answers.driven)
+        lines += maneuver_blocks.ranked_block(maneuvers, ranked_maneuver, shown_verdicts)
         lines += _chances(answers, ranked_maneuver.maneuver)
     if answers.prunings is not None:
-        lines += ["", *maneuver_blocks.pruning_lines(maneuvers, answers.prunings)]
+        lines += ["", *maneuver_blocks.pruning_lines(maneuvers, answers.prunings, width)]
     if answers.classes is not None:
         for number, variant in enumerate(answers.classes[1], 1):
             members = f"{shown_count(variant.members)} satisfying members"
             remark = f"; class of {'1 member' if variant.members == 1 else members}"
-            lines += maneuver_blocks.maneuver_block(graph, number, variant.cheapest, remark)
+            lines += maneuver_blocks.maneuver_block(
+                graph, number, variant.cheapest, [remark], layout
+            )
     return "\n".join(lines)
 
 
@@ -181,10 +190,10 @@ def _judged(maneuvers: Maneuvers, answers: ManeuverAnswers) -> Iterator[str]:
     """The number of rules that can be judged from the words of cells."""
     if answers.judged is not None and maneuvers.traces:
         n_rules = len(maneuvers.rules.rules)
-        every = f"{len(answers.judged)} of {n_rules} could be judged"
+        every = f"{len(answers.judged)} of {n_rules} judged"
         fewer = n_rules - len(answers.judged) - len(maneuvers.not_judged)
-        on_fewer = f"; {fewer} on fewer" if fewer > 0 else ""
-        yield f"rules       {every}: kept or violated on half of the maneuvers or more{on_fewer}"
+        on_fewer = f", {fewer} on fewer" if fewer > 0 else ""
+        yield f"rules       {every} on half of the maneuvers or more{on_fewer}"
 
 
 def _doubts(maneuvers: Maneuvers) -> Iterator[str]:
@@ -194,15 +203,15 @@ def _doubts(maneuvers: Maneuvers) -> Iterator[str]:
         fewer = "" if maneuvers.exact else ", or fewer: there were too many cases to examine"
         yield f"open        {styled(shown_count(maneuvers.open), 'bold')}{fewer}"
     if maneuvers.unknown:
-        names = first_of(maneuvers.unknown, MOST_DEFAULTS)
+        names = first_of(maneuvers.unknown, MOST_UNKNOWN)
         yield visible(f"unknown     {names}: not, or not exactly, known")
     if maneuvers.doubtful_past:
         names = first_of(maneuvers.doubtful_past, MOST_DEFAULTS)
         yield visible(f"unknown     what was before, for {names}")
     if maneuvers.not_judged:
-        dark = first_of([rule.rule for rule in maneuvers.not_judged], MOST_DEFAULTS)
+        dark = first_of([rule.rule for rule in maneuvers.not_judged], MOST_UNKNOWN)
         number = f"{len(maneuvers.not_judged)} of {len(maneuvers.rules.rules)} rules"
-        yield visible(f"not judged  {number}, because words that they read are missing: {dark}")
+        yield visible(f"not judged  {number}, for lack of words: {dark}")
 
 
 def _scene(maneuvers: Maneuvers) -> Iterator[str]:

@@ -101,7 +101,7 @@ def as_text(
         for rule, line in zip(violated, table, strict=True):
             first = visible(_first(total.first[rule.name]))
             lines.append(cut(visible(line), width))
-            lines += broken(f"first: {first}", width, "  ", "    ", at_hyphens=False)
+            lines += broken(f"first: {first}", width, "  ", "    ")
     lines.append(verdict_report.summary(total.outcomes, total.not_judged, "drive"))
     return "\n".join(lines)
 

@@ -10,7 +10,6 @@ from collections.abc import Iterator, Sequence
 from rulec.logic.bounds import BOOLEAN, operations_of
 from rulec.logic.formula import Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.monitoring.explain.explained_parts import Part
-from rulec.report.text.terminal_text import cut
 
 MOST_PARTS = 20
 """Of a formula with more parts, only those that decide are shown."""
@@ -47,6 +46,11 @@ def _folded(parts: Sequence[Part], at: int, depth: int, widest: int) -> Iterator
         return
     for operand in _operands(parts, at):
         yield from _folded(parts, operand, depth + 1, widest)
+
+
+def cut(text: str, widest: int) -> str:
+    """A text, cut to a number of characters."""
+    return text if len(text) <= widest else f"{text[: widest - 1]}…"
 
 
 def _operands(parts: Sequence[Part], at: int) -> Iterator[int]:

@@ -16,9 +16,9 @@ from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.explain.margins import Margin, number_with_error
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.guard_text import GuardWording, runs
-from rulec.report.text.terminal_text import broken, cut, styled, table_lines, visible
+from rulec.report.text.terminal_text import broken, styled, table_lines, visible
 from rulec.report.verdicts.state_times import NUMBERS_ALONE, StateTimes
-from rulec.report.verdicts.table_folding import MOST_PARTS, fitting, folded, head, titled
+from rulec.report.verdicts.table_folding import MOST_PARTS, cut, fitting, folded, head, titled
 from rulec.trace import Value
 from rulec.vocabulary.partial_values import Interval
 
