@@ -6,6 +6,7 @@ import pty
 import struct
 import sys
 import termios
+from pathlib import Path
 from threading import Thread
 
 import pytest
@@ -31,6 +32,10 @@ hard rule a_rule_whose_name_alone_takes_half_of_a_line_or_more_of_it (v: vehicle
   require always (b(v) and not CONGESTED implies next (b(v) or l(v) or r(v)) or CONGESTED)
 }
 """
+
+SAMPLES = Path(__file__).parents[2] / "docs" / "samples"
+FOLLOWING, PASSING = str(SAMPLES / "following.xml"), str(SAMPLES / "passing.fcd.xml")
+TRACES = str(SAMPLES / "traces.jsonl")
 
 ANSWERS = {
     "list": ["list"],
@@ -68,6 +73,17 @@ ANSWERS = {
     "explain WORD": ["explain", "lane_change", "time_to_react"],
     "explain CODE": ["explain", "R0201"],
     "help": ["help", "diff"],
+    "verify": ["verify", FOLLOWING, "-r", "de"],
+    "verify --why": ["verify", FOLLOWING, "-r", "de", "--why", "--explain", "2"],
+    "verify traces": ["verify", TRACES, "-r", "esterle2019"],
+    "verify by books": ["verify", FOLLOWING, "-r", "de", "-r", "fr", "-r", "jp", "-r", "us-ca"],
+    "verify files": ["verify", FOLLOWING, PASSING, "-r", "de"],
+    "maneuvers": ["maneuvers", FOLLOWING, "-r", "de", "--ego", "1", "--list", "2", "--why"],
+    "maneuvers of the paper": ["maneuvers", "s2", "-r", "esterle2019", "--rank", "2"],
+    "maneuvers by books": ["maneuvers", "s1", "s2", "-r", "esterle2019", "-r", "./own.rules"],
+    "find": ["find", "(v: vehicle) gap(v) < 20 m", FOLLOWING],
+    "formats": ["formats"],
+    "fleet": ["fleet", FOLLOWING, "-r", "de", "-r", "fr", "-o", "findings"],
 }
 """Each verb's answers. In a pipe, messages about mistakes keep to one line, for other programs."""
 

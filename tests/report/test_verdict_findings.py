@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import re
+from html import unescape
 from xml.etree import ElementTree
 
 import jsonschema
@@ -71,9 +72,9 @@ SLOW = of(
 DISTANCE = of("distance", strength="soft", vehicle="4", other=("3",), from_s=1.0, to_s=1.0)
 OPEN = of("distance", "open", strength="soft", vehicle="5", other=("3",), open_on=("gap",))
 UNTOLD = of("quiet", "not_judged", open_on=("wet",))
-FOUND = RecordingFindings("a b.xml", "A", 3, (SLOW, DISTANCE, OPEN, UNTOLD))
+FOUND = RecordingFindings("a b.xml", "A", ("4", "5", "6"), (SLOW, DISTANCE, OPEN, UNTOLD))
 BROKEN = RecordingFindings(
-    "b.xml", "", 0, (VerdictFinding(file="b.xml", outcome="not_judged", because="it is empty"),)
+    "b.xml", "", (), (VerdictFinding(file="b.xml", outcome="not_judged", because="it is empty"),)
 )
 
 
@@ -116,7 +117,7 @@ def test_csv_has_a_row_for_each_finding(rules):
 
 @pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@SUM(A1)", "'=1", "\t=1", "\r=1"])
 def test_no_cell_of_csv_is_a_formula(rules, text):
-    found = RecordingFindings("f", "A", 1, (of("slow", vehicle=text, other=(text, "x")),))
+    found = RecordingFindings("f", "A", (text,), (of("slow", vehicle=text, other=(text, "x")),))
     head, row = csv.reader(io.StringIO(written(rules, "csv", found).decode(), newline=""))
     for cell in (row[head.index("vehicle")], row[head.index("other")]):
         assert cell[0] in "'\\"
@@ -131,37 +132,36 @@ def test_parquet_has_the_same_rows_with_types(rules):
     assert rows[3]["from_s"] is None
 
 
-def test_junit_fails_for_hard_rules_alone(rules):
+def test_junit_has_a_case_for_each_rule_and_drive(rules):
     root = ElementTree.fromstring(written(rules, "junit", FOUND, BROKEN))
     first, second = root.findall("testsuite")
     assert first.attrib == {
         "name": "a b.xml: A",
-        "tests": "3",
+        "tests": "7",
         "failures": "1",
         "errors": "0",
-        "skipped": "1",
+        "skipped": "2",
     }
-    slow, distance, quiet = first.findall("testcase")
-    assert (slow.get("classname"), slow.get("name")) == ("tiny", "slow")
-    assert slow.find("failure").get("message").startswith("violated in 1 of 3 drives: 4 violates")
-    assert distance.find("failure") is None
-    assert distance.findtext("system-out").splitlines() == [
-        "4 violates distance towards 3 at 1 s",
-        "whether 5 violates distance towards 3 is open: depends on gap",
+    cases = {(case.get("classname"), case.get("name")): case for case in first}
+    assert list(cases) == [
+        *(("tiny.slow", drive) for drive in "456"),
+        *(("tiny.distance", drive) for drive in "456"),
+        ("tiny", "quiet"),
     ]
-    assert quiet.find("skipped").get("message") == "not told: wet"
+    # A hard rule fails, a soft one is said, what is open or not judged is skipped
+    assert cases["tiny.slow", "4"].find("failure").get("message") == SLOW.says
+    assert (
+        cases["tiny.distance", "4"].findtext("system-out") == "4 violates distance towards 3 at 1 s"
+    )
+    assert cases["tiny.distance", "4"].find("failure") is None
+    assert cases["tiny.distance", "5"].find("skipped").get("message") == (
+        "whether 5 violates distance towards 3 is open: depends on gap"
+    )
+    assert cases["tiny", "quiet"].find("skipped").get("message") == "not told: wet"
+    kept = [key for key, case in cases.items() if not list(case)]
+    assert kept == [("tiny.slow", "5"), ("tiny.slow", "6"), ("tiny.distance", "6")]
     assert second.find("testcase/error").get("message") == "it is empty"
     assert second.get("errors") == "1"
-
-
-def test_a_rule_that_is_only_open_does_not_pass_in_junit(rules):
-    found = RecordingFindings("a b.xml", "A", 3, (OPEN,))
-    suite = ElementTree.fromstring(written(rules, "junit", found)).find("testsuite")
-    skipped = {case.get("name"): case.find("skipped") for case in suite}
-    assert (skipped["slow"], skipped["quiet"], suite.get("skipped")) == (None, None, "1")
-    assert skipped["distance"].get("message") == (
-        "open in 1 of 3 drives: whether 5 violates distance towards 3 is open: depends on gap"
-    )
 
 
 def test_sarif_has_results_for_what_is_violated_or_open(rules):
@@ -185,6 +185,8 @@ def test_sarif_has_results_for_what_is_violated_or_open(rules):
     assert [note["level"] for note in notes] == ["note", "error"]
     properties = run["results"][0]["properties"]
     assert (properties["at_s"], properties["x"], properties["lanelet"]) == (0.75, 2.0, "7")
+    assert location["properties"]["timeRegion"] == {"from_s": 0.5, "to_s": 2.5, "at_s": 0.75}
+    assert "properties" not in run["results"][2]["locations"][0]
     assert "at 0.75 s (from 0.5 s to 2.5 s)" in run["results"][0]["message"]["text"]
     prints = [one["partialFingerprints"]["rulec/v1"] for one in run["results"]]
     assert len(set(prints)) == 3
@@ -248,7 +250,7 @@ def test_messages_in_mcap_are_of_their_schemas(rules):
 
 
 def test_mcap_without_events_is_a_whole_file(rules):
-    assert messages(written(rules, "mcap", RecordingFindings("f", "A", 3, ()))) == {}
+    assert messages(written(rules, "mcap", RecordingFindings("f", "A", ("4",), ()))) == {}
     assert messages(written(rules, "mcap")) == {}
 
 
@@ -272,7 +274,7 @@ def test_messages_are_found_by_their_time():
 @pytest.mark.parametrize("form", ENDINGS)
 def test_hostile_names_do_no_harm(rules, form):
     evil = of("slow", vehicle=EVIL, other=(EVIL, "\ud800"), from_s=1.0, to_s=1.0, x=1.0, y=1.0)
-    content = written(rules, form, RecordingFindings(EVIL, EVIL, 1, (evil,)))
+    content = written(rules, form, RecordingFindings(EVIL, EVIL, (EVIL,), (evil,)))
     if form in ("parquet", "mcap"):
         assert content
         return
@@ -288,6 +290,47 @@ def test_hostile_names_do_no_harm(rules, form):
         assert json.loads(text)["vehicle"] == EVIL
     if form == "sarif":
         assert json.loads(text)["runs"][0]["results"][0]["properties"]["vehicle"] == EVIL
+
+
+def read_back(form, content):
+    """The fields of each violation that a reader of the format gets."""
+    if form == "jsonl":
+        return [json.loads(line) for line in content.splitlines()]
+    if form == "csv":
+        return list(csv.DictReader(io.StringIO(content.decode(), newline="")))
+    if form == "parquet":
+        return pyarrow.parquet.read_table(io.BytesIO(content)).to_pylist()
+    if form == "sarif":
+        (run,) = json.loads(content)["runs"]
+        return [{"rule": one["ruleId"], **one["properties"]} for one in run["results"]]
+    if form == "mcap":
+        return [line for _, line in messages(content)["/rulec/findings"]]
+    cases = ElementTree.fromstring(content).iter("testcase")
+    failed = [case for case in cases if case.find("failure") is not None]
+    return [
+        {"rule": case.get("classname").partition(".")[2], "vehicle": case.get("name")}
+        for case in failed
+    ]
+
+
+@pytest.mark.parametrize("form", ENDINGS)
+def test_a_finding_is_read_back(rules, form):
+    """One type stands behind all formats; JUnit has its rule, drive and sentence."""
+    found = RecordingFindings("a b.xml", "A", ("4",), (SLOW,))
+    content = written(rules, form, found)
+    (read,) = read_back(form, content)
+    named = {name: value for name, value in read.items() if name in COLUMNS}
+    assert {"rule", "vehicle"} <= set(named)
+    for name, value in named.items():
+        own = getattr(SLOW, name)
+        expected = {None: None, (): []}.get(own, own)
+        if form == "csv":
+            expected = {None: "", (): ""}.get(own, str(own))
+        assert value == expected, name
+    if form in ("jsonl", "csv", "parquet"):
+        assert list(named) == list(COLUMNS)
+    if form in ("sarif", "junit"):
+        assert SLOW.says in unescape(content.decode())
 
 
 def test_comparisons_of_several_units_are_compared_by_their_shares():

@@ -75,7 +75,7 @@ class TraceRun:
         for file in files:
             findings: list[VerdictFinding] = []
             rows: list[Mapping[str, object]] = []
-            left, traces_before = self.to_explain, self.total.judged
+            left, judged_traces = self.to_explain, list[str]()
             ids: set[str] | None = set()
             for judged, facts in self._answers(file, form, assumed):
                 ids = self._ids(ids, file, judged)
@@ -86,14 +86,15 @@ class TraceRun:
                         self._not_judged(file, answer, findings)
                     else:
                         left -= self._judged(file, judged, left, findings)
+                        judged_traces.append(answer.trace)
                 except Exception as problem:
                     fault = fault_of(problem, "not judged", SourceLocation(file))
                     answer = NotJudged(answer.trace, fault)
                     self._not_judged(file, answer, findings)
                 rows += self._rows(file, answer, facts, findings[before:])
             if self.to.wants_findings:
-                drives = self.total.judged - traces_before
-                self.to.add(RecordingFindings(file, "", drives, tuple(findings), tuple(rows)))
+                found = (tuple(judged_traces), tuple(findings), tuple(rows))
+                self.to.add(RecordingFindings(file, "", *found))
         if self.total.judged or self.opened:
             self.to.text(verdict_report.summary(self.total.outcomes, self.total.not_judged))
         if self.pending and assumed.ends is None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,6 +32,7 @@ from rulec.files.read_files import opened
 from rulec.recordings.recording_files import is_recording, read_recordings
 from rulec.recordings.recording_inputs import input_files
 from rulec.report.findings.diagnostics_text import Complaints
+from rulec.report.text.console import page_width
 from rulec.rulebook.query_model import FormulaQuery
 from rulec.settings import search_path
 
@@ -132,7 +134,8 @@ def command(
             yield drive
 
     if to.form in ("text", "json", "jsonl"):
-        as_lines = moment_rows.lines if to.form == "text" else moment_rows.json_lines
+        lines_of = partial(moment_rows.lines, width=page_width())
+        as_lines = lines_of if to.form == "text" else moment_rows.json_lines
         with answer_lines(to) as write:
             for drive in drives():
                 for line in as_lines(drive):

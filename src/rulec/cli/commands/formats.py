@@ -9,6 +9,7 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import put_answer
 from rulec.diagnostics import did_you_mean
+from rulec.report.text.console import page_width
 
 
 @click.command(cls=Verb)
@@ -46,5 +47,5 @@ def command(
         case "markdown":
             text = format_listing.as_markdown(listed, order, words=words)
         case _:
-            text = format_listing.as_text(listed, order, words=words)
+            text = format_listing.as_text(listed, order, words=words, width=page_width())
     put_answer(text, to)

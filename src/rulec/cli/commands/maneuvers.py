@@ -145,7 +145,7 @@ def command(
             # Raised so that no file is written.
             raise click.exceptions.Exit(ExitStatus.NOT_ANSWERED)
         if several and to.form == "text":
-            write(table_of(counts))
+            write(table_of(counts, page_width()))
     print_written(to.path, to)
     answered = len(counts) == len(inputs.paths) * len(machines) and not inputs.problems
     return ExitStatus.after(

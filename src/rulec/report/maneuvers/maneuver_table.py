@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rulec.planning import Maneuvers
-from rulec.report.text.terminal_text import shown_count, table_lines, visible
+from rulec.report.text.console import PAGE_WIDTH
+from rulec.report.text.terminal_text import cut, shown_count, stacked_tables, table_lines, visible
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +36,7 @@ class ManeuverCounts:
         )
 
 
-def as_text(counts: Sequence[ManeuverCounts]) -> str:
+def as_text(counts: Sequence[ManeuverCounts], width: int = PAGE_WIDTH) -> str:
     """A table with a row for each scenario and rulebook."""
     rows = [("scenario", "by", "maneuvers", "satisfying", "open", "violating")]
     for count in counts:
@@ -44,4 +45,9 @@ def as_text(counts: Sequence[ManeuverCounts]) -> str:
         rows.append(
             (visible(count.scenario), visible(count.rulebook), shown_count(count.maneuvers), *cells)
         )
-    return "\n".join(table_lines(rows, right=range(2, 6), ruled=[0]))
+    too_wide = max(map(len, table_lines(rows, right=range(2, 6)))) - width
+    longest = max(len(row[0]) for row in rows)
+    rows = [(cut(row[0], longest - max(too_wide, 0)), *row[1:]) for row in rows]
+    if too_wide < longest:
+        return "\n".join(table_lines(rows, right=range(2, 6), ruled=[0]))
+    return "\n".join(stacked_tables(rows, width, ruled=[0]))

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from rulec.extraction.moment_search import DriveMoments
 from rulec.report.json_document import JsonDocument, as_line
-from rulec.report.text.terminal_text import counted, visible
+from rulec.report.text.terminal_text import broken, counted, visible
 
 COLUMNS: Mapping[str, type] = {
     **dict.fromkeys(("file", "recording", "vehicle"), str),
@@ -36,8 +36,8 @@ def rows(drive: DriveMoments) -> Iterator[dict[str, Any]]:
         }
 
 
-def lines(drive: DriveMoments) -> Iterator[str]:
-    """A line for each moment."""
+def lines(drive: DriveMoments, width: int) -> Iterator[str]:
+    """A line for each moment, wrapped to a width."""
     where = drive.file
     if drive.recording and drive.recording not in drive.file:
         where = f"{drive.file}: {drive.recording}"
@@ -49,7 +49,8 @@ def lines(drive: DriveMoments) -> Iterator[str]:
                 f"{row['from_s']:g} to {row['to_s']:g} s (states {moment.first} to {moment.last})"
             )
         perhaps = "" if moment.holds == "surely" else ", perhaps"
-        yield visible(f"{where}: {drive.vehicle}{objects}: {when}{perhaps}")
+        line = visible(f"{where}: {drive.vehicle}{objects}: {when}{perhaps}")
+        yield from broken(line, width, later="  ")
 
 
 class MomentLine(JsonDocument, frozen=True, kw_only=True):

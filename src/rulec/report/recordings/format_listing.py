@@ -10,7 +10,8 @@ from rulec.recordings.format_table import FORMATS
 from rulec.recordings.map_files import MAP_FORMATS
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented
 from rulec.report.text import markdown
-from rulec.report.text.terminal_text import table_lines
+from rulec.report.text.console import PAGE_WIDTH
+from rulec.report.text.terminal_text import broken, cut, table_lines
 from rulec.rulebook.loader import load_vocabulary
 from rulec.value_display import short_repr
 
@@ -67,12 +68,19 @@ def _words_of(form: str, order: Sequence[str]) -> tuple[str, ...] | None:
     return (*(word for word in order if word in words), *sorted(words - set(order)))
 
 
-def as_text(listed: Sequence[ListedFormat], order: Sequence[str], *, words: bool) -> str:
-    """Write a line for each format, and, if wanted, one for each word."""
+def as_text(
+    listed: Sequence[ListedFormat], order: Sequence[str], *, words: bool, width: int = PAGE_WIDTH
+) -> str:
+    """Write each format with its files and its map, and, if wanted, a line for each word."""
     parts = []
     for title, forms in _kinds(listed):
-        rows = [(f"  {form.name}", form.files, form.roads, form.title) for form in forms]
-        parts.append("\n".join([title, *table_lines(rows)]))
+        lines = [title]
+        indent = " " * (max(len(form.name) for form in forms) + 4)
+        for form in forms:
+            roads = f"; map: {form.roads}" if form.roads else ""
+            lines.append(cut(f"  {form.name}".ljust(len(indent)) + form.title, width))
+            lines += broken(f"{form.files}{roads}", width, indent, indent)
+        parts.append("\n".join(lines))
     if words:
         forms, table = _word_table(listed, order)
         heads = [f"  {number}  {form.name}" for number, form in enumerate(forms, 1)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import IO
 from xml.etree import ElementTree
 
@@ -16,11 +16,11 @@ from rulec.report.verdict_findings.verdict_finding import (
 
 
 class JUnitWriter:
-    """A suite for each recording, with a case for each rule.
+    """A suite for each recording, with a case for each rule and each drive that was judged.
 
-    A case fails if a hard rule is violated, like the exit status; violations of soft rules are its
-    output. It is skipped, with the reason, if the rule could be judged for no vehicle, or if it is
-    open and no violation is known: a case passes only if the rule is known to be kept.
+    A case fails if a hard rule is violated, like the exit status; a violated soft rule is its
+    output. It is skipped, with the reason, if the rule is open or not judged for the drive: a case
+    passes only if the rule is known to be kept. A rule that was judged for no drive has one case.
     """
 
     def __init__(self, stream: IO[bytes], about: FindingContext) -> None:
@@ -30,15 +30,15 @@ class JUnitWriter:
 
     def add(self, recording: RecordingFindings) -> None:
         """Write the suite of a recording."""
-        by_rule = recording.by_rule
         suite = element(None, "testsuite", name=recording.title)
-        name = self._about.rulebook.name
         if recording.failure:
-            case = element(suite, "testcase", classname=name, name="reading", file=recording.file)
+            book = self._about.rulebook.name
+            case = element(suite, "testcase", classname=book, name="reading", file=recording.file)
             element(case, "error", type="not judged", message=recording.failure)
         else:
+            by_rule = recording.by_rule
             for rule in self._about.rules.values():
-                _case(suite, name, rule, by_rule.get(rule.name, ()), recording)
+                suite.extend(self._cases(rule, by_rule.get(rule.name, ()), recording))
             lines = [f"{x.vehicle}: not judged: {x.because}" for x in by_rule.get("", ())]
             if lines:
                 element(suite, "system-out").text = xml_text("\n".join(lines))
@@ -55,34 +55,37 @@ class JUnitWriter:
         """Write the end of the document."""
         self._stream.write(b"</testsuites>\n")
 
+    def _cases(
+        self, rule: CompiledRule, findings: Sequence[VerdictFinding], recording: RecordingFindings
+    ) -> Iterator[ElementTree.Element]:
+        """The cases of a rule."""
+        book = self._about.rulebook.name
+        by_drive: dict[str, list[VerdictFinding]] = {}
+        for finding in findings:
+            by_drive.setdefault(finding.vehicle, []).append(finding)
+        if nowhere := by_drive.get(""):
+            yield _case(book, rule.name, recording.file, nowhere)
+            return
+        for drive in recording.drives:
+            found = by_drive.get(drive, [])
+            yield _case(f"{book}.{rule.name}", drive, recording.file, found)
+
 
 def _case(
-    suite: ElementTree.Element,
-    rulebook: str,
-    rule: CompiledRule,
-    findings: Sequence[VerdictFinding],
-    recording: RecordingFindings,
-) -> None:
-    case = element(suite, "testcase", classname=rulebook, name=rule.name, file=recording.file)
+    classname: str, name: str, file: str, findings: Sequence[VerdictFinding]
+) -> ElementTree.Element:
+    """A case with the findings of a rule in a drive."""
+    case = element(None, "testcase", classname=classname, name=name, file=file)
     violated = [finding for finding in findings if finding.outcome == "violated"]
-    others = [finding for finding in findings if finding.outcome == "open"]
-    nowhere = [
-        finding for finding in findings if finding.outcome == "not_judged" and not finding.vehicle
-    ]
-    lines = [finding.says for finding in violated]
-    if violated and rule.strength == "hard":
-        drives = len({finding.vehicle for finding in violated})
-        share = f"violated in {drives:,} of {recording.drives:,} drives"
-        failure = element(case, "failure", type="hard rule", message=f"{share}: {lines[0]}")
+    lines = [finding.says for finding in findings]
+    if violated and violated[0].strength == "hard":
+        failure = element(case, "failure", type="hard rule", message=lines[0])
         failure.text = xml_text("\n".join(lines))
-        lines = []
-    elif nowhere and not violated and not others:
-        words = ", ".join(nowhere[0].open_on)
-        element(case, "skipped", message=nowhere[0].because or f"not told: {words}")
-    elif others and not violated:
-        drives = len({finding.vehicle for finding in others})
-        share = f"open in {drives:,} of {recording.drives:,} drives"
-        element(case, "skipped", message=f"{share}: {others[0].says}")
-    lines += [finding.says for finding in others]
-    if lines:
+    elif violated:
         element(case, "system-out").text = xml_text("\n".join(lines))
+    elif findings:
+        words = ", ".join(findings[0].open_on)
+        not_told = findings[0].because or f"not told: {words}"
+        is_open = findings[0].outcome == "open"
+        element(case, "skipped", message=lines[0] if is_open else not_told)
+    return case

@@ -58,7 +58,7 @@ class McapWriter:
 
     def close(self) -> None:
         """Write the file."""
-        recording = self._recording or RecordingFindings("", "", 0, ())
+        recording = self._recording or RecordingFindings("", "", (), ())
         not_judged = sorted(
             {finding.rule for finding in recording.findings if finding.outcome == "not_judged"}
         )
@@ -66,7 +66,7 @@ class McapWriter:
             "file": recording.file,
             "recording": recording.recording,
             "rulebook": self._about.rulebook.name,
-            "drives": str(recording.drives),
+            "drives": str(len(recording.drives)),
             "not_judged": ", ".join(name for name in not_judged if name),
         }
         messages = (message for finding in recording.findings for message in _messages(finding))

@@ -13,6 +13,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.report.findings.sarif import SCHEMA, uri_of
 from rulec.report.verdict_findings.verdict_finding import (
+    COLUMNS,
     FindingContext,
     RecordingFindings,
     VerdictFinding,
@@ -98,10 +99,7 @@ def _result(finding: VerdictFinding, number: int) -> dict[str, Any]:
     }
 
 
-_PROPERTIES = (
-    *("recording", "vehicle", "other", "from_s", "to_s", "at_s", "x", "y", "lanelet"),
-    *("by", "unit", "open_on"),
-)
+_PROPERTIES = tuple(name for name in COLUMNS if name not in ("file", "rule", "because"))
 _BYTES = ("utf-8", "surrogatepass")
 
 
@@ -109,6 +107,12 @@ def _location(finding: VerdictFinding) -> dict[str, Any]:
     location: dict[str, Any] = {
         "physicalLocation": {"artifactLocation": {"uri": uri_of(finding.file)}}
     }
+    if finding.from_s is not None:
+        # SARIF's regions are of text, pixels or bytes; of time there is none
+        times = {"from_s": finding.from_s, "to_s": finding.to_s, "at_s": finding.at_s}
+        location["properties"] = {
+            "timeRegion": {name: time for name, time in times.items() if time is not None}
+        }
     names = [name for name in (finding.recording, finding.vehicle) if name]
     if names:
         location["logicalLocations"] = [

@@ -70,7 +70,7 @@ class RowWriter:
 
     def add(self, rows: Iterable[Mapping[str, object]]) -> None:
         """Write rows."""
-        self._writer.add(RecordingFindings("", "", 0, (), tuple(rows)))
+        self._writer.add(RecordingFindings("", "", (), (), tuple(rows)))
 
     def close(self) -> None:
         """Write the end of the table."""

@@ -26,11 +26,11 @@ from rulec.report.verdict_findings.verdict_finding import (
 
 @dataclass
 class GatheredFindings:
-    """The results of some drives: findings, rules not judged, and the number of judged drives."""
+    """The results of some drives: findings, rules not judged, and the names of judged drives."""
 
     findings: list[VerdictFinding] = field(default_factory=list)
     not_judged: dict[str, dict[str, RuleNotJudged]] = field(default_factory=dict)
-    judged: int = 0
+    judged: list[str] = field(default_factory=list)
 
     def include(self, later: GatheredFindings) -> None:
         """Add the findings of later drives."""
@@ -70,7 +70,7 @@ class DriveFindings:
             own = self._own(vehicle=drive.arrays.id, because=why)
             self.gathered.findings.append(VerdictFinding(outcome="not_judged", **own))
             return
-        self.gathered.judged += 1
+        self.gathered.judged.append(drive.arrays.id)
         for number, violation in enumerate(answer.violations):
             explanation = explained[number] if number < len(explained) else None
             found = violated(violation, drive, self.verdicts, explanation, self.file)
@@ -90,12 +90,12 @@ class DriveFindings:
 
     def whole(self) -> RecordingFindings:
         """All findings; a rule that is judged in no drive gives one finding."""
-        drives = self.gathered.judged
+        drives = tuple(self.gathered.judged)
         return RecordingFindings(
             self.file,
             self.verdicts.recording.name,
             drives,
-            (*self.gathered.findings, *self._rules_not_judged(drives)),
+            (*self.gathered.findings, *self._rules_not_judged(len(drives))),
         )
 
     def _rules_not_judged(self, drives: int) -> Iterator[VerdictFinding]:
@@ -151,4 +151,4 @@ def not_judged_file(file: str, error: RulecError, rulebook: str) -> RecordingFin
     """The finding that a file could not be judged."""
     why = error.diagnostics[0].message
     finding = VerdictFinding(file=file, rulebook=rulebook, outcome="not_judged", because=why)
-    return RecordingFindings(file, "", 0, (finding,))
+    return RecordingFindings(file, "", (), (finding,))

@@ -205,7 +205,7 @@ def as_json(finding: VerdictFinding) -> str:
 
 @dataclass(frozen=True, slots=True)
 class RecordingFindings:
-    """The findings of a recording or a file of traces, and the number of its ``drives``.
+    """The findings of a recording or a file of traces, and the names of its judged ``drives``.
 
     Without drives, and with a finding without a rule, nothing could be judged. ``rows`` are those
     of drives, rules and findings, if they are wanted (``FindingContext.columns``).
@@ -215,7 +215,7 @@ class RecordingFindings:
 
     file: str
     recording: str
-    drives: int
+    drives: tuple[str, ...]
     findings: tuple[VerdictFinding, ...]
     rows: tuple[Mapping[str, object], ...] = ()
 
