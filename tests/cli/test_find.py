@@ -13,6 +13,7 @@ from rulec.diagnostics import RulecError
 from rulec.rulebook.query_reader import read_query
 from rulec.trace.formats import trace_files
 from rulec.trace.formats.trace_files import read_chunks
+from support.unwrapped import unwrapped
 
 BOOK = """
 rulebook streets
@@ -104,12 +105,12 @@ def test_only_what_is_sure(files, capsys):
 def test_lines_and_times(files, capsys):
     book, drives = files
     assert main(["find", "(c: car) too_near(c)", drives, "-r", book]) == 0
-    assert capsys.readouterr().out.splitlines() == [
-        f"{drives}: t c=a: 0 to 0.5 s (states 0 to 1)",
-        f"{drives}: t c=b: at 1 s (state 2), perhaps",
-        f"{drives}: t c=b: at 1.5 s (state 3)",
-        "2 moments, 1 more perhaps, in 1 of 1 drive",
-    ]
+    assert unwrapped(capsys.readouterr().out) == (
+        f"{drives}: t c=a: 0 to 0.5 s (states 0 to 1) "
+        f"{drives}: t c=b: at 1 s (state 2), perhaps "
+        f"{drives}: t c=b: at 1.5 s (state 3) "
+        "2 moments, 1 more perhaps, in 1 of 1 drive"
+    )
 
 
 @pytest.mark.parametrize("ending", ["csv", "jsonl", "parquet"])

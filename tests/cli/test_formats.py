@@ -1,6 +1,7 @@
 """``rulec formats`` as its user meets it."""
 
 import json
+import re
 
 import pytest
 
@@ -8,6 +9,7 @@ from rulec.cli.main import main
 from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.map_files import MAP_FORMATS
+from support.unwrapped import unwrapped
 
 
 @pytest.fixture
@@ -20,28 +22,30 @@ def listed(capsys):
     return run
 
 
-def test_every_format_has_its_line(listed):
+def named(part):
+    """Each format's name, with what is said of it."""
+    about = re.split(r"^  (?=\S)", part, flags=re.MULTILINE)[1:]
+    return {text.split()[0]: unwrapped(text) for text in about}
+
+
+def test_every_format_is_listed(listed):
     status, out, err = listed()
     assert (status, err) == (0, "")
     recordings, maps = out.split("\n\n")
     assert recordings.splitlines()[0] == "recordings"
-    assert [line.split()[0] for line in recordings.splitlines()[1:]] == [x.name for x in FORMATS]
-    assert [line.split()[0] for line in maps.splitlines()[1:]] == [x.name for x in MAP_FORMATS]
-    assert "beside it, or --map" in next(x for x in out.splitlines() if x.startswith("  sumo "))
-    assert "its own, or --map" in next(x for x in out.splitlines() if x.startswith("  osi "))
-    assert "--map" not in recordings.splitlines()[1]
+    assert list(named(recordings)) == [x.name for x in FORMATS]
+    assert list(named(maps)) == [x.name for x in MAP_FORMATS]
+    assert "map: beside it, or --map" in named(recordings)["sumo"]
+    assert "map: its own, or --map" in named(recordings)["osi"]
+    assert "--map" not in named(recordings)["commonroad"]
 
 
 def test_some_formats(listed):
     # SUMO has recordings and maps
     status, out, _ = listed("sumo")
     assert status == 0
-    assert [line.split()[0] for line in out.splitlines() if line] == [
-        "recordings",
-        "sumo",
-        "maps",
-        "sumo",
-    ]
+    recordings, maps = out.split("\n\n")
+    assert [list(named(recordings)), list(named(maps))] == [["sumo"], ["sumo"]]
 
 
 def test_words_that_one_tells_and_the_other_does_not(listed):

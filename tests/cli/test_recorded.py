@@ -28,11 +28,13 @@ def answer(capfd, road):
 def test_text(answer):
     status, out, err = answer("-r", "esterle2019", "--bounds", "none")
     assert (status, err) == (0, "")
-    assert out.splitlines()[:7] == [
+    assert out.splitlines()[:9] == [
         "scenario    road: 4 s in steps of 0.5 s, partition paper, adjacency touch",
         "obstacles   1 on the road of lanelet 1",
-        "recorded    until 0 s; participants present then are assumed to keep their last speed",
-        "derived     CONGESTED = false: it takes 3 vehicles that go ego's way on its road, here 1",
+        "recorded    until 0 s; participants present then are assumed to keep their last",
+        "            speed",
+        "derived     CONGESTED = false: it takes 3 vehicles that go ego's way on its",
+        "            road, here 1",
         "graph       18 nodes, 16 edges",
         "maneuvers   1 path through cells",
         "satisfying  1 by esterle2019 (R1, R2, R3)",
