@@ -50,7 +50,7 @@ FILES = ("file", "the word so far")
         (["show", "esterle2019", "--automaton"], "s", [("plain", "svg")]),
         (["explain"], "r0201", [("plain", "R0201")]),
         (["completion"], "f", [("plain", "fish")]),
-        (["list"], "r", [("plain", "rulebooks")]),
+        (["list"], "r", [("plain", "rulebooks"), ("plain", "rules")]),
         (["check", "--output-format"], "s", [("plain", "sarif")]),
     ],
 )

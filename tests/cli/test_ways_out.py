@@ -92,7 +92,7 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         (["verify", "https://x.org/a.xml", "-r", "nl"], "download it first"),
         (["monitor", "de", "fr"], "`fr` is an argument too many\n  = help: it takes one at a time"),
         (["traces", "s1", "s2", "-o", "t.csv"], "for several `for s in s2 s3; do rulec traces"),
-        (["list", "codes", "a", "b"], "error: `a b` is 2 arguments too many\n  = usage"),
+        (["completion", "bash", "a", "b"], "error: `a b` is 2 arguments too many\n  = usage"),
         (["show", "de", "--at"], "error: --at is given without a value"),
         (["check", "--fail-on", "error", "--fail-on", "error"], "--fail-on is given twice"),
         (["show", "de", *(["--at", "2026-01-01"] * 3)], "--at is given 3 times, and takes one"),

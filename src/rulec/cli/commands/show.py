@@ -75,7 +75,7 @@ def command(
         books, rule = rulebooks_named((rulebook, *others)), None
     else:
         books, rule = books_and_rule((rulebook, *others), "show")
-    asked = Asked(rule, patterns, topic, every, to, at)
+    asked = Asked(name=rule, patterns=patterns, topic=topic, every=every, to=to, at=at)
     if automaton is not None or to.form in ("dot", "svg"):
         if len(books) > 1:
             raise click.UsageError("an automaton is of one rule; give one RULEBOOK")

@@ -110,7 +110,7 @@ def as_plain_text(code: Code) -> str:
 
 def as_markdown(code: Code) -> str:
     """The explanation without its title, in Markdown."""
-    parts = ["\n".join(broken(code.why, 100))]
+    parts = ["\n".join(broken(code.why, 100, at_hyphens=False))]
     for head, example in _examples(code):
         # The word after the language marks samples of mistakes, so that they are not read as
         # correct ones.

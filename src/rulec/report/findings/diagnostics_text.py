@@ -239,7 +239,7 @@ def _block(diagnostic: Diagnostic, paint: _Paint, columns: int) -> Iterator[str]
 
 
 def _wrapped(text: str, width: int, later: str) -> list[str]:
-    return broken(text, width, later=later) if width else [text]
+    return broken(text, width, later=later, at_hyphens=False) if width else [text]
 
 
 def _by_file(diagnostic: Diagnostic) -> list[list[Underline]]:

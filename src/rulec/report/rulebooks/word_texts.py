@@ -129,7 +129,9 @@ def as_text(word: FoundWord, readers: Readers, width: int) -> str:
         f"{word.name}: {_kind_of(word)} of {_file_of(word)}",
         *map(visible, (*text.sentences, *_readers_in_words(readers))),
     ]
-    head, *rest = ("\n".join(broken(paragraph, width)) for paragraph in paragraphs)
+    head, *rest = (
+        "\n".join(broken(paragraph, width, at_hyphens=False)) for paragraph in paragraphs
+    )
     declaration = [
         part
         for line in text.declaration.splitlines()

@@ -91,12 +91,14 @@ def styled(text: str, style: str, color: bool | None = None) -> str:
 
 def cell_width(text: str) -> int:
     """The columns that a text takes on a terminal, ignoring its style."""
-    if text.isascii() and "\x1b" not in text:
-        return len(text)
-    # 7 ms, and rarely needed.
-    from rich.cells import cell_len
+    plain = unstyle(text) if "\x1b" in text else text
+    return len(plain) if plain.isascii() else sum(map(_columns, plain))
 
-    return cell_len(unstyle(text))
+
+def _columns(character: str) -> int:
+    if unicodedata.east_asian_width(character) in "WF":
+        return 2
+    return int(unicodedata.category(character) not in ("Mn", "Me", "Cf"))
 
 
 def table_lines(
@@ -150,7 +152,7 @@ def stacked_tables(
 
 
 def broken(
-    text: str, width: int, first: str = "", later: str = "", *, cuts_words: bool = True
+    text: str, width: int, first: str = "", later: str = "", *, at_hyphens: bool = True
 ) -> list[str]:
     """A text wrapped to a width, never between "§" and its number, or "30" and "km/h".
 
@@ -159,7 +161,7 @@ def broken(
         width: the most columns of a line.
         first: the beginning of the first line.
         later: the beginning of the other lines.
-        cuts_words: whether a word that is wider than a line is broken, rather than left whole.
+        at_hyphens: whether words may be broken there; paths should not.
     """
     joined = _KEPT_TOGETHER.sub(lambda match: match[0][:-1] + _JOINT, text)
     # What takes two columns counts as two characters.
@@ -169,8 +171,7 @@ def broken(
         max(width, cell_width(first) + 20, cell_width(later) + 20) - (wide != joined),
         initial_indent=_as_wide(first),
         subsequent_indent=_as_wide(later),
-        break_long_words=cuts_words,
-        break_on_hyphens=False,
+        break_on_hyphens=at_hyphens,
     )
     return [line.replace(_JOINT, " ").replace(_SECOND_COLUMN, "") for line in lines]
 
@@ -179,8 +180,7 @@ def _as_wide(text: str) -> str:
     """As many characters as the text takes columns."""
     if text.isascii():
         return text
-    wide = (x + _SECOND_COLUMN * (unicodedata.east_asian_width(x) in "WF") for x in text)
-    return "".join(wide)
+    return "".join(x + _SECOND_COLUMN * (_columns(x) == 2) for x in text)
 
 
 def cut(text: str, width: int) -> str:

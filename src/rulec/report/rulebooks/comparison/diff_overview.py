@@ -31,19 +31,22 @@ def _rows(rulebook_diff: RulebookDiff) -> Iterator[tuple[str, ...]]:
         for pair in rulebook_diff.pairs
         if pair.relation != "equal" or pair.first.strength != pair.second.strength
     }
-    groups = by_group([rulebook_diff.first])
+    groups = {
+        visible(heading): differing
+        for heading, names in by_group([rulebook_diff.first]).items()
+        if (differing := [pairs[name] for name in names if name in pairs])
+    }
     indent = 0 if groups.keys() == {OTHER} else max(map(cell_width, groups), default=0)
-    for heading, names in groups.items():
-        differing = [pairs[name] for name in names if name in pairs]
+    for heading, differing in groups.items():
         for number, pair in enumerate(differing):
-            about = "" if number or groups.keys() == {OTHER} else visible(heading)
+            about = heading if indent and not number else ""
             relation = _relation(pair, rulebook_diff)
-            cites = f"{first_provision(pair.first)} | {first_provision(pair.second)}".strip(" |")
+            cites = dict.fromkeys(map(first_provision, (pair.first, pair.second)))
             yield (
                 about + " " * (indent - cell_width(about)),
                 visible(pair.name),
                 visible(relation),
-                visible(cites),
+                visible(" | ".join(filter(None, cites))),
             )
 
 
