@@ -78,6 +78,17 @@ def test_rules_of_several_books(tmp_path, monkeypatch, capsys):
     }
 
 
+def test_a_book_with_mistakes_does_not_hide_the_rules_of_others(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bad.rules").write_text("rulebook bad\nhard rule r { require always q }\n")
+    for _ in range(2):
+        assert main(["list", "rules", "./bad.rules", "esterle2019"]) == 2
+        out, err = capsys.readouterr()
+        assert "\n  R1  Article 11.1" in out
+        assert "R0201" in err or "R0202" in err
+    assert main(["list", "rules", "./bad.rules"]) == 2
+
+
 @pytest.mark.parametrize(
     "words", [["codes", "de"], ["--topic", "lights"], ["codes", "--at", "2020-01-01"]]
 )

@@ -10,11 +10,12 @@ import click
 
 import rulec
 from rulec.api.rulebook_questions import Kind
+from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.rule_choice import rules_on_topic
 from rulec.cli.options.verb_class import Verb
-from rulec.cli.output import open_session, put_answer, sources_of_rulebooks, width_of
+from rulec.cli.output import errors_told, open_session, put_answer, sources_of_rulebooks, width_of
 from rulec.rulebook.batch.answer_cache import AnswerQuestion
 from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.settings import search_path
@@ -37,16 +38,19 @@ def command(
     to: Output,
     topic: str | None,
     at: str,
-) -> None:
+) -> int:
     """List everything that can be named, with its title; without KIND all kinds except codes.
 
     `rules` are those of RULEBOOKs, by default of all: by topic, with the books that have each.
+
+    Exit status: 0 done, 2 a rulebook could not be read.
     """
     if kind == "rules":
         width = 0 if to.form == "json" else width_of(to)
         question = AnswerQuestion(("list", *rulebooks, repr((topic, at, width))), search_path())
-        put_answer(question.answer(partial(_rules, rulebooks, topic, at, width)), to)
-        return
+        text, is_complete = question.answer(partial(_rules, rulebooks, topic, at, width))
+        put_answer(text, to)
+        return ExitStatus.after(answered=is_complete, failed=False)
     if rulebooks or topic or at:
         raise click.UsageError("only rules are those of a RULEBOOK: `rulec list rules de`")
     # Late import, not for --help: msgspec (7 ms).
@@ -59,19 +63,28 @@ def command(
     kinds = KINDS[:-1] if kind is None else (kind,)
     lists: dict[str, Sequence[Listed]] = {kind: session(kind).list(kind) for kind in kinds}
     put_answer(as_json(lists) if to.form == "json" else as_text(lists, width_of(to)), to)
+    return ExitStatus.OK
 
 
 def _rules(
     rulebooks: Sequence[str], topic: str | None, at: str, width: int
-) -> tuple[str, Sequence[str]]:
-    """The rules of rulebooks as text of a width, or JSON if that is 0, and the files read."""
+) -> tuple[tuple[str, bool], Sequence[str]]:
+    """The rules of rulebooks as text of a width, or JSON if that is 0.
+
+    Also whether all could be read, and if so the files.
+    """
     # Late import, not for --help: rulebooks (130 ms).
     from rulec.report.rulebooks import rule_list
     from rulec.rulebook.loader import read_rulebook
 
     named = sources_of_rulebooks(rulebooks, "has no list") or available_rulebooks(search_path())
-    read = [read_rulebook(name, search_path(), at) for name in named]
+    read = []
+    for name in named:
+        with errors_told():
+            read.append(read_rulebook(name, search_path(), at))
+    is_complete = len(read) == len(named)
     books = [loaded.rulebook for loaded in read if loaded.rulebook.rules]
     books = books if topic is None else [*rules_on_topic(books, topic)]
     text = rule_list.as_text(books, width, "") if width else rule_list.as_json(books)
-    return text, [path for loaded in read for path in loaded.paths]
+    paths = [path for loaded in read for path in loaded.paths] if is_complete else []
+    return (text, is_complete), paths
