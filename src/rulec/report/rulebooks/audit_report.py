@@ -63,7 +63,7 @@ def render(
             parts = [_as_markdown(*pair) for pair in pairs]
             return "\n\n".join([*parts, *map(source_report.as_markdown, sources)])
         case _:
-            parts = [(_as_text if in_full else _as_overview)(*pair, width) for pair in pairs]
+            parts = [_as_text(*pair, width, in_full=in_full) for pair in pairs]
             parts += [source_report.as_text(source, width) for source in sources]
             return "\n\n\n".join(parts)
 
@@ -130,45 +130,48 @@ def provision_table(
     return table(head, rows)
 
 
-def _as_overview(audit: Audit, compared: AuditChanges | None, width: int) -> str:
-    """The counts, and two lines for each kind of finding; in full what an option has asked for."""
-    lines = _head(audit, width)
-    for kind, grouped in groupby(audit.findings, key=lambda finding: finding.kind):
-        findings = list(grouped)
-        lines += _titled(kind, f" ({len(findings):,}): {KINDS[kind]}", width)
-        if kind in ASKED_FOR:
-            lines.append(_lines(findings, width))
-        else:
-            lines.append(cut("  " + visible(", ".join(x.name for x in findings)), width))
-    lines.append("`--all` has every note, and the articles that rules rest on")
-    return "\n".join([*lines, *(_changes_as_text(compared, width) if compared else ())])
-
-
 def _head(audit: Audit, width: int) -> list[str]:
     title = f": {audit.title}" if audit.title else ""
     rows = [("law", law_of(audit)), ("judged by the law of", audit.at), *counts(audit)]
     return [styled(visible(f"{audit.rulebook}{title}"), "bold"), *fact_lines(rows, width)]
 
 
-def _as_text(audit: Audit, compared: AuditChanges | None, width: int) -> str:
-    blocks = ["\n".join(_head(audit, width))]
-    for kind, findings in groupby(audit.findings, key=lambda finding: finding.kind):
-        title = _titled(kind, f": {KINDS[kind]}", width)
-        blocks.append("\n".join([*title, _lines(list(findings), width)]))
+def _as_text(audit: Audit, compared: AuditChanges | None, width: int, *, in_full: bool) -> str:
+    """The counts, and two lines for each kind of finding; ``in_full`` all notes and articles.
+
+    What an option has asked for is always shown in full.
+    """
+    lines = _head(audit, width)
+    gap = [""] * in_full
+    for kind, grouped in groupby(audit.findings, key=lambda finding: finding.kind):
+        findings = list(grouped)
+        number = "" if in_full else f" ({len(findings):,})"
+        lines += [*gap, *_titled(kind, f"{number}: {KINDS[kind]}", width)]
+        if in_full or kind in ASKED_FOR:
+            lines.append(_lines(findings, width))
+        else:
+            lines.append(cut("  " + visible(", ".join(x.name for x in findings)), width))
+    if in_full:
+        lines += _articles(audit, width)
+    else:
+        lines.append("`--all` has every note, and the articles that rules rest on")
+    return "\n".join([*lines, *(gap + _changes_as_text(compared, width) if compared else ())])
+
+
+def _articles(audit: Audit, width: int) -> Iterator[str]:
     if audit.provisions:
-        title = _titled("articles", " of the law, and the rules that rest on them", width)
+        yield from ("", *_titled("articles", " of the law, and the rules that rest on them", width))
         rows = [
             (number, f"{heading}: {state}")
             for number, heading, state in map(provision_row, audit.provisions)
         ]
-        blocks.append("\n".join([*title, *fact_lines(rows, width)]))
+        yield from fact_lines(rows, width)
     for book, articles in groupby(audit.articles, key=lambda article: article.book):
-        title = _titled("provisions", f" cited in {book}, and the rules they are in", width)
-        rows = [(article.cite, ", ".join(article.rules)) for article in articles]
-        blocks.append("\n".join([*title, *fact_lines(rows, width)]))
-    if compared is not None:
-        blocks.append("\n".join(_changes_as_text(compared, width)))
-    return "\n\n".join(blocks)
+        yield from (
+            "",
+            *_titled("provisions", f" cited in {book}, and the rules they are in", width),
+        )
+        yield from fact_lines([(x.cite, ", ".join(x.rules)) for x in articles], width)
 
 
 def _titled(kind: str, rest: str, width: int) -> list[str]:
