@@ -12,7 +12,8 @@ from typing import Any
 import pytest
 
 from rulec.diagnostics import Source
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.batch_verify import verify_many
+from rulec.monitoring.verdict import Verdict
 from rulec.toml import parsed_toml
 from rulec.trace import Trace
 from support.builders.national_books import compiled, read
@@ -29,40 +30,46 @@ def situations(folder: str) -> list[tuple[str, dict[str, Any]]]:
     ]
 
 
-SITUATIONS = [
-    pytest.param(book, one, id=f"{book}-{one['title']}") for book, one in situations("statutes")
-]
-ASKED = [
-    pytest.param(one, id=f"{file}-{one['title']}")
-    for folder in ("asked", "asked_by_book", "asked_in_theory")
-    for file, one in situations(folder)
-]
+def by_book() -> dict[str, dict[str, dict[str, Any]]]:
+    """The situations of each book that has some or is asked about some, by file and title."""
+    asked = [
+        (book, f"{file}: {one['title']}", one)
+        for folder in ("asked", "asked_by_book", "asked_in_theory")
+        for file, one in situations(folder)
+        for book in one.get("books") or one["law"]
+    ]
+    own = [(book, f"own: {one['title']}", one) for book, one in situations("statutes")]
+    found: dict[str, dict[str, dict[str, Any]]] = {}
+    for book, title, one in (*own, *asked):
+        assert title not in found.setdefault(book, {}), f"two situations of one title: {title}"
+        found[book][title] = one
+    return found
 
 
-def violated(book: str, situation: dict[str, Any]) -> set[str]:
+SITUATIONS = by_book()
+
+
+def trace_of(situation: dict[str, Any]) -> Trace:
     states = tuple(
         {**situation["throughout"], **state}
         for state in situation["states"] * situation.get("repeated", 1)
     )
-    trace = Trace("t", 1.0, situation.get("objects", {}), states)
-    return {one.rule for one in verify(trace, compiled(book)).violations}
+    return Trace("t", 1.0, situation.get("objects", {}), states)
 
 
-def has_rules(book: str, names: list[str]) -> bool:
-    return set(names) <= {rule.name for rule in read(book).rulebook.rules}
+@pytest.mark.parametrize("book", SITUATIONS)
+def test_drives_violate_what_the_law_says_and_no_more(book: str) -> None:
+    verdicts = verify_many(map(trace_of, SITUATIONS[book].values()), compiled(book))
+    wrong = {}
+    for (title, situation), verdict in zip(SITUATIONS[book].items(), verdicts, strict=True):
+        assert isinstance(verdict, Verdict), f"{title}: {verdict}"
+        found = {one.rule for one in verdict.violations}
+        if found != set(situation["violated"]):
+            wrong[title] = f"violates {sorted(found)}, and not {situation['violated']}"
+    assert wrong == {}
 
 
-@pytest.mark.parametrize(("book", "situation"), SITUATIONS)
-def test_a_drive_violates_what_the_law_says_and_no_more(
-    book: str, situation: dict[str, Any]
-) -> None:
-    assert violated(book, situation) == set(situation["violated"])
-    assert has_rules(book, situation["violated"])
-
-
-@pytest.mark.parametrize("situation", ASKED)
-def test_what_is_asked_of_several_books(situation: dict[str, Any]) -> None:
-    books = situation.get("books") or list(situation["law"])
-    found = {book: violated(book, situation) for book in books}
-    assert found == {book: set(situation["violated"]) for book in books}
-    assert all(has_rules(book, situation["violated"]) for book in books)
+@pytest.mark.parametrize("book", SITUATIONS)
+def test_a_book_has_the_rules_that_are_violated(book: str) -> None:
+    violated = {rule for one in SITUATIONS[book].values() for rule in one["violated"]}
+    assert violated <= {rule.name for rule in read(book).rulebook.rules}
