@@ -60,8 +60,7 @@ def pytest_configure(config):
         os.environ[FOLDER] = mkdtemp(prefix="rulec-tests-")
         config.add_cleanup(lambda: rmtree(os.environ.pop(FOLDER)))
     kept = Path(os.environ[FOLDER])
-    own = kept / os.environ.get("PYTEST_XDIST_WORKER", "alone")
-    os.environ["RULEC_CACHE_DIR"] = str(own)
+    os.environ["RULEC_CACHE_DIR"] = str(kept / "cache")
     # How long something takes, on a busy machine, is no part of what a test sees.
     os.environ["RULEC_QUIET"] = "1"
     if hidden_spot.VARIABLE in os.environ:
