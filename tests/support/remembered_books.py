@@ -1,7 +1,9 @@
 """Rulebooks that ship, read and compiled once in each process, though many tests ask for the same.
 
 Texts that tests write are read each time; so are those that ship where a command keeps a cache of
-its own, and compiled while machines are not remembered.
+its own, and compiled while machines are not remembered. Who asks the cache of the run for a
+rulebook gets the one that it gave before, with all that engines have made ready for it; a test with
+a cache of its own gets what stands there.
 """
 
 import os
@@ -10,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from rulec import pipeline
-from rulec.automata import compiler
+from rulec.automata import compiled_cache, compiler
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.compiled_cache import CompiledQuestion
 from rulec.automata.worker import compiler_choice
@@ -21,14 +23,17 @@ from rulec.rulebook import loader
 from rulec.rulebook.files import referenced_files
 from rulec.syntax import tree
 
-_PARSED, _COMPILED = loader.parsed, pipeline.compile_source
+_PARSED, _COMPILED, _RECALLED = loader.parsed, pipeline.compile_source, compiled_cache.recalled
+
+Recalled = tuple[CompiledRulebook, tuple[Diagnostic, ...]]
 
 
 def remember_books() -> None:
-    """Put what remembers in the places of the parser and the compiler of shipped rulebooks."""
-    shipped = str(rulebooks_folder())
+    """Put what remembers in the places of the parser, the compiler and the cache for what ships."""
+    shipped, cache = str(rulebooks_folder()), os.environ["RULEC_CACHE_DIR"]
     trees: dict[tuple[str, str], tuple[tree.File, tuple[Diagnostic, ...]]] = {}
     books: dict[tuple[object, ...], tuple[CompiledRulebook, Sequence[Diagnostic]]] = {}
+    recalls: dict[tuple[CompiledQuestion, bool], Recalled] = {}
     machines_are_remembered = compiler.answers_to
 
     def parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
@@ -73,5 +78,17 @@ def remember_books() -> None:
             books[key] = compiled, heard
         return compiled
 
+    def recalled(question: CompiledQuestion, *, any_step: bool) -> Recalled | None:
+        is_usual = question.source.startswith(shipped) and question.file.startswith(cache)
+        if not is_usual or question.search_path:
+            return _RECALLED(question, any_step=any_step)
+        if (question, any_step) not in recalls:
+            found = _RECALLED(question, any_step=any_step)
+            if found is None:
+                return None
+            recalls[question, any_step] = found
+        return recalls[question, any_step]
+
     loader.parsed = referenced_files.parsed = parsed
     pipeline.compile_source = compile_source
+    compiled_cache.recalled = recalled
