@@ -110,7 +110,9 @@ def test_output_of_questions_and_examples_does_not_depend_on_processes(
     assert "no.rules" in found[0][2]
 
 
-@pytest.mark.parametrize("ending", ["jsonl", "csv", "parquet"])
+@pytest.mark.parametrize(
+    "ending", ["csv", "parquet", pytest.param("jsonl", marks=pytest.mark.long)]
+)
 def test_drives_are_written_alike_by_any_number_of_processes(ending, drives, monkeypatch, capsys):
     monkeypatch.chdir(drives)
     command = ["traces", "drives/a.xml", "--recorded", "-r", "./tiny.rules"]
