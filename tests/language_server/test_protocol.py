@@ -62,34 +62,34 @@ def wire():
         one.server.communicate()
 
 
-@pytest.mark.parametrize(
-    ("text", "number", "code"),
-    [
-        (message(id=1, method=HOVER, params={"textDocument": 3}), 1, -32602),
-        (message(id="a", method=HOVER), "a", -32602),
-        (message(id=1, method="rulec/nothing", params={}), 1, -32601),
-        (message(id=5, method=COMMAND, params={"command": "rulec.runExamples"}), 5, -32602),
-        (
-            message(
-                id=6, method=COMMAND, params={"command": "rulec.inEnglish", "arguments": [1, 2]}
-            ),
-            6,
-            -32602,
-        ),
-        (message(id=7, method=COMMAND, params={"command": "nothing"}), 7, -32602),
-        ("{abc}", None, -32700),
-        ("[" * 100_000, None, -32700),
-        (message(id=8, method="initialize", params=BEGINNING), 8, -32600),
-        ("[]", None, -32600),
-        ("3", None, -32600),
-        (json.dumps({"id": 4, "method": HOVER, "params": SOMEWHERE}), 4, -32600),
-    ],
-)
-def test_what_cannot_be_answered_is_refused_and_the_next_is_answered(wire, text, number, code):
+REFUSED = [
+    (message(id=1, method=HOVER, params={"textDocument": 3}), 1, -32602),
+    (message(id="a", method=HOVER), "a", -32602),
+    (message(id=1, method="rulec/nothing", params={}), 1, -32601),
+    (message(id=5, method=COMMAND, params={"command": "rulec.runExamples"}), 5, -32602),
+    (
+        message(id=6, method=COMMAND, params={"command": "rulec.inEnglish", "arguments": [1, 2]}),
+        6,
+        -32602,
+    ),
+    (message(id=7, method=COMMAND, params={"command": "nothing"}), 7, -32602),
+    ("{abc}", None, -32700),
+    ("[" * 100_000, None, -32700),
+    (message(id=8, method="initialize", params=BEGINNING), 8, -32600),
+    ("[]", None, -32600),
+    ("3", None, -32600),
+    (json.dumps({"id": 4, "method": HOVER, "params": SOMEWHERE}), 4, -32600),
+]
+
+
+def test_what_cannot_be_answered_is_refused_and_the_next_is_answered(wire):
+    """All of it is asked of one server."""
     server = wire(stderr=subprocess.PIPE)
-    refused = server.reply(text)
-    assert (refused["id"], refused["error"]["code"]) == (number, code)
-    assert server.ask(9, HOVER, SOMEWHERE) == {"jsonrpc": "2.0", "id": 9, "result": None}
+    for text, number, code in REFUSED:
+        refused = server.reply(text)
+        assert (refused["id"], refused["error"]["code"]) == (number, code), text[:200]
+        answered = server.ask(9, HOVER, SOMEWHERE)
+        assert answered == {"jsonrpc": "2.0", "id": 9, "result": None}, text[:200]
     server.server.kill()
     assert b"Traceback" not in server.server.communicate()[1]
 
