@@ -29,7 +29,11 @@ BOOK = (
 # Units and the word `machine-readable` are one word each, of tokens without a gap.
 _WORDS = BOOK.replace("km/h", "m").replace('not machine-readable because ""', "")
 TOKENS = [one.text for one in scan(Source("fuzz.rules", _WORDS))]
-TEXTS = [path.read_text(encoding="utf-8") for path in sorted(PROGRAMS.glob("*/*.rules"))]
+BAD, GOOD = (
+    [path.read_text(encoding="utf-8") for path in sorted(PROGRAMS.glob(f"{folder}/*.rules"))]
+    for folder in ("bad", "good")
+)
+TEXTS = [*BAD, *GOOD]
 FRAGMENTS = st.sampled_from(
     [
         *("rulebook x", "vocabulary x {", "hard rule r (v: vehicle) {", "require ", "use paper\n"),
@@ -162,7 +166,15 @@ def test_truncated_rulebooks(text, data):
     judge(text[: data.draw(st.integers(0, len(text)))])
 
 
-@pytest.mark.parametrize("text", TEXTS, ids=lambda text: text.split("\n")[1])
+A_FEW = {*GOOD, *BAD[::5]}
+"""Counting steps makes a program many times slower: what is right, and some of what is wrong."""
+
+
+@pytest.mark.parametrize(
+    "text",
+    [pytest.param(text, marks=[] if text in A_FEW else pytest.mark.long) for text in TEXTS],
+    ids=lambda text: text.split("\n")[1],
+)
 def test_all_of_it_takes_steps_in_proportion(text):
     # As much text, about, and never one copy alone, which lacks what repeated names lead to
     copies = 8 if len(text) < 1000 else 4
