@@ -22,6 +22,16 @@ MOST_EGOS = None if LONG else 4
 
 EGOS = {"motorway": ["tailgater.12"], "priority": ["priority_breaker.4"]}
 
+OF_A_FEW = {"range_40", "range_60", "view"}
+"""They leave so little to see that all worlds together have just enough."""
+
+DAMAGED = [
+    (name, damage)
+    for number, damage in enumerate(DAMAGES)
+    for name in (WORLDS if LONG or damage in OF_A_FEW else WORLDS[number % 2 :: 2])
+]
+"""Otherwise each damage is done to every other world, and each world has half of the damages."""
+
 NEW_ID = {"pieces", "pieces_without_holes"}
 """Who gets another id while others pass is another one: that pass is nowhere recorded."""
 
@@ -51,22 +61,22 @@ def lines(of_rules):
     return [line for found in of_rules.values() for line in found]
 
 
-@pytest.mark.parametrize("damage", DAMAGES)
-@pytest.mark.parametrize("name", WORLDS)
+@pytest.mark.parametrize(("name", "damage"), DAMAGED)
 def test_nobody_is_accused_for_what_is_not_recorded(name, damage):
     found = compared(name, damage)
     assert lines(found.false) == []
     assert lines(found.surer) == []
 
 
-@pytest.mark.parametrize("damage", [x for x in DAMAGES if x not in NEW_ID | LEFT_OUT])
-@pytest.mark.parametrize("name", WORLDS)
+@pytest.mark.parametrize(
+    ("name", "damage"), [pair for pair in DAMAGED if pair[1] not in NEW_ID | LEFT_OUT]
+)
 def test_nobody_is_acquitted_for_what_is_not_recorded(name, damage):
     assert lines(compared(name, damage).acquitted) == []
 
 
 @pytest.mark.parametrize("name", WORLDS)
-@pytest.mark.parametrize("share", [0.05, 0.2])
+@pytest.mark.parametrize("share", [pytest.param(0.05, marks=pytest.mark.long), 0.2])
 def test_a_state_that_is_missing_here_and_there_matters_to_no_verdict(name, share):
     """Who is away for no longer than a second was there, on the way between."""
     recording, rules, _ = whole(name)
@@ -86,4 +96,5 @@ def test_a_state_that_is_missing_here_and_there_matters_to_no_verdict(name, shar
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_something_is_found(damage):
     """Where nothing is left to see, nothing can be wrong."""
-    assert sum(len(lines(compared(name, damage).agreed)) for name in WORLDS) >= 5
+    worlds = [name for name, own in DAMAGED if own == damage]
+    assert sum(len(lines(compared(name, damage).agreed)) for name in worlds) >= 5
