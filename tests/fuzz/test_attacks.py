@@ -223,16 +223,6 @@ COSTLY = {
         2,
         "--limit places=",
     ),
-    "200 traces of as many steps": (
-        {
-            "t.jsonl": lambda: traces(
-                *({"step_s": 1 / (n + 1), "states": [{"p": True}]} for n in range(200))
-            )
-        },
-        ["verify", "t.jsonl", "-r", "./soon.rules"],
-        2,
-        "R0718",
-    ),
     "a tree of 120 rulebooks with five rules each, compared with each other": (
         {f"b{n}.rules": lambda n=n: ALIKE.format(n) for n in range(120)},
         ["diff", "--all", "--rule", "r*", *(f"./b{n}.rules" for n in range(120))],
@@ -356,6 +346,16 @@ COSTLY = {
 
 
 COSTLY_TO_MAKE = {
+    "200 traces of as many steps": (
+        {
+            "t.jsonl": lambda: traces(
+                *({"step_s": 1 / (n + 1), "states": [{"p": True}]} for n in range(200))
+            )
+        },
+        ["verify", "t.jsonl", "-r", "./soon.rules"],
+        2,
+        "R0718",
+    ),
     "a row of 200 MB, packed": (
         {
             "t.csv.gz": lambda: gzip.compress(
