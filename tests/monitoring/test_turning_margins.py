@@ -9,7 +9,10 @@ from rulec.book_tests.example_runs import example_trace
 from rulec.logic import formula as ltl
 from rulec.trace import Trace
 
-BOOKS = ("vienna", "de", "fr", "us-ca", "jp", "au")
+BOOKS = [
+    *("de", "us-ca", "jp"),
+    *(pytest.param(name, marks=pytest.mark.long) for name in ("vienna", "fr", "au")),
+]
 
 
 def closed(trace, part, about, states):
