@@ -101,7 +101,10 @@ def test_hard_rules_stand_above_soft_ones_and_equal_levels_are_one():
     assert ranks.at_most((1, 0, 5), (1, 1, 0))
 
 
-@pytest.mark.parametrize(("scenario", "name"), [("s2", "de"), ("s3", "fr"), ("s1", "esterle2019")])
+@pytest.mark.parametrize(
+    ("scenario", "name"),
+    [("s2", "de"), pytest.param("s3", "fr", marks=pytest.mark.long), ("s1", "esterle2019")],
+)
 def test_a_whole_rulebook_on_a_scenario(scenario, name):
     """Also with what it calls hard and soft exchanged."""
     compiled = compile_rulebook(name, step_s=1)
