@@ -500,7 +500,7 @@ def test_finite_words_end_with_alive():
 
 
 @pytest.mark.spot
-@settings(max_examples=5)
+@settings(max_examples=max(5, settings().max_examples // 500))
 @given(st.lists(formulas, min_size=2, max_size=8))
 def test_a_rules_table_does_not_depend_on_its_neighbours(several):
     rules = [rule(f"r{n}", formula, "x: thing") for n, formula in enumerate(several)]
