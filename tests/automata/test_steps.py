@@ -132,6 +132,16 @@ def test_other_rules_are_judged_where_a_step_does_not_fit():
     assert violated(verify(trace("pq", 0.3), machines(BOOK))) == ["plain"]
 
 
+def test_rules_that_were_left_out_stay_out_where_a_step_does_not_fit():
+    both = machines(BOOK)
+    answered = replace(both, rules=tuple([own for own in both.rules if own.name == "answered"]))
+    for rules in answered.judgeable_at(0.3):
+        assert [own.name for own in rules.rules] == ["answered"]
+    assert violated(verify(trace("pq", 0.3), answered)) == []
+    again = zip(both.rounded_to(0.3), both.rounded_to(0.3), strict=True)
+    assert all(first is second for first, second in again)
+
+
 LARGE = """rulebook large
 signal p, q
 hard rule large { require always (p implies eventually[<= 100 s] q) }

@@ -279,7 +279,7 @@ VERBS = {
         "0 moments, in 0 of 6 drives",
     ),
     "check": (["check"], None, "rulec.rulebook.batch.batch_check._findings", ""),
-    "test": (["test"], None, "rulec.batch.example_batch.run_examples", "good"),
+    "test": (["test"], None, "rulec.batch.example_batch.run_examples", "2 examples passed"),
 }
 
 

@@ -161,7 +161,8 @@ def test_a_number_stands_out_when_it_passes_a_limit_not_whenever_it_changes():
         "gap(v) < 1.5 m": True,
         "speed > 30 km/h": False,
     }
-    rows = [line.split() for line in unstyle(report.as_text(found)).splitlines()]
+    wide = report.TableOptions(width=100)
+    rows = [line.split() for line in unstyle(report.as_text(found, wide)).splitlines()]
     assert ["gap(a)", "in", "m", "3", "2.5", "1.4*"] in rows
     assert ["speed", "in", "km/h", "43", "42.5", "41.4"] in rows
     data = as_builtins(explanation_data(found))

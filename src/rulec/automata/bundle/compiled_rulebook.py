@@ -190,11 +190,18 @@ class CompiledRulebook(Rows):
             self.prepared[CompiledRulebook.at_step] = steps
         if steps <= {None, step}:
             return self
-        compiled = self.recompile(step)
-        if len(compiled.rules) == len(self.rules):
-            return compiled
+        return self._of_these_rules(self.recompile(step))
+
+    def _of_these_rules(self, book: CompiledRulebook) -> CompiledRulebook:
+        """What was compiled for another step, without rules that this rulebook does not have."""
+        if len(book.rules) + len(book.too_large) == len(self.rules):
+            return book  # keeps the data that engines have prepared
         kept = {rule.name for rule in self.rules}
-        return replace(compiled, rules=tuple(r for r in compiled.rules if r.name in kept))
+        return replace(
+            book,
+            rules=tuple(rule for rule in book.rules if rule.name in kept),
+            too_large=tuple(rule for rule in book.too_large if rule.name in kept),
+        )
 
     def at_one_step(self) -> CompiledRulebook:
         """These rules for one step: if they have several, the longest that divides all of them.
@@ -220,7 +227,7 @@ class CompiledRulebook(Rows):
         except RulecError as error:
             if self.recompile is None or is_too_large(error):
                 raise
-            return self.recompile.rounded(exact_step(step_s))
+            return tuple(map(self._of_these_rules, self.recompile.rounded(exact_step(step_s))))
 
     def judgeable_at(self, step_s: Fraction | float) -> tuple[CompiledRulebook, ...]:
         """As ``rounded_to``, without the rules that are ``too_large`` for the step."""
@@ -230,17 +237,7 @@ class CompiledRulebook(Rows):
             if self.recompile is None or not is_too_large(error):
                 raise
             books = self.recompile.judgeable_at(exact_step(step_s))
-            if len(books[0].rules) + len(books[0].too_large) == len(self.rules):
-                return books  # keeps the data that engines have prepared
-            kept = {rule.name for rule in self.rules}
-            return tuple(
-                replace(
-                    book,
-                    rules=tuple(rule for rule in book.rules if rule.name in kept),
-                    too_large=tuple(rule for rule in book.too_large if rule.name in kept),
-                )
-                for book in books
-            )
+            return tuple(map(self._of_these_rules, books))
 
     def rows(self) -> list[dict[str, Any]]:
         """One row per rule."""

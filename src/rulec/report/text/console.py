@@ -117,7 +117,7 @@ def progress(task: str, total: float | None) -> Iterator[Callable[[float], None]
     columns = Progress.get_default_columns()
     if total is None:
         columns = (*columns[:2], MofNCompleteColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as live:
+    with doing(""), Progress(*columns, console=Console(stderr=True), transient=True) as live:
         _bar = _Bar(live, live.add_task(task, total=total))
         try:
             yield _bar.tell

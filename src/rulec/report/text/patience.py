@@ -18,7 +18,7 @@ _IDLE = frozenset({"lsp", "monitor", "--watch", "-q", "--quiet"})
 """Verbs and options with which a command waits for somebody else, or says nothing."""
 
 _tasks: list[str] = []
-"""What is being done, the innermost task last."""
+"""What is being done, the innermost task last; one without a name shows itself, as a bar does."""
 
 
 @contextmanager
@@ -34,6 +34,8 @@ def patience(arguments: Sequence[str]) -> Iterator[None]:
     begun = monotonic()
 
     def tell(*_: object) -> None:
+        if not _tasks[-1]:
+            return
         text = visible(f"rulec: {_tasks[-1]}, for {monotonic() - begun:.0f} s")
         with suppress(OSError):
             os.write(2, f"{text}\n".encode(errors="backslashreplace"))
