@@ -2,6 +2,7 @@
 
 import gzip
 import json
+from pathlib import Path
 
 import pytest
 
@@ -117,6 +118,21 @@ def test_what_is_assumed_is_not_missing(verify):
     assert status == 0
     assert "by default" not in out
     assert "2 drives: nothing against all 2 rules" in out.splitlines()
+
+
+def test_the_command_that_draws_has_the_options_that_were_given(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("tiny.rules").write_text(BOOK)
+    file = Path(three_cars(tmp_path)).name
+    options = ["-r", "./tiny.rules", "--as-recorded", "--assume", "built_up=false"]
+    assert main(["verify", file, *options]) == 1
+    out = capsys.readouterr().out
+    command = out.partition("see it: ")[2].replace(" \\\n", "").split()
+    assert command[:4] == ["rulec", "draw", "drive", file]
+    assert {"--as-recorded", "built_up=false"} < {*command}
+    assert max(map(len, out.splitlines())) <= 80
+    assert main(command[1:]) == 0
+    assert Path("drive.html").exists()
 
 
 def test_a_line_of_json_for_each_drive(verify):

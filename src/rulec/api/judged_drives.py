@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from rulec.api.pictures import drive_drawing, trace_drawing
@@ -29,7 +29,7 @@ from rulec.report.pictures.drawing.picture_formats import Drawing, as_bytes
 from rulec.report.text.terminal_text import counted
 from rulec.report.verdict_findings.findings_of_drives import DriveFindings
 from rulec.report.verdict_findings.findings_of_traces import not_judged_trace, trace_findings
-from rulec.report.verdict_findings.verdict_finding import VerdictFinding
+from rulec.report.verdict_findings.verdict_finding import COLUMNS, VerdictFinding
 from rulec.report.verdicts import verdict_report
 from rulec.report.verdicts.recording_answer import MOST_SHOWN, AnswerLayout, RecordingAnswer
 from rulec.trace import Trace
@@ -65,9 +65,9 @@ class FindingRows(Rows, Sequence[VerdictFinding]):
         """One row per finding, with its fields; several names are in one text."""
         return [
             {
-                field.name: ", ".join(value) if isinstance(value, tuple) else value
-                for field in fields(VerdictFinding)
-                for value in (getattr(finding, field.name),)
+                name: ", ".join(value) if isinstance(value, tuple) else value
+                for name in COLUMNS
+                for value in (getattr(finding, name),)
             }
             for finding in self._findings
         ]
@@ -165,6 +165,8 @@ class JudgedDrives(Judged):
     ) -> None:
         verdicts = RecordingVerdicts(recording, rules, request, file, says_law=True)
         super().__init__(verdicts.rules)
+        # Rounded once already, a bound would be taken for exact
+        self._rulebook = rules
         self._recording, self._file = recording, file
         self._verdicts, self._tally = verdicts, ViolationTally()
         gathered = DriveFindings(verdicts, file)
@@ -199,7 +201,7 @@ class JudgedDrives(Judged):
         """Explain a violation state by state. Raises ValueError for a finding from elsewhere."""
         expected("violation", "VerdictFinding", violation)
         found = self._violation(violation, self._answers.get(violation.vehicle))
-        return explain_drive(found, self.drive(violation.vehicle), self.rules)
+        return explain_drive(found, self.drive(violation.vehicle), self._rulebook)
 
     def draw(
         self,
@@ -223,7 +225,7 @@ class JudgedDrives(Judged):
         """The verdicts on one vehicle, with its drives; on all without a name."""
         vehicle, request = name.partition("#")[0], self._verdicts.request
         request = replace(request, egos=(vehicle,)) if vehicle else request
-        return RecordingVerdicts(self._recording, self.rules, request, self._file)
+        return RecordingVerdicts(self._recording, self._rulebook, request, self._file)
 
 
 class JudgedTraces(Judged):
@@ -241,8 +243,7 @@ class JudgedTraces(Judged):
             self._answers[name] = judged
             if isinstance(trace, Trace) and isinstance(judged, Verdict):
                 self._traces[name] = trace
-                own = rules.rounded_to(trace.step_s)[0]
-                found = trace_findings(file, trace, judged, own, [])
+                found = trace_findings(file, trace, judged, self._rules_of(name), [])
                 findings += [replace(finding, vehicle=name) for finding in found]
             elif isinstance(judged, NotJudged):
                 findings.append(not_judged_trace(file, judged, rules.name))
@@ -256,11 +257,14 @@ class JudgedTraces(Judged):
             if isinstance(answer, Verdict):
                 outcomes[answer.outcome] += 1
                 if answer.violations:
-                    own = self.rules.rounded_to(self._traces[name].step_s)[0]
-                    text = verdict_report.as_text(answer, own, width=width, doubts=False)
-                    lines.append(text)
+                    own = self._rules_of(name)
+                    lines.append(verdict_report.as_text(answer, own, width=width, doubts=False))
         lines.append(verdict_report.summary(outcomes, len(self) - outcomes.total()))
         return "\n".join(lines)
+
+    def _rules_of(self, name: str) -> CompiledRulebook:
+        """The rules at a trace's step; where a bound is no multiple of it, rounded down."""
+        return self.rules.rounded_to(self._traces[name].step_s)[0]
 
     def _free(self, name: str) -> str:
         """A name that no earlier trace has, such as ``t (2)``."""
@@ -274,8 +278,8 @@ class JudgedTraces(Judged):
         """Explain a violation state by state. Raises ValueError for a finding from elsewhere."""
         expected("violation", "VerdictFinding", violation)
         found = self._violation(violation, self._answers.get(violation.vehicle))
-        trace = self._traces[violation.vehicle]
-        return explain(found, trace, self.rules.rounded_to(trace.step_s)[0])
+        name = violation.vehicle
+        return explain(found, self._traces[name], self._rules_of(name))
 
     def draw(self, subject: str | VerdictFinding, form: Format = "svg") -> bytes:
         """Draw a trace's values over time: the content of a file. Raises KeyError."""

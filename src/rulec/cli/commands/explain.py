@@ -100,8 +100,8 @@ def _texts(words: Sequence[FoundWord], width: int | None) -> list[str]:
     # Late import, as above: not needed for codes.
     from rulec.report.rulebooks.word_texts import as_markdown, as_text, readers_of
 
-    told = [(word, readers_of(word, _places())) for word in words]
-    return [as_markdown(*one) if width is None else as_text(*one, width) for one in told]
+    read = [(word, readers_of(word, _places())) for word in words]
+    return [as_markdown(*one) if width is None else as_text(*one, width) for one in read]
 
 
 def _as_json(codes: Sequence[Code], words: Sequence[FoundWord]) -> str:

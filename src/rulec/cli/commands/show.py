@@ -75,20 +75,20 @@ def command(
         books, rule = rulebooks_named((rulebook, *others)), None
     else:
         books, rule = books_and_rule((rulebook, *others), "show")
-    asked = Asked(name=rule, patterns=patterns, topic=topic, every=every, to=to, at=at)
+    request = ShowRequest(name=rule, patterns=patterns, topic=topic, every=every, to=to, at=at)
     if automaton is not None or to.form in ("dot", "svg"):
         if len(books) > 1:
             raise click.UsageError("an automaton is of one rule; give one RULEBOOK")
-        put_answer(_automaton_of(books[0], asked), to)
+        put_answer(_automaton_of(books[0], request), to)
         return ExitStatus.OK
     if len(books) == 1:
-        put_answer(_known(books[0], asked, several=False), to)
+        put_answer(_known(books[0], request, several=False), to)
         return ExitStatus.OK
     shown: list[str] = []
     missing: list[click.UsageError] = []
     for book in books:
         with errors_told(), _collected(missing):
-            text = _known(book, asked, several=True)
+            text = _known(book, request, several=True)
             alone = to.form == "json" or (rule is None and not every)
             shown.append(text if alone else f"{book}\n\n{text}\n")
     if missing and not shown:
@@ -108,7 +108,7 @@ def _collected(problems: list[click.UsageError]) -> Iterator[None]:
         problems.append(problem)
 
 
-class Asked(NamedTuple):
+class ShowRequest(NamedTuple):
     """The rules to show, and how."""
 
     name: str | None
@@ -119,28 +119,28 @@ class Asked(NamedTuple):
     at: str
 
 
-def _known(reference: str, asked: Asked, *, several: bool) -> str:
+def _known(reference: str, request: ShowRequest, *, several: bool) -> str:
     """A rule as text or JSON, or all that match in brief; one JSON line each if ``several``."""
-    shown = partial(_shown, reference, asked, several=several)
+    shown = partial(_shown, reference, request, several=several)
     if Path(reference).suffix == ".json":
         return shown()[0]
     refuse_source(reference)
-    words = ("show", reference, repr((*asked, width_of(asked.to), several)))
+    words = ("show", reference, repr((*request, width_of(request.to), several)))
     return str(AnswerQuestion(words, search_path()).answer(shown))
 
 
-def _shown(reference: str, asked: Asked, *, several: bool) -> tuple[str, Sequence[str]]:
+def _shown(reference: str, request: ShowRequest, *, several: bool) -> tuple[str, Sequence[str]]:
     """What to show, and the files that it comes from; none for a compiled rulebook."""
-    whole, compiled, paths = _read(reference, asked.at)
-    book = _matching(whole, asked)
-    chosen = _chosen(book, asked.name, reference)
-    if book.rules and chosen is None and asked.to.form == "text" and not asked.every:
+    whole, compiled, paths = _read(reference, request.at)
+    book = _matching(whole, request)
+    chosen = _chosen(book, request.name, reference)
+    if book.rules and chosen is None and request.to.form == "text" and not request.every:
         # Late import, not for --help: topics (20 ms).
         from rulec.report.rulebooks import rule_list
 
-        some = "" if asked.topic or not book.topics else ", `--topic overtaking` some"
+        some = "" if request.topic or not book.topics else ", `--topic overtaking` some"
         ways_on = f"a RULE's name shows it in full{some}, `--all` every one"
-        return rule_list.as_text([book], width_of(asked.to), ways_on), paths
+        return rule_list.as_text([book], width_of(request.to), ways_on), paths
     # Late import, not for --help: rules and automata (60 ms).
     from rulec.report.json_document import as_indented, as_line
     from rulec.report.rulebooks import rule_json, rule_page
@@ -152,10 +152,10 @@ def _shown(reference: str, asked: Asked, *, several: bool) -> tuple[str, Sequenc
     if chosen is not None and page is not None:
         rules = tuple(rule for rule in spoken.rules if rule.name == chosen.name)
         page = replace(page, rule=rules[0])
-    if asked.to.form == "json":
+    if request.to.form == "json":
         document = rule_json.as_document(book.name, rules, book.vocabulary, page)
         return as_line(document) if several else as_indented(document), paths
-    width = width_of(asked.to)
+    width = width_of(request.to)
     if page is not None:
         return rule_page.as_text(page, book.name, book.vocabulary, width), paths
     if not rules:
@@ -164,31 +164,31 @@ def _shown(reference: str, asked: Asked, *, several: bool) -> tuple[str, Sequenc
     return "\n\n\n".join(pages), paths
 
 
-def _matching(book: Rulebook, asked: Asked) -> Rulebook:
+def _matching(book: Rulebook, request: ShowRequest) -> Rulebook:
     """The rulebook with only the rules on the topic that match one of the patterns, if any."""
-    if asked.topic is not None:
-        book = rules_on_topic([book], asked.topic)[0]
-    if not asked.patterns:
+    if request.topic is not None:
+        book = rules_on_topic([book], request.topic)[0]
+    if not request.patterns:
         return book
     # Late import, not for --help: comparisons of rulebooks.
     from rulec.analysis.diff.rulebook_comparison import rules_matching
 
-    rules = tuple(rules_matching(book, asked.patterns).values())
+    rules = tuple(rules_matching(book, request.patterns).values())
     if not rules:
-        raise click.UsageError(f"{book.name} has no rule like {named(asked.patterns)}")
+        raise click.UsageError(f"{book.name} has no rule like {named(request.patterns)}")
     return replace(book, rules=rules)
 
 
-def _automaton_of(reference: str, asked: Asked) -> str:
+def _automaton_of(reference: str, request: ShowRequest) -> str:
     """The automaton of a rule, in the requested format."""
-    whole, compiled, _ = _read(reference, asked.at)
-    book = _matching(whole, asked)
-    chosen = _chosen(book, asked.name, reference)
+    whole, compiled, _ = _read(reference, request.at)
+    book = _matching(whole, request)
+    chosen = _chosen(book, request.name, reference)
     if chosen is None:
         raise click.UsageError(f"give the RULE whose automaton to show: {_names(book)}")
     page = _page(book, compiled, chosen)
     name = f"{book.name} {chosen.name}"
-    return _automaton(page.automaton, asked.to.form, name, width_of(asked.to))
+    return _automaton(page.automaton, request.to.form, name, width_of(request.to))
 
 
 def _page(book: Rulebook, compiled: CompiledRulebook | None, chosen: Rule) -> RulePage:

@@ -79,7 +79,7 @@ def command(
         _write_drives(file, to, jobs, rulebook=rulebook, first=first, options=options)
         return
     about = {name: options.pop(name) for name in ("thresholds", "assumed", "as_recorded")}
-    option = scenario_options.given_drives_option(about)
+    option = next(scenario_options.given_drives_options(about), None)
     context = click.get_current_context()
     if option is None and shared.is_from(context, "jobs", ParameterSource.COMMANDLINE):
         option = "-j"

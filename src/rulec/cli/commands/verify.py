@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -182,7 +181,8 @@ def command(
                 )
             if exposure:
                 outputs.to_rows = _to_rows(rows_of, rules.name, egos, options, ends)
-            results.append(_judge(request, rules, outputs, complaints, reference))
+            named = ["-r", reference, *(("--at", at) if at else ())]
+            results.append(_judge(request, rules, outputs, complaints, named))
         if len(books) > 1:
             # Late import, only if there are recordings: verdicts and recordings.
             from rulec.report.verdicts import side_by_side
@@ -243,7 +243,7 @@ def _check_inputs(request: VerifyRequest) -> None:
     """Refuse options that do not apply to the files. Raises click.UsageError, RulecError."""
     about = {name: value for name, value in request.options.items() if name != "assumed"}
     about["input_format"] = None
-    option = scenario_options.given_drives_option({"egos": request.egos, **about})
+    option = next(scenario_options.given_drives_options({"egos": request.egos, **about}), None)
     if option and not request.recordings and not request.inputs.problems:
         for path in request.inputs.paths:
             if path != STANDARD_INPUT:
@@ -276,15 +276,15 @@ def _judge(
     rules: CompiledRulebook,
     outputs: VerdictOutputs,
     complaints: Complaints,
-    reference: str,
+    named: Sequence[str],
 ) -> VerifyResult:
-    """Judge all files by one rulebook, which ``reference`` names."""
+    """Judge all files by one rulebook; the options that it was ``named`` by are for messages."""
     # Late import, not for --help: formats of recordings (80 ms).
     from rulec.report.verdicts.batch_table import BatchTally
 
     result = VerifyResult(BatchTally())
     if request.recordings or request.inputs.problems:
-        recorded = _judge_recordings(request, rules, outputs, complaints, reference)
+        recorded = _judge_recordings(request, rules, outputs, complaints, named)
         _include(result, recorded, strict=request.strict)
         result.complete &= recorded.complete
     if request.traces:
@@ -299,7 +299,7 @@ def _judge_recordings(
     rules: CompiledRulebook,
     outputs: VerdictOutputs,
     complaints: Complaints,
-    reference: str,
+    named: Sequence[str],
 ) -> RecordingRun:
     # Late import, only for recordings: NumPy and shapely (250 ms).
     from rulec.batch.recording_judge import JudgeSettings
@@ -307,7 +307,8 @@ def _judge_recordings(
     from rulec.report.verdicts.recording_answer import AnswerLayout
 
     to_rows = outputs.to_rows
-    source = shlex.join([*request.recordings, "-r", reference])
+    given = scenario_options.given_drives_options(request.options)
+    source = (*request.recordings, *named, *given)
     settings = JudgeSettings(
         rules,
         scenario_options.requested_drives(request.egos, request.options, rules.vocabulary),

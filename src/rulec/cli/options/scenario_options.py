@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -297,12 +297,23 @@ drives_options = combined(
 """Options for turning a recording's drives into traces, consumed by ``requested_drives``."""
 
 
-def given_drives_option(options: Mapping[str, Any]) -> str | None:
-    """The first option for drives that is given, if any."""
-    names = {"egos": "--ego", "assumed": "--assume", "thresholds": "--threshold"}
-    names |= {"map_path": "--map", "scenario_id": "--scenario"}
-    given = (names.get(name) or f"--{name.replace('_', '-')}" for name in options if options[name])
-    return next(given, None)
+_NAMES = {
+    "egos": "--ego",
+    "assumed": "--assume",
+    "thresholds": "--threshold",
+    "map_path": "--map",
+    "scenario_id": "--scenario",
+}
+"""The options that are not called as their values are."""
+
+
+def given_drives_options(options: Mapping[str, Any]) -> Iterator[str]:
+    """The options for drives that are given, each with its value, as on a command line."""
+    for name, value in options.items():
+        for one in value if isinstance(value, tuple) else [value] if value else []:
+            yield _NAMES.get(name) or f"--{name.replace('_', '-')}"
+            if one is not True:
+                yield str(one)
 
 
 def check_thresholds(texts: Sequence[str]) -> None:

@@ -51,22 +51,9 @@ They form one value, so that an interrupted step cannot leave them inconsistent.
 
 
 class RunningMonitor:
-    """A monitor of a trace whose states arrive one after the other.
+    """A monitor of a trace by a compiled rulebook; see ``rulec.Monitor``, which takes any form.
 
-    A step takes as long after a million states as after one: the past is represented by the states
-    of the rules' machines, one for each binding of a rule to objects that are present.
-
-    Args:
-        rulebook: the rules; they are not compiled here.
-        step_s: seconds from one state to the next; needed only by rules with bounds in seconds. If
-            omitted, the step that they were compiled for.
-        told: the names that the source can provide; other names are unknown in states that do not
-            contain them, except those with ``presumed`` defaults. If omitted, all have defaults.
-        cut: the time before the first state, and before an object appeared, is unknown; an object
-            that has left was lost from view, so what is pending about it stays open.
-
-    Raises RulecError R0507 if a rule was compiled for another step and cannot be compiled again,
-    R0403 if it is cut and Spot is not installed, TypeError for rules that are not compiled.
+    Raises TypeError for rules that are not compiled.
     """
 
     def __init__(

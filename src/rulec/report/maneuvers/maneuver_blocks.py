@@ -32,12 +32,12 @@ if TYPE_CHECKING:
 MOST_BINDINGS = 3
 MOST_NAMED = 6
 MOST_VIOLATIONS = 20
-FEW = 3
+MOST_REASONS = 3
 
 LEAST_LABEL = 16
 """Characters of a cell's relations that are shown, however narrow the page."""
 
-_LABEL = re.compile(r"[a-z]+(?: [a-z]+)* {2,}|\d+ s  ")
+_LABEL = re.compile(r"[a-z]+(?: [a-z]+)* {2,}")
 """The label of a line, such as ``not judged  ``."""
 
 _LEAST_SHOWN = 0.005
@@ -46,24 +46,22 @@ _LEAST_SHOWN = 0.005
 
 @dataclass(frozen=True, slots=True)
 class BlockLayout:
-    """The width of a page in characters, and whether ``every`` open verdict has its reasons."""
+    """The width of a page in characters, and whether all open verdicts have their ``reasons``."""
 
     width: int = PAGE_WIDTH
-    every: bool = False
+    reasons: bool = False
 
 
 def maneuver_block(
     graph: NavigationGraph,
     number: int,
     maneuver: Maneuver,
-    details: Sequence[str],
     layout: BlockLayout,
+    *,
+    remark: str = "",
+    details: Sequence[str] = (),
 ) -> list[str]:
-    """A maneuver's cost and margin, details, and its cells with their bounds.
-
-    The first of the ``details`` is a remark for the line of the cost.
-    """
-    remark, *more = details or [""]
+    """A maneuver's cost and margin with a remark, details, and its cells with their bounds."""
     margin_s = maneuver.margin_s
     margin = "never changes cell" if margin_s is None else f"margin {margin_s:g} s"
     rows = [
@@ -90,7 +88,7 @@ def maneuver_block(
         rows = [
             (row[0], cut(label, widest), *row[2:]) for row, label in zip(rows, named, strict=True)
         ]
-    lines = [line for text in (head, *driven, *more) for line in wrapped(text, layout.width)]
+    lines = [line for text in (head, *driven, *details) for line in wrapped(text, layout.width)]
     return ["", *lines, *table_lines(rows, indent="   ")]
 
 
@@ -149,11 +147,12 @@ def listed_block(
     doubtful = () if verdict is None else verdict.open
     remark = "; open" if any(open_verdict.strength == "hard" for open_verdict in doubtful) else ""
     details = [
-        remark,
         *_as_driven(maneuver, shown.driven),
         *_open_lines(maneuvers, doubtful, shown.layout),
     ]
-    return maneuver_block(maneuvers.graph, number, maneuver, details, shown.layout)
+    return maneuver_block(
+        maneuvers.graph, number, maneuver, shown.layout, remark=remark, details=details
+    )
 
 
 def driven_counts(driven: TrajectoryScores | None) -> list[str]:
@@ -194,10 +193,10 @@ def _open_lines(
     maneuvers: Maneuvers, doubtful: Sequence[OpenVerdict], layout: BlockLayout
 ) -> list[str]:
     """The open verdicts with their reasons; of more than a few only how many each rule has."""
-    if len(doubtful) > FEW and not layout.every:
+    if len(doubtful) > MOST_REASONS and not layout.reasons:
         numbers = Counter(open_verdict.rule for open_verdict in doubtful)
         shown = [f"{rule} ({number})" if number > 1 else rule for rule, number in numbers.items()]
-        return [f"   open: {first_of(shown, FEW)}; --why has the reasons"]
+        return [f"   open: {first_of(shown, MOST_REASONS)}; --why has the reasons"]
     lines = [
         f"   {visible(f'{_rule_title(maneuvers, open_verdict)}: {open_in_words(open_verdict)}')}"
         for open_verdict in doubtful[:MOST_VIOLATIONS]
@@ -214,7 +213,7 @@ def ranked_block(maneuvers: Maneuvers, ranked: RankedManeuver, shown: ShownVerdi
     penalty = _penalty(ranked.penalty)
     if ranked.open:
         penalty = f"at most {penalty}, at least {_penalty(ranked.at_least)}"
-    details = [same, *_as_driven(ranked.maneuver, shown.driven), f"   violates {penalty}"]
+    details = [*_as_driven(ranked.maneuver, shown.driven), f"   violates {penalty}"]
     details += [
         f"     {_violation_line(maneuvers, violation)}"
         for violation in ranked.violations[:MOST_VIOLATIONS]
@@ -222,7 +221,9 @@ def ranked_block(maneuvers: Maneuvers, ranked: RankedManeuver, shown: ShownVerdi
     if len(ranked.violations) > MOST_VIOLATIONS:
         details.append(f"     and {len(ranked.violations) - MOST_VIOLATIONS} more")
     details += [f"  {line}" for line in _open_lines(maneuvers, ranked.open, shown.layout)]
-    return maneuver_block(maneuvers.graph, ranked.place, ranked.maneuver, details, shown.layout)
+    return maneuver_block(
+        maneuvers.graph, ranked.place, ranked.maneuver, shown.layout, remark=same, details=details
+    )
 
 
 def _penalty(penalty: Mapping[PenaltyRank, Fraction]) -> str:

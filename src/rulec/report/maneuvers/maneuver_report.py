@@ -157,7 +157,7 @@ def as_text(
         if maneuvers.in_way and graph.extent != "body":
             lines.append("opened by   `--extent body`, perhaps: it leaves more room")
     lines = [line for text in lines for line in maneuver_blocks.wrapped(text, width)]
-    layout = maneuver_blocks.BlockLayout(width, every=answers.prunings is not None)
+    layout = maneuver_blocks.BlockLayout(width, reasons=answers.prunings is not None)
     shown_verdicts = maneuver_blocks.ShownVerdicts(answers.verdicts, answers.driven, layout)
     for number, maneuver in enumerate(answers.listed or (), 1):
         lines += maneuver_blocks.listed_block(maneuvers, number, maneuver, shown_verdicts)
@@ -174,7 +174,7 @@ def as_text(
             members = f"{shown_count(variant.members)} satisfying members"
             remark = f"; class of {'1 member' if variant.members == 1 else members}"
             lines += maneuver_blocks.maneuver_block(
-                graph, number, variant.cheapest, [remark], layout
+                graph, number, variant.cheapest, layout, remark=remark
             )
     return "\n".join(lines)
 

@@ -135,15 +135,24 @@ def table_lines(
 
 
 def stacked_tables(
-    rows: Sequence[Sequence[str]], width: int, *, indent: str = "", ruled: Sequence[int] = ()
+    rows: Sequence[Sequence[str]],
+    width: int,
+    *,
+    indent: str = "",
+    ruled: Sequence[int] = (),
+    is_of_numbers: bool = False,
 ) -> list[str]:
-    """A table as above; if it is wider than a width, its columns go on below, after the first."""
+    """A table as above; if it is wider than a width, its columns go on below, after the first.
+
+    If it is of numbers, all columns but the first are aligned on the right.
+    """
     titles, *columns = zip(*rows, strict=True)
     lines: list[str] = []
     while columns:
         for number in range(len(columns), 0, -1):
             part = list(zip(titles, *columns[:number], strict=True))
-            table = table_lines(part, indent=indent, ruled=ruled)
+            right = range(1, number + 1) if is_of_numbers else ()
+            table = table_lines(part, indent=indent, ruled=ruled, right=right)
             if max(map(cell_width, table)) <= width:
                 break
         lines += ["", *table] if lines else table

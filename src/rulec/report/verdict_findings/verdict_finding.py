@@ -20,7 +20,7 @@ from rulec.version import __version__
 
 Outcome = Literal["violated", "open", "not_judged"]
 
-MOST_SHOWN = 120
+LONGEST_SHOWN = 120
 """The most characters of a finding's sentence in its ``repr``."""
 
 
@@ -73,7 +73,7 @@ class VerdictFinding:
     lanelet: str = ""
 
     def __repr__(self) -> str:
-        return f"VerdictFinding({cut(self.says, MOST_SHOWN)})"
+        return f"VerdictFinding({cut(self.says, LONGEST_SHOWN)})"
 
     @property
     def when(self) -> str:

@@ -24,7 +24,7 @@ MOST_SHOWN = 3
 MOST_NAMES = 4
 """Number of names listed in a line."""
 
-MOST_WANTED = 2
+MOST_COUNTED = 2
 """Number of missing words whose rules are counted."""
 
 MOST_UNJUDGED = 100
@@ -45,7 +45,7 @@ class AnswerLayout:
 
     width: int
     why: bool = False
-    source: str = ""
+    source: tuple[str, ...] = ()
 
 
 class RecordingAnswer:
@@ -120,7 +120,8 @@ class RecordingAnswer:
             text = f"by default: {first_of(defaults, MOST_NAMES)}"
             yield from self._wrapped(text, 2 * INDENT, most=1)
         every = self._shown.get(name, ())
-        shown = every if len(drives) <= len(every) <= MOST_SHOWN else every[: MOST_SHOWN - 1]
+        n_violations = sum(map(len, self._tally.causes[name].values()))
+        shown = every if n_violations <= MOST_SHOWN else every[: MOST_SHOWN - 1]
         rows = [(one.vehicle, one.when, one.in_short) for one in shown]
         for line in table_lines(rows, indent=2 * INDENT, right=(0,)) if rows else ():
             yield cut(line.rstrip(), self._layout.width)
@@ -129,6 +130,8 @@ class RecordingAnswer:
         if others:
             text = f"and {len(others):,} more: {first_of([x for _, x in others], MOST_NAMES)}"
             yield from self._wrapped(text + self._one_cause(name), 2 * INDENT, most=1)
+        elif n_violations > len(shown):
+            yield f"{2 * INDENT}and {n_violations - len(shown):,} more of the same drives"
 
     def _one_cause(self, rule: str) -> str:
         """The objects that most violations of a rule are about, if several are."""
@@ -162,7 +165,7 @@ class RecordingAnswer:
         text = f"{len(names):,} of {counted(len(self._rules), 'rule')} not judged"
         left = {name: tuple(self._tally.untold.get(name, ())) for name in names}
         parts: list[str] = []
-        while left and len(parts) < MOST_WANTED:
+        while left and len(parts) < MOST_COUNTED:
             words = Counter(word for own in left.values() for word in own)
             if not words:
                 break
@@ -214,8 +217,8 @@ class RecordingAnswer:
         """How to see more."""
         remarks = self._verdicts.recording.remarks
         if remarks:
-            more = f" ({len(remarks) - 1:,} more notes)" if len(remarks) > 1 else ""
-            yield from self._wrapped(f"note: {remarks[0]}{more}", most=2)
+            more = f" (and {len(remarks) - 1:,} more)" if len(remarks) > 1 else ""
+            yield from self._wrapped(f"note{more}: {remarks[0]}", most=1)
         if not self._layout.source:
             return
         ways = ["--explain 1 (the first one)"] if self._tally.first_s else []
@@ -225,16 +228,25 @@ class RecordingAnswer:
             yield from self._wrapped(f"more: {', '.join(ways)}")
         if self._tally.first_s:
             (drive, *_) = next(iter(self._tally.first_s.values()))
-            ego = quote(drive.partition("#")[0])
+            ego = drive.partition("#")[0]
             yield from self._command(
-                f"see it: rulec draw drive {self._layout.source}", f"--ego {ego} -o drive.html"
+                ["draw", "drive", *self._layout.source, "--ego", ego, "-o", "drive.html"]
             )
 
-    def _command(self, first: str, later: str) -> list[str]:
+    def _command(self, words: Sequence[str]) -> list[str]:
         """A command that can be copied, in one or two lines; none if it does not fit."""
-        one, two = [f"{first} {later}"], [f"{first} \\", f"{INDENT}{later}"]
-        fits = [lines for lines in (one, two) if max(map(len, lines)) <= self._layout.width]
-        return next(iter(fits), [])
+        width, parts = self._layout.width, [quote(word) for word in words]
+        whole = " ".join(["see it: rulec", *parts])
+        if len(whole) <= width:
+            return [whole]
+        # An option stays beside its value
+        for number in range(len(parts) - 1, 0, -1):
+            if parts[number].startswith("-"):
+                first = " ".join(["see it: rulec", *parts[:number], "\\"])
+                later = INDENT + " ".join(parts[number:])
+                if len(first) <= width:
+                    return [first, later] if len(later) <= width else []
+        return []
 
     def _reasons(self) -> Iterator[str]:
         """What is open and not judged, for which words, and all notes."""

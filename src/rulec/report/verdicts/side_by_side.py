@@ -6,28 +6,17 @@ from collections.abc import Sequence
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.report.text.console import PAGE_WIDTH
-from rulec.report.text.terminal_text import table_lines, visible
+from rulec.report.text.terminal_text import stacked_tables, visible
 from rulec.report.verdicts.batch_table import BatchTally
 from rulec.report.verdicts.verdict_report import OUTCOMES
 
-Tallies = Sequence[tuple[CompiledRulebook, BatchTally]]
 
-
-def as_text(tallies: Tallies, width: int = PAGE_WIDTH) -> str:
+def as_text(tallies: Sequence[tuple[CompiledRulebook, BatchTally]], width: int = PAGE_WIDTH) -> str:
     """A table with a column per rulebook, and a row per rule violated by at least one of them.
 
     A number counts the traces or drives that violate the rule. Rulebooks that do not fit into the
     width have a table of their own below.
     """
-    for number in range(len(tallies), 0, -1):
-        lines = _table(tallies[:number])
-        if number == 1 or all(len(line) <= width for line in lines):
-            rest = ["", *as_text(tallies[number:], width).splitlines()] if tallies[number:] else []
-            return "\n".join([*lines, *rest])
-    return ""
-
-
-def _table(tallies: Tallies) -> list[str]:
     names = dict.fromkeys(
         rule.name for rules, total in tallies for rule in rules.rules if total.drives[rule.name]
     )
@@ -39,11 +28,13 @@ def _table(tallies: Tallies) -> list[str]:
     if any(total.not_judged for _, total in tallies):
         rows.append(("not judged", *(f"{total.not_judged:,}" for _, total in tallies)))
     rows.append(("rules not judged", *(f"{_without_any(*tally):,}" for tally in tallies)))
-    return table_lines(
+    lines = stacked_tables(
         [tuple(map(visible, row)) for row in rows],
-        right=range(1, len(tallies) + 1),
+        width,
         ruled=[0, len(names)] if names else [0],
+        is_of_numbers=True,
     )
+    return "\n".join(lines)
 
 
 def _without_any(rules: CompiledRulebook, total: BatchTally) -> int:

@@ -25,7 +25,7 @@ Titled = tuple[str, Part]
 
 def titled(parts: Sequence[Part], widest: int) -> list[Titled]:
     """All parts, with their texts cut to a number of characters."""
-    return [("  " * part.depth + cut(part.text, widest), part) for part in parts]
+    return [("  " * part.depth + clipped(part.text, widest), part) for part in parts]
 
 
 def folded(parts: Sequence[Part], widest: int) -> list[Titled]:
@@ -39,7 +39,7 @@ def folded(parts: Sequence[Part], widest: int) -> list[Titled]:
 
 def _folded(parts: Sequence[Part], at: int, depth: int, widest: int) -> Iterator[Titled]:
     part = parts[at]
-    text = cut(part.text, max(widest - 2 * depth, LEAST))
+    text = clipped(part.text, max(widest - 2 * depth, LEAST))
     yield "  " * depth + text, part
     now = all(operation.operator in BOOLEAN for operation in operations_of(part.formula))
     if now:
@@ -48,7 +48,7 @@ def _folded(parts: Sequence[Part], at: int, depth: int, widest: int) -> Iterator
         yield from _folded(parts, operand, depth + 1, widest)
 
 
-def cut(text: str, widest: int) -> str:
+def clipped(text: str, widest: int) -> str:
     """A text, cut to a number of characters."""
     return text if len(text) <= widest else f"{text[: widest - 1]}…"
 

@@ -18,7 +18,7 @@ from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.guard_text import GuardWording, runs
 from rulec.report.text.terminal_text import broken, styled, table_lines, visible
 from rulec.report.verdicts.state_times import NUMBERS_ALONE, StateTimes
-from rulec.report.verdicts.table_folding import MOST_PARTS, cut, fitting, folded, head, titled
+from rulec.report.verdicts.table_folding import MOST_PARTS, clipped, fitting, folded, head, titled
 from rulec.trace import Value
 from rulec.vocabulary.partial_values import Interval
 
@@ -70,7 +70,7 @@ def as_text(explanation: Explanation, options: TableOptions = DEFAULT_OPTIONS) -
     widest = width if options.every_part else width - len(INDENT) - max(map(len, titles)) - 2
     columns = [
         [
-            styled(cut(cell, widest), "bold" if decisive in places else "")
+            styled(clipped(cell, widest), "bold" if decisive in places else "")
             for cell in (head(explanation.states, places), *table.values[places[0]])
         ]
         for places in table.columns
@@ -203,14 +203,14 @@ def _left_out(explanation: Explanation, table: _Table, width: int) -> Iterator[s
 
 
 def _title(fact: Observation, widest: int) -> str:
-    text = cut(visible(fact.text), widest)
+    text = clipped(visible(fact.text), widest)
     return f"{text} in {visible(fact.unit)}" if fact.unit else text
 
 
 def _cells(fact: Observation, decisive: int) -> list[str]:
     cells = _with_margins(map(shown, fact.values), fact.margins)
     for n, names in enumerate(fact.objects or ()):
-        cells[n] += f": {cut(visible(', '.join(names)), MOST_OF_NAMES)}" if names else ""
+        cells[n] += f": {clipped(visible(', '.join(names)), MOST_OF_NAMES)}" if names else ""
     cells[decisive] += "*" * fact.changed
     return cells
 

@@ -78,9 +78,12 @@ def test_what_a_violation_rests_on(found):
     rests = {one.rule: one.rests_on for one in found.violations()}
     # Whether somebody waves ego on, no recording says
     assert rests == {"following_distance": "measured", "give_way_to_pedestrians": "default"}
-    wanted = rulec.RequestedDrives(assumed={"built_up": True})
+    wanted = rulec.RequestedDrives(assumed={"told_to_go": False})
     assumed = rulec.verify(FOLLOWING, "de", wanted=wanted).violations()
-    assert {one.rests_on for one in assumed if one.rule == "speed_limit"} <= {"assumed"}
+    assert {one.rule: one.rests_on for one in assumed} == {
+        "following_distance": "measured",
+        "give_way_to_pedestrians": "assumed",
+    }
 
 
 def test_the_summary_is_what_the_command_prints(found, capsys):
@@ -130,6 +133,37 @@ def test_results_say_in_a_line_what_was_found(found, traced):
     assert repr(found) == "JudgedDrives(de: 3 of 6 drives broke a hard rule)"
     assert repr(traced) == "JudgedTraces(esterle2019: 1 of 2 traces broke a hard rule)"
     assert repr(found.violations()) == "FindingRows(4 findings of 2 rules)"
+
+
+def test_of_many_violations_of_one_drive_the_rest_is_counted():
+    book = rulec.parse_rulebook(
+        "rulebook alone\nuse road\nhard rule alone (v: vehicle) { require never gap(v) >= 0 m }\n"
+    )
+    result = rulec.verify(FOLLOWING, book, wanted=rulec.RequestedDrives(egos=("1",)))
+    number = len(result.violations())
+    assert number > 3
+    lines = result.summary().splitlines()
+    assert f"    and {number - 2} more of the same drives" in lines
+    assert sum(line.startswith("    1  ") for line in lines) == 2
+
+
+def test_what_a_rounded_bound_leaves_open_is_no_violation_in_a_picture():
+    """From 36 km/h by 8 m/s², ego passes 57 km/h between 0.5 s and 1 s; 0.7 s is no multiple."""
+    t = 0.5 * np.arange(9)
+    street = rulec.build_lanelet("street", [(0, 0), (400, 0)], types=["urban"])
+    ego = rulec.build_participant("ego", "car", t, 20 + 10 * t + 4 * t**2, 0 * t, step_s=0.5)
+    recording = rulec.build_recording([street], [ego], step_s=0.5, side="right")
+    book = rulec.parse_rulebook(
+        "rulebook hasty\nuse road\n"
+        "hard rule quick { require eventually[<= 0.7 s] speed > 57 km/h }\n"
+        "hard rule slow { require always speed <= 40 km/h }\n"
+    )
+    result = rulec.verify(recording, book)
+    assert [one.rule for one in result["ego"].open] == ["quick"]
+    (violation,) = result.violations()
+    assert violation.rule == "slow"
+    assert b"ego: 1 violation, 1 open by hasty" in result.draw("ego")
+    assert result.draw("ego") == rulec.draw_drive(recording, book, "ego")
 
 
 def test_traces_of_one_name_and_bad_ones(tmp_path):
