@@ -48,7 +48,8 @@ def values():
     diff = rulec.diff("de", "gb", patterns=["crossing_overtaking*"])
     run = rulec.test("esterle2019")
     lineage = rulec.tree("de")
-    cells = rulec.TraceCells(rulec.layout_of([1]), np.array([0]), ({},))
+    behind = {"position": {"v1": "b"}}
+    cells = rulec.TraceCells(rulec.layout_of([1]), np.array([0]), (behind,), {"v1": "vehicle"})
     position = np.array([0, 0, 3, 1], dtype=np.uint8)
     columns = rulec.TraceColumns(
         rulec.layout_of([2, 2]), {("position", ("v1",)): position}, {"v1": "vehicle"}
@@ -93,6 +94,7 @@ def values():
             verdict.violations[0],
             rulec.NotJudged("t", error),
             rulec.verify_columns(columns, rules)[0],
+            rulec.verify_cells(cells, rules)[0],
         ),
         *(rulec.explain(verdict.violations[0], trace, rules), monitor, so_far, so_far.changes[0]),
         *(graph, graph.layers[0], graph.layers[0].cells[0], rulec.envelopes(maneuvers)[0][0]),

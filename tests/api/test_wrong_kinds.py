@@ -91,7 +91,6 @@ VIOLATED = rulec.Violation("R9", "hard", {}, 0)
 LINE = [(0, 0), (9, 0)]
 TRACKS = {"track": [1, 1], "t": [0, 1], "x": [0, 1], "y": [0, 0]}
 DEEP = reduce(lambda inner, _: [inner], range(3000), [])
-NOTHING_SAID = rulec.TraceColumns(rulec.layout_of([1]), {}, {"v": "vehicle"})
 PASSING = next(rulec.read_traces("docs/samples/traces.jsonl"))
 
 
@@ -290,11 +289,6 @@ def test_what_is_no_trace_is_said(changes, said):
             lambda: rulec.verify_columns(rulec.TraceColumns(rulec.layout_of([1]), 3), RULES),
             TypeError,
             "`values` is a dict, not int",
-        ),
-        (
-            lambda: rulec.verify_columns(NOTHING_SAID, RULES),
-            rulec.RulecError,
-            "no array for the `position` of `v`, and no default",
         ),
         (
             lambda: rulec.recording_from_columns(dict.fromkeys(("track", *"txy"), DEEP), {}),

@@ -19,8 +19,9 @@ from timing import in_turns, processor_time
 
 import rulec
 from rulec.automata.second_compiler import with_automata
+from rulec.monitoring.batch.batch_verify import verify_columns
+from rulec.monitoring.batch.cell_verdicts import verify_cells
 from rulec.monitoring.batch.columns.columnize import columnize
-from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.verify import verify
 from support.oracles.bits.bit_verdicts import verify_on_bits
 from support.oracles.bits.trace_planes import Across

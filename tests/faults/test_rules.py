@@ -45,9 +45,9 @@ def test_on_arrays(monkeypatch, rule):
 def planted_in_runs(monkeypatch, book, rule):
     """Every engine for traces raises for a rule."""
     machine = next(own.machine for own in book.rules if own.name == rule)
-    for module in ("rulec.monitoring.verify", "rulec.monitoring.batch.engine"):
+    for module in ("rulec.monitoring.verify", "rulec.monitoring.batch.cell_verdicts"):
         home = __import__(module, fromlist=["run"])
-        for name in ("run", "_task_verdict", "verify_cells", "verify_columns"):
+        for name in ("run", "verify_cells"):
             if not hasattr(home, name):
                 continue
             run = getattr(home, name)
@@ -58,11 +58,10 @@ def planted_in_runs(monkeypatch, book, rule):
                 return run(first, *others, **more)
 
             monkeypatch.setattr(home, name, broken)
-    for name in ("verify_cells", "verify_columns"):
-        monkeypatch.setattr(
-            f"rulec.monitoring.batch.batch_verify.{name}",
-            lambda *_, **__: (_ for _ in ()).throw(RecursionError("planted")),
-        )
+    monkeypatch.setattr(
+        "rulec.monitoring.batch.batch_verify.verify_cells",
+        lambda *_, **__: (_ for _ in ()).throw(RecursionError("planted")),
+    )
     # The engines for what is cut or partly unknown
     answer, outcomes = UncertainRun._answer, stacked_run.outcomes
 

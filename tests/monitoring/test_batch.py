@@ -15,12 +15,13 @@ from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.automata.thresholds import exact, scale
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.logic.formula import Comparison, Count, QuantityTerm, Same
-from rulec.monitoring.batch import batch_verify, joint_codes
-from rulec.monitoring.batch.batch_verify import verify_chunk, verify_many
+from rulec.monitoring.batch import batch_verify
+from rulec.monitoring.batch.batch_verify import verify_chunk, verify_columns, verify_many
+from rulec.monitoring.batch.cell_verdicts import verify_cells
+from rulec.monitoring.batch.columns import column_states
 from rulec.monitoring.batch.columns.column_numbers import digits_of
-from rulec.monitoring.batch.columns.column_reader import NotGivenError
+from rulec.monitoring.batch.columns.column_states import shared_states
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
-from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.trace_groups import group_traces
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.limits import MonitoringLimits
@@ -29,6 +30,7 @@ from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
+from rulec.trace.trace_columns import TraceColumns, layout_of
 from support.builders.rulebooks import (
     always,
     both,
@@ -43,6 +45,7 @@ from support.builders.rulebooks import (
 from support.generators.random_records import chunks, rulebooks, told
 from support.generators.timed_formulas import TIMED_VOCABULARY
 from support.oracles.bits.bit_verdicts import verify_on_bits
+from support.oracles.bits.column_reading import NotGivenError
 
 
 @given(rulebooks(), chunks())
@@ -68,8 +71,8 @@ def test_cells_and_columns_say_the_same(rulebook, traces):
     assert listed(verify_cells(group.cells, compiled), sound) == expected
     with suppress(UnencodableError, NotGivenError):
         columns = columnize(group.cells, TIMED_VOCABULARY)
-        assert listed(verify_columns(columns, compiled), sound) == expected
-        assert kept(verify_on_bits(columns, compiled)) == kept_by(verify_columns(columns, compiled))
+        assert violations(verify_columns(columns, compiled)) == expected
+        assert lost_on_bits(columns, compiled) == bindings_in(expected)
 
 
 def listed(judged, traces):
@@ -82,12 +85,16 @@ def listed(judged, traces):
     return found
 
 
-def kept(on_bits):
-    return [(task.rule.name, task.objects, accepted.tolist()) for task, accepted in on_bits]
+def lost_on_bits(columns, compiled):
+    found = [[] for _ in range(columns.layout.n_traces)]
+    for task, accepted in verify_on_bits(columns, compiled):
+        for place in np.flatnonzero(~accepted).tolist():
+            found[place].append((task.rule.name, task.objects))
+    return found
 
 
-def kept_by(judged):
-    return [(one.task.rule.name, one.task.objects, one.accepted.tolist()) for one in judged]
+def bindings_in(lost):
+    return [[(name, binding) for name, binding, _ in one] for one in lost]
 
 
 def violations(verdicts):
@@ -164,9 +171,8 @@ def test_objects_that_come_late_and_leave_early(semantics, chance, n_objects):
     expected = violations(alone[place] for place in group.order)
     assert listed(verify_cells(group.cells, compiled), traces) == expected
     columns = columnize(group.cells, TIMED_VOCABULARY)
-    judged = verify_columns(columns, compiled)
-    assert listed(judged, traces) == expected
-    assert kept(verify_on_bits(columns, compiled)) == kept_by(judged)
+    assert violations(verify_columns(columns, compiled)) == expected
+    assert lost_on_bits(columns, compiled) == bindings_in(expected)
 
 
 @pytest.mark.long
@@ -185,9 +191,8 @@ def test_three_hundred_objects():
     assert verify_chunk(traces, compiled) == alone
     columns = columnize(group_traces(traces).cells, TIMED_VOCABULARY)
     expected = violations(alone[place] for place in group_traces(traces).order)
-    judged = verify_columns(columns, compiled)
-    assert listed(judged, traces) == expected
-    assert kept(verify_on_bits(columns, compiled)) == kept_by(judged)
+    assert violations(verify_columns(columns, compiled)) == expected
+    assert lost_on_bits(columns, compiled) == bindings_in(expected)
 
 
 def test_any_number_of_traces_and_what_is_none(monkeypatch):
@@ -252,21 +257,55 @@ def test_what_can_be_no_trace_is_not_judged():
         assert isinstance(answers[0], NotJudged)
 
 
-@pytest.mark.parametrize("most_cells", [1, 6])
-def test_more_is_read_than_one_number_can_tell_apart(monkeypatch, most_cells):
-    """Then rules are judged each by its own numbers, or by the classes of its letters."""
-    monkeypatch.setattr(joint_codes, "MOST_CELLS", most_cells)
-    chance = Random(most_cells)
+@pytest.mark.parametrize("most_codes", [1, 1 << 16])
+def test_states_that_are_equal_or_not_looked_for(monkeypatch, most_codes):
+    """Few states, judged once each; or the same ones, judged as they come."""
+    monkeypatch.setattr(column_states, "MOST_CODES", most_codes)
+    chance = Random(most_codes)
     objects = {"a": "car", "b": "thing", "c": "car"}
+    pool = [{**state_of(chance, objects), "speed": 0.3, "gap": 0.5} for _ in range(6)]
+    for state in pool:
+        state["gap"] = dict.fromkeys(objects, 0.5)
     traces = [
-        Trace(str(n), 1.0, objects, tuple(state_of(chance, objects) for _ in range(n % 3 + 1)))
+        Trace(str(n), 1.0, objects, tuple(dict(chance.choice(pool)) for _ in range(n % 3 + 1)))
         for n in range(40)
     ]
     compiled = crowded("stutter")
     alone = [verify(trace, compiled) for trace in traces]
+    assert verify_chunk(traces, compiled) == alone
     group = group_traces(traces)
-    judged = verify_columns(columnize(group.cells, TIMED_VOCABULARY), compiled)
-    assert listed(judged, traces) == violations(alone[place] for place in group.order)
+    columns = columnize(group.cells, TIMED_VOCABULARY)
+    assert (shared_states(columns, TIMED_VOCABULARY) is None) == (most_codes == 1)
+    judged = verify_columns(columns, compiled)
+    assert violations(judged) == violations(alone[place] for place in group.order)
+
+
+def test_columns_of_which_something_is_unknown():
+    rules = compile_here(parse_rulebook(PLAIN))
+    columns = TraceColumns(
+        layout_of([2, 2]),
+        {("p", ("c",)): np.array([True, False, True, True])},
+        {"c": "car"},
+        unknown={("p", ("c",)): np.array([False, False, True, False])},
+    )
+    doubtful, lost = verify_columns(columns, rules)
+    assert (doubtful.trace, doubtful.violations) == ("0", ())
+    assert [one.depends_on for one in doubtful.open] == [("p",)]
+    assert [one.step for one in lost.violations] == [0]
+
+
+def test_columns_that_lack_what_a_rule_needs():
+    (answer,) = verify_columns(
+        TraceColumns(layout_of([1]), {}, {"c": "car"}), compile_here(parse_rulebook(PLAIN))
+    )
+    assert [one.code for one in answer.error.diagnostics] == ["R0504"]
+
+
+def test_a_place_that_is_none_among_the_values():
+    place = np.array([0, 3], dtype=np.uint8)
+    columns = TraceColumns(layout_of([2]), {("place", ("c",)): place}, {"c": "car"})
+    with pytest.raises(ValueError, match="`place` of `c` has place 3, of 3 values"):
+        verify_columns(columns, crowded("stutter"))
 
 
 THRESHOLDS = (

@@ -187,24 +187,19 @@ class TraceVerbs(SessionSettings):
             traces = (assumptions.of([item])[0] for item in traces)
         return (with_law(answer, law) for answer in verify_many(traces, compiled))
 
-    def verify_columns(self, columns: TraceColumns, rules: Rules) -> list[VerdictColumns]:
-        """Judge traces given as arrays; one result per rule and binding. Raises RulecError."""
-        from rulec.monitoring.batch.columns.column_reader import NotGivenError
-        from rulec.monitoring.batch.engine import verify_columns
-        from rulec.monitoring.monitoring_messages import MISSING_VALUE
+    def verify_columns(self, columns: TraceColumns, rules: Rules) -> list[Verdict | NotJudged]:
+        """Judge traces given as arrays, in their order; their ids are their numbers from 0.
+
+        Raises ValueError for a place that is none among the values of an enumeration.
+        """
+        from rulec.monitoring.batch.batch_verify import verify_columns
 
         expected_fields(columns)
-        compiled = self._compiled(rules).fitted_to(columns.step_s)
-        try:
-            return list(verify_columns(columns, compiled))
-        except NotGivenError as missing:
-            of = f" of `{', '.join(missing.objects)}`" if missing.objects else ""
-            message = f"there is no array for the `{missing.name}`{of}, and no default"
-            raise MISSING_VALUE.error(None, message) from None
+        return verify_columns(columns, self._compiled(rules).fitted_to(columns.step_s))
 
     def verify_cells(self, cells: TraceCells, rules: Rules) -> list[VerdictColumns]:
         """Judge traces whose states are given as numbers of a few distinct states."""
-        from rulec.monitoring.batch.engine import verify_cells
+        from rulec.monitoring.batch.cell_verdicts import verify_cells
 
         return list(verify_cells(cells, self._compiled(rules).fitted_to(cells.step_s)))
 

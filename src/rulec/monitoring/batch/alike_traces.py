@@ -9,13 +9,13 @@ from functools import partial
 
 from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.columns.block_columns import BlockGroup, columnize_block, groups_of
+from rulec.monitoring.batch.columns.column_states import trace_at
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.columns.line_columns import columnize_lines
 from rulec.monitoring.batch.trace_groups import (
     Names,
     Placed,
     Shape,
-    TraceGroup,
     group_traces,
     shape_of,
 )
@@ -27,7 +27,7 @@ from rulec.trace.formats.alike_lines import AlikeLines, LineBlock
 from rulec.trace.formats.table_blocks import Block
 from rulec.trace.trace_columns import Array, Layout, TraceColumns
 from rulec.trace.trace_model import Ending
-from rulec.vocabulary import Vocabulary
+from rulec.vocabulary import Enumeration, Vocabulary
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,7 +85,7 @@ def alike_traces(
 def traces_of_group(group: BlockGroup, vocabulary: Vocabulary) -> AlikeTraces:
     """The traces of one shape in a block. Raises UnencodableError."""
     columns = columnize_block(group, vocabulary)
-    _check_nothing_derived(columns, vocabulary)
+    check_nothing_derived(columns, vocabulary)
     block, presence, places = group.block, group.presence, group.traces.tolist()
 
     def says(number: int, name: str) -> bool:
@@ -107,7 +107,7 @@ def traces_of_group(group: BlockGroup, vocabulary: Vocabulary) -> AlikeTraces:
 def traces_of_lines(block: LineBlock, lines: AlikeLines, vocabulary: Vocabulary) -> AlikeTraces:
     """The traces of some lines of a block. Raises UnencodableError."""
     order, columns = columnize_lines(lines, vocabulary)
-    _check_nothing_derived(columns, vocabulary)
+    check_nothing_derived(columns, vocabulary)
     headings = [lines.headings[place] for place in order.tolist()]
     places = lines.lines[order].tolist()
     return AlikeTraces(
@@ -121,16 +121,39 @@ def traces_of_lines(block: LineBlock, lines: AlikeLines, vocabulary: Vocabulary)
     )
 
 
+def traces_of_columns(columns: TraceColumns, vocabulary: Vocabulary) -> AlikeTraces:
+    """Traces that a caller gives as columns, with their numbers as ids.
+
+    Raises ValueError for a place that is none among the values of an enumeration.
+    """
+    for (name, items), values in columns.values.items():
+        declaration = vocabulary.declarations.get(name)
+        if isinstance(declaration, Enumeration):
+            most, n_values = int(values.max(initial=0)), len(declaration.values)
+            if most >= n_values:
+                of = f" of `{', '.join(items)}`" if items else ""
+                message = f"the array for `{name}`{of} has place {most}, of {n_values} values"
+                raise ValueError(f"{message}, which count from 0")
+    said = {name for name, _ in columns.values}
+    return AlikeTraces(
+        places=range(columns.layout.n_traces),
+        columns=columns,
+        ids=str,
+        names=lambda _: tuple(columns.objects),
+        says=lambda _, name: name in said,
+        traces=lambda number: trace_at(columns, number, vocabulary),
+        ends="complete",
+    )
+
+
 def _trace(item: Trace | RulecError) -> Trace:
     assert isinstance(item, Trace), "it has been read"
     return item
 
 
-def traces_placed(
-    placed: Sequence[Placed], vocabulary: Vocabulary, group: TraceGroup | None = None
-) -> AlikeTraces:
-    """Traces of one shape, perhaps grouped before. Raises UnencodableError."""
-    group = group or group_traces([trace for _, trace in placed])
+def traces_placed(placed: Sequence[Placed], vocabulary: Vocabulary) -> AlikeTraces:
+    """Traces of one shape. Raises UnencodableError."""
+    group = group_traces([trace for _, trace in placed])
     example = placed[0][1]
     untold = untold_names(vocabulary, example.told)
     if untold:
@@ -148,7 +171,7 @@ def traces_placed(
     )
 
 
-def _check_nothing_derived(columns: TraceColumns, vocabulary: Vocabulary) -> None:
+def check_nothing_derived(columns: TraceColumns, vocabulary: Vocabulary) -> None:
     """Raise UnencodableError if axioms imply more than the columns of a file contain."""
     for (name, _), values in columns.values.items():
         if name in vocabulary.constants and _changes(values, columns.layout):

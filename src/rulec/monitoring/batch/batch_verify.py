@@ -6,7 +6,7 @@ Any irregular trace, for instance one with an unknown name or a missing value, i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -16,18 +16,19 @@ from typing import TYPE_CHECKING
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
-from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.batch import trace_groups
 from rulec.monitoring.batch.alike_traces import (
     AlikeTraces,
+    check_nothing_derived,
+    traces_of_columns,
     traces_of_group,
     traces_of_lines,
     traces_placed,
 )
+from rulec.monitoring.batch.cell_verdicts import verify_cells
 from rulec.monitoring.batch.columns.block_columns import groups_of
-from rulec.monitoring.batch.columns.column_reader import NotGivenError
+from rulec.monitoring.batch.columns.column_states import shared_states
 from rulec.monitoring.batch.columns.columnize import UnencodableError
-from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.joined.joined_columns import joined_columns
 from rulec.monitoring.batch.joined.joined_states import joined_states
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind
@@ -38,10 +39,7 @@ from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import (
     check_objects,
-    check_state,
-    has_partial_values,
 )
-from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import LONG, rulebook_for_trace, said, verify_or_reason
@@ -49,6 +47,7 @@ from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import LineBlock
 from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
+from rulec.trace.trace_columns import TraceColumns
 from rulec.trace.trace_model import check_frame, check_presence
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
@@ -65,9 +64,6 @@ _MADE_TOGETHER = 1 << 12
 Each takes one or two kilobytes, and a block may need one per row.
 """
 
-_SHARED = 4
-"""If a state occurs this often on average, its meaning is computed once and shared."""
-
 Answer = Verdict | NotJudged
 
 _FEWEST_ROWS = 200
@@ -75,7 +71,7 @@ _FEWEST_ROWS = 200
 
 Items = Sequence[Trace | RulecError]
 
-_IRREGULAR = UnencodableError, NotGivenError, MissingValueError, RulecError
+_IRREGULAR = UnencodableError, MissingValueError, RulecError
 """What prevents traces from being judged as columns."""
 
 
@@ -191,42 +187,11 @@ def _is_framed(trace: Trace) -> bool:
 def _verify_group(
     traces: Sequence[Placed], rulebook: CompiledRulebook, answers: list[Answer | None]
 ) -> None:
-    if not traces:
-        return
-    try:
-        rules = rules_for(traces[0][1], rulebook)
-    except (RulecError, UnencodableError):
-        return
-    group = trace_groups.group_traces([trace for _, trace in traces])
-    are_shared = len(group.cells.states) * _SHARED <= group.cells.layout.n_states
-    if not are_shared or any(map(_is_partial, group.cells.states)):
-        # What is irregular is judged with others, or alone.
-        with suppress(*_IRREGULAR):
-            _verify_alike(traces_placed(traces, rules.vocabulary, group), rules, answers)
-        return
-    cells = trace_groups.under_common_names(group)
-    scenes = cells.there or (cells.objects,) * len(cells.states)
-    refused = {
-        id(state)
-        for state, renamed, scene in zip(group.cells.states, cells.states, scenes, strict=True)
-        if not _fits(renamed, cells.objects, scene, rules)
-    }
-    if refused:
-        traces = [placed for placed in traces if refused.isdisjoint(map(id, placed[1].states))]
-        if not traces:
-            return
-        group = trace_groups.group_traces([trace for _, trace in traces])
-        cells = trace_groups.under_common_names(group)
-    verdicts = verify_cells(cells, rules)
-    objects = tuple(group.cells.objects)
-    for number, violations in violations_in(verdicts, len(traces)):
-        place, trace = traces[group.order[number]]
-        own = trace_groups.under_own_names(violations, objects, tuple(trace.objects))
-        answers[place] = Verdict(trace.id, own)
-
-
-def _is_partial(state: object) -> bool:
-    return isinstance(state, Mapping) and has_partial_values(state)
+    # What is irregular is judged with others, or alone.
+    with suppress(*_IRREGULAR):
+        if traces:
+            rules = rules_for(traces[0][1], rulebook)
+            _verify_alike(traces_placed(traces, rules.vocabulary), rules, answers)
 
 
 def _with_derived_values(trace: Trace, vocabulary: Vocabulary) -> Trace:
@@ -253,20 +218,6 @@ def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
     if any(cast.has_many(types_of(rule)) for rule in rules.rules):
         raise UnencodableError
     return rules
-
-
-def _fits(
-    state: object, objects: Mapping[str, str], scene: Mapping[str, str], rulebook: CompiledRulebook
-) -> bool:
-    if not isinstance(state, Mapping) or has_partial_values(state):
-        return False
-    try:
-        check_state(state, objects, rulebook.vocabulary, "")
-        view = StateView(state, scene, rulebook.vocabulary)
-        check_counting_axioms(rulebook, 1, lambda _: view, str, None)
-    except RulecError:
-        return False
-    return True
 
 
 def violations_in(
@@ -335,6 +286,20 @@ def _verify_lines(block: LineBlock, rulebook: CompiledRulebook) -> Sequence[Answ
     return [next(others) if answer is None else answer for answer in answers]
 
 
+def verify_columns(columns: TraceColumns, rulebook: CompiledRulebook) -> list[Answer]:
+    """Answers for traces given as columns, in the layout's order."""
+    alike = traces_of_columns(columns, rulebook.vocabulary)
+    answers: list[Answer | None] = [None] * len(alike.places)
+    with suppress(*_IRREGULAR):
+        check_nothing_derived(columns, rulebook.vocabulary)
+        rules = rules_for(Trace("", columns.step_s, columns.objects, ()), rulebook)
+        _verify_alike(alike, rules, answers)
+    return [
+        verify_or_reason(alike.traces(place), rulebook) if answer is None else answer
+        for place, answer in enumerate(answers)
+    ]
+
+
 def _verify_alike(
     alike: AlikeTraces,
     rules: CompiledRulebook,
@@ -343,22 +308,22 @@ def _verify_alike(
     """Fill in the answers for traces whose values are all readable. Raises ``_IRREGULAR``."""
     if any(counts(axiom.formula) for axiom in rules.axioms):
         raise UnencodableError
-    if not alike.is_whole:
-        # As above.
-        from rulec.monitoring.batch.stacked.stacked_run import judge_joined
-
-        judged = judge_joined(joined_columns(alike, rules.vocabulary), rules)
-        for place, own in zip(alike.places, judged, strict=True):
-            if own is not None:
-                says = partial(alike.says, own.number)
-                answers[place] = own.findings.verdict(own.number, alike.ids(own.number), says)
+    cells = shared_states(alike.columns, rules.vocabulary) if alike.is_whole else None
+    if cells is not None:
+        objects, verdicts = tuple(alike.columns.objects), verify_cells(cells, rules)
+        for number, violations in violations_in(verdicts, len(alike.places)):
+            names = alike.names(number) if violations else ()
+            own_names = trace_groups.under_own_names(violations, objects, names)
+            answers[alike.places[number]] = Verdict(alike.ids(number), own_names)
         return
-    verdicts, objects = verify_columns(alike.columns, rules), tuple(alike.columns.objects)
-    for number, violations in violations_in(verdicts, len(alike.places)):
-        place = alike.places[number]
-        names = alike.names(number) if violations else ()
-        renamed = trace_groups.under_own_names(violations, objects, names)
-        answers[place] = Verdict(alike.ids(number), renamed)
+    # As above.
+    from rulec.monitoring.batch.stacked.stacked_run import judge_joined
+
+    judged = judge_joined(joined_columns(alike, rules.vocabulary), rules)
+    for place, own in zip(alike.places, judged, strict=True):
+        if own is not None:
+            says = partial(alike.says, own.number)
+            answers[place] = own.findings.verdict(own.number, alike.ids(own.number), says)
 
 
 def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> CompiledRulebook:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import chain, pairwise, repeat
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,38 +112,6 @@ def _scenes(trace: Trace, n_steps: int) -> tuple[list[Mapping[str, str]], list[i
             scenes.append(objects)
         steps += [place] * (change - step)
     return scenes, steps
-
-
-def under_common_names(group: TraceGroup) -> TraceCells:
-    """Cells of a group, their objects renamed; None for a refused state."""
-    if not group.names:
-        return group.cells
-    renaming = {own: dict(zip(own, group.cells.objects, strict=True)) for own in set(group.names)}
-    states: Any = map(_renamed_state, group.cells.states, map(renaming.__getitem__, group.names))
-    return replace(group.cells, states=tuple(states))
-
-
-def _renamed_state(state: object, names: Mapping[str, str]) -> dict[str, Any] | None:
-    if type(state) is not dict:
-        return None
-    result = {
-        name: value if type(value) in _PLAIN else _renamed(value, names)
-        for name, value in state.items()
-    }
-    return None if None in result.values() else result
-
-
-def _renamed(values: object, names: Mapping[str, str]) -> dict[str, Any] | None:
-    """Values by object; None if about anything else, or unusual."""
-    if type(values) is not dict:
-        return None
-    result = {}
-    for item, value in values.items():
-        inner = value if type(value) in _PLAIN else _renamed(value, names)
-        if inner is None or item not in names:
-            return None
-        result[names[item]] = inner
-    return result
 
 
 def under_own_names(

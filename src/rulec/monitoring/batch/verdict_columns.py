@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,8 +53,8 @@ class JointCells:
 class VerdictColumns:
     """Verdicts for a binding; ``accepted`` follows the layout's order of traces.
 
-    ``unread`` are traces with a state, on the binding's stretch, for which the machine has no
-    letter; their verdicts are meaningless.
+    ``unread`` are traces without a verdict, since a value is missing or impossible on the
+    binding's stretch; what is said of them is meaningless.
     """
 
     __repr__ = short_repr
@@ -61,9 +62,7 @@ class VerdictColumns:
     task: RuleBinding
     accepted: NDArray[np.bool_]
     unread: NDArray[np.intp]
-    _layout: Layout
-    _cells: Array
-    _letters: Sequence[int]
+    _lost_at: Callable[[NDArray[np.intp]], NDArray[np.int64]] = field(compare=False, repr=False)
 
     @property
     def violated(self) -> NDArray[np.intp]:
@@ -75,22 +74,7 @@ class VerdictColumns:
 
         It is -1 if only the end of the trace, or of the objects' stretch, decides.
         """
-        chosen, layout = self.violated, self._layout
-        first, last = self.task.stretch
-        ends = layout.lengths[chosen] if last is None else np.full(len(chosen), last + 1)
-        machine = self.task.rule.machine
-        if len(ends) and run_alone(len(ends), int(ends[0]) - first, len(machine.successors)):
-            letters = np.array(self._letters)
-            words = (self._cells[layout.places(trace, first, last)] for trace in chosen.tolist())
-            lost = np.array([first_lost_of_one(machine, letters.take(word)) for word in words])
-        else:
-            # The ends are in descending order: those after a step come first.
-            by_step = (
-                self._cells[layout.starts[step] + chosen[: np.searchsorted(-ends, -step)]]
-                for step in range(first, int(ends[0]) if len(ends) else first)
-            )
-            lost = first_lost(machine, self._letters, by_step, ends - first)
-        return np.where(lost < 0, lost, lost + first)
+        return self._lost_at(self.violated)
 
 
 def verdict_columns(cells: JointCells) -> Iterator[VerdictColumns]:
@@ -107,10 +91,30 @@ def verdict_columns(cells: JointCells) -> Iterator[VerdictColumns]:
                 task=cells.bindings[member],
                 accepted=(verdicts & np.uint8(1 << bit)) != 0,
                 unread=unread[member],
-                _layout=cells.layout,
-                _cells=cells.cells,
-                _letters=letters_read[member],
+                _lost_at=partial(_lost_at, cells, cells.bindings[member], letters_read[member]),
             )
+
+
+def _lost_at(
+    joint: JointCells, binding: RuleBinding, own: Sequence[int], chosen: NDArray[np.intp]
+) -> NDArray[np.int64]:
+    """As ``VerdictColumns.lost_at`` for these traces; ``own`` are the letters of the cells."""
+    layout, cells = joint.layout, joint.cells
+    first, last = binding.stretch
+    ends = layout.lengths[chosen] if last is None else np.full(len(chosen), last + 1)
+    machine = binding.rule.machine
+    if len(ends) and run_alone(len(ends), int(ends[0]) - first, len(machine.successors)):
+        letters = np.array(own)
+        words = (cells[layout.places(trace, first, last)] for trace in chosen.tolist())
+        lost = np.array([first_lost_of_one(machine, letters.take(word)) for word in words])
+    else:
+        # The ends are in descending order: those after a step come first.
+        by_step = (
+            cells[layout.starts[step] + chosen[: np.searchsorted(-ends, -step)]]
+            for step in range(first, int(ends[0]) if len(ends) else first)
+        )
+        lost = first_lost(machine, own, by_step, ends - first)
+    return np.where(lost < 0, lost, lost + first)
 
 
 def _read(cells: JointCells, letters: Sequence[int]) -> tuple[NDArray[np.intp], tuple[int, ...]]:

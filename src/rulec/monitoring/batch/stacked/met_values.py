@@ -10,7 +10,7 @@ import numpy as np
 
 from rulec.logic import formula as ltl
 from rulec.logic.fold import Algebra, fold
-from rulec.monitoring.batch.columns.column_reader import FALSE, KLEENE_COLUMNS, TRUE, UNKNOWN
+from rulec.monitoring.batch.columns.column_truths import FALSE, KLEENE_COLUMNS, TRUE, UNKNOWN
 from rulec.monitoring.batch.stacked.stack import FEW, Stack, StackColumn
 from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.trace_columns import Array

@@ -21,7 +21,7 @@ from rulec.monitoring.batch.columns.column_numbers import (
     numbers_between,
     partial_values,
 )
-from rulec.monitoring.batch.columns.column_reader import KLEENE_COLUMNS, TRUE, UNKNOWN
+from rulec.monitoring.batch.columns.column_truths import KLEENE_COLUMNS, TRUE, UNKNOWN
 from rulec.monitoring.batch.stacked.met_values import MetValues
 from rulec.monitoring.batch.stacked.stack import Stack, StackColumn, either
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRead

@@ -12,26 +12,14 @@ import numpy as np
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.automata.thresholds import ThresholdScale, scale
 from rulec.logic import formula as ltl
-from rulec.logic.fold import Algebra, fold
+from rulec.logic.fold import fold
 from rulec.logic.free_names import names_in, reads_in
 from rulec.logic.kleene import ObjectBinding
 from rulec.monitoring.batch.columns.column_numbers import Mask, comparison_sides, digits_of
+from rulec.monitoring.batch.columns.column_truths import KLEENE_COLUMNS, UNKNOWN
 from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.trace_columns import Array, TraceColumns
 from rulec.vocabulary import Enumeration, Vocabulary
-
-TRUE, FALSE = Truth.known(np.array(True)), Truth.known(np.array(False))
-UNKNOWN = Truth(FALSE.sure, TRUE.sure)
-
-KLEENE_COLUMNS: Algebra[Truth] = Algebra(
-    proposition=lambda _: UNKNOWN,
-    constant=lambda value: Truth.known(np.asarray(value)),
-    negation=Truth.__invert__,
-    conjunction=Truth.__and__,
-    disjunction=Truth.__or__,
-    equivalence=Truth.same_as,
-)
-"""The operators; the values of propositions depend on the columns."""
 
 
 class NotGivenError(Exception):

@@ -1,4 +1,4 @@
-"""The batch engine: all rules and bindings on traces of one shape."""
+"""All rules and bindings on traces of one shape whose states are taken from a few."""
 
 from __future__ import annotations
 
@@ -7,8 +7,6 @@ from itertools import chain
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch.columns.column_reader import ColumnReader
-from rulec.monitoring.batch.joint_codes import joint_cells_of
 from rulec.monitoring.batch.verdict_columns import (
     JointCells,
     RuleBinding,
@@ -18,16 +16,6 @@ from rulec.monitoring.batch.verdict_columns import (
 from rulec.monitoring.bindings import Cast
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.trace.trace_columns import TraceCells, TraceColumns
-
-
-def verify_columns(columns: TraceColumns, rulebook: CompiledRulebook) -> list[VerdictColumns]:
-    """Verdicts on traces as columns, in the order of rules and objects.
-
-    Raises NotGivenError if a rule needs a value that is not given and has no default.
-    """
-    bound_rules = rule_bindings(columns, rulebook)
-    reader = ColumnReader(columns, rulebook.vocabulary)
-    return _verdicts(joint_cells_of(reader, bound_rules, rulebook.vocabulary), bound_rules)
 
 
 def verify_cells(traces: TraceCells, rulebook: CompiledRulebook) -> list[VerdictColumns]:
