@@ -21,6 +21,7 @@ import rulec
 from rulec.automata.second_compiler import with_automata
 from rulec.monitoring.batch.batch_verify import verify_columns
 from rulec.monitoring.batch.cell_verdicts import verify_cells
+from rulec.monitoring.batch.columns.column_states import shared_states
 from rulec.monitoring.batch.columns.columnize import columnize
 from rulec.monitoring.verify import verify
 from support.oracles.bits.bit_verdicts import verify_on_bits
@@ -50,7 +51,10 @@ def measure(rounds: int) -> Iterator[Result]:
     share = float(len(sample) * layout.n_steps * len(rules.rules))
     engines = {
         "machines, from cells": lambda: verify_cells(cells, rules),
-        "machines, from columns": lambda: verify_columns(columns, rules),
+        "machines, from columns": lambda: verify_cells(
+            shared_states(columns, rules.vocabulary), rules
+        ),
+        "columns to verdicts": lambda: verify_columns(columns, rules),
         "oracle on bits, from columns": lambda: list(verify_on_bits(columns, rules)),
         "oracle on bits, from Boolean columns": by_bits(rules, layout, booleans),
     }

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
+from rulec.garbage_collection import no_garbage_collection
 from rulec.monitoring.batch import trace_groups
 from rulec.monitoring.batch.alike_traces import (
     AlikeTraces,
@@ -286,6 +287,7 @@ def _verify_lines(block: LineBlock, rulebook: CompiledRulebook) -> Sequence[Answ
     return [next(others) if answer is None else answer for answer in answers]
 
 
+@no_garbage_collection()
 def verify_columns(columns: TraceColumns, rulebook: CompiledRulebook) -> list[Answer]:
     """Answers for traces given as columns, in the layout's order."""
     alike = traces_of_columns(columns, rulebook.vocabulary)
