@@ -13,7 +13,7 @@ from program import run
 from timing import in_turns, processor_time
 
 import rulec
-from rulec.monitoring.batch.engine import verify_cells
+from rulec.monitoring.batch.cell_verdicts import verify_cells
 from rulec.monitoring.verify import verify
 from support.oracles.bits.trace_planes import Across
 

@@ -11,10 +11,8 @@ import pytest
 import rulec
 from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.cli.main import main
-from rulec.code_generation.code_messages import compiler_failed
 from rulec.code_generation.compiled_c import c_library
 from rulec.code_generation.compiled_c.c_library import CLibrary
-from rulec.code_generation.compiled_c.rust_library import RustLibrary
 from rulec.code_generation.letter_cells import EXCLUDED, LEAF, letter_cells
 from rulec.code_generation.monitor_files import monitor_texts
 from rulec.code_generation.monitor_layout import monitor_layout
@@ -278,22 +276,6 @@ def test_a_compiler_that_is_not_there_or_fails(esterle, script, code, said, monk
     assert "`CC`" in found.help
 
 
-@pytest.mark.parametrize(
-    ("said", "way_out"),
-    [
-        (
-            "error: rustup could not choose a version of rustc to run\n\nhelp: rustup default",
-            "rustup has no such compiler here: `rustup default stable` installs one",
-        ),
-        ("error: edition 2021 is unstable", "update Rust by `rustup update`"),
-    ],
-)
-def test_a_rust_compiler_that_fails(said, way_out):
-    (found,) = compiler_failed("rustc lib.rs", said, 1).diagnostics
-    assert found.help == way_out
-    assert "\n" not in found.message
-
-
 def test_a_variable_that_is_no_command(esterle, monkeypatch):
     monkeypatch.setenv("CC", "gcc 'unclosed")
     with pytest.raises(RulecError) as caught:
@@ -311,22 +293,3 @@ def test_an_empty_variable_is_none(monkeypatch):
     with monkeypatch.context() as patched:
         patched.setattr("shutil.which", lambda name: f"/bin/{name}")
         assert c_library.compiler() == ["cc"]
-
-
-def test_rust_that_is_not_there_or_fails(esterle, monkeypatch, tmp_path):
-    monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(RulecError) as caught:
-        RustLibrary(monitor_layout(esterle, {}))
-    (missing,) = caught.value.diagnostics
-    assert missing.message == "there is no Rust compiler: `rustc` is not found"
-    assert missing.code == "R0751"
-    (tmp_path / "rustc").write_text(
-        "#!/bin/sh\necho 'error: edition 2021 is unstable' >&2; exit 1\n"
-    )
-    (tmp_path / "rustc").chmod(0o755)
-    with pytest.raises(RulecError) as caught:
-        RustLibrary(monitor_layout(esterle, {}))
-    (failed,) = caught.value.diagnostics
-    assert failed.code == "R0752"
-    assert failed.message.endswith("has failed: error: edition 2021 is unstable")
-    assert failed.help == "update Rust by `rustup update`"

@@ -1,34 +1,27 @@
-"""The same monitor as a crate of Rust: the same proof, and what cargo says."""
+"""A crate of Rust around the monitor in C: the same verdicts, and what cargo says."""
 
+import os
 import re
 import shutil
 import subprocess
 from dataclasses import replace
-from fractions import Fraction
 from pathlib import Path
+from random import Random
 
 import pytest
-from hypothesis import Phase, given, settings
 
 import rulec
 from rulec.cli.main import main
-from rulec.code_generation.compiled_c.c_library import CMonitor
-from rulec.code_generation.compiled_c.rust_library import RustLibrary
-from rulec.code_generation.monitor_layout import monitor_layout
-from rulec.code_generation.proof.monitor_proof import proof_of
+from rulec.code_generation.compiled_c.c_library import CLibrary, CMonitor
+from rulec.code_generation.monitor_files import monitor_texts
+from rulec.code_generation.monitor_layout import VERDICTS, monitor_layout
 from rulec.code_generation.rust_files import crate_texts, rust_source
-from rulec.code_generation.rust_form import formed
-from rulec.code_generation.rust_reading_code import RustReadingCode
 from rulec.code_generation.written_names import rust_string
+from rulec.monitoring.online.four_valued import best_of, worst_of
 from rulec.rulebook.rulebook_model import SourceFile
-from support.builders.monitored_books import BLAMED, SINCE, WHO_IS_BLAMED
-from support.builders.national_books import NATIONAL
-from support.builders.rulebooks import compile_here
-from support.generators.random_rulebooks import rulebook
-from support.generators.seeds import seeds
+from rulec.vocabulary.partial_values import UNKNOWN
+from support.builders.monitored_books import BLAMED, WHO_IS_BLAMED
 
-needs_rust = pytest.mark.skipif(shutil.which("rustc") is None, reason="there is no Rust compiler")
-needs_rustfmt = pytest.mark.skipif(shutil.which("rustfmt") is None, reason="there is no rustfmt")
 needs_cargo = pytest.mark.skipif(shutil.which("cargo") is None, reason="there is no cargo")
 PAGE = Path(__file__).parents[2] / "docs" / "onboard.md"
 HOSTILE = [
@@ -45,7 +38,7 @@ HOSTILE = [
 
 
 def layout_of(compiled):
-    return monitor_layout(compiled, {}, RustReadingCode)
+    return monitor_layout(compiled, {})
 
 
 @pytest.fixture(scope="module")
@@ -53,75 +46,31 @@ def esterle():
     return rulec.compile_rulebook("esterle2019", step_s=1)
 
 
-def differs(library, n_states):
-    return [text for part in proof_of(library, n_states) for text in part.differs]
+def said_by(crate, program, tmp_path):
+    """What a program prints that depends on a crate; the crate is in `monitor`."""
+    manifest = (
+        '[package]\nname = "watch"\nversion = "0.1.0"\nedition = "2021"\n'
+        f'[dependencies]\n{crate} = {{ path = "monitor" }}\n'
+    )
+    (tmp_path / "Cargo.toml").write_text(manifest)
+    (tmp_path / "src").mkdir()
+    (tmp_path / "src" / "main.rs").write_text(program)
+    done = subprocess.run(
+        ["cargo", "run", "--offline", "--quiet"], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.splitlines()
 
 
-@needs_rust
-@given(seeds)
-@settings(phases=[Phase.generate], max_examples=max(1, settings().max_examples // 100))
-def test_random_rulebooks_are_proved(chance):
-    step_s = Fraction(1)
-    compiled = compile_here(rulebook(chance, step_s), step_s)
-    bounds = chance.choice([{}, {"thing": 1}])
-    layout = monitor_layout(compiled, bounds, RustReadingCode)
-    assert differs(RustLibrary(layout, optimised=False), 60) == []
-
-
-@needs_rust
-@pytest.mark.long
-@pytest.mark.parametrize("book", ["de", "gb", "un-r157", "us-ca"])
-def test_shipped_rulebooks_are_proved(book):
-    compiled = rulec.compile_rulebook(book, step_s=1)
-    assert differs(RustLibrary(layout_of(compiled)), 60) == []
-
-
-@needs_rust
-def test_a_planted_fault_is_found(esterle):
-    layout = layout_of(esterle)
-    source = rust_source(layout)
-    faulty, n = re.subn(r"(entries: &\[)(\d+)", lambda m: f"{m[1]}{int(m[2]) ^ 1}", source, count=1)
-    assert n == 1
-    assert differs(RustLibrary(layout, faulty, optimised=False), 20)
-
-
-@pytest.fixture(scope="module")
-def one_seat():
-    compiled = rulec.compile_rulebook(rulec.parse_rulebook(SINCE), step_s=1)
-    return RustLibrary(monitor_layout(compiled, {"car": 1}, RustReadingCode), optimised=False)
-
-
-@needs_rust
-def test_a_past_that_is_taken_for_known_is_found(one_seat):
-    assert differs(one_seat, 2000) == []
-    source = rust_source(one_seat.layout)
-    faulty = source.replace("= kept.left_out[kind];", "= false;")
-    assert faulty != source
-    assert differs(RustLibrary(one_seat.layout, faulty, optimised=False), 2000)
-
-
-@needs_rust
-@pytest.mark.parametrize("ids", [[1, 2, 2], [1, 2, 1], [2, 1, 2]])
-def test_who_is_given_twice_without_a_seat_is_refused(one_seat, ids):
-    objects = (one_seat.object_type * 3)()
-    for one, number in zip(objects, ids, strict=True):
-        one.type, one.id = 0, number
-    given = one_seat.input_type()
-    given.n_objects, given.objects = 3, objects
-    assert CMonitor(one_seat).take(given) == 3
-
-
-@needs_rust
-def test_a_rule_is_about_whoever_has_its_worst_verdict(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+@needs_cargo
+def test_a_rule_is_about_whoever_has_its_worst_verdict(tmp_path):
     book = rulec.compile_rulebook(rulec.parse_rulebook(BLAMED), step_s=1)
-    rulec.write_monitor(book, tmp_path, {"car": 2}, language="rust")
+    rulec.write_monitor(book, tmp_path / "monitor", {"car": 2}, language="rust")
     states = "".join(
         f"({p}, &[{', '.join(f'({car}, {q})' for car, q in cars.items())}]), "
         for p, cars, _ in WHO_IS_BLAMED
     )
-    Path("who.rs").write_text(
-        f"""
+    program = f"""
 use blamed::{{names, Input, Monitor, Object}};
 fn main() {{
     let mut monitor = Monitor::new();
@@ -138,20 +87,91 @@ fn main() {{
     }}
 }}
 """
-    )
-    crate = ["--crate-type", "rlib", "--crate-name", "blamed", "src/lib.rs"]
-    for arguments in (crate, ["who.rs", "--extern", "blamed=libblamed.rlib"]):
-        subprocess.run(["rustc", "--edition", "2021", "-D", "warnings", *arguments], check=True)
-    done = subprocess.run(["./who"], check=True, capture_output=True, text=True)
-    assert done.stdout.splitlines() == [f"Some({number}) None" for *_, number in WHO_IS_BLAMED]
+    expected = [f"Some({number}) None" for *_, number in WHO_IS_BLAMED]
+    assert said_by("blamed", program, tmp_path) == expected
 
 
-@needs_rust
-@pytest.mark.parametrize("name", ["names", "std", "harness"])
-def test_a_crate_is_called_unlike_what_it_is_compiled_with(name):
-    text = f"rulebook {name}\nsignal p default false\nhard rule r {{ require always p }}\n"
-    compiled = rulec.compile_rulebook(rulec.parse_rulebook(text), step_s=1)
-    RustLibrary(layout_of(compiled), optimised=False)
+MIXED = """rulebook mixed
+type car
+signal wet
+light is one of red, green default red
+quantity speed(c: car) in m/s
+quantity gap(c: car, d: car) in m default 9
+hard rule far (c: car, d: car) {
+  require always (gap(c, d) < 5 m and speed(c) > 3 m/s implies next gap(c, d) >= 5 m)
+}
+soft rule wait (c: car) { require always (red and not wet implies speed(c) < 1 m/s) }
+"""
+
+
+@needs_cargo
+def test_a_crate_says_what_the_monitor_in_c_says(tmp_path):
+    """Values of every kind, known and unknown, about the world, one object and two."""
+    book = rulec.compile_rulebook(rulec.parse_rulebook(MIXED), step_s=1)
+    rulec.write_monitor(book, tmp_path / "monitor", {"car": 3}, language="rust")
+    chance, monitor = Random(5), CMonitor(CLibrary(monitor_layout(book, {"car": 3})))
+    steps, expected = [], []
+    for _ in range(40):
+        cars = chance.sample(["1", "2", "3"], chance.randint(0, 3))
+        wet, light = chance.choice([0, 1, 255]), chance.choice([0, 1, 255])
+        speeds = {car: chance.choice([0.5, 2.0, 4.0, None]) for car in cars}
+        gaps = {car: {of: chance.choice([3.0, 7.0, None]) for of in cars} for car in cars}
+        state = {
+            "wet": UNKNOWN if wet == 255 else bool(wet),
+            "light": UNKNOWN if light == 255 else ("red", "green")[light],
+            "speed": {car: UNKNOWN if own is None else own for car, own in speeds.items()},
+            "gap": {
+                car: {of: UNKNOWN if own is None else own for of, own in all_own.items()}
+                for car, all_own in gaps.items()
+            },
+        }
+        answer = monitor.step(state, dict.fromkeys(cars, "car"))
+        numbers = [answer.verdict, *answer.rules.values()]
+        expected.append(" ".join(f"{ORDER[best_of(one)]}{ORDER[worst_of(one)]}" for one in numbers))
+        objects = ", ".join(f"({monitor_id(monitor, car)}, {number(speeds[car])})" for car in cars)
+        pairs = ", ".join(number(gaps[car][of]) for car in cars for of in cars)
+        steps.append(f"({wet}, {light}, &[{objects}], &[{pairs}]), ")
+    program = f"""
+use mixed::{{names, Input, Monitor, Object}};
+fn main() {{
+    let mut monitor = Monitor::new();
+    let steps: [(u8, u8, &[(u32, f64)], &[f64]); {len(steps)}] = [{"".join(steps)}];
+    for (wet, light, cars, gaps) in steps {{
+        let mut objects = [Object::unknown(0, names::TYPE_CAR); 3];
+        for (object, (id, speed)) in objects.iter_mut().zip(cars) {{
+            (object.id, object.speed) = (*id, *speed);
+        }}
+        let mut input = Input::unknown(&objects[..cars.len()]);
+        (input.wet, input.light, input.gap) = (wet, light, Some(gaps));
+        let said = monitor.step(&input).unwrap();
+        let all: Vec<String> = [said.book].iter().chain(said.rules.iter())
+            .map(|one| format!("{{}}{{}}", one.best as u8, one.worst as u8)).collect();
+        println!("{{}}", all.join(" "));
+    }}
+    let mut twice = [Object::unknown(1, names::TYPE_CAR); 2];
+    println!("{{:?}}", monitor.step(&Input::unknown(&twice)));
+    (twice[1].id, twice[1].r#type) = (2, 9);
+    println!("{{:?}}", monitor.step(&Input::unknown(&twice)));
+    let mut short = Input::unknown(&twice);
+    short.gap = Some(&[1.0]);
+    println!("{{:?}}", monitor.step(&short));
+}}
+"""
+    *said, first, second, third = said_by("mixed", program, tmp_path)
+    assert said == expected
+    assert len(set(said)) > 4
+    assert [first, second, third] == ["Err(Twice)", "Err(BadType)", "Err(TooMany)"]
+
+
+ORDER = {verdict: number for number, verdict in enumerate(VERDICTS)}
+
+
+def monitor_id(monitor, car):
+    return monitor._ids[car]
+
+
+def number(value):
+    return "f64::NAN" if value is None else repr(value)
 
 
 @pytest.mark.parametrize("text", HOSTILE)
@@ -174,24 +194,26 @@ def test_a_hostile_rulebook_has_the_same_code(esterle):
     assert codes[0] == codes[1]
 
 
-@needs_rust
+@needs_cargo
 def test_the_page_leads_to_a_monitor_in_rust(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     page = PAGE.read_text(encoding="utf-8")
-    ((program, shown),) = re.findall(
-        r"^```rust\n(.*?)^```\n\n```console\n(.*?)^```$", page, re.MULTILINE | re.DOTALL
+    ((program, manifest, shown),) = re.findall(
+        r"^```rust\n(.*?)^```\n\n```toml\n(.*?)^```\n\n```console\n(.*?)^```$",
+        page,
+        re.MULTILINE | re.DOTALL,
     )
-    Path("watch.rs").write_text(program, encoding="utf-8")
-    commands = re.findall(r"^\$ (.*)\n((?:[^$].*\n)*)", shown, re.MULTILINE)
-    assert len(commands) == 4
-    for command, printed in commands:
-        if command.startswith("rulec "):
-            assert main(command.split()[1:]) == 0
-        else:
-            strict = command.replace("rustc ", "rustc -D warnings ", 1).split()
-            done = subprocess.run(strict, check=True, capture_output=True, text=True)
-            assert done.stdout == printed
-    assert printed == "false\nfalse\ntrue\n"
+    Path("src").mkdir()
+    Path("src/main.rs").write_text(program, encoding="utf-8")
+    Path("Cargo.toml").write_text(manifest, encoding="utf-8")
+    compiling, running = re.findall(r"^\$ (.*)\n((?:[^$].*\n)*)", shown, re.MULTILINE)
+    assert main(compiling[0].split()[1:]) == 0
+    written = [line.removeprefix("wrote ") for line in compiling[1].splitlines()]
+    assert all(map(os.path.exists, written))
+    assert len(written) == sum(path.is_file() for path in Path("monitor").rglob("*"))
+    offline = [*running[0].split(), "--offline"]
+    done = subprocess.run(offline, check=True, capture_output=True, text=True)
+    assert done.stdout == running[1] == "false\nfalse\ntrue\n"
 
 
 def test_fields_have_their_meaning():
@@ -236,95 +258,18 @@ def test_a_word_may_be_called_like_a_constant():
 
 
 def test_the_report_stands_beside_it(tmp_path):
-    if shutil.which("rustc") is None:
-        pytest.skip("there is no Rust compiler")
     arguments = ["compile", "esterle2019", "--emit", "rust", "--prove", "-o", str(tmp_path)]
     assert main(arguments) == 0
     report = (tmp_path / "esterle2019_proof.txt").read_text()
-    assert report.startswith("monitor in Rust of esterle2019")
+    assert report.startswith("monitor in C of esterle2019")
     assert report.count(": 0 differ\n") == 7
     assert (tmp_path / "src" / "lib.rs").exists()
 
 
-def test_a_crate_needs_nothing(esterle):
+def test_a_crate_needs_nothing_but_the_c(esterle):
     texts = crate_texts(layout_of(esterle))
     assert "dependencies" not in texts["Cargo.toml"]
-    assert "#![no_std]\n#![forbid(unsafe_code)]\n" in texts["src/lib.rs"]
-
-
-def in_rustfmts_form(*files):
-    check = ["rustfmt", "--edition", "2021", "--check", "--color", "never", *files]
-    done = subprocess.run(check, capture_output=True, text=True)
-    return done.stdout + done.stderr
-
-
-@needs_rustfmt
-@pytest.mark.parametrize("book", ["esterle2019", "gb"])
-def test_a_crate_is_in_rustfmts_form(book, tmp_path):
-    rulec.write_monitor(book, tmp_path, language="rust")
-    assert in_rustfmts_form(*tmp_path.rglob("*.rs")) == ""
-
-
-@needs_rustfmt
-@pytest.mark.long
-@pytest.mark.parametrize("book", NATIONAL)
-def test_all_that_ships_is_in_rustfmts_form(book, tmp_path):
-    rulec.write_monitor(book, tmp_path, language="rust")
-    assert in_rustfmts_form(*tmp_path.rglob("*.rs")) == ""
-
-
-@needs_rustfmt
-def test_long_names_are_in_rustfmts_form(tmp_path):
-    name = "a" * 60
-    book = rulec.parse_rulebook(
-        f"rulebook {name}\ntype thing\nquantity {name}(a: thing, b: thing) in m default 1\n"
-        "hard rule r (v: thing, w: thing) {\n"
-        f"  require always ({name}(v, w) > {name}(w, v) or count x: thing ({name}(x, v) > 3 m) < 2)"
-        "\n}\n"
-    )
-    rulec.write_monitor(book, tmp_path, language="rust")
-    assert in_rustfmts_form(*tmp_path.rglob("*.rs")) == ""
-
-
-TWENTY = ", ".join(map(str, range(20)))
-TERM = "is(input.objects[who0].oncoming)"
-
-
-@pytest.mark.parametrize(
-    ("line", "expected"),
-    [
-        ("    // a[0, 1]", ["    // a[0, 1]"]),
-        ("static A: [u8; 20] = [1, 2];", ["static A: [u8; 20] = [1, 2];"]),
-        (
-            f"static A: [u8; 20] = [{TWENTY}];",  # 70 columns of numbers, of which 60 may be
-            ["static A: [u8; 20] = [", f"    {TWENTY},", "];"],
-        ),
-        ("    Self { id, kind: 12 }", ["    Self { id, kind: 12 }"]),  # 16 columns of 18
-        (
-            "    Self { id, kind: 12, x: 34 }",
-            ["    Self {", "        id,", "        kind: 12,", "        x: 34,", "    }"],
-        ),
-        (
-            f"    digits[1] = or({TERM}, {TERM});",
-            ["    digits[1] = or(", f"        {TERM},", f"        {TERM},", "    );"],
-        ),
-        (
-            f"    not(or({TERM}, {TERM}))",
-            ["    not(or(", f"        {TERM},", f"        {TERM},", "    ))"],
-        ),
-        (
-            "        0 => if who0 == each { YES } else { NO },",
-            [
-                "        0 => {",
-                "            if who0 == each {",
-                "                YES",
-                "            } else {",
-                "                NO",
-                "            }",
-                "        }",
-            ],
-        ),
-    ],
-)
-def test_a_line_is_in_rustfmts_form(line, expected):
-    assert list(formed([line])) == expected
+    assert "#![no_std]\n" in texts["src/lib.rs"]
+    in_c = monitor_texts(layout_of(esterle))
+    for name in ("esterle2019.c", "esterle2019.h"):
+        assert texts[f"c/{name}"] == in_c[name]

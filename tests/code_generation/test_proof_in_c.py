@@ -13,11 +13,9 @@ import rulec
 from rulec.cli.main import main
 from rulec.code_generation.c_files import c_source
 from rulec.code_generation.compiled_c.c_library import CLibrary
-from rulec.code_generation.compiled_c.rust_library import RustLibrary
 from rulec.code_generation.monitor_layout import monitor_layout
 from rulec.code_generation.proof import monitor_proof
 from rulec.code_generation.proof.monitor_proof import proof_of
-from rulec.code_generation.rust_reading_code import RustReadingCode
 from rulec.diagnostics import RulecError
 from support.builders.monitored_books import NARROW, SINCE
 
@@ -127,9 +125,6 @@ def test_a_read_that_tells_nothing_apart_needs_no_table():
     """``RULE_C`` besides is no name that a monitor may have."""
     compiled = rulec.compile_rulebook(rulec.parse_rulebook(NOTHING_TOLD), step_s=1)
     assert differs_in(CLibrary(monitor_layout(compiled, {}), optimised=False)) == []
-    if shutil.which("rustc"):
-        layout = monitor_layout(compiled, {}, RustReadingCode)
-        assert differs_in(RustLibrary(layout, optimised=False)) == []
 
 
 QUICK = ["at least for more than", "a seat for two"]

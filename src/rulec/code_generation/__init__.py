@@ -1,1 +1,1 @@
-"""Compiled rulebooks as monitors in C and Rust."""
+"""Compiled rulebooks as monitors in C."""

@@ -226,11 +226,8 @@ def _sizes(layout: MonitorLayout) -> Iterator[str]:
     for name, size in sizes.items():
         if name not in ("RULES", "TYPES", "SEATS"):
             yield f"#define RULEC_{name} {size}u"
-    own, shared = sizes["WORLD_READS"], sizes["WORLD_READS"] + sizes["SEATS"] * sizes["OWN_READS"]
-    yield f"#define RULEC_OWN {own}u /* where the digits of objects on seats begin */"
-    yield f"#define RULEC_SHARED {shared}u /* and those about several objects */"
-    # The array ends after the highest index that a place of valid width can have.
-    yield f"#define RULEC_DIGITS {shared + sizes['PLACES'] + 1}u"
+    yield f"#define RULEC_OWN {sizes['WORLD_READS']}u /* where digits of objects on seats begin */"
+    yield f"#define RULEC_SHARED {layout.n_own_digits}u /* and those about several objects */"
     yield "#define RULEC_SOURCES 16u"
     yield f"#define RULEC_TOGETHER {TOGETHER}u"
     yield ""

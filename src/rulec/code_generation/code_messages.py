@@ -34,18 +34,17 @@ def too_large(excess: str, way_out: str = "") -> RulecError:
 NO_MONITOR_COMPILER = Code(
     "R0751",
     title="there is no compiler for the monitor",
-    why="Proving a monitor needs a compiler: for C the one named by the environment variable "
-    "`CC`, or `cc`; for Rust `rustc`. rulec does not include one. Writing a monitor needs none.",
+    why="Proving a monitor needs a compiler for C: the one named by the environment variable "
+    "`CC`, or `cc`. rulec does not include one. Writing a monitor needs none.",
     kind="circumstance",
 )
 
 MONITOR_COMPILER_FAILED = Code(
     "R0752",
     title="compiling the monitor has failed",
-    why="The monitor is C99, or Rust of the 2021 edition, and must compile without a warning. The "
-    "message shows the command and the compiler's output. If the compiler does not support C99, "
-    "name another one in the environment variable `CC`; if `rustc` is older than 1.56, update it; "
-    "otherwise please report the rulebook.",
+    why="The monitor is C99 and must compile without a warning. The message shows the command and "
+    "the compiler's output. If the compiler does not support C99, name another one in the "
+    "environment variable `CC`; otherwise please report the rulebook.",
     kind="circumstance",
 )
 
@@ -68,16 +67,6 @@ def unreadable_command(command: str, problem: str) -> RulecError:
     )
 
 
-def no_rust_compiler() -> RulecError:
-    """The error (R0751) about a missing ``rustc``."""
-    return NO_MONITOR_COMPILER.error(
-        None,
-        "there is no Rust compiler: `rustc` is not found",
-        help="install Rust, or put its folder on the `PATH`; without `--prove` the monitor is "
-        "written without it",
-    )
-
-
 def compiler_failed(command: str, output: str, status: int | None = None) -> RulecError:
     """The error (R0752) about a failed compiler, with its output or its status."""
     # A message is a single line.
@@ -86,13 +75,9 @@ def compiler_failed(command: str, output: str, status: int | None = None) -> Rul
         ended = "ended" if status is None else f"ended with status {status}"
         first = f"it {ended if status is None or status >= 0 else f'was ended by signal {-status}'}"
         first += " without any output"
-    is_rust = command.startswith("rustc")
-    another = "name another compiler in `CC`"
-    if is_rust and "rustup" in output:
-        another = "rustup has no such compiler here: `rustup default stable` installs one"
-    elif is_rust:
-        another = "update Rust by `rustup update`"
-    return MONITOR_COMPILER_FAILED.error(None, f"`{command}` has failed: {first}", help=another)
+    return MONITOR_COMPILER_FAILED.error(
+        None, f"`{command}` has failed: {first}", help="name another compiler in `CC`"
+    )
 
 
 MONITOR_DIFFERS = Code(
@@ -119,8 +104,8 @@ OTHERS_FILE = Code(
     "R0755",
     title="a monitor would replace a build file that is not its own",
     why="A monitor comes with files whose names are the same for every program: a Makefile and "
-    "CMakeLists.txt, Cargo.toml and src/lib.rs, or package.xml. Such a file is replaced only if "
-    "rulec has generated it for the same monitor.",
+    "CMakeLists.txt, Cargo.toml, build.rs and src/lib.rs, or package.xml. Such a file is replaced "
+    "only if rulec has generated it for the same monitor.",
     bad="mkdir build\necho all: > build/Makefile\nrulec compile esterle2019 --emit c -o build\n",
     good="rulec compile esterle2019 --emit c -o build\n",
     kind="command",

@@ -6,7 +6,7 @@ seats of the nearest supertype (or the type itself) that has a bound.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import prod
 
@@ -99,7 +99,7 @@ class MonitorLayout:
         """The sizes of arrays, by their names in the code; no array is empty."""
         rules = self.rules
         machines = [own.rule.machine for own in rules]
-        most_reads = max(map(len, self.sizes))
+        places = (1 << max(0, max(map(len, self.sizes)) - 1).bit_length()) - 1
         cell_words = max(len(own.cells) for own in rules) // 32 + 1
         return {
             "RULES": len(rules),
@@ -114,11 +114,19 @@ class MonitorLayout:
             "CELL_WORDS": cell_words,
             "NODES": cell_words * 32,
             "ENTRIES": sum(len(own.entries) for own in rules),
-            "PLACES": (1 << max(0, most_reads - 1).bit_length()) - 1,
+            "PLACES": places,
+            # The array ends after the highest index that a place of valid width can have.
+            "DIGITS": self.n_own_digits + places + 1,
             "MOST_DIGIT": max([size for sizes in self.sizes for size in sizes], default=1) - 1,
             "CLASS_WORDS": max(len(machine.successors[0]) for machine in machines) // 32 + 1,
             "STATE_WORDS": max(len(machine.successors) for machine in machines) // 32 + 1,
         }
+
+    @property
+    def n_own_digits(self) -> int:
+        """How many digits are about the world or an object on a seat; those of several follow."""
+        world, own, _ = (len(sizes) or 1 for sizes in self.sizes)
+        return world + self.n_seats * own
 
     @property
     def n_variables(self) -> int:
@@ -126,22 +134,17 @@ class MonitorLayout:
         return max(1, *[len(own.seats) for own in self.rules])
 
 
-def monitor_layout(
-    rulebook: CompiledRulebook,
-    bounds: Mapping[str, int],
-    code: Callable[[InputFields], ReadingCode] = ReadingCode,
-) -> MonitorLayout:
+def monitor_layout(rulebook: CompiledRulebook, bounds: Mapping[str, int]) -> MonitorLayout:
     """The layout for a rulebook, at one step.
 
-    ``bounds`` are the most objects present at a time, by type; ``code`` generates the expressions
-    that read digits. Raises RulecError R0750.
+    ``bounds`` are the most objects present at a time, by type. Raises RulecError R0750.
     """
     rulebook = rulebook.at_one_step()
     if not rulebook.rules:
         raise too_large(f"rulebook `{rulebook.name}` has no rules", "choose a rulebook with rules")
     fields = input_fields(rulebook)
     seats = _seats(fields, bounds)
-    placing = _Placing(code(fields), fields, seats)
+    placing = _Placing(ReadingCode(fields), fields, seats)
     rules = tuple([placing.rule(rule) for rule in rulebook.rules])
     if sum(own.n_instances for own in rules) > MOST_INSTANCES:
         raise too_large(

@@ -82,7 +82,7 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
 @click.option(
     "--prove",
     is_flag=True,
-    help="Also compile the monitor, with a C compiler or rustc, check it against its tables and "
+    help="Also compile the monitor with a C compiler, check it against its tables and "
     "write a report.",
 )
 @click.option(
@@ -108,7 +108,7 @@ def command(
     Writes RULE.hoa for every rule, in the Hanoi Omega-Automata format, and the compiled rulebook
     RULEBOOK.json, from which the commands that judge, monitor and show work as from the source, and
     without Spot. Instead, `--emit c` writes a monitor in C99 with its Makefile and CMakeLists.txt,
-    `--emit rust` a crate, `--emit ros2` a package around the C monitor, and `--emit ltl` all
+    `--emit rust` a crate and `--emit ros2` a package around it, and `--emit ltl` all
     formulas for Spot, PRISM and nuXmv with the meaning of their propositions. Every file is written
     completely or not at all. If there are several rulebooks, each gets its own folder in DIR.
     """

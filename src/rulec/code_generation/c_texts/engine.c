@@ -734,6 +734,11 @@ static void rulec_judge(rulec_state *state, const rulec_input *in, uint16_t numb
     }
 }
 
+size_t rulec_state_size(void)
+{
+    return sizeof(rulec_state);
+}
+
 void rulec_init(rulec_state *state)
 {
     uint32_t each;

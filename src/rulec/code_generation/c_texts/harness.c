@@ -1,11 +1,5 @@
 /* The functions that a proof calls; appended to a monitor's source. */
 
-size_t rulec_state_size(void);
-size_t rulec_state_size(void)
-{
-    return sizeof(rulec_state);
-}
-
 /* The part of a state that lasts from one step to the next. */
 size_t rulec_kept_size(void);
 size_t rulec_kept_size(void)

@@ -54,6 +54,9 @@ void rulec_input_unknown(rulec_input *input);
 void rulec_object_defaults(rulec_object *object, uint32_t id, uint8_t type);
 void rulec_object_unknown(rulec_object *object, uint32_t id, uint8_t type);
 
+/* The bytes of a monitor, for other languages. */
+size_t rulec_state_size(void);
+
 /* Call it before the first state of each drive. */
 void rulec_init(rulec_state *state);
 

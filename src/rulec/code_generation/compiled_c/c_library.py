@@ -89,8 +89,6 @@ class CLibrary:
     for temporary files.
     """
 
-    language = "C"
-
     def __init__(
         self, layout: MonitorLayout, source: str | None = None, *, optimised: bool = True
     ) -> None:

@@ -58,7 +58,7 @@ def proof_report(library: CLibrary, n_states: int = USUAL_STATES) -> str:
         raise differs(wrong)
     book = layout.rulebook
     lines = [
-        f"monitor in {library.language} of {book.name}, by rulec {book.rulec}",
+        f"monitor in C of {book.name}, by rulec {book.rulec}",
         *[f"source: {source.name}, SHA-256 {source.sha256}" for source in book.sources],
         f"compiled by: {library.command}, {library.compiler_version}",
         *[f"{part.n:>9} {part.subject}: 0 differ" for part in parts],
