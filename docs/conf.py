@@ -7,6 +7,7 @@ from sphinx.application import Sphinx
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE / "extensions"), str(HERE.parent / "src")]
+sys.path.append(str(HERE.parent / "tests" / "benchmarks"))
 
 from rulec.report.text.pygments_lexer import RulecLexer  # noqa: E402
 from rulec.version import __version__  # noqa: E402
@@ -21,7 +22,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "sphinx_click",
-    "grammar_page",
+    "built_parts",
 ]
 exclude_patterns = ["_build", "samples"]
 html_theme = "furo"

@@ -11,15 +11,11 @@ from functools import partial
 from pathlib import Path
 
 from rulec.files.written_files import written_whole
-from tools.codes_page import codes_page
-from tools.coverage_page import coverage_page
 from tools.emacs_mode import emacs_mode
-from tools.formats_page import format_words_page, formats_page
 from tools.json_schemas import SCHEMAS, schema_text
 from tools.parser_tables import parser_tables
 from tools.textmate import textmate_grammar
 from tools.tree_sitter import folds, highlights, tree_sitter_grammar, tree_sitter_manifest
-from tools.vocabulary_page import road_page
 from tools.vscode import language_configuration, package_manifest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -34,11 +30,6 @@ GENERATED: Mapping[str, Callable[[], str]] = {
     "src/editors/tree_sitter/queries/folds.scm": folds,
     "src/editors/tree_sitter/tree-sitter.json": tree_sitter_manifest,
     "src/editors/emacs/rulec-mode.el": emacs_mode,
-    "docs/codes.md": codes_page,
-    "docs/vocabulary.md": road_page,
-    "docs/coverage.md": coverage_page,
-    "docs/formats.md": formats_page,
-    "docs/format_words.md": format_words_page,
     **{f"docs/schemas/{name}.json": partial(schema_text, name) for name in SCHEMAS},
 }
 """Path from the root -> the function that generates its text."""

@@ -11,10 +11,10 @@ import click
 import msgspec
 from figure import Result, as_text
 from machine import load, machine
-from page import page
+from page import as_lines
 
 HERE = Path(__file__).parent
-PAGE = HERE.parents[1] / "docs" / "benchmarks.md"
+KEPT = HERE.parents[1] / "docs" / "benchmarks.jsonl"
 NAMES = (
     "batch",
     "reading",
@@ -40,11 +40,11 @@ NAMES = (
 @click.command()
 @click.argument("names", nargs=-1, type=click.Choice(NAMES), metavar="[NAME]...")
 @click.option("--rounds", type=click.IntRange(min=1), help="How often everything is measured.")
-@click.option("--write", is_flag=True, help="Write docs/benchmarks.md; without any NAME.")
+@click.option("--write", is_flag=True, help="Write docs/benchmarks.jsonl; without any NAME.")
 def every(names: tuple[str, ...], rounds: int | None, write: bool) -> None:
     """Run benchmarks and print their tables."""
     if write and names:
-        raise click.UsageError("the page has all benchmarks: call --write without names")
+        raise click.UsageError("the file has all benchmarks: call --write without names")
     found: dict[str, list[Result]] = {}
     before = load()
     for name in names or NAMES:
@@ -55,7 +55,7 @@ def every(names: tuple[str, ...], rounds: int | None, write: bool) -> None:
     about = machine(before)
     print("\n".join(about))
     if write:
-        PAGE.write_text(page(found, about), encoding="utf-8")
+        KEPT.write_bytes(as_lines(found, about))
 
 
 def environment() -> dict[str, str]:

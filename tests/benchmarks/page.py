@@ -1,34 +1,36 @@
-"""The page of the documentation that shows what benchmarks have found."""
+"""What benchmarks have found, kept as JSON Lines, and as the tables of the documentation."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import chain
 
+import msgspec
 from figure import COLUMNS, Result, cells
 
-HEAD = """\
-# How fast it is
 
-What `tests/benchmarks/run --write` has measured; it writes this page. `tests/benchmarks/run NAME`
-measures a part. Every figure is processor time, the median of several rounds in which everything in
-a table takes its turn, so that a busy moment of the machine meets all of it; the fastest round is
-nearest to a machine with nothing else to do. A turn lasts ten milliseconds or more: what is short
-is done again and again in it, and its mean counts. "Peer takes" says how many times as long another
-way of doing the same work takes, in the same rounds. Ratios carry over to other machines, times do
-not. "Wanted" is what rulec aims at on a machine of this kind. Where the load average below is above
-the number of cores, other programs had their share of cores, caches and memory, which lengthens
-processor time, too; by how much is not known. Copying an array and `python -c pass` are there to
-compare machines by.
-"""
+class Measured(msgspec.Struct, omit_defaults=True):
+    """A line of the file: the machine first, then what each benchmark found on one input."""
+
+    machine: list[str] = []
+    name: str = ""
+    result: Result | None = None
 
 
-def page(found: Mapping[str, Sequence[Result]], about: Sequence[str]) -> str:
-    """The page, in Markdown."""
-    lines = chain.from_iterable(
-        section(name, result) for name, results in found.items() for result in results
-    )
-    return "\n".join([HEAD, *(f"- {line}" for line in about), *lines, ""])
+def as_lines(found: Mapping[str, Sequence[Result]], about: list[str]) -> bytes:
+    """What was found by each benchmark, and about the machine, as JSON Lines."""
+    sections = [
+        Measured(name=name, result=result) for name, results in found.items() for result in results
+    ]
+    return msgspec.json.Encoder().encode_lines([Measured(about), *sections])
+
+
+def tables(lines: bytes) -> str:
+    """The file in Markdown."""
+    parts: list[str] = []
+    for line in msgspec.json.Decoder(Measured).decode_lines(lines):
+        parts += (f"- {one}" for one in line.machine)
+        parts += section(line.name, line.result) if line.result else ()
+    return "\n".join(parts)
 
 
 def section(name: str, result: Result) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""``rulec explain`` as its user meets it, and the page that it writes."""
+"""``rulec explain`` as its user meets it."""
 
 import json
 import re
@@ -11,8 +11,6 @@ from rulec.logic.free_names import names_in
 from rulec.report.findings.code_registry import all_codes
 from rulec.rulebook.files.words_in_files import rules_reading
 from rulec.rulebook.loader import load_rulebook
-
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "codes.md"
 
 
 def explain(capsys, *arguments):
@@ -120,10 +118,11 @@ def test_markdown_of_one_code(capsys):
     assert "```toml wrong\nhorizon_s = 4.0\n" in out
 
 
-def test_the_page_is_up_to_date(capsys):
+def test_a_page_has_every_code(capsys):
     status, out, _ = explain(capsys, "--all", "--output-format", "markdown")
     assert status == 0
-    assert PAGE.read_text(encoding="utf-8") == out
+    assert out.startswith("# Codes\n\n## R01: syntax\n\n### R0101: a file is not a text in UTF-8\n")
+    assert re.findall(r"^### (R\d{4}): ", out, re.M) == [*all_codes()]
 
 
 @pytest.mark.parametrize(

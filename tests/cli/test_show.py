@@ -157,7 +157,7 @@ def test_nothing_can_satisfy_it(tmp_path, capsys):
     [
         ("quite", "did you mean `quiet`?"),
         ("zz", "it has `quiet`, `pass_by`"),
-        ("horn", "it is a word that rules read: docs/vocabulary.md says"),
+        ("horn", "it is a word that rules read, which `rulec explain horn` explains"),
     ],
 )
 def test_an_unknown_rule(two, name, hint, capsys):

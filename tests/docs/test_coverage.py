@@ -1,11 +1,11 @@
-"""docs/coverage.md: what makes a cell whole, in part or empty, and which situations count."""
+"""The table of docs/coverage.md: what makes a cell whole, in part or empty, and what counts."""
 
 import pytest
 
 from rulec.diagnostics import Source
 from rulec.rulebook.overlay.rulebook_overlay import overlay, own_law
 from rulec.syntax import parse
-from tools.coverage_page import NOTHING, SILENT, WHOLE, Book, cell, page_of, situations
+from tools.coverage_table import NOTHING, SILENT, WHOLE, Book, cell, situations, table_of
 
 BASE = """\
 rulebook treaty
@@ -66,7 +66,7 @@ def test_a_cell(text, topic, asked, expected):
 
 
 def test_cells_are_counted():
-    page = page_of([book(BASE, OWN)], {"country": frozenset({"gap", "gap_to_horses"})})
+    page = table_of([book(BASE, OWN)], {"country": frozenset({"gap", "gap_to_horses"})})
     assert (
         "4 topics in 1 books are 4 cells: 1 whole (25 %), 1 in part (25 %), 1 silent with a reason "
         "(25 %), 1 nothing (25 %). Topics on which no book has a rule: 2."

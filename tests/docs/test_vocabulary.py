@@ -5,7 +5,7 @@ import pytest
 from rulec.diagnostics import RulecError, Source
 from rulec.syntax import decode, parse
 from rulec.syntax.tree import ConstantItem, FactItem, PresumedItem
-from tools.vocabulary_page import ROAD, comment_above, vocabulary_page
+from tools.vocabulary_tables import ROAD, comment_above, vocabulary_tables
 
 MARKS = ConstantItem | PresumedItem | FactItem
 ITEMS = [
@@ -23,7 +23,7 @@ def test_each_item_says_what_it_means_and_who_supplies_it(item):
 
 
 def test_a_row_for_each_word():
-    page = vocabulary_page(
+    page = vocabulary_tables(
         Source(
             "small.rules",
             "vocabulary small {\n  # Scene: things.\n  type thing\n"
@@ -43,16 +43,16 @@ def test_a_row_for_each_word():
 
 
 def test_facts_stand_at_the_end():
-    page = vocabulary_page(
+    page = vocabulary_tables(
         Source(
             "small.rules",
             "vocabulary small {\n  # Map: a.\n  signal a, b default false\n"
             "  fact a\n    implies b\n}\n",
         )
     )
-    assert page.endswith("is an error.\n\n- `a implies b`\n")
+    assert page.endswith("is an error.\n\n- `a implies b`")
 
 
 def test_a_file_with_mistakes_has_no_page():
     with pytest.raises(RulecError):
-        vocabulary_page(Source("bad.rules", "vocabulary small { signal }"))
+        vocabulary_tables(Source("bad.rules", "vocabulary small { signal }"))

@@ -37,7 +37,7 @@ _SLIP = 3
 @click.option("--all", "every", is_flag=True, help="Explain every code.")
 @output_options(
     endings_of("full", "json", "markdown"),
-    "the explanation: text, JSON, or Markdown (with --all the page docs/codes.md)",
+    "the explanation: text, JSON or Markdown",
 )
 def command(names: tuple[str, ...], every: bool, to: Output) -> int:
     """Explain each CODE, such as R0104: what it means, with a bad example and its correction.
@@ -60,7 +60,7 @@ def command(names: tuple[str, ...], every: bool, to: Output) -> int:
         case "json":
             text = _as_json(codes, found_words)
         case "markdown" if every:
-            text = code_registry.as_page()
+            text = f"# Codes\n\n{code_registry.as_sections()}"
         case "markdown":
             pages = [
                 f"# {code.code}: {code.title}\n\n{code_registry.as_markdown(code)}"

@@ -243,7 +243,7 @@ def _way_out(book: Rulebook, name: str) -> str:
     if near := nearest_name(name, {rule.name for rule in book.rules}):
         return f"did you mean `{near}`?"
     if name in {*book.vocabulary.declarations, *book.vocabulary.enumeration_of}:
-        return "it is a word that rules read: docs/vocabulary.md says what those that ship mean"
+        return f"it is a word that rules read, which `rulec explain {name}` explains"
     if any(name in names for names in definitions_of_rulebooks(search_path()).values()):
         return f"it is a definition or a parameter, which `rulec explain {name}` explains"
     words = {*name.casefold().split("_")}

@@ -86,14 +86,6 @@ _KINDS: dict[ExampleKind, tuple[str, str]] = {
 }
 """What is done with an example, and its language."""
 
-_HEAD = """\
-# Codes
-
-Every message of rulec has a code. `rulec explain CODE` shows in the terminal what is said here:
-what the code means, a small example that gets it, and the same example, mended. All of them are run
-by the tests. `rulec explain --all --output-format markdown` writes this page.
-"""
-
 
 def as_text(code: Code, width: int = 80) -> str:
     """An explanation for a terminal; its examples keep their lines, however wide."""
@@ -120,9 +112,9 @@ def as_markdown(code: Code) -> str:
     return "\n\n".join(parts)
 
 
-def as_page() -> str:
-    """docs/codes.md."""
-    parts = [_HEAD]
+def as_sections() -> str:
+    """All explanations in Markdown, a section a stage."""
+    parts = []
     for number, stage in enumerate(STAGES, 1):
         parts.append(f"## R0{number}: {stage.lower()}\n")
         parts += [

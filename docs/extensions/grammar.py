@@ -1,13 +1,8 @@
-"""Fills the page `grammar` with the rules of grammar/rulec.lark, words as they are written."""
+"""The rules of grammar/rulec.lark in Markdown, words as they are written."""
 
 import re
-from pathlib import Path
-
-from sphinx.application import Sphinx
 
 from rulec.syntax.messages.parse_context import spelling
-
-GRAMMAR = Path(__file__).resolve().parents[2] / "grammar" / "rulec.lark"
 
 SECTION = re.compile(r"^// ([A-Z][^.\n]*)(?:\..*)?\n(?=(?://.*\n)*\n)", re.MULTILINE)
 RULE = re.compile(r"^\??([a-z_]+): *(.*(?:\n +\|.*)*)", re.MULTILINE)
@@ -15,9 +10,9 @@ CLASSES = frozenset(("BOOK", "NAME", "STRING", "DATE", "NUMBER", "UNIT"))
 """The tokens that are no fixed words; docs/grammar.md says what they are."""
 
 
-def sections(grammar: str) -> list[tuple[str, dict[str, str]]]:
+def sections(text: str) -> list[tuple[str, dict[str, str]]]:
     """Titles with their rules: name -> what it stands for, as in the file."""
-    body = grammar[grammar.index("\nfile:") :]
+    body = text[text.index("\nfile:") :]
     used = set(re.findall(r"\w+", " ".join(text for _, text in RULE.findall(body)))) | {"file"}
     first, *rest = SECTION.split(body)
     found = [
@@ -39,25 +34,13 @@ def production(text: str) -> list[str]:
     return [line.strip() for line in text.split("\n")]
 
 
-def as_markdown(grammar: str) -> str:
+def grammar(text: str) -> str:
     """A heading for each section of the grammar, with the rules below it."""
     parts = []
-    for title, rules in sections(grammar):
+    for title, rules in sections(text):
         lines = ["```{eval-rst}", ".. productionlist::"]
         for name, text in rules.items():
             first, *others = production(text)
             lines += [f"   {name}: {first}", *(f"      : {other}" for other in others)]
         parts.append("\n".join([f"## {title}", "", *lines, "```"]))
     return "\n\n".join(parts)
-
-
-def fill(_: Sphinx, page: str, content: list[str]) -> None:
-    """Called by Sphinx with the text of each page."""
-    if page == "grammar":
-        content[0] += "\n" + as_markdown(GRAMMAR.read_text(encoding="utf-8"))
-
-
-def setup(app: Sphinx) -> dict[str, bool]:
-    """Called by Sphinx."""
-    app.connect("source-read", fill)
-    return {"parallel_read_safe": True}

@@ -1,4 +1,4 @@
-"""The page ``docs/coverage.md``: which topics each national rulebook covers, and how well.
+"""The table of the page ``docs/coverage.md``: which topics each national rulebook covers.
 
 Rules are assigned to topics by marks (`topics` in `schemas`); the counts come from the books as
 written and from the situations in `tests/law`.
@@ -39,15 +39,6 @@ _SIGNS = {
     SILENT: "the book states that it has no rule on the topic, and why",
     NOTHING: "nothing",
 }
-_HEAD = f"""\
-# Coverage
-
-The topics on which the national rulebooks have rules, counted from the
-[marks](language.md#topics-and-articles) in the books and from the situations in `tests/law`.
-`.ci/task regenerate` writes this page.
-
-{table(["sign", "what it means"], _SIGNS.items())}
-"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,12 +54,12 @@ Situations = Mapping[str, frozenset[str]]
 """Book -> the topics (named by rules) for which others have written a situation that tests it."""
 
 
-def coverage_page() -> str:
+def coverage_table() -> str:
     """Render the table of the shipped rulebooks. Raises RulecError if one has mistakes."""
-    return page_of(tuple(national_books()), situations())
+    return table_of(tuple(national_books()), situations())
 
 
-def page_of(books: Sequence[Book], asked: Situations) -> str:
+def table_of(books: Sequence[Book], asked: Situations) -> str:
     """Render the table of books that share the same topics."""
     topics = {name: entry.title.value for book in books for name, entry in book.laid.topics.items()}
     cells = {
@@ -83,7 +74,8 @@ def page_of(books: Sequence[Book], asked: Situations) -> str:
     head = ["topic", *(code(book.name) for book in books)]
     counts = {book.name: Counter(cells[topic, book.name][0] for topic in topics) for book in books}
     rows.append(["**whole**", *(f"{counts[book.name][WHOLE]}" for book in books)])
-    return "\n".join([_HEAD, _summary(cells), "", table(head, rows), ""])
+    signs = table(["sign", "what it means"], _SIGNS.items())
+    return "\n\n".join([signs, _summary(cells), table(head, rows)])
 
 
 def cell(book: Book, topic: str, asked: frozenset[str]) -> str:

@@ -1,4 +1,4 @@
-"""The page ``docs/vocabulary.md``, generated from the file of the vocabulary ``road``.
+"""The tables of the page ``docs/vocabulary.md``, from the file of the vocabulary ``road``.
 
 Each item of the file has a comment above it, `SUPPLIER: what it means`.
 """
@@ -14,19 +14,6 @@ from rulec.syntax import decode, parse, tree
 
 ROAD = rulebooks_folder() / "vocabulary" / "road.rules"
 
-_HEAD = """\
-# The vocabulary `road`
-
-The words for rulebooks of countries, as [`road.rules`](../rulebooks/vocabulary/road.rules)
-declares them, with their sources: the scene (ego's own motion, and measurements of others),
-the map (the road, its marks and signs), or an interpretation (the intentions of others, and the
-kind of traffic). Near is the kerb's side, far the other one. A word that a state does not mention
-has its default; `–` means that it has none, so that states must mention it if a rule reads it. A
-*constant* word has the same value for a whole trace; the default of a *presumed* word holds even
-if a source cannot provide it, and verdicts say so.
-`.ci/task regenerate` writes this page.
-"""
-
 
 @dataclass(frozen=True, slots=True)
 class Word:
@@ -40,13 +27,13 @@ class Word:
     supplier: str
 
 
-def road_page() -> str:
+def road_tables() -> str:
     """Render the vocabulary ``road``."""
-    return vocabulary_page(decode(ROAD.name, ROAD.read_bytes()))
+    return vocabulary_tables(decode(ROAD.name, ROAD.read_bytes()))
 
 
-def vocabulary_page(source: Source) -> str:
-    """Render a vocabulary's file as a page. Raises RulecError if it has mistakes."""
+def vocabulary_tables(source: Source) -> str:
+    """Render a vocabulary's file. Raises RulecError if it has mistakes."""
     file, mistakes = parse(source)
     if mistakes:
         raise RulecError(mistakes)
@@ -55,7 +42,6 @@ def vocabulary_page(source: Source) -> str:
     words = [word for item in file.items for word in _words(item, marks)]
     return "\n".join(
         [
-            _HEAD,
             "## Types of objects\n",
             *_table(("type", "is a", "meaning"), types),
             "\n## About an object\n",
@@ -63,7 +49,6 @@ def vocabulary_page(source: Source) -> str:
             "\n## About ego and the world\n",
             *_word_table([word for word in words if not word.about]),
             *_facts(file.items),
-            "",
         ]
     )
 

@@ -1,0 +1,51 @@
+"""Puts into pages, where they say `<!-- built: NAME -->`, what is made from other files."""
+
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from grammar import grammar
+from page import tables
+from sphinx.application import Sphinx
+
+import rulec
+from rulec.report.findings import code_registry
+from rulec.report.recordings import format_listing
+from tools.coverage_table import coverage_table
+from tools.vocabulary_tables import road_tables
+
+ROOT = Path(__file__).resolve().parents[2]
+PLACE = re.compile(r"^<!-- built: (\w+) -->$", re.MULTILINE)
+
+
+def format_words() -> str:
+    """The table of words and of the formats that provide them."""
+    return format_listing.words_as_markdown(rulec.formats(), format_listing.words_in_order())
+
+
+PARTS: Mapping[str, Callable[[], str]] = {
+    "benchmarks": lambda: tables((ROOT / "docs" / "benchmarks.jsonl").read_bytes()),
+    "codes": code_registry.as_sections,
+    "coverage": coverage_table,
+    "formats": lambda: format_listing.as_markdown(rulec.formats(), (), words=False),
+    "format_words": format_words,
+    "grammar": lambda: grammar((ROOT / "grammar" / "rulec.lark").read_text(encoding="utf-8")),
+    "vocabulary": road_tables,
+}
+"""Name -> what makes the part, in Markdown."""
+
+
+def filled(text: str) -> str:
+    """A page with its parts in their places."""
+    return PLACE.sub(lambda place: PARTS[place[1]](), text)
+
+
+def fill(_: Sphinx, __: str, content: list[str]) -> None:
+    """Called by Sphinx with the text of each page."""
+    content[0] = filled(content[0])
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Called by Sphinx."""
+    app.connect("source-read", fill)
+    return {"parallel_read_safe": True}

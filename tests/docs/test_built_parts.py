@@ -1,0 +1,47 @@
+"""What pages leave to the building of the site: a place for each part, and a part in each place."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from rulec.report.findings.code_registry import all_codes
+from rulec.rulebook.loader import load_vocabulary
+
+pytest.importorskip("sphinx")
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+
+
+@pytest.fixture(scope="module")
+def built_parts():
+    sys.path.insert(0, str(DOCS / "extensions"))
+    try:
+        import built_parts
+    finally:
+        sys.path.remove(str(DOCS / "extensions"))
+    return built_parts
+
+
+def filled(built_parts, name):
+    return built_parts.filled((DOCS / f"{name}.md").read_text(encoding="utf-8"))
+
+
+def test_each_part_has_one_place(built_parts):
+    texts = (page.read_text(encoding="utf-8") for page in DOCS.glob("*.md"))
+    assert sorted(name for text in texts for name in built_parts.PLACE.findall(text)) == sorted(
+        built_parts.PARTS
+    )
+
+
+def test_every_code_is_listed(built_parts):
+    page = filled(built_parts, "codes")
+    assert all(f"\n### {code.code}: {code.title}\n" in page for code in all_codes().values())
+
+
+@pytest.mark.parametrize("name", ["vocabulary", "format_words"])
+def test_every_word_is_listed(built_parts, name):
+    page = filled(built_parts, name)
+    words = load_vocabulary("road").declarations
+    assert [word for word in words if f"\n| `{word}`" not in page.replace("(", "`")] == []
+    assert "<!--" not in page
