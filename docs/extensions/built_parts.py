@@ -1,7 +1,10 @@
 """Puts into pages, where they say `<!-- built: NAME -->`, what is made from other files."""
 
+import csv
 import re
 from collections.abc import Callable, Mapping
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 
 from grammar import grammar
@@ -11,6 +14,7 @@ from sphinx.application import Sphinx
 import rulec
 from rulec.report.findings import code_registry
 from rulec.report.recordings import format_listing
+from rulec.report.text.markdown import table
 from tools.coverage_table import coverage_table
 from tools.vocabulary_tables import road_tables
 
@@ -23,6 +27,16 @@ def format_words() -> str:
     return format_listing.words_as_markdown(rulec.formats(), format_listing.words_in_order())
 
 
+def looked_up_tables(path: Path) -> str:
+    """A table for each draw of violations that were checked by hand."""
+    with path.open(encoding="utf-8", newline="") as stream:
+        (_, *head), *rows = csv.reader(stream)
+    draws = groupby(rows, key=itemgetter(0))
+    return "\n\n".join(
+        f"### Draw {draw}\n\n{table(head, (row[1:] for row in of))}" for draw, of in draws
+    )
+
+
 PARTS: Mapping[str, Callable[[], str]] = {
     "benchmarks": lambda: tables((ROOT / "docs" / "benchmarks.jsonl").read_bytes()),
     "codes": code_registry.as_sections,
@@ -30,6 +44,7 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "formats": lambda: format_listing.as_markdown(rulec.formats(), (), words=False),
     "format_words": format_words,
     "grammar": lambda: grammar((ROOT / "grammar" / "rulec.lark").read_text(encoding="utf-8")),
+    "looked_up": lambda: looked_up_tables(ROOT / "docs" / "looked_up.csv"),
     "vocabulary": road_tables,
 }
 """Name -> what makes the part, in Markdown."""
