@@ -16,6 +16,7 @@ from rulec.report.findings import code_registry
 from rulec.report.recordings import format_listing
 from rulec.report.text.markdown import table
 from tools.coverage_table import coverage_table
+from tools.schema_tables import schema_tables
 from tools.vocabulary_tables import road_tables
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -45,6 +46,7 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "format_words": format_words,
     "grammar": lambda: grammar((ROOT / "grammar" / "rulec.lark").read_text(encoding="utf-8")),
     "looked_up": lambda: looked_up_tables(ROOT / "docs" / "looked_up.csv"),
+    "schemas": schema_tables,
     "vocabulary": road_tables,
 }
 """Name -> what makes the part, in Markdown."""

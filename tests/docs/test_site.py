@@ -94,12 +94,12 @@ def test_every_link_within_the_site_leads_somewhere(pages, site):
 
 def test_every_verb_and_its_options_are_described(pages):
     for verb in VERBS:
-        assert f"rulec-{verb}" in pages["options.html"].ids
+        assert f"rulec-{verb}" in pages["commands.html"].ids
         for parameter in rulec.get_command(None, verb).params:
             wanted = f"cmdoption-rulec-{verb}-"
             if parameter.param_type_name == "option":
                 wanted += parameter.opts[-1].lstrip("-")
-                assert wanted in pages["options.html"].ids
+                assert wanted in pages["commands.html"].ids
 
 
 def test_every_public_name_is_described(pages):

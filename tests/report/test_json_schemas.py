@@ -193,7 +193,7 @@ def test_no_verb_is_forgotten():
 
 
 def test_no_schema_is_forgotten():
-    page = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "json.md").read_text(encoding="utf-8")
     tried = {name for name, _ in [*DOCUMENTS, *LINES]} | {"compiled", "monitor"}
     assert tried == set(SCHEMAS) == {path.stem for path in PUBLISHED.glob("*.json")}
     assert all(f"(schemas/{name}.json)" in page for name in SCHEMAS)

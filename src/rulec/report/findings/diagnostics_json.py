@@ -1,4 +1,4 @@
-"""Diagnostics and codes as JSON, as docs/commands.md describes it."""
+"""Diagnostics and codes as JSON."""
 
 from __future__ import annotations
 

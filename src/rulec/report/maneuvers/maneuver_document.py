@@ -1,4 +1,4 @@
-"""The JSON document of maneuvers and all that stands in it (see docs/commands.md)."""
+"""The JSON document of maneuvers and all that stands in it."""
 
 from __future__ import annotations
 
@@ -199,7 +199,8 @@ class PruningData(JsonPart, frozen=True, kw_only=True):
 class ClassesData(JsonPart, frozen=True, kw_only=True):
     """The counts of homotopy classes, and the cheapest satisfying members of some.
 
-    ``open`` counts further classes whose verdict is open.
+    ``open`` counts further classes whose verdict is open. ``divided`` classes have members of
+    either verdict, as they may where hard rules are ``counting_steps``.
     """
 
     total: int
@@ -219,8 +220,8 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     maneuvers, null unless cells have words. With ``bounds`` of ego's motion (m, s) maneuvers are
     paths through reachable cells, else all. ``least_braking`` (m/s²) is set if a maneuver shown
     brakes hard, and none brakes less; ``least_braking_later`` if some do, but have to brake harder
-    after their end; ``in_way``, the obstacles in the way, if no trajectory was
-    found along any to be listed.
+    after their end; ``in_way``, the obstacles in the way, if no trajectory was found along any to
+    be listed. Names ``by_default`` are read, but not supplied by the scenario.
     """
 
     scenario: str

@@ -1,4 +1,4 @@
-"""Maneuvers, their violations and probabilities as JSON (see docs/commands.md)."""
+"""Maneuvers, their violations and probabilities as JSON."""
 
 from __future__ import annotations
 

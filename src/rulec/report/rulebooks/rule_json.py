@@ -1,4 +1,4 @@
-"""Rules as JSON, one with automaton and shortest traces (see docs/commands.md)."""
+"""Rules as JSON, one with automaton and shortest traces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Outcomes and coverage of examples as JSON; docs/commands.md describes it."""
+"""Outcomes and coverage of examples as JSON."""
 
 from __future__ import annotations
 

@@ -177,8 +177,8 @@ def time_in_words(finding: VerdictFinding) -> str:
 
 _DOC = """A finding: a rule that is ``violated``, ``open`` or ``not_judged``.
 
-See docs/commands.md, Findings; fields that do not apply are null, an empty ``inherited_from``
-means that the rule is the rulebook's own law.
+Fields that do not apply are null, an empty ``inherited_from`` means that the rule is the rulebook's
+own law.
 """
 FindingLine = msgspec.defstruct(
     "FindingLine",
