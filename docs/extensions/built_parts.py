@@ -28,10 +28,21 @@ def format_words() -> str:
     return format_listing.words_as_markdown(rulec.formats(), format_listing.words_in_order())
 
 
-def looked_up_tables(path: Path) -> str:
-    """A table for each draw of violations that were checked by hand."""
+def rows_of(path: Path) -> list[list[str]]:
+    """The rows of a table, the first of which has the names of columns."""
     with path.open(encoding="utf-8", newline="") as stream:
-        (_, *head), *rows = csv.reader(stream)
+        return [*csv.reader(stream)]
+
+
+def first_maneuvers() -> str:
+    """The table of what ego does in recorded scenes."""
+    head, *rows = rows_of(ROOT / "docs" / "first_maneuvers.csv")
+    return table(head, rows)
+
+
+def looked_up() -> str:
+    """A table for each draw of violations that were checked by hand."""
+    (_, *head), *rows = rows_of(ROOT / "docs" / "looked_up.csv")
     draws = groupby(rows, key=itemgetter(0))
     return "\n\n".join(
         f"### Draw {draw}\n\n{table(head, (row[1:] for row in of))}" for draw, of in draws
@@ -42,10 +53,11 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "benchmarks": lambda: tables((ROOT / "docs" / "benchmarks.jsonl").read_bytes()),
     "codes": code_registry.as_sections,
     "coverage": coverage_table,
+    "first_maneuvers": first_maneuvers,
     "formats": lambda: format_listing.as_markdown(rulec.formats(), (), words=False),
     "format_words": format_words,
     "grammar": lambda: grammar((ROOT / "grammar" / "rulec.lark").read_text(encoding="utf-8")),
-    "looked_up": lambda: looked_up_tables(ROOT / "docs" / "looked_up.csv"),
+    "looked_up": looked_up,
     "schemas": schema_tables,
     "vocabulary": road_tables,
 }
