@@ -61,7 +61,7 @@ def values():
     with pytest.raises(rulec.RulecError) as caught:
         rulec.parse_rulebook(bad_text)
     mistake = caught.value.diagnostics[0]
-    page = Path("docs/predictions.md").read_text(encoding="utf-8")
+    page = Path("docs/ranking.md").read_text(encoding="utf-8")
     scenario = tmp / "kerb.toml"
     scenario.write_text(
         next(block for block in page.split("```") if "obstacle.prediction" in block).split("\n", 1)[

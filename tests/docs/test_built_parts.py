@@ -1,7 +1,6 @@
 """What pages leave to the building of the site: a place for each part, and a part in each place."""
 
 import re
-import sys
 from pathlib import Path
 
 import pytest
@@ -9,19 +8,7 @@ import pytest
 from rulec.report.findings.code_registry import all_codes
 from rulec.rulebook.loader import load_vocabulary
 
-pytest.importorskip("sphinx")
-
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-
-
-@pytest.fixture(scope="module")
-def built_parts():
-    sys.path.insert(0, str(DOCS / "extensions"))
-    try:
-        import built_parts
-    finally:
-        sys.path.remove(str(DOCS / "extensions"))
-    return built_parts
 
 
 def filled(built_parts, name):
