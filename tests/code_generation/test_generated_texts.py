@@ -20,7 +20,7 @@ from rulec.code_generation.written_names import Identifiers, c_string, in_commen
 from rulec.diagnostics import RulecError
 from rulec.rulebook.rulebook_model import SourceFile
 
-PAGE = Path(__file__).parents[2] / "docs" / "onboard.md"
+PAGE = Path(__file__).parents[2] / "docs" / "online.md"
 COMPILER = shutil.which("cc")
 needs_a_compiler = pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
 

@@ -23,7 +23,7 @@ from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.monitored_books import BLAMED, WHO_IS_BLAMED
 
 needs_cargo = pytest.mark.skipif(shutil.which("cargo") is None, reason="there is no cargo")
-PAGE = Path(__file__).parents[2] / "docs" / "onboard.md"
+PAGE = Path(__file__).parents[2] / "docs" / "online.md"
 HOSTILE = [
     "*/ fn main() { panic!() } /*",
     "ends in a backslash \\",

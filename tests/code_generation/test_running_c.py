@@ -15,7 +15,7 @@ pytestmark = pytest.mark.long
 BOOKS = [("numbers", {"car": 3, "person": 2}), ("esterle2019", {"vehicle": 2}), ("de", {})]
 CHECKS = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
 MOST_STACK_BYTES = 1024
-"""As docs/onboard.md says."""
+"""As docs/online.md says."""
 
 
 def written(folder, book, objects, n_states):
