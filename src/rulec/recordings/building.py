@@ -278,7 +278,7 @@ def build_recording(
 
     Predecessors are added from successors, and the reverse; likewise neighbours. ``side`` is the
     side of traffic, None if unknown; ``complete`` names kinds of things of which the recording has
-    all, such as ``STOP`` for signs (``docs/own_recordings.md``). Raises RulecError R0617 with all
+    all, such as ``STOP`` for signs (``docs/recordings.md``). Raises RulecError R0617 with all
     mistakes: wrong shapes of arrays, invalid numbers, and ids that are duplicate or refer to
     nothing.
     """
