@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 
 import numpy as np
 import pytest
@@ -93,6 +94,23 @@ def test_the_summary_is_what_the_command_prints(found, capsys):
     kept = [line for line in found.summary().splitlines() if "would let" not in line]
     assert [line for line in printed if line in kept] == kept
     assert max(map(len, found.summary(60).splitlines())) <= 60
+
+
+def test_every_rule_of_the_book_is_named_once(found, capsys):
+    """By Python, and by the command that is asked why."""
+    outcomes = found.outcomes()
+    assert {*outcomes} == {rule.name for rule in rulec.compile_rulebook("de").rules}
+    broken = {one.rule for one in found.violations()}
+    assert {rule for rule, outcome in outcomes.items() if outcome == "found"} == broken
+    # Nobody in it is a tram, and six cars follow each other
+    assert outcomes["following_distance_behind_rail_vehicles"] == "idle"
+    assert outcomes["solid_line"] == "nothing found"
+    main(["verify", FOLLOWING, "-r", "de", "--why"])
+    words = re.findall(r"[a-z_]+", capsys.readouterr().out)
+    # Some rules are called like the word that they lack
+    declared = rulec.compile_rulebook("de").vocabulary.declarations
+    for rule, outcome in outcomes.items():
+        assert words.count(rule) == 1 or rule in declared, (rule, outcome)
 
 
 def test_a_violation_is_explained_and_drawn(found, traced):

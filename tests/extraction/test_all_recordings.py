@@ -6,11 +6,12 @@ from rulec import read_recording
 from rulec.api.rulebook_compilation import machines
 from rulec.diagnostics import RulecError
 from rulec.extraction.recording_parts import egos_of
-from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
+from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.monitoring.verdict import Verdict
 from rulec.monitoring.verify import verify
+from rulec.report.verdicts.violation_tally import ViolationTally
 from support.builders.recorded_data import RECORDINGS
 
 FILES = sorted(RECORDINGS.glob("*.xml"))

@@ -7,9 +7,9 @@ import pytest
 
 import rulec
 from rulec.extraction.possible_types import PossibleTypes
-from rulec.extraction.recording_verdicts import ViolationTally
 from rulec.recordings.mending.mended_recording import mended
 from rulec.report.verdicts.recording_answer import AnswerLayout, RecordingAnswer
+from rulec.report.verdicts.violation_tally import ViolationTally
 
 T = np.arange(0, 12.05, 0.1)
 KINDS = ("vehicle", "bicycle", "pedestrian")

@@ -1,7 +1,7 @@
 """The tally of violations over the drives of a recording."""
 
 from rulec.diagnostics import Diagnostic, RulecError
-from rulec.extraction.recording_verdicts import DriveVerdict, ViolationTally
+from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.monitoring.verdict import (
     NotJudged,
@@ -11,6 +11,7 @@ from rulec.monitoring.verdict import (
     Verdict,
     Violation,
 )
+from rulec.report.verdicts.violation_tally import ViolationTally
 from rulec.trace.trace_arrays import TraceArrays
 
 
@@ -123,3 +124,29 @@ def test_tallies_of_parts_have_the_names_of_all():
     counted.open_on, later.open_on = {"light"}, {"speed"}
     counted.include(later)
     assert counted.open_on == {"light", "speed"}
+
+
+def test_each_rule_has_one_outcome():
+    doubtful = OpenVerdict("torn", "hard", {}, ("not told",), ("light",))
+    missing = RuleNotJudged("blind", "hard", ("light",))
+    counted, rules = ViolationTally(), ("fast", "gentle", "late", "torn", "blind")
+    broken = Violation("fast", "hard", {}, 0)
+    one = DriveVerdict(drive("1"), Verdict("1", (broken,), (doubtful,), (missing,)))
+    counted.add(one, rules, frozenset({"late", "torn", "blind"}))
+    assert counted.outcomes(rules) == {
+        "fast": "found",
+        "gentle": "nothing found",
+        "late": "idle",
+        "torn": "open",
+        "blind": "not judged",
+    }
+    # In a second drive there was an occasion to break it
+    later = ViolationTally()
+    later.add(verdict(drive("2")), rules, frozenset({"gentle", "torn"}))
+    counted.include(later)
+    assert counted.outcomes(("gentle", "late")) == {
+        "gentle": "nothing found",
+        "late": "nothing found",
+    }
+    # Open in one drive and idle in another is not idle
+    assert counted.outcomes(("torn",)) == {"torn": "nothing found"}

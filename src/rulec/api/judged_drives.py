@@ -15,13 +15,13 @@ from rulec.diagnostics.argument_kinds import expected
 from rulec.extraction.recording_verdicts import (
     DriveVerdict,
     RecordingVerdicts,
-    ViolationTally,
     explain_drive,
 )
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.explain.explanation import Explanation, explain
+from rulec.monitoring.moments.drive_facts import idle_rules
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.verdict import NotJudged, Verdict, VerdictOutcome, Violation, with_law
 from rulec.recordings.recording import Recording
@@ -32,6 +32,7 @@ from rulec.report.verdict_findings.findings_of_traces import not_judged_trace, t
 from rulec.report.verdict_findings.verdict_finding import COLUMNS, VerdictFinding
 from rulec.report.verdicts import verdict_report
 from rulec.report.verdicts.recording_answer import MOST_SHOWN, AnswerLayout, RecordingAnswer
+from rulec.report.verdicts.violation_tally import RuleOutcome, ViolationTally
 from rulec.trace import Trace
 from rulec.value_display import Rows
 
@@ -189,6 +190,17 @@ class JudgedDrives(Judged):
         layout = AnswerLayout(expected("width", "int", width))
         answer = RecordingAnswer(self._verdicts, self._tally, shown, layout).as_text()
         return f"{verdict_report.headline(self.rules, width)}\n{answer}"
+
+    def outcomes(self) -> dict[str, RuleOutcome]:
+        """What became of each rule of the book in all drives together; it judges them again."""
+        tally, own = ViolationTally(), self._again("")
+        names = [rule.name for rule in own.rules.rules]
+        for found in own.answers():
+            idle: frozenset[str] = frozenset()
+            if isinstance(found, DriveVerdict) and isinstance(found.answer, Verdict):
+                idle = idle_rules(found.drive.arrays, own.rules, found.answer)
+            tally.add(found, names, idle)
+        return tally.outcomes([*names, *[rule.name for rule in own.rules.too_large]])
 
     def drive(self, name: str) -> Drive:
         """The drive of this name, with its trace. Raises KeyError."""

@@ -15,7 +15,7 @@ from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import with_place
 from rulec.diagnostics.fault_messages import contained
 from rulec.extraction.recording_parts import RecordingPart
-from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, ViolationTally
+from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.traces.lost_drives import lost_drive
 from rulec.extraction.traces.recorded_drive import NoDrive
@@ -32,6 +32,7 @@ from rulec.report.verdicts.recording_answer import (
     summary,
 )
 from rulec.report.verdicts.state_times import StateTimes
+from rulec.report.verdicts.violation_tally import ViolationTally
 from rulec.resource_limits import BudgetSpentError
 
 if TYPE_CHECKING:
@@ -272,7 +273,19 @@ class _RecordingJudge:
             from rulec.report.verdicts import recording_json
 
             yield recording_json.as_json(answer, verdicts, explained)
-        judged.tally.add(answer, [rule.name for rule in verdicts.rules.rules])
+        judged.tally.add(answer, [rule.name for rule in verdicts.rules.rules], self._idle(answer))
+
+    def _idle(self, found: DriveVerdict | NoDrive) -> frozenset[str]:
+        """The rules about nothing in a drive, if it is asked what became of each rule."""
+        layout = self._settings.layout
+        if layout is None or not layout.why or isinstance(found, NoDrive):
+            return frozenset()
+        if isinstance(found.answer, NotJudged):
+            return frozenset()
+        # Opportunities, 20 ms a drive: only where they are asked for.
+        from rulec.monitoring.moments.drive_facts import idle_rules
+
+        return idle_rules(found.drive.arrays, self._verdicts.rules, found.answer)
 
     def _show(
         self,

@@ -1,10 +1,9 @@
-"""The verdicts on recorded drives, each vehicle being ego in turn, and their tallies."""
+"""The verdicts on recorded drives, each vehicle being ego in turn."""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rulec.automata.bundle.bundle_messages import OTHER_STEP
@@ -22,7 +21,6 @@ from rulec.monitoring.uncertainty.state_letters.related_facts import related_fac
 from rulec.monitoring.verdict import (
     NotJudged,
     Verdict,
-    VerdictOutcome,
     Violation,
     agreed_by_type,
     with_law,
@@ -280,89 +278,3 @@ def _row(answer: DriveVerdict | NoDrive) -> dict[str, Any]:
         return row | {"why": str(verdict.error)}
     violated = [violation.rule for violation in verdict.violations]
     return row | {"satisfied": verdict.satisfied, "violated": violated}
-
-
-@dataclass(slots=True)
-class ViolationTally:
-    """Verdicts, counted drive by drive.
-
-    ``drives``: outcome -> the drives with it.
-    ``first_s``: rule -> drive -> time of its first violation (s of the recording). ``open_rules``
-    are open in some drive; ``open_on`` has all names on which open rules depend. ``untold``: rule
-    -> the missing names because of which it is not judged in some drive; ``reasons``: rule ->
-    another reason. ``causes``: rule -> the objects that its violation is about -> the drives, so
-    that many drives past one standing car are one finding. ``judged_in``: rule -> the number of
-    drives in which it is neither open nor not judged. ``words`` are the names of the signals that
-    every drive supplies. ``faults`` of rulec cost rules in some drives, or drives.
-    """
-
-    drives: dict[VerdictOutcome, list[str]] = field(default_factory=dict)
-    not_judged: list[NoDrive] = field(default_factory=list)
-    first_s: dict[str, dict[str, float]] = field(default_factory=dict)
-    open_rules: dict[str, None] = field(default_factory=dict)
-    open_on: set[str] = field(default_factory=set)
-    untold: dict[str, dict[str, None]] = field(default_factory=dict)
-    reasons: dict[str, str] = field(default_factory=dict)
-    causes: dict[str, dict[tuple[str, ...], list[str]]] = field(default_factory=dict)
-    judged_in: Counter[str] = field(default_factory=Counter)
-    open_hard: int = 0
-    words: frozenset[str] | None = None
-    faults: dict[str, None] = field(default_factory=dict)
-
-    @property
-    def judged(self) -> int:
-        """The number of drives that have a verdict."""
-        return sum(map(len, self.drives.values()))
-
-    def include(self, later: ViolationTally) -> None:
-        """Add the counts of later drives."""
-        for outcome, drives in later.drives.items():
-            self.drives.setdefault(outcome, []).extend(drives)
-        self.not_judged += later.not_judged
-        for rule, times in later.first_s.items():
-            self.first_s.setdefault(rule, {}).update(times)
-        self.open_rules.update(later.open_rules)
-        self.open_on |= later.open_on
-        for rule, names in later.untold.items():
-            self.untold.setdefault(rule, {}).update(names)
-        self.reasons.update(later.reasons)
-        for rule, causes in later.causes.items():
-            about = self.causes.setdefault(rule, {})
-            for objects, members in causes.items():
-                about.setdefault(objects, []).extend(members)
-        self.judged_in.update(later.judged_in)
-        self.open_hard += later.open_hard
-        self.faults.update(later.faults)
-        if later.words is not None:
-            self.words = later.words if self.words is None else self.words & later.words
-
-    def add(self, verdict: DriveVerdict | NoDrive, rules: Sequence[str]) -> None:
-        """Count a drive's verdict on these rules."""
-        if isinstance(verdict, NoDrive):
-            self.not_judged.append(verdict)
-            return
-        drive, answer = verdict.drive, verdict.answer
-        if not isinstance(answer, Verdict):
-            self.not_judged.append(NoDrive(drive.ego, answer.error.diagnostics[0].message))
-            return
-        self.words = drive.words if self.words is None else self.words & drive.words
-        self.faults.update({fault.diagnostics[0].message: None for fault in answer.faults})
-        self.drives.setdefault(answer.outcome, []).append(drive.arrays.id)
-        for violation in answer.violations:
-            times = self.first_s.setdefault(violation.rule, {})
-            at = drive.time_s(violation.step)
-            times[drive.arrays.id] = min(at, times.get(drive.arrays.id, at))
-            about = self.causes.setdefault(violation.rule, {})
-            members = about.setdefault(tuple(violation.binding.values()), [])
-            if drive.arrays.id not in members:
-                members.append(drive.arrays.id)
-        for result in answer.open:
-            self.open_rules[result.rule] = None
-            self.open_on |= result.depends_beyond(self.open_on)
-            self.open_hard += result.strength == "hard"
-        for rule in answer.not_judged:
-            self.untold.setdefault(rule.rule, {}).update(dict.fromkeys(rule.untold))
-            if rule.why:
-                self.reasons[rule.rule] = rule.why
-        doubtful = {x.rule for x in answer.open} | {x.rule for x in answer.not_judged}
-        self.judged_in.update(rule for rule in rules if rule not in doubtful)

@@ -38,6 +38,12 @@ def facts_of(
     return facts
 
 
+def idle_rules(trace: TraceArrays, rulebook: CompiledRulebook, verdict: Verdict) -> frozenset[str]:
+    """The judged rules that a trace certainly gives no opportunity to violate."""
+    exposures = facts_of(trace, rulebook, verdict).exposure.items()
+    return frozenset([name for name, own in exposures if not own.perhaps_opportunities])
+
+
 def facts_of_many(
     items: Sequence[Trace | RulecError],
     verdicts: Sequence[Verdict | None],

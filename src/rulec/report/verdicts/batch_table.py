@@ -14,7 +14,7 @@ from rulec.report.text.terminal_text import broken, counted, cut, table_lines, v
 from rulec.report.verdicts import verdict_report
 
 if TYPE_CHECKING:
-    from rulec.extraction.recording_verdicts import ViolationTally
+    from rulec.report.verdicts.violation_tally import ViolationTally
 
 
 @dataclass

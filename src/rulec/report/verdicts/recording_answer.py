@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, TooLargeRule
 from rulec.diagnostics import first_of
-from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
+from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.report.text.terminal_text import broken, counted, cut, mirrored, table_lines, visible
 from rulec.report.verdicts import verdict_report
+from rulec.report.verdicts.violation_tally import RuleOutcome, ViolationTally
 from rulec.vocabulary import Quantity
 
 if TYPE_CHECKING:
@@ -249,13 +250,22 @@ class RecordingAnswer:
         return []
 
     def _reasons(self) -> Iterator[str]:
-        """What is open and not judged, for which words, and all notes."""
+        """Every rule once: judged, open or not judged, for which words; and all notes."""
         verdicts, tally = self._verdicts, self._tally
+        by_outcome: dict[RuleOutcome, list[str]] = {}
+        for rule, outcome in tally.outcomes(self._rules).items():
+            if rule not in tally.open_rules:
+                by_outcome.setdefault(outcome, []).append(rule)
+        about = ", since nothing happened that they are about"
+        for outcome, what in (("nothing found", ""), ("idle", about)):
+            if names := by_outcome.get(outcome):
+                yield from self._wrapped(f"{outcome}{what}: {', '.join(names)}")
         vocabulary = verdicts.rules.vocabulary
         # It may also depend on the types that participants of unknown type have
         order = [*vocabulary.declarations, *vocabulary.types]
-        if tally.open_rules:
-            yield from self._wrapped(f"open: {', '.join(tally.open_rules)}")
+        open_rules = [rule for rule in tally.open_rules if rule not in tally.first_s]
+        if open_rules:
+            yield from self._wrapped(f"open: {', '.join(open_rules)}")
             words = sorted(tally.open_on, key=order.index)
             if words:
                 yield from self._wrapped(f"depends on {', '.join(words)}", INDENT)
