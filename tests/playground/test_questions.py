@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 NATIVE = re.findall(r"^(\w+)==", (HERE / "requirements.txt").read_text(), re.MULTILINE)
 
 BROWSER = """
-import json, sys
+import json, os, sys
 from importlib.machinery import BuiltinImporter, FrozenImporter, PathFinder
 known = {*json.loads(sys.argv[1]), *sys.stdlib_module_names} - {"resource", "_multiprocessing"}
 
@@ -27,6 +27,7 @@ class Finder:
 
 sys.meta_path[:] = [BuiltinImporter, FrozenImporter, Finder()]
 sys.platform = "emscripten"
+del os.geteuid
 from tools.playground.questions import answer
 for line in sys.stdin:
     print(answer(line), flush=True)
@@ -41,7 +42,7 @@ class Browser:
         self.process = subprocess.Popen(
             [sys.executable, "-c", BROWSER, known],
             cwd=folder,
-            env={"PYTHONPATH": str(ROOT / "src")},
+            env={"PYTHONPATH": str(ROOT / "src"), "HOME": str(folder)},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
