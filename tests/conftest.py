@@ -3,7 +3,7 @@
 import gc
 import os
 from pathlib import Path
-from shutil import rmtree
+from shutil import rmtree, which
 from tempfile import mkdtemp
 
 import pytest
@@ -16,6 +16,7 @@ from support.kept_for_a_run import FOLDER
 from support.remembered_books import remember_books
 from support.remembered_machines import ASKED, remembering
 from support.snapshots import Snapshots
+from tools.browser.chromium import chromium as started_chromium
 
 # The quick profile tries the same examples each time, so that a red run is about the change; the
 # long one looks for new ones.
@@ -92,3 +93,12 @@ def snapshots(request):
     """The texts in the folder ``snapshots`` beside the test."""
     refresh = request.config.getoption("--refresh-snapshots")
     return Snapshots(request.path.parent / "snapshots", refresh=refresh)
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    """A headless Chromium; no other may run beside it in this process."""
+    if which("npm") is None:
+        pytest.skip("npm is not there, which Chromium comes from")
+    with started_chromium() as browser:
+        yield browser

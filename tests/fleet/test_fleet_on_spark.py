@@ -13,7 +13,7 @@ from pyarrow import parquet
 
 from rulec.fleet import FleetJudge
 from support.builders.fleet_inputs import fleet_file, trace_table
-from support.environments import environment
+from tools.programs import environment
 
 pytestmark = [
     pytest.mark.skipif(

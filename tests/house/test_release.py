@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from support.environments import environment
+from tools.programs import environment
 
 ROOT = Path(__file__).resolve().parents[2]
 WORKFLOW = yaml.safe_load((ROOT / ".github/workflows/release.yml").read_text(encoding="utf-8"))

@@ -15,7 +15,7 @@ import shapely
 
 from rulec import read_recording
 from support.builders.recorded_data import RECORDINGS
-from support.environments import environment
+from tools.programs import environment
 
 pytestmark = pytest.mark.skipif(
     os.environ.get("RULEC_TEST_PROFILE") != "long", reason="builds an environment: --long"

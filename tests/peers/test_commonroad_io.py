@@ -14,8 +14,8 @@ import pytest
 from rulec import read_recording
 from support.builders.recorded_data import RECORDINGS
 from support.builders.recordings import SAMPLES
-from support.environments import environment
 from support.oracles.commonroad_io import assert_equal
+from tools.programs import environment
 
 pytestmark = pytest.mark.skipif(
     os.environ.get("RULEC_TEST_PROFILE") != "long", reason="builds an environment: --long"

@@ -12,8 +12,8 @@ import pytest
 
 from rulec.recordings.map_files import read_map
 from support.builders.lanelet2_files import SAMPLES, MapFile
-from support.environments import environment
 from support.oracles.lanelet2_library import assert_equal
+from tools.programs import environment
 
 pytestmark = pytest.mark.skipif(
     os.environ.get("RULEC_TEST_PROFILE") != "long", reason="builds an environment: --long"

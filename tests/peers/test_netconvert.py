@@ -14,8 +14,8 @@ import shapely
 
 from rulec.recordings.map_files import read_map
 from support.builders.opendrive_files import XODR
-from support.environments import environment
 from support.oracles.opendrive_curves import lane_curves
+from tools.programs import environment
 
 pytestmark = [
     pytest.mark.skipif(

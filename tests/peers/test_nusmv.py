@@ -19,8 +19,8 @@ import rulec
 from rulec.automata.second_compiler import with_automata
 from rulec.rulebook.files.search_path import available_rulebooks
 from support.cases.kinds_of_rules import ALL_KINDS
-from support.environments import environment
 from support.oracles.installed_spot import spot
+from tools.programs import environment
 
 PROGRAM = Path(__file__).with_name("read_with_nusmv.py")
 N_WORDS = 40

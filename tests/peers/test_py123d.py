@@ -17,7 +17,7 @@ from pyarrow import feather
 
 from rulec import read_recording
 from support.builders.recorded_data import RECORDINGS
-from support.environments import environment
+from tools.programs import environment
 
 SENSOR = RECORDINGS.parent / "argoverse2" / "sensor"
 pytestmark = [

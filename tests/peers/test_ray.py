@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import rulec
-from support.environments import environment
+from tools.programs import environment
 
 pytestmark = pytest.mark.skipif(
     os.environ.get("RULEC_TEST_PROFILE") != "long", reason="builds an environment: --long"

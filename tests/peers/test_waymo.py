@@ -14,7 +14,7 @@ import pytest
 
 from rulec import read_recording
 from support.builders.recorded_data import RECORDINGS
-from support.environments import environment
+from tools.programs import environment
 
 FILE = RECORDINGS.parent / "waymo" / "motion_data_one_scenario.tfrecord"
 pytestmark = [

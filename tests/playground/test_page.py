@@ -3,17 +3,17 @@
 import json
 import os
 import re
-import shutil
-import subprocess
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
 import rulec
-from tools.playground.parts import HERE
+from tools.browser import visit
+from tools.browser.chromium import accessibility_rules
+from tools.browser.visit import SCREENS
+from tools.programs import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 TUTORIAL = (ROOT / "docs/tutorial.md").read_text(encoding="utf-8")
 DRIVES = re.search(r"^```json\n(.*?)^```", TUTORIAL, re.MULTILINE | re.DOTALL)[1]
@@ -24,9 +24,9 @@ pytestmark = pytest.mark.long
 class Page:
     """The page, by what is written on it."""
 
-    def __init__(self, page):
-        self.page = page
-        self.source = page.get_by_role("textbox", name="Rulebook")
+    def __init__(self, seen):
+        self.seen, self.page = seen, seen.page
+        self.source = seen.page.get_by_role("textbox", name="Rulebook")
 
     def expect(self, selector):
         from playwright.sync_api import expect
@@ -53,21 +53,13 @@ class Page:
 
 
 @contextmanager
-def opened(chromium, address, fragment="", **settings):
+def opened(chromium, address, screen=SCREENS[0]):
     """The page, ready; it has called nobody but its own server, and had no error."""
-    context = chromium.new_context(**settings)
-    page = context.new_page()
-    called, errors = [], []
-    context.on("request", lambda request: called.append(request.url))
-    page.on("pageerror", lambda error: errors.append(str(error)))
-    page.on("console", lambda said: errors.append(said.text) if said.type == "error" else None)
-    page.goto(address + fragment)
-    shown = Page(page)
-    shown.expect("#state").to_have_text("Ready")
-    yield shown
-    assert errors == []
-    assert [url for url in called if not url.startswith((address, "data:", "blob:"))] == []
-    context.close()
+    with visit.opened(chromium, address, screen) as seen:
+        shown = Page(seen)
+        shown.expect("#state").to_have_text("Ready")
+        yield shown
+        assert seen.faults == []
 
 
 @pytest.fixture(scope="module")
@@ -179,7 +171,7 @@ def test_files_stand_side_by_side(page, chromium, address):
     page.page.get_by_label("Judged by").select_option("this rulebook")
     page.write(depot.replace("= 10 km/h", "= 7 km/h"))
     page.expect("#judge .summary").to_have_text("1 trace: 0 satisfied, 1 violated")
-    with opened(chromium, address, page.page.url.removeprefix(address)) as other:
+    with opened(chromium, page.page.url) as other:
         other.expect("#judge .summary").to_have_text("1 trace: 0 satisfied, 1 violated")
         assert other.page.locator("#files button").count() == 3
     page.page.get_by_role("button", name="yard.rules").click()
@@ -237,8 +229,7 @@ def test_a_link_has_all_that_is_on_the_page(page, chromium, address):
     page.judge(DRIVES)
     page.page.get_by_role("button", name="Copy link").click()
     page.expect("#state").to_have_text(re.compile("^The link is"))
-    fragment = page.page.url.removeprefix(address)
-    with opened(chromium, address, fragment) as other:
+    with opened(chromium, page.page.url) as other:
         assert other.source.input_value() == rulebooks(TUTORIAL)[-1]
         other.expect("#judge .summary").to_have_text("2 traces: 0 satisfied, 2 violated")
 
@@ -336,60 +327,40 @@ def test_what_is_long_is_folded_and_opened_from_the_keyboard(page):
     page.ask("Examples")
 
 
-SCREENS = {"desktop": {"width": 1280, "height": 800}, "phone": {"width": 375, "height": 740}}
-
-
-@pytest.fixture(scope="session")
-def axe(tmp_path_factory):
-    """The rules for accessible pages of Deque's axe."""
-    folder = tmp_path_factory.mktemp("axe")
-    for name in ("package.json", "package-lock.json"):
-        shutil.copy(HERE / name, folder)
-    subprocess.run(["npm", "ci", "--ignore-scripts", "--silent"], cwd=folder, check=True)
-    return (folder / "node_modules/axe-core/axe.min.js").read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize("theme", ["light", "dark"])
-@pytest.mark.parametrize("screen", SCREENS)
-def test_the_page_is_accessible_and_fits(chromium, address, axe, screen, theme):
-    settings = {
-        "viewport": SCREENS[screen],
-        "color_scheme": theme,
-        "has_touch": screen == "phone",
-        "is_mobile": screen == "phone",
-    }
-    with opened(chromium, address, **settings) as page:
+@pytest.mark.parametrize("screen", SCREENS, ids=str)
+def test_the_page_is_accessible_and_fits(chromium, address, screen):
+    with opened(chromium, address, screen) as page:
         page.page.get_by_label("Start from").select_option("Atlantis, with a mistake")
         page.expect("#count").to_have_text("1 error")
-        check(page, axe, f"{screen}-{theme}-messages")
+        check(page, f"{screen}-messages")
         page.page.get_by_label("Start from").select_option("A country: Atlantis")
         page.expect("#test .summary").to_contain_text("0 failed")
-        check(page, axe, f"{screen}-{theme}-examples")
+        check(page, f"{screen}-examples")
         page.ask("Traces")
         page.expect("#judge .summary").to_contain_text("2 violated")
-        check(page, axe, f"{screen}-{theme}-traces")
+        check(page, f"{screen}-traces")
         page.compare("de", "nl", "bus_leaving")
         page.expect("#compare .result").to_contain_text("de is stricter")
-        check(page, axe, f"{screen}-{theme}-compare")
+        check(page, f"{screen}-compare")
         title = "Three files: words, a depot, and one upon it"
         page.page.get_by_label("Start from").select_option(title)
         page.judge('{"objects": {}, "states": [{"speed": null}, {"reversing": true}]}')
         page.expect("#judge .open").to_contain_text("depends on speed")
-        check(page, axe, f"{screen}-{theme}-files")
+        check(page, f"{screen}-files")
         page.ask("Examples")
         page.write(many_rules(30))
         page.expect("#test .result").to_contain_text("and 20 more that pass")
-        check(page, axe, f"{screen}-{theme}-folded")
+        check(page, f"{screen}-folded")
         page.page.get_by_text("that no example covers").last.click()
-        check(page, axe, f"{screen}-{theme}-opened")
+        check(page, f"{screen}-opened")
 
 
-def check(page, axe, name):
+def check(page, name):
     """No rule of axe is broken, nothing is wider than the screen; RULEC_SCREENSHOTS keeps it."""
     if "RULEC_SCREENSHOTS" in os.environ:
         picture = Path(os.environ["RULEC_SCREENSHOTS"], f"{name}.png")
         page.page.screenshot(path=picture, full_page=True)
-    found = page.page.evaluate(f"async () => {{ {axe}; return await axe.run() }}")
+    found = page.page.evaluate(f"async () => {{ {accessibility_rules()}; return await axe.run() }}")
     broken = [(one["id"], [node["target"] for node in one["nodes"]]) for one in found["violations"]]
     assert broken == [], json.dumps(broken)
-    assert page.page.evaluate("() => document.documentElement.scrollWidth <= innerWidth")
+    page.seen.refuse_wide()

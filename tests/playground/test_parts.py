@@ -5,9 +5,11 @@ from zipfile import ZipFile
 
 import pytest
 
+from tools import programs
 from tools.playground import __main__ as playground
 from tools.playground import parts
-from tools.playground.parts import HERE, MissingPartError
+from tools.playground.parts import HERE
+from tools.programs import MissingPartError
 
 
 def test_libraries_are_python_alone_and_the_same_each_time(tmp_path):
@@ -28,7 +30,7 @@ def test_a_library_that_is_not_there_is_named(monkeypatch, tmp_path):
 
 
 def test_without_npm_there_is_a_way_out_and_nothing_is_written(monkeypatch, tmp_path):
-    monkeypatch.setattr(parts.shutil, "which", lambda _: None)
+    monkeypatch.setattr(programs.shutil, "which", lambda _: None)
     with pytest.raises(MissingPartError, match=r"install Node\.js"):
         playground.build(tmp_path / "page")
     assert list(tmp_path.iterdir()) == []
@@ -38,7 +40,7 @@ def test_what_a_failing_tool_says_is_passed_on(tmp_path):
     (tmp_path / "tool").write_text("#!/bin/sh\necho no network; exit 3\n")
     (tmp_path / "tool").chmod(0o755)
     with pytest.raises(MissingPartError, match="tool ended with 3:\nno network"):
-        parts.run([tmp_path / "tool"], tmp_path)
+        programs.run([tmp_path / "tool"], tmp_path)
 
 
 def test_a_folder_with_other_files_is_left_alone(tmp_path, monkeypatch, capsys):

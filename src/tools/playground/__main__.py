@@ -14,14 +14,8 @@ import tempfile
 from pathlib import Path
 
 import rulec
-from tools.playground.parts import (
-    HERE,
-    ROOT,
-    MissingPartError,
-    put_libraries,
-    put_pyodide,
-    put_wheels,
-)
+from tools.playground.parts import HERE, put_libraries, put_pyodide, put_wheels
+from tools.programs import ROOT, MissingPartError
 from tools.textmate import textmate_grammar
 
 MARK = "playground.json"

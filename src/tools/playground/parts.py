@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
+from tools.programs import ROOT, MissingPartError, put_packages, run
+
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[2]
 
 PYODIDE_FILES = (
     "pyodide.mjs",
@@ -38,26 +38,24 @@ LIBRARIES = ("click", "lark", "typing_extensions")
 """The pure-Python packages that the page's questions import, copied from this environment."""
 
 
-class MissingPartError(Exception):
-    """A part of the page is not available."""
-
-
 def put_pyodide(folder: Path, work: Path) -> None:
     """Put the files of Pyodide, in the release in ``package-lock.json``, into a folder."""
-    npm = shutil.which("npm")
-    if npm is None:
-        raise MissingPartError("npm is not found, which Pyodide is installed with: install Node.js")
-    for name in ("package.json", "package-lock.json"):
-        shutil.copy(HERE / name, work)
-    run([npm, "ci", "--omit=dev", "--ignore-scripts", "--no-audit", "--no-fund", "--silent"], work)
+    put_packages(HERE, work)
     folder.mkdir()
     for name in PYODIDE_FILES:
         shutil.copy(work / "node_modules" / "pyodide" / name, folder)
 
 
+def put_wheel(folder: Path) -> Path:
+    """Build the wheel of this checkout into a folder; returns its path."""
+    run([sys.executable, "-m", "hatchling", "build", "--target", "wheel", "-d", folder], ROOT)
+    (wheel,) = folder.glob("rulec-*.whl")
+    return wheel
+
+
 def put_wheels(folder: Path) -> list[str]:
     """Put the wheels of rulec (this checkout) and msgspec into a folder; returns their names."""
-    run([sys.executable, "-m", "hatchling", "build", "--target", "wheel", "-d", folder], ROOT)
+    put_wheel(folder)
     ready = ("--only-binary", ":all:", "--no-deps", "--require-hashes", *PLATFORM)
     wanted = ("--requirement", HERE / "requirements.txt", "--dest", folder, "--quiet")
     run([sys.executable, "-m", "pip", "download", *ready, *wanted], folder)
@@ -82,13 +80,3 @@ def _files() -> Iterator[tuple[str, Path]]:
             name, inside = file.as_posix(), ".dist-info/" in file.as_posix()
             if ".." not in name and (inside or file.suffix == ".py"):
                 yield name, Path(str(file.locate()))
-
-
-def run(command: Sequence[str | Path], folder: Path) -> None:
-    """Run a tool in a folder. Raises MissingPartError with its output if it fails."""
-    done = subprocess.run(
-        command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False
-    )
-    if done.returncode != 0:
-        said = done.stdout.decode(errors="replace").strip()
-        raise MissingPartError(f"{Path(command[0]).name} ended with {done.returncode}:\n{said}")

@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from support.environments import environment
+from tools.programs import environment
 
 RELEASE = "1.28.0"
 
