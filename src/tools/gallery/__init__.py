@@ -1,0 +1,1 @@
+"""The gallery: drives that violate a rule, each as a page that plays it."""
