@@ -28,6 +28,7 @@ exclude_patterns = ["_build", "samples"]
 html_theme = "furo"
 html_title = f"rulec {release}"
 html_copy_source = False
+html_domain_indices = False
 
 # The pages are read on GitHub as well: headings get the anchors that they have there.
 myst_heading_anchors = 4

@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 import sys
 import zipfile
 from pathlib import Path
@@ -11,6 +10,7 @@ import pytest
 
 import rulec
 from rulec.syntax.keywords import RESERVED
+from tools.release.parts import put_extension
 
 ROOT = Path(__file__).resolve().parents[2]
 CONTENT = {
@@ -46,22 +46,10 @@ def test_the_configuration_knows_brackets_and_when_to_indent(editors):
     assert re.match(configuration["indentationRules"]["decreaseIndentPattern"], "  }")
 
 
-@pytest.fixture(scope="module")
-def packed(tmp_path_factory):
-    """A folder with the extension, copied as it lies in the checkout, for npm to work in."""
-    root = tmp_path_factory.mktemp("checkout")
-    unwanted = shutil.ignore_patterns("node_modules", "dist", "*.vsix", "LICENSE")
-    shutil.copytree(ROOT / "src/editors/vscode", root / "src/editors/vscode", ignore=unwanted)
-    shutil.copy(ROOT / "LICENSE", root)
-    return root / "src/editors/vscode"
-
-
 @pytest.mark.long
-def test_the_extension_is_packed_by_one_command_and_starts_the_server(
-    packed, program, done, tmp_path
-):
-    done(program("npm"), "--prefix", packed, "run", "package")
-    (archive,) = packed.glob("*.vsix")
+def test_the_extension_is_packed_by_one_command_and_starts_the_server(program, done, tmp_path):
+    program("npm")
+    archive = put_extension(tmp_path)
     assert archive.name == f"rulec-{rulec.__version__}.vsix"
     with zipfile.ZipFile(archive) as vsix:
         assert set(vsix.namelist()) == CONTENT

@@ -4,27 +4,18 @@ import json
 import os
 import re
 import subprocess
-from pathlib import Path
+import sys
 
 import pytest
-import yaml
 
-from tools.programs import environment
+from tools.programs import ROOT, environment
+from tools.release.parts import put_bill
 
-ROOT = Path(__file__).resolve().parents[2]
-WORKFLOW = yaml.safe_load((ROOT / ".github/workflows/release.yml").read_text(encoding="utf-8"))
-LOCK = ROOT / "src/launcher/locks/python3.12.txt"
+LOCK = ROOT / "src/launcher/locks/python{}.{}.txt".format(*sys.version_info)
 
 pytestmark = pytest.mark.skipif(
     os.environ.get("RULEC_TEST_PROFILE") != "long", reason="installs programs: --long"
 )
-
-
-def script(name):
-    """The lines of a step of the workflow."""
-    steps = [step for job in WORKFLOW["jobs"].values() for step in job["steps"]]
-    (step,) = [step for step in steps if step.get("name") == name]
-    return step["run"].splitlines()
 
 
 def released():
@@ -35,11 +26,7 @@ def released():
 
 
 def test_the_bill_of_materials_has_every_locked_release(tmp_path):
-    *_, install, command = script("Bill of materials")
-    program, *arguments = command.replace("dist/", f"{tmp_path}/").split()
-    home = environment("bom", install.split('"')[1])
-    subprocess.run([home / program.removeprefix("bom/"), *arguments], cwd=ROOT, check=True)
-    bill = json.loads((tmp_path / "rulec.cdx.json").read_text(encoding="utf-8"))
+    bill = json.loads(put_bill(tmp_path).read_text(encoding="utf-8"))
     assert bill["bomFormat"] == "CycloneDX"
     assert bill["metadata"]["component"]["name"] == "rulec"
     assert {part["name"]: part["version"] for part in bill["components"]} == released()

@@ -23,6 +23,7 @@ def tools(checkout):
         ("long", [*CHECKS, "pytest"]),
         ("bench", ["every.py"]),
         ("docs", ["sphinx"]),
+        ("release", ["tools.release"]),
         ("regenerate", ["tools.regenerate"]),
         ("lock", ["tools.lock"]),
         ("playground", ["tools.playground"]),
@@ -51,6 +52,7 @@ def test_every_task_of_the_list_is_there(ready):
         "worlds",
         "playground",
         "docs",
+        "release",
         "regenerate",
         "lock",
     ]

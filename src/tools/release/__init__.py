@@ -1,0 +1,1 @@
+"""A release: all that it has, built and tried as a stranger would."""
