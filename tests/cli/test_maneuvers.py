@@ -320,7 +320,9 @@ def test_what_the_past_has_violated_is_said_and_not_counted(tmp_path, capsys):
         "violated    R1 for v = o9, before, and not counted any more",
     ]
     found = json.loads(answer(capsys, "s2", "-r", "esterle2019", "--after", past, "--json")[1])
-    assert found["violated_before"] == [{"rule": "R1", "binding": {"v": "o9"}, "step": 2}]
+    assert found["violated_before"] == [
+        {"rule": "R1", "strength": "hard", "binding": {"v": "o9"}, "step": 2}
+    ]
 
 
 def test_only_so_many_are_named(tmp_path, capsys):

@@ -7,13 +7,17 @@ is not there. ``docs/schemas`` is generated from the classes, see ``src/tools/js
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import cache
-from typing import Any, Literal, TypeVar
+from types import NoneType, UnionType
+from typing import Any, Literal, TypeAlias, TypeVar, Union, get_args, get_origin
 
 import msgspec
+from msgspec import UnsetType
 
 Number = int | float
+Inside: TypeAlias = Callable[[Any], Any]
 Filled = TypeVar("Filled", bound=msgspec.Struct)
 
 
@@ -31,18 +35,49 @@ class JsonDocument(msgspec.Struct, frozen=True, kw_only=True):
     version: Literal[1] = 1
 
 
-def filled(kind: type[Filled], source: object, **own: Any) -> Filled:
-    """Make a part from its ``own`` fields and attributes of the source.
+def filled(kind: type[Filled], *sources: object, **own: Any) -> Filled:
+    """Make a part from its ``own`` fields and, for others, attributes of the first source with any.
 
-    The source is read for every required field that is not given.
+    Parts inside of it are made of what the source has in their place. A field that may be absent is
+    left out if nothing has it or it is empty; an empty text is null where null is allowed.
     """
-    names = [name for name in _required(kind) if name not in own]
-    return kind(**{name: getattr(source, name) for name in names}, **own)
+    values = {}
+    for name, required, nullable, inside in _fields(kind):
+        if name in own:
+            value, absent = own[name], own[name] is None
+        else:
+            source = next((one for one in sources if hasattr(one, name)), None)
+            value = None if source is None and not required else getattr(source, name)
+            absent = not value and type(value) not in (bool, int, float)
+        if absent and not required and not (nullable and name in own):
+            continue
+        if nullable and value == "":
+            value = None
+        values[name] = value if inside is None else inside(value)
+    return kind(**values)
 
 
 @cache
-def _required(kind: type[msgspec.Struct]) -> list[str]:
-    return [field.name for field in msgspec.structs.fields(kind) if field.required]
+def _fields(kind: type[msgspec.Struct]) -> list[tuple[str, bool, bool, Inside | None]]:
+    """Each field's name, whether it is required, may be null, and what makes parts in it."""
+    return [
+        (field.name, field.required, NoneType in get_args(field.type), _inside(field.type))
+        for field in msgspec.structs.fields(kind)
+        if field.name != "version"
+    ]
+
+
+def _inside(hint: Any) -> Inside | None:
+    """What makes the parts in a field of this type, if there are any."""
+    if isinstance(hint, type) and issubclass(hint, JsonPart):
+        plain = (hint, str, int, float, NoneType, UnsetType)
+        return lambda value: value if isinstance(value, plain) else filled(hint, value)
+    make = next(filter(None, map(_inside, get_args(hint))), None)
+    if make is None or get_origin(hint) in (Union, UnionType):
+        return make
+    if get_origin(hint) is Mapping:
+        return lambda value: {name: make(item) for name, item in value.items()} if value else value
+    return lambda value: [make(item) for item in value] if value else value
 
 
 def as_line(document: msgspec.Struct) -> str:

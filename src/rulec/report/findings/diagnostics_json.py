@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Literal
 
-from msgspec import convert
-
-from rulec.diagnostics import Diagnostic, SourceLocation
+from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.code import Code, ExampleKind
-from rulec.report.json_document import JsonDocument, JsonPart, as_indented
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 
 
 class PlaceData(JsonPart, frozen=True, kw_only=True):
@@ -63,16 +61,9 @@ class CodeData(JsonDocument, frozen=True, kw_only=True):
 
 def as_json(diagnostics: Iterable[Diagnostic]) -> str:
     """Write a list with an object for each diagnostic."""
-    return as_indented(
-        [convert(diagnostic, FindingData, from_attributes=True) for diagnostic in diagnostics]
-    )
-
-
-def place_data(place: SourceLocation | None) -> PlaceData | None:
-    """A place in numbers."""
-    return convert(place, PlaceData | None, from_attributes=True)
+    return as_indented([filled(FindingData, diagnostic) for diagnostic in diagnostics])
 
 
 def codes_as_json(codes: Iterable[Code]) -> str:
     """Write a list with an object for each code."""
-    return as_indented([convert(code, CodeData, from_attributes=True) for code in codes])
+    return as_indented([filled(CodeData, code) for code in codes])

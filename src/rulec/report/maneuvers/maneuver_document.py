@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 
 from msgspec import UNSET, UnsetType
 
-from rulec.partition import AdjacencyName, ExtentName, PartitionName
+from rulec.monitoring.verdict import Violation
+from rulec.partition import AdjacencyName, Envelope, ExtentName, PartitionName
 from rulec.report.json_document import JsonDocument, JsonPart, Number
 from rulec.report.verdicts.verdict_json import NotJudgedRule, OpenData
 from rulec.rulebook.rulebook_model import Strength
@@ -102,15 +103,6 @@ class CellData(JsonPart, frozen=True, kw_only=True):
     signature: Mapping[str, str | tuple[str, str]]
 
 
-class EnvelopeData(JsonPart, frozen=True, kw_only=True):
-    """The bounds in a layer, in metres; profiles are pairs (s, d)."""
-
-    s_min: float
-    s_max: float
-    d_left: Sequence[tuple[float, float]]
-    d_right: Sequence[tuple[float, float]]
-
-
 class BindingProbability(JsonPart, frozen=True, kw_only=True):
     """The probability that a rule is kept for some objects, or its bounds."""
 
@@ -158,17 +150,9 @@ class ManeuverData(JsonPart, frozen=True, kw_only=True):
     cost: float
     margin_s: float | None
     cells: Sequence[CellData]
-    envelope: Sequence[EnvelopeData]
+    envelope: Sequence[Envelope]
     trajectory: TrajectoryData | UnsetType = UNSET
     chances: ChancesData | UnsetType = UNSET
-
-
-class PastViolation(JsonPart, frozen=True, kw_only=True):
-    """A violation in the past, which no maneuver can undo."""
-
-    rule: str
-    binding: Mapping[str, str]
-    step: int | None
 
 
 class WorldData(JsonPart, frozen=True, kw_only=True):
@@ -246,7 +230,7 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     dead_end: DeadEndData | None
     seconds: float
     scene: SceneData | UnsetType = UNSET
-    violated_before: Sequence[PastViolation] | UnsetType = UNSET
+    violated_before: Sequence[Violation] | UnsetType = UNSET
     least_violating: Sequence[ManeuverData] | UnsetType = UNSET
     ranked: Sequence[ManeuverData] | UnsetType = UNSET
     maneuvers: Sequence[ManeuverData] | UnsetType = UNSET

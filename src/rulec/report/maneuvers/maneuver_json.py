@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from fractions import Fraction
-from functools import partial
 from math import floor
-from typing import Any, TypeVar
+from typing import Any
 
-from msgspec import UNSET, UnsetType
-
-from rulec.monitoring.verdict import Verdict, Violation
-from rulec.partition import NavigationGraph, envelope
+from rulec.monitoring.verdict import OpenVerdict, Violation
+from rulec.partition import envelope
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
-from rulec.planning.probability.rule_probability import AlternativeCounts
 from rulec.planning.ranking.cheapest import Maneuver
-from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.planning.ranking.penalties import PenaltyRank
-from rulec.report.json_document import JsonPart, as_line, filled
+from rulec.report.json_document import as_line, filled
 from rulec.report.maneuvers import maneuver_report
 from rulec.report.maneuvers.maneuver_document import (
     BindingProbability,
@@ -27,12 +22,10 @@ from rulec.report.maneuvers.maneuver_document import (
     ClassesData,
     DeadEndData,
     DerivedSignal,
-    EnvelopeData,
     LevelPenalty,
     ManeuverData,
     ManeuversDocument,
     ManeuverViolation,
-    PastViolation,
     PruningData,
     RuleProbabilityData,
     SceneData,
@@ -41,114 +34,196 @@ from rulec.report.maneuvers.maneuver_document import (
     WorldData,
 )
 from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
-from rulec.report.verdicts.verdict_json import (
-    OpenData,
-    not_judged_data,
-    open_data,
-)
-from rulec.scenario import Account
-from rulec.scoring.maneuver_trajectories import TrajectoryScores
-
-Item = TypeVar("Item")
-Data = TypeVar("Data", bound=JsonPart)
+from rulec.report.verdicts.verdict_json import NotJudgedRule, OpenData, with_rules
 
 
 def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
     """Write the counts and the further answers."""
-    graph, scenario = maneuvers.graph, maneuvers.graph.scenario
-    several = any(obstacle.alternatives for obstacle in scenario.obstacles)
-    several = several or answers.worlds is not None
-    hard = maneuver_report.hard_braking(maneuvers, answers)
-    # Rounded up, it would be more than what is proved
-    least = UNSET if hard is None else floor(1000 * hard.least) / 1000
-    return as_line(
-        filled(
+    return as_line(_AnsweredManeuvers(maneuvers, answers).document(seconds))
+
+
+@dataclass(frozen=True)
+class _AnsweredManeuvers:
+    """Maneuvers and the answers about them, as parts of the document."""
+
+    maneuvers: Maneuvers
+    answers: ManeuverAnswers
+
+    def document(self, seconds: float) -> ManeuversDocument:
+        """The counts, and the answers to what was asked."""
+        maneuvers, answers = self.maneuvers, self.answers
+        graph, scenario = maneuvers.graph, maneuvers.graph.scenario
+        several = any(obstacle.alternatives for obstacle in scenario.obstacles)
+        several = several or answers.worlds is not None
+        hard = maneuver_report.hard_braking(maneuvers, answers)
+        # Rounded up, it would be more than what is proved
+        least = None if hard is None else floor(1000 * hard.least) / 1000
+        later = hard is not None and hard.later
+        return filled(
             ManeuversDocument,
             graph,
+            maneuvers,
             scenario=scenario.name,
             rulebook=maneuvers.rules.name,
             horizon_s=maneuver_report.horizon_s(graph),
             bounds=None if graph.bounds is None else asdict(graph.bounds),
-            traces=maneuvers.traces,
-            satisfying=maneuvers.satisfying,
-            violating=maneuvers.violating,
-            open=maneuvers.open,
-            exact=maneuvers.exact,
             judged=answers.judged,
-            unknown=maneuvers.unknown,
-            not_judged=not_judged_data(maneuvers.not_judged, maneuvers.rules),
-            by_default=maneuvers.by_default,
-            dead_end=_dead_end(maneuvers),
+            not_judged=with_rules(NotJudgedRule, maneuvers.not_judged, maneuvers.rules),
+            dead_end=self._dead_end(),
             seconds=round(seconds, 6),
-            scene=UNSET if scenario.account is None else _scene(maneuvers, scenario.account),
-            violated_before=_each(maneuvers.violated_before, partial(filled, PastViolation)),
-            least_violating=_each(answers.best, partial(_ranked, maneuvers, answers)),
-            ranked=_each(answers.ranked, partial(_ranked, maneuvers, answers)),
-            maneuvers=_each(
-                answers.listed,
-                lambda maneuver: _maneuver(
-                    graph,
-                    maneuver,
-                    trajectory=_trajectory(maneuver, maneuvers, answers.driven),
-                    open=_open(answers.verdicts.get(maneuver.nodes), maneuvers),
-                    chances=_chances(answers, maneuver),
-                ),
-            ),
-            likeliest=maneuver_report.likeliest(scenario) if several else UNSET,
-            worlds=_each(answers.worlds, _world),
-            rules=_each(answers.prunings, partial(_pruning, maneuvers)),
-            classes=UNSET if answers.classes is None else _classes(maneuvers, *answers.classes),
-            least_braking=UNSET if hard is None or hard.later else least,
-            least_braking_later=least if hard is not None and hard.later else UNSET,
-            in_way=maneuvers.in_way if maneuver_report.lists_none(maneuvers, answers) else UNSET,
+            scene=self._scene(),
+            violated_before=maneuvers.violated_before,
+            least_violating=answers.best and [*map(self._ranked, answers.best)],
+            ranked=answers.ranked and [*map(self._ranked, answers.ranked)],
+            maneuvers=answers.listed and [*map(self._listed, answers.listed)],
+            likeliest=maneuver_report.likeliest(scenario) if several else None,
+            worlds=answers.worlds
+            and [
+                filled(WorldData, world, prediction=world.number + 1, weight=float(world.weight))
+                for world in answers.worlds
+            ],
+            rules=answers.prunings and [*map(self._pruning, answers.prunings)],
+            classes=self._classes(),
+            least_braking=None if later else least,
+            least_braking_later=least if later else None,
+            in_way=maneuvers.in_way if maneuver_report.lists_none(maneuvers, answers) else None,
         )
-    )
 
+    def _dead_end(self) -> DeadEndData | None:
+        """The dead end if there is no maneuver, else None."""
+        end = self.maneuvers.dead_end
+        if end is None:
+            return None
+        return filled(DeadEndData, end, last_s=self.maneuvers.graph.layers[end.layer].start_s)
 
-def _dead_end(maneuvers: Maneuvers) -> DeadEndData | None:
-    """The dead end if there is no maneuver, else None."""
-    end = maneuvers.dead_end
-    if end is None:
-        return None
-    last_s = maneuvers.graph.layers[end.layer].start_s
-    return DeadEndData(last_s=last_s, closed_by=end.closed_by, opened_by=end.opened_by)
+    def _scene(self) -> SceneData | None:
+        account = self.maneuvers.graph.scenario.account
+        if account is None:
+            return None
+        derived = {
+            name: DerivedSignal(value=value, because=why)
+            for name, (value, why) in maneuver_report.derived_signals(
+                self.maneuvers, account
+            ).items()
+        }
+        counts = {"obstacles": account.recorded, "recorded_until_s": account.until_s}
+        return filled(SceneData, account, derived=derived, **counts)
 
+    def _listed(self, maneuver: Maneuver) -> ManeuverData:
+        verdict = self.answers.verdicts.get(maneuver.nodes)
+        return self._maneuver(maneuver, open=None if verdict is None else self._open(verdict.open))
 
-def _each(items: Iterable[Item] | None, data: Callable[[Item], Data]) -> list[Data] | UnsetType:
-    return UNSET if items is None else [data(item) for item in items]
+    def _ranked(self, ranked: RankedManeuver) -> ManeuverData:
+        in_doubt = self.maneuvers.in_doubt or bool(ranked.open)
+        return self._maneuver(
+            ranked.maneuver,
+            place=ranked.place,
+            penalty=_penalty(ranked.penalty),
+            at_least=_penalty(ranked.at_least) if in_doubt else None,
+            members=ranked.members,
+            violations=self._violations(ranked.violations),
+            open=self._open(ranked.open) if in_doubt else None,
+        )
 
+    def _open(self, results: Sequence[OpenVerdict]) -> list[OpenData]:
+        return with_rules(OpenData, results, self.maneuvers.rules)
 
-def _world(world: AlternativeCounts) -> WorldData:
-    return filled(WorldData, world, prediction=world.number + 1, weight=float(world.weight))
+    def _maneuver(self, maneuver: Maneuver, **details: Any) -> ManeuverData:
+        graph = self.maneuvers.graph
+        cells = [
+            filled(CellData, layer.cells[index], cell=index, start_s=layer.start_s)
+            for layer, index in zip(graph.layers, maneuver.nodes, strict=True)
+        ]
+        own = {"trajectory": self._trajectory(maneuver), "chances": self._chances(maneuver)}
+        bounds = envelope(graph, maneuver.nodes)
+        return filled(ManeuverData, maneuver, cells=cells, envelope=bounds, **own, **details)
 
+    def _trajectory(self, maneuver: Maneuver) -> TrajectoryData | None:
+        """The trajectory of a maneuver, if it has one, with its costs and its verdict."""
+        driven, scores = maneuver.trajectory, self.answers.driven
+        if driven is None:
+            return None
+        costs = {"changes": maneuver.changes or 0.0, **asdict(driven.cost)}
+        score = None if scores is None else scores.of.get(maneuver.nodes)
+        verdict = (
+            scores
+            and score
+            and filled(
+                TrajectoryVerdictData,
+                score,
+                satisfied=score.satisfied_as_judged,
+                until_s=scores.until_s,
+                violations=self._violations(score.violations, scores.time_s),
+                open=self._open(score.open),
+            )
+        )
+        return filled(TrajectoryData, driven, costs=costs, verdict=verdict)
 
-def _scene(maneuvers: Maneuvers, account: Account) -> SceneData:
-    derived = maneuver_report.derived_signals(maneuvers, account)
-    return filled(
-        SceneData,
-        account,
-        obstacles=account.recorded,
-        recorded_until_s=account.until_s,
-        derived={
-            name: DerivedSignal(value=value, because=why) for name, (value, why) in derived.items()
-        },
-    )
+    def _violations(
+        self, violations: Iterable[Violation], time_s: Callable[[int], float] | None = None
+    ) -> list[ManeuverViolation]:
+        """Violations with their times: those of layers, unless ``time_s`` gives those of states."""
+        rules = {rule.name: rule for rule in self.maneuvers.rules.rules}
+        time_of = time_s or (lambda layer: self.maneuvers.graph.layers[layer].start_s)
+        return [
+            filled(
+                ManeuverViolation,
+                violation,
+                rules[violation.rule],
+                lost_s=None if violation.step is None else time_of(violation.step),
+            )
+            for violation in violations
+        ]
 
+    def _chances(self, maneuver: Maneuver) -> ChancesData | None:
+        chances = self.answers.chances.get(maneuver.nodes)
+        if chances is None:
+            return None
+        rules = [
+            filled(
+                RuleProbabilityData,
+                rule.rule,
+                rule=rule.rule.name,
+                kept=_float(rule.kept),
+                bindings=[
+                    filled(
+                        BindingProbability,
+                        binding,
+                        kept=float(binding.kept),
+                        kept_at_most=_above(binding.kept, binding.at_most),
+                    )
+                    for binding in rule.bindings
+                ],
+                kept_at_most=_above(rule.kept, rule.at_most),
+            )
+            for rule in chances.rules
+        ]
+        return filled(
+            ChancesData,
+            clear=float(chances.clear),
+            every_hard_rule=_float(chances.hard),
+            rules=rules,
+            every_hard_rule_at_most=_above(chances.hard, chances.hard_at_most),
+        )
 
-def _ranked(maneuvers: Maneuvers, answers: ManeuverAnswers, ranked: RankedManeuver) -> ManeuverData:
-    in_doubt = maneuvers.in_doubt or bool(ranked.open)
-    return _maneuver(
-        maneuvers.graph,
-        ranked.maneuver,
-        trajectory=_trajectory(ranked.maneuver, maneuvers, answers.driven),
-        place=ranked.place,
-        penalty=_penalty(ranked.penalty),
-        at_least=_penalty(ranked.at_least) if in_doubt else UNSET,
-        members=ranked.members,
-        violations=_violations(maneuvers, ranked.violations),
-        open=open_data(ranked.open, maneuvers.rules) if in_doubt else UNSET,
-        chances=_chances(answers, ranked.maneuver),
-    )
+    def _pruning(self, pruning: RulePruning) -> PruningData:
+        rule, violations = pruning.rule, self._violations(pruning.violations)
+        example = pruning.example and self._maneuver(pruning.example, violations=violations)
+        about = {"rule": rule.name, "strength": rule.strength}
+        return filled(PruningData, pruning, example=example, **about)
+
+    def _classes(self) -> ClassesData | None:
+        if self.answers.classes is None:
+            return None
+        classes, variants = self.answers.classes
+        return filled(
+            ClassesData,
+            classes,
+            counting_steps=[rule.name for rule in self.maneuvers.counting_steps()],
+            representatives=[
+                self._maneuver(variant.cheapest, members=variant.members) for variant in variants
+            ],
+        )
 
 
 def _penalty(penalty: Mapping[PenaltyRank, Fraction]) -> list[LevelPenalty]:
@@ -158,125 +233,9 @@ def _penalty(penalty: Mapping[PenaltyRank, Fraction]) -> list[LevelPenalty]:
     ]
 
 
-def _open(verdict: Verdict | None, maneuvers: Maneuvers) -> list[OpenData] | UnsetType:
-    return UNSET if verdict is None else open_data(verdict.open, maneuvers.rules)
-
-
-def _maneuver(graph: NavigationGraph, maneuver: Maneuver, **details: Any) -> ManeuverData:
-    cells = [
-        filled(CellData, layer.cells[index], cell=index, start_s=layer.start_s)
-        for layer, index in zip(graph.layers, maneuver.nodes, strict=True)
-    ]
-    bounds = [filled(EnvelopeData, bounds) for bounds in envelope(graph, maneuver.nodes)]
-    details.setdefault("trajectory", _trajectory(maneuver))
-    return filled(ManeuverData, maneuver, cells=cells, envelope=bounds, **details)
-
-
-def _trajectory(
-    maneuver: Maneuver,
-    maneuvers: Maneuvers | None = None,
-    scores: TrajectoryScores | None = None,
-) -> TrajectoryData | UnsetType:
-    """The trajectory of a maneuver, if it has one, with the parts of its cost, and its verdict."""
-    driven = maneuver.trajectory
-    if driven is None:
-        return UNSET
-    costs = {"changes": maneuver.changes or 0.0, **asdict(driven.cost)}
-    verdict: TrajectoryVerdictData | UnsetType = UNSET
-    if maneuvers is not None and scores is not None and maneuver.nodes in scores.of:
-        score = scores.of[maneuver.nodes]
-        verdict = filled(
-            TrajectoryVerdictData,
-            score,
-            satisfied=score.satisfied_as_judged,
-            until_s=scores.until_s,
-            violations=_violations(maneuvers, score.violations, scores.time_s),
-            open=open_data(score.open, maneuvers.rules),
-        )
-    return filled(TrajectoryData, driven, costs=costs, verdict=verdict)
-
-
-def _violations(
-    maneuvers: Maneuvers,
-    violations: Iterable[Violation],
-    time_s: Callable[[int], float] | None = None,
-) -> list[ManeuverViolation]:
-    """Violations with their times: those of layers, unless ``time_s`` gives those of states."""
-    rules = {rule.name: rule for rule in maneuvers.rules.rules}
-    time_of = time_s or (lambda layer: maneuvers.graph.layers[layer].start_s)
-    return [
-        filled(
-            ManeuverViolation,
-            violation,
-            cite=rules[violation.rule].cite,
-            inherited_from=rules[violation.rule].inherited_from or UNSET,
-            lost_s=None if violation.step is None else time_of(violation.step),
-            level=rules[violation.rule].level or None,
-            weight=rules[violation.rule].weight,
-        )
-        for violation in violations
-    ]
-
-
-def _chances(answers: ManeuverAnswers, maneuver: Maneuver) -> ChancesData | UnsetType:
-    chances = answers.chances.get(maneuver.nodes)
-    if chances is None:
-        return UNSET
-    rules = [
-        RuleProbabilityData(
-            rule=rule.rule.name,
-            strength=rule.rule.strength,
-            kept=_float(rule.kept),
-            bindings=[
-                BindingProbability(
-                    binding=binding.binding,
-                    kept=float(binding.kept),
-                    kept_at_most=_above(binding.kept, binding.at_most),
-                )
-                for binding in rule.bindings
-            ],
-            kept_at_most=_above(rule.kept, rule.at_most),
-        )
-        for rule in chances.rules
-    ]
-    hard = _float(chances.hard)
-    return ChancesData(
-        clear=float(chances.clear),
-        every_hard_rule=hard,
-        rules=rules,
-        every_hard_rule_at_most=_above(chances.hard, chances.hard_at_most),
-    )
-
-
-def _pruning(maneuvers: Maneuvers, pruning: RulePruning) -> PruningData:
-    rule, example = pruning.rule, pruning.example
-    violations = _violations(maneuvers, pruning.violations)
-    return filled(
-        PruningData,
-        pruning,
-        rule=rule.name,
-        strength=rule.strength,
-        example=example and _maneuver(maneuvers.graph, example, violations=violations),
-    )
-
-
-def _classes(
-    maneuvers: Maneuvers, classes: HomotopyClasses, variants: Sequence[Variant]
-) -> ClassesData:
-    return filled(
-        ClassesData,
-        classes,
-        counting_steps=[rule.name for rule in maneuvers.counting_steps()],
-        representatives=[
-            _maneuver(maneuvers.graph, variant.cheapest, members=variant.members)
-            for variant in variants
-        ],
-    )
-
-
-def _above(least: Fraction | None, greatest: Fraction | None) -> float | UnsetType:
-    """The upper bound, unset if equal to the lower one."""
-    return UNSET if greatest is None or greatest == least else float(greatest)
+def _above(least: Fraction | None, greatest: Fraction | None) -> float | None:
+    """The upper bound, None if equal to the lower one."""
+    return None if greatest is None or greatest == least else float(greatest)
 
 
 def _float(probability: Fraction | None) -> float | None:

@@ -57,7 +57,6 @@ def as_json(rates: ViolationRates) -> str:
     document = filled(
         RatesDocument,
         rates,
-        judged_by=[filled(JudgedByData, by) for by in rates.judged_by],
         rules=[
             filled(RuleRatesData, rule, group=dict(zip(rates.by, rule.group, strict=True)))
             for rule in rates.rules

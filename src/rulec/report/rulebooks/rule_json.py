@@ -80,6 +80,7 @@ def _rule(rule: Rule, vocabulary: Vocabulary, page: RulePage | None) -> RuleData
         RuleData,
         rule,
         weight=float(rule.weight),
+        step_s=UNSET,
         sentence=in_one_line(phrase_of(rule, vocabulary)),
         restrictions=[in_one_line(phrase) for phrase in restrictions_of(rule)],
         formula=formula_text(rule.formula),

@@ -9,7 +9,7 @@ from rulec.book_tests.example_coverage import RuleCoverage, percent
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import formula_text
-from rulec.report.findings.diagnostics_json import PlaceData, place_data
+from rulec.report.findings.diagnostics_json import PlaceData
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 from rulec.report.tests.example_text import asked_rules, missing_example
 
@@ -87,13 +87,12 @@ class ExamplesRun(JsonDocument, frozen=True, kw_only=True):
 
 def as_json(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]] | None) -> str:
     """Write the runs of rulebooks, each with coverage unless it is None."""
-    examples = [_outcome(run, outcome) for run in runs for outcome in run.outcomes]
-    passed = sum(example.passed for example in examples)
+    passed = [outcome.passed for run in runs for outcome in run.outcomes]
     return as_indented(
         ExamplesRun(
-            examples=examples,
-            passed=passed,
-            failed=len(examples) - passed,
+            examples=[_outcome(run, outcome) for run in runs for outcome in run.outcomes],
+            passed=sum(passed),
+            failed=len(passed) - sum(passed),
             coverage=None if covered is None else _coverage(runs, covered),
         )
     )
@@ -103,12 +102,12 @@ def _outcome(run: ExampleRun, outcome: ExampleOutcome) -> OutcomeData:
     return filled(
         OutcomeData,
         outcome,
+        outcome.example,
         rulebook=run.name,
         rule=outcome.rule.name,
-        label=outcome.example.label,
         says="accept" if outcome.example.accepts else "reject",
         does="accept" if outcome.accepted else "reject",
-        place=place_data(at(outcome.example.span)),
+        place=at(outcome.example.span),
     )
 
 
@@ -126,21 +125,20 @@ def _coverage(
 
 def _rule(run: ExampleRun, rule: RuleCoverage) -> RuleCoverageData:
     vocabulary = run.rulebook.vocabulary
-    edges, values = rule.missing_edges, rule.missing_values
-    examples = [missing_example(edge, vocabulary) for edge in edges]
-    return RuleCoverageData(
+    return filled(
+        RuleCoverageData,
+        rule,
         rulebook=run.name,
-        rule=rule.rule,
-        inherited=rule.inherited,
         percent=round(percent([rule]), 3),
         edges=rule.n_edges,
         missing_edges=[
-            filled(MissingEdgeData, edge, example=example)
-            for edge, example in zip(edges, examples, strict=True)
+            filled(MissingEdgeData, edge, example=missing_example(edge, vocabulary))
+            for edge in rule.missing_edges
         ],
         values=rule.n_values,
         missing_values=[
-            MissingValueData(atom=formula_text(atom), value=value) for atom, value in values
+            MissingValueData(atom=formula_text(atom), value=value)
+            for atom, value in rule.missing_values
         ],
         limits=rule.n_limits,
         missing_limits=[

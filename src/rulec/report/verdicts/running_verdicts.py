@@ -79,11 +79,7 @@ def as_json(result: SoFar) -> str:
             result,
             verdict=_in_a_word(result.verdict),
             rules={rule: _in_a_word(verdict) for rule, verdict in result.rules.items()},
-            open={
-                rule: RangeData(best=verdict.best, worst=verdict.worst)
-                for rule, verdict in result.rules.items()
-                if isinstance(verdict, VerdictRange)
-            },
+            open={name: x for name, x in result.rules.items() if isinstance(x, VerdictRange)},
             changes=[_change_data(change) for change in result.changes],
         )
     )

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import zip_longest
-from typing import Any, Literal
+from typing import Any, Literal, TypeAlias
 
 from msgspec import UNSET, UnsetType
+from msgspec.structs import replace
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.diagnostics import RulecError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.verdict import (
@@ -18,8 +18,16 @@ from rulec.monitoring.verdict import (
     OpenVerdict,
     RuleNotJudged,
     Verdict,
+    Violation,
 )
-from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
+from rulec.report.json_document import (
+    Filled,
+    JsonDocument,
+    JsonPart,
+    Number,
+    as_line,
+    filled,
+)
 from rulec.report.verdicts.violation_table import repaired_states
 from rulec.vocabulary.partial_values import Interval, OneOf, PartialValue, UnknownValue
 
@@ -32,6 +40,7 @@ class BoundsData(JsonPart, frozen=True, kw_only=True, rename={"low": "from", "hi
 
 
 Value = bool | int | float | str | BoundsData | None
+Result: TypeAlias = Violation | OpenVerdict | RuleNotJudged
 
 
 class FactData(JsonPart, frozen=True, kw_only=True):
@@ -234,52 +243,9 @@ def as_json(
     explained: Sequence[Explanation] = (),
 ) -> str:
     """Write a verdict; ``explained`` are explanations of its first violations."""
-    own = {
-        "rulebook": rulebook.name,
-        "law": filled(LawData, edition_of(rulebook)),
-        "violations": violations_data(verdict, rulebook, explained),
-        **doubts(verdict, rulebook),
-    }
-    return as_line(filled(TraceVerdict, verdict, **own))
-
-
-def doubts(verdict: Verdict, rulebook: CompiledRulebook) -> dict[str, Any]:
-    """The fields that name each rule once, as judged, open or not judged, and faults."""
-    doubtful = {one.rule for one in verdict.open} | {one.rule for one in verdict.not_judged}
-    return {
-        "judged": [rule.name for rule in rulebook.rules if rule.name not in doubtful],
-        "open": open_data(verdict.open, rulebook),
-        "not_judged": not_judged_data(verdict.not_judged, rulebook),
-        "presumed": verdict.presumed,
-        "faults": [error_data(fault) for fault in verdict.faults] or UNSET,
-    }
-
-
-def open_data(doubtful: Sequence[OpenVerdict], rulebook: CompiledRulebook) -> list[OpenData]:
-    """The open verdicts."""
-    return [
-        filled(
-            OpenData,
-            rule,
-            inherited_from=_inherited_from(rule.rule, rulebook),
-        )
-        for rule in doubtful
-    ]
-
-
-def not_judged_data(
-    rules: Sequence[RuleNotJudged], rulebook: CompiledRulebook
-) -> list[NotJudgedRule]:
-    """The rules that cannot be judged."""
-    return [
-        filled(NotJudgedRule, rule, inherited_from=_inherited_from(rule.rule, rulebook))
-        for rule in rules
-    ]
-
-
-def _inherited_from(name: str, rulebook: CompiledRulebook) -> str | UnsetType:
-    inherited = (rule.inherited_from for rule in rulebook.rules if rule.name == name)
-    return next(inherited, "") or UNSET
+    violations = violations_data(verdict, rulebook, explained)
+    about = verdict_fields(verdict, rulebook)
+    return as_line(filled(TraceVerdict, verdict, violations=violations, **about))
 
 
 def not_judged_as_json(answer: NotJudged, rulebook: str) -> str:
@@ -288,59 +254,62 @@ def not_judged_as_json(answer: NotJudged, rulebook: str) -> str:
     return as_line(TraceNotJudged(trace=answer.trace, rulebook=rulebook, error=error))
 
 
+def verdict_fields(verdict: Verdict, rulebook: CompiledRulebook) -> dict[str, Any]:
+    """The fields that name the law, each rule once, as judged, open or not judged, and faults."""
+    doubtful = {one.rule for one in verdict.open} | {one.rule for one in verdict.not_judged}
+    return {
+        "rulebook": rulebook.name,
+        "law": edition_of(rulebook),
+        "judged": [rule.name for rule in rulebook.rules if rule.name not in doubtful],
+        "open": with_rules(OpenData, verdict.open, rulebook),
+        "not_judged": with_rules(NotJudgedRule, verdict.not_judged, rulebook),
+        "faults": [error_data(fault) for fault in verdict.faults] or None,
+    }
+
+
+def with_rules(
+    kind: type[Filled], results: Sequence[Result], rulebook: CompiledRulebook
+) -> list[Filled]:
+    """Parts made of results and of their rules."""
+    rules = {rule.name: rule for rule in rulebook.rules}
+    # A rule that is too large at the recording's step is not among the compiled rules.
+    return [filled(kind, result, rules.get(result.rule)) for result in results]
+
+
 def violations_data(
     verdict: Verdict, rulebook: CompiledRulebook, explained: Sequence[Explanation]
 ) -> list[ViolationData]:
-    """The violations, each with level and weight of its rule."""
-    rules = {rule.name: rule for rule in rulebook.rules}
-    return [
-        filled(
-            ViolationData,
-            violation,
-            level=rules[violation.rule].level or None,
-            weight=rules[violation.rule].weight,
-            inherited_from=rules[violation.rule].inherited_from or UNSET,
-            explanation=UNSET if explanation is None else explanation_data(explanation),
-        )
-        for violation, explanation in zip_longest(verdict.violations, explained)
-    ]
+    """The violations, the first ones with their explanations."""
+    violations = with_rules(ViolationData, verdict.violations, rulebook)
+    for number, explanation in enumerate(explained[: len(violations)]):
+        data = explanation_data(explanation)
+        violations[number] = replace(violations[number], explanation=data)
+    return violations
 
 
 def error_data(error: RulecError) -> ErrorData:
     """The first diagnostic of an error."""
     diagnostic = error.diagnostics[0]
-    file, line = (place.file, place.line) if (place := diagnostic.place) else (None, None)
-    return filled(ErrorData, diagnostic, file=file, line=line)
+    return filled(ErrorData, diagnostic, diagnostic.place or SourceLocation(""))
+
+
+def explanation_data(explanation: Explanation) -> ExplanationData:
+    """The explanation with all its facts, parts and states."""
+    repair = repaired_states(explanation) if explanation.repair is not None else None
+    return filled(
+        ExplanationData,
+        explanation,
+        explanation.rule,
+        facts=[
+            filled(FactData, fact, reads=fact.text, values=[*map(_value_data, fact.values)])
+            for fact in explanation.facts
+        ],
+        parts=[filled(FormulaPart, part, formula=part.text) for part in explanation.parts],
+        repair=repair and [RepairData(state=number, says=says) for number, says in repair],
+    )
 
 
 def _value_data(value: PartialValue | None) -> Value:
     if isinstance(value, Interval):
         return BoundsData(low=value.low, high=value.high)
     return None if isinstance(value, UnknownValue | OneOf) else value
-
-
-def explanation_data(explanation: Explanation) -> ExplanationData:
-    """The explanation with all its facts, parts and states."""
-    return filled(
-        ExplanationData,
-        explanation,
-        book=explanation.rule.book,
-        cite=explanation.rule.cite,
-        says=explanation.rule.says,
-        facts=[
-            filled(
-                FactData,
-                fact,
-                reads=fact.text,
-                values=tuple([_value_data(value) for value in fact.values]),
-                unit=fact.unit or UNSET,
-                objects=UNSET if fact.objects is None else fact.objects,
-            )
-            for fact in explanation.facts
-        ],
-        parts=[filled(FormulaPart, part, formula=part.text) for part in explanation.parts],
-        repair=None
-        if explanation.repair is None
-        else [RepairData(state=number, says=says) for number, says in repaired_states(explanation)],
-        looked_at=UNSET if explanation.looked_at is None else explanation.looked_at,
-    )

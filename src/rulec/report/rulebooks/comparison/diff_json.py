@@ -11,7 +11,7 @@ from rulec.analysis.diff.rule_comparison import RuleRelation
 from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair, SettingPair
 from rulec.logic.printing import number_in_words
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
-from rulec.rulebook.rulebook_model import Certainty, Rule, Strength, Variable
+from rulec.rulebook.rulebook_model import Certainty, Strength, Variable
 from rulec.trace import Trace
 from rulec.trace.trace_model import Ending
 
@@ -102,8 +102,6 @@ def as_json(diff: RulebookDiff) -> str:
         filled(
             DiffDocument,
             diff,
-            first=filled(BookData, diff.first),
-            second=filled(BookData, diff.second),
             rules=list(map(_pair, diff.pairs)),
             only_first=list(map(_one_sided, diff.only_first)),
             only_second=list(map(_one_sided, diff.only_second)),
@@ -119,8 +117,8 @@ def _pair(pair: RulePair) -> RulePairData:
         rule=pair.first.name,
         second_rule=pair.second.name,
         undecided=comparison.undecided or None,
-        first=filled(RuleSide, pair.first, **_exactly(pair.first)),
-        second=filled(RuleSide, pair.second, **_exactly(pair.second)),
+        first=filled(RuleSide, pair.first, weight=number_in_words(pair.first.weight)),
+        second=filled(RuleSide, pair.second, weight=number_in_words(pair.second.weight)),
         common_types=comparison.common,
         on_common_types=comparison.on_common,
         first_forbids=list(map(_trace, comparison.first_forbids)),
@@ -128,22 +126,12 @@ def _pair(pair: RulePair) -> RulePairData:
     )
 
 
-def _exactly(rule: Rule) -> dict[str, str | None]:
-    return {"level": rule.level or None, "weight": number_in_words(rule.weight)}
-
-
 def _one_sided(one_sided: OneSided) -> OneSidedRule:
     rule, remark = one_sided.rule, one_sided.remark
     kind, because = (remark.kind, remark.because) if remark else (None, None)
-    own = {
-        "rule": rule.name,
-        "remark": kind,
-        "because": because,
-        "alike": one_sided.alike,
-        **_exactly(rule),
-    }
-    return filled(OneSidedRule, rule, **own)
+    own = {"rule": rule.name, "remark": kind, "because": because, "alike": one_sided.alike}
+    return filled(OneSidedRule, rule, weight=number_in_words(rule.weight), **own)
 
 
 def _trace(trace: Trace) -> TraceData:
-    return filled(TraceData, trace, present=trace.present or UNSET)
+    return filled(TraceData, trace, ends=UNSET, told=UNSET)
