@@ -111,9 +111,9 @@ if TYPE_CHECKING:
     from rulec.recordings.recording_format import RecordingSource as RecordingSource
     from rulec.recordings.road_map import RoadMap as RoadMap
     from rulec.recordings.tracks.track_table import recording_from_columns as recording_from_columns
+    from rulec.report.findings.verdict_finding import VerdictFinding as VerdictFinding
     from rulec.report.recordings.format_listing import ListedFormat as ListedFormat
     from rulec.report.text.listing import Listed as Listed
-    from rulec.report.verdict_findings.verdict_finding import VerdictFinding as VerdictFinding
     from rulec.rulebook.batch.batch_check import Checked as Checked
     from rulec.rulebook.rulebook_model import Example as Example
     from rulec.rulebook.rulebook_model import Rule as Rule
@@ -186,7 +186,7 @@ _HOME = {
     "rulec.rates.rule_rates": "Rate RuleRates ViolationRates",
     "rulec.report.recordings.format_listing": "ListedFormat",
     "rulec.report.text.listing": "Listed",
-    "rulec.report.verdict_findings.verdict_finding": "VerdictFinding",
+    "rulec.report.findings.verdict_finding": "VerdictFinding",
     "rulec.rulebook.batch.batch_check": "Checked",
     "rulec.rulebook.rulebook_model": "Example Rule Rulebook Variable",
     "rulec.scenario": "Choice Scenario",

@@ -13,6 +13,7 @@ from rulec.automata.bundle.bundle_schema import BundleFile
 from rulec.fleet.finding_columns import FindingRowLine
 from rulec.monitoring.online.snapshot import SavedMonitor
 from rulec.report.findings.diagnostics_json import CodeData, FindingData
+from rulec.report.findings.verdict_finding import FindingLine
 from rulec.report.maneuvers.envelope_table import EnvelopeLine
 from rulec.report.maneuvers.maneuver_document import ManeuversDocument
 from rulec.report.moments.moment_rows import MomentLine
@@ -28,7 +29,6 @@ from rulec.report.rulebooks.rule_list import RuleListDocument
 from rulec.report.rulebooks.word_texts import WordData
 from rulec.report.tests.example_json import ExamplesRun
 from rulec.report.text.listing import ListingDocument
-from rulec.report.verdict_findings.verdict_finding import FindingLine
 from rulec.report.verdicts.recording_json import NotDriven, RecordedNotJudged, RecordedVerdict
 from rulec.report.verdicts.running_verdicts import StateRefused, StateVerdict
 from rulec.report.verdicts.verdict_json import TraceNotJudged, TraceVerdict

@@ -10,7 +10,7 @@ import pytest
 
 import rulec
 from rulec.cli.main import main
-from rulec.report.verdict_findings.verdict_finding import COLUMNS
+from rulec.report.findings.verdict_finding import COLUMNS
 
 FOLLOWING, TRACES = "docs/samples/following.xml", "docs/samples/traces.jsonl"
 

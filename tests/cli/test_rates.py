@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import pytest
 
 from rulec.cli.main import main
-from rulec.report.verdict_findings import findings_of_drives, findings_of_traces
+from rulec.report.findings import findings_of_drives, findings_of_traces
 from support.builders.recorded_cars import three_cars
 
 SHARED = {"rulebook": "de", "rulebook_hash": "abcdefgh1", "rulec": "1.0", "file": "a.xml"}

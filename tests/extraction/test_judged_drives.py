@@ -12,7 +12,7 @@ from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.violation_evidence import evidence_of
 from rulec.recordings.recording import Weather
-from rulec.report.verdict_findings.findings_of_drives import DriveFindings
+from rulec.report.findings.findings_of_drives import DriveFindings
 from rulec.report.verdicts import recording_json, verdict_report
 from support.builders.drive_verdicts import violated
 from support.builders.recordings import recording, straight, vehicle

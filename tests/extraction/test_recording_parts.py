@@ -16,7 +16,7 @@ from rulec.extraction.violation_evidence import evidence_of
 from rulec.monitoring.explain.explanation import explain
 from rulec.recordings.recording import StatedError
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
-from rulec.report.verdict_findings.findings_of_drives import DriveFindings
+from rulec.report.findings.findings_of_drives import DriveFindings
 from support.builders.recordings import recording, straight, vehicle
 from support.worlds.stored import StoredWorld
 

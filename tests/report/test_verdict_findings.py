@@ -15,9 +15,9 @@ from mcap.reader import make_reader
 import rulec
 from rulec.diagnostics import RulecError
 from rulec.monitoring.explain.margins import Margin
-from rulec.report.verdict_findings.finding_writers import ENDINGS, finding_writer
-from rulec.report.verdict_findings.mcap_file_writer import JsonChannel, TimedMessage, write_mcap
-from rulec.report.verdict_findings.verdict_finding import (
+from rulec.report.findings.finding_writers import ENDINGS, finding_writer
+from rulec.report.findings.mcap_file_writer import JsonChannel, TimedMessage, write_mcap
+from rulec.report.findings.verdict_finding import (
     COLUMNS,
     FindingContext,
     RecordingFindings,

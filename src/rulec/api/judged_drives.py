@@ -25,11 +25,11 @@ from rulec.monitoring.moments.drive_facts import idle_rules
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.verdict import NotJudged, Verdict, VerdictOutcome, Violation, with_law
 from rulec.recordings.recording import Recording
+from rulec.report.findings.findings_of_drives import DriveFindings
+from rulec.report.findings.findings_of_traces import not_judged_trace, trace_findings
+from rulec.report.findings.verdict_finding import VerdictFinding
 from rulec.report.pictures.drawing.picture_formats import Drawing, as_bytes
 from rulec.report.text.terminal_text import counted
-from rulec.report.verdict_findings.findings_of_drives import DriveFindings
-from rulec.report.verdict_findings.findings_of_traces import not_judged_trace, trace_findings
-from rulec.report.verdict_findings.verdict_finding import COLUMNS, VerdictFinding
 from rulec.report.verdicts import verdict_report
 from rulec.report.verdicts.recording_answer import MOST_SHOWN, AnswerLayout, RecordingAnswer
 from rulec.report.verdicts.violation_tally import RuleOutcome, ViolationTally
@@ -67,8 +67,7 @@ class FindingRows(Rows, Sequence[VerdictFinding]):
         return [
             {
                 name: ", ".join(value) if isinstance(value, tuple) else value
-                for name in COLUMNS
-                for value in (getattr(finding, name),)
+                for name, value in finding.row().items()
             }
             for finding in self._findings
         ]

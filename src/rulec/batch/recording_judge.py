@@ -37,8 +37,8 @@ from rulec.resource_limits import BudgetSpentError
 
 if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation
-    from rulec.report.verdict_findings.findings_of_drives import DriveFindings, GatheredFindings
-    from rulec.report.verdict_findings.verdict_finding import RecordingFindings, VerdictFinding
+    from rulec.report.findings.findings_of_drives import DriveFindings, GatheredFindings
+    from rulec.report.findings.verdict_finding import RecordingFindings, VerdictFinding
 
 RowMaker: TypeAlias = Callable[
     [DriveVerdict | NoDrive, RecordingVerdicts, str, "Sequence[VerdictFinding] | None"],
@@ -301,7 +301,7 @@ class _RecordingJudge:
             if len(shown) < MOST_SHOWN:
                 if findings is None:
                     # Evidence, 20 ms: only where something is violated.
-                    from rulec.report.verdict_findings.findings_of_drives import violated
+                    from rulec.report.findings.findings_of_drives import violated
 
                     explanation = explained[number] if number < len(explained) else None
                     own = violated(violation, answer.drive, self._verdicts, explanation)
@@ -375,7 +375,7 @@ def _judged_part(
 
 def _findings(verdicts: RecordingVerdicts, file: str) -> DriveFindings:
     # Evidence and its findings, 20 ms: only where they are wanted.
-    from rulec.report.verdict_findings.findings_of_drives import DriveFindings
+    from rulec.report.findings.findings_of_drives import DriveFindings
 
     return DriveFindings(verdicts, file)
 

@@ -62,7 +62,7 @@ class RecordingRun:
             self.unread.append(file)
             if self.to.wants_findings:
                 # Late import, only if wanted: findings (20 ms).
-                from rulec.report.verdict_findings.findings_of_drives import not_judged_file
+                from rulec.report.findings.findings_of_drives import not_judged_file
 
                 recording = not_judged_file(file, error, self.settings.rules.name)
                 if self.to.to_rows is not None:

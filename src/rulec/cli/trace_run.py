@@ -22,8 +22,8 @@ from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.batch.batch_verify import Items, rulebook_for, step_of, verify_items
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.report.findings.diagnostics_text import Complaints
+from rulec.report.findings.verdict_finding import RecordingFindings, VerdictFinding
 from rulec.report.text.console import page_width, print_remark, progress
-from rulec.report.verdict_findings.verdict_finding import RecordingFindings, VerdictFinding
 from rulec.report.verdicts import verdict_report
 from rulec.report.verdicts.batch_table import BatchTally
 from rulec.report.verdicts.state_times import StateTimes
@@ -144,7 +144,7 @@ class TraceRun:
             self.to.line(verdict_json.not_judged_as_json(answer, self.rules.name))
         if self.to.wants_findings:
             # Late import, as above.
-            from rulec.report.verdict_findings.findings_of_traces import not_judged_trace
+            from rulec.report.findings.findings_of_traces import not_judged_trace
 
             findings.append(not_judged_trace(file, answer, self.rules.name))
 
@@ -188,7 +188,7 @@ class TraceRun:
             self.pending |= any("not over" in result.because for result in shown)
         if self.to.wants_findings:
             # Late import, as above.
-            from rulec.report.verdict_findings.findings_of_traces import trace_findings
+            from rulec.report.findings.findings_of_traces import trace_findings
 
             findings += trace_findings(file, traces[place], verdict, used, explained)
         return len(explained)

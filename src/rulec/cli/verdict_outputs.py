@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 from rulec.cli.options.output_options import Endings, Output, endings_of
 from rulec.cli.output import answer_lines, output_stream
+from rulec.report.findings.finding_writers import ENDINGS, FindingWriter, finding_writer
 from rulec.report.text.console import print_line, print_result
 from rulec.report.text.terminal_text import counted
-from rulec.report.verdict_findings.finding_writers import ENDINGS, FindingWriter, finding_writer
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.fleet.drive_rows import DriveRows
-    from rulec.report.verdict_findings.verdict_finding import RecordingFindings
+    from rulec.report.findings.verdict_finding import RecordingFindings
 
 FORMATS: Endings = {**endings_of("text", "json"), **ENDINGS}
 """Text, verdicts as one line of JSON per trace or drive, or findings in many formats."""
@@ -102,7 +102,7 @@ def verdict_outputs(
                 lines.append(files.enter_context(answer_lines(output)))
             else:
                 # Late import, only if there are findings to write: JSON documents (12 ms).
-                from rulec.report.verdict_findings.verdict_finding import FindingContext
+                from rulec.report.findings.verdict_finding import FindingContext
 
                 stream, name = files.enter_context(output_stream(output))
                 writer = finding_writer(

@@ -16,9 +16,9 @@ from rulec.fleet.judged_by import JudgedBy
 from rulec.monitoring.moments.drive_facts import DriveFacts, facts_of
 from rulec.monitoring.moments.exposure import Exposure
 from rulec.monitoring.verdict import NotJudged, OutcomeName, Verdict
-from rulec.report.verdict_findings.findings_of_drives import DriveFindings
-from rulec.report.verdict_findings.verdict_finding import COLUMNS as OF_FINDINGS
-from rulec.report.verdict_findings.verdict_finding import VerdictFinding, named_rule
+from rulec.report.findings.findings_of_drives import DriveFindings
+from rulec.report.findings.verdict_finding import COLUMNS as OF_FINDINGS
+from rulec.report.findings.verdict_finding import VerdictFinding, named_rule
 
 MOVED_M = 0.5
 """Recorded positions fluctuate by less than this (m), even of standing vehicles."""
@@ -163,8 +163,7 @@ class DriveRows:
         for finding in findings:
             if finding.outcome == "not_judged":
                 continue  # its rule's row says so
-            row: dict[str, Cell] = {name: getattr(finding, name) for name in OF_FINDINGS}
-            row |= {**self.shared, **own, "kind": "finding"}
+            row: dict[str, Cell] = {**finding.row(), **self.shared, **own, "kind": "finding"}
             if finding.outcome == "violated":
                 row |= {"state": next(violations).step}
             yield row

@@ -8,8 +8,8 @@ from typing import Any, Optional, TypeAlias
 
 import msgspec
 
+from rulec.report.findings import verdict_finding
 from rulec.report.json_document import JsonDocument
-from rulec.report.verdict_findings import verdict_finding
 from rulec.trace.formats.arrow.parquet import arrow
 
 Cell: TypeAlias = "str | float | tuple[str, ...] | None"

@@ -16,8 +16,8 @@ from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.batch.batch_verify import Answer, Items, rulebook_for, verify_items
 from rulec.monitoring.moments.drive_facts import DriveFacts, facts_of_many
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.report.verdict_findings.findings_of_traces import trace_findings
-from rulec.report.verdict_findings.verdict_finding import VerdictFinding
+from rulec.report.findings.findings_of_traces import trace_findings
+from rulec.report.findings.verdict_finding import VerdictFinding
 from rulec.trace.formats.table_reader import OBJECT, OTHER, STEP, TRACE
 from rulec.trace.trace_model import Trace
 

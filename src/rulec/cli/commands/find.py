@@ -96,8 +96,8 @@ def command(
     Exit status: 0, or 2 if a file or a trace could not be read.
     """
     # Late import, not for --help: formats, the language and display of moments (300 ms).
+    from rulec.report.findings.finding_tables import RowWriter
     from rulec.report.moments import moment_rows
-    from rulec.report.verdict_findings.finding_tables import RowWriter
     from rulec.rulebook.query_reader import read_query
 
     if os.path.isfile(formula) and not any(map(os.path.exists, files)):  # noqa: PTH113 - Path raises on a null character

@@ -17,7 +17,7 @@ from rulec.report.verdicts.violation_tally import RuleOutcome, ViolationTally
 from rulec.vocabulary import Quantity
 
 if TYPE_CHECKING:
-    from rulec.report.verdict_findings.verdict_finding import VerdictFinding
+    from rulec.report.findings.verdict_finding import VerdictFinding
 
 MOST_SHOWN = 3
 """Number of drives of a violated rule that are shown; the findings have all of them."""

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import IO, TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from rulec.report.verdict_findings.verdict_finding import FindingContext, RecordingFindings
+    from rulec.report.findings.verdict_finding import FindingContext, RecordingFindings
 
 ENDINGS: Mapping[str, tuple[str, ...]] = {
     "jsonl": (".jsonl", ".ndjson"),
@@ -36,27 +36,19 @@ def finding_writer(form: str, stream: IO[bytes], about: FindingContext, name: st
     Raises RulecError R0706 if Parquet is not available.
     """
     match form:
-        case "csv":
-            from rulec.report.verdict_findings.finding_tables import CsvWriter
-
-            return CsvWriter(stream, about.columns)
-        case "parquet":
-            from rulec.report.verdict_findings.finding_tables import ParquetWriter
-
-            return ParquetWriter(stream, name, about.columns)
         case "junit":
-            from rulec.report.verdict_findings.finding_junit import JUnitWriter
+            from rulec.report.findings.junit import JUnitWriter
 
             return JUnitWriter(stream, about)
         case "sarif":
-            from rulec.report.verdict_findings.finding_sarif import SarifWriter
+            from rulec.report.findings.sarif import SarifWriter
 
             return SarifWriter(stream, about)
         case "mcap":
-            from rulec.report.verdict_findings.finding_mcap import McapWriter
+            from rulec.report.findings.finding_mcap import McapWriter
 
             return McapWriter(stream, about, name)
         case _:
-            from rulec.report.verdict_findings.finding_tables import JsonLinesWriter
+            from rulec.report.findings.finding_tables import FindingTable
 
-            return JsonLinesWriter(stream, about.columns)
+            return FindingTable(form, stream, name, about.columns)

@@ -12,7 +12,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.monitoring.explain.margins import Margin
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged
-from rulec.report.json_document import JsonDocument, as_line, filled
+from rulec.report.json_document import JsonDocument
 from rulec.report.text.terminal_text import cut
 from rulec.rulebook.rulebook_model import cited_law
 from rulec.value_display import short_repr
@@ -74,6 +74,10 @@ class VerdictFinding:
 
     def __repr__(self) -> str:
         return f"VerdictFinding({cut(self.says, LONGEST_SHOWN)})"
+
+    def row(self) -> dict[str, Any]:
+        """The values of all columns."""
+        return {name: getattr(self, name) for name in COLUMNS}
 
     @property
     def when(self) -> str:
@@ -198,11 +202,6 @@ EMPTY_CELLS: Mapping[type, str | tuple[str, ...]] = {str: "", list: ()}
 """The value of a column of a type where it does not apply; for a number it is None."""
 
 
-def as_json(finding: VerdictFinding) -> str:
-    """Write a finding on one line."""
-    return as_line(filled(FindingLine, finding))
-
-
 @dataclass(frozen=True, slots=True)
 class RecordingFindings:
     """The findings of a recording or a file of traces, and the names of its judged ``drives``.
@@ -254,3 +253,8 @@ class FindingContext:
     def rules(self) -> Mapping[str, CompiledRule]:
         """The rules by name."""
         return {rule.name: rule for rule in self.rulebook.rules}
+
+    @property
+    def edition(self) -> Mapping[str, str]:
+        """The law and the hash of the rulebook, with their names."""
+        return edition_of(self.rulebook)._asdict()

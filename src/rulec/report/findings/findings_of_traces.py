@@ -9,7 +9,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.logic.free_names import names_in
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.report.verdict_findings.verdict_finding import (
+from rulec.report.findings.verdict_finding import (
     VerdictFinding,
     left_open,
     measured,

@@ -13,7 +13,7 @@ from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.extraction.violation_evidence import evidence_of
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged, RuleNotJudged, Violation
-from rulec.report.verdict_findings.verdict_finding import (
+from rulec.report.findings.verdict_finding import (
     RecordingFindings,
     VerdictFinding,
     left_open,

@@ -12,13 +12,12 @@ from typing import IO, Any
 
 from rulec.diagnostics import SourceLocation
 from rulec.files.file_messages import UNWRITABLE_FILE
-from rulec.report.verdict_findings.mcap_file_writer import JsonChannel, TimedMessage, write_mcap
-from rulec.report.verdict_findings.verdict_finding import (
+from rulec.report.findings.mcap_file_writer import JsonChannel, TimedMessage, write_mcap
+from rulec.report.findings.verdict_finding import (
     COLUMNS,
     FindingContext,
     RecordingFindings,
     VerdictFinding,
-    as_json,
 )
 
 FRAME = "global"
@@ -90,10 +89,8 @@ def _messages(finding: VerdictFinding) -> Iterator[TimedMessage]:
         return
     begin_ns = max(0, round(at_s * _NS))
     # Without null values, which fit none of the types announced to viewers
-    known = {
-        name: value for name, value in json.loads(as_json(finding)).items() if value is not None
-    }
-    yield TimedMessage(0, begin_ns, json.dumps(known))
+    known = {name: value for name, value in finding.row().items() if value is not None}
+    yield TimedMessage(0, begin_ns, json.dumps({"version": 1, **known}))
     yield TimedMessage(1, begin_ns, json.dumps(_log(finding, begin_ns)))
     if finding.outcome == "violated" and finding.x is not None and finding.y is not None:
         yield TimedMessage(2, begin_ns, json.dumps(_scene_update(finding, begin_ns)))

@@ -1,1 +1,0 @@
-"""Findings of verdicts: one for each violation, open verdict and rule that was not judged."""
