@@ -46,16 +46,21 @@ def test_a_rule_lacks_only_what_it_takes():
 def test_on_the_command_line(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "drive.rules").write_text(BOOK)
-    assert main(["audit", "drive.rules", "--source", "sumo"]) == 0
+    assert main(["show", "--audit", "drive.rules", "--source", "sumo"]) == 0
     text = unwrapped(capsys.readouterr().out)
     counted = "source sumo: 4 rules: 0 judged on evidence, 0 with presumptions, 4 cannot be judged"
     assert f" {counted} " in text
     assert " quiet for want of horn " in text
-    assert main(["audit", "drive.rules", "--source", "sumo", "--output-format", "markdown"]) == 0
+    assert (
+        main(["show", "--audit", "drive.rules", "--source", "sumo", "--output-format", "markdown"])
+        == 0
+    )
     assert "| `quiet` | cannot be judged | for want of horn |" in capsys.readouterr().out
-    assert main(["audit", "drive.rules", "--source", "sumo", "--output-format", "json"]) == 0
+    assert (
+        main(["show", "--audit", "drive.rules", "--source", "sumo", "--output-format", "json"]) == 0
+    )
     (source,) = json.loads(capsys.readouterr().out)["sources"]
     assert source["source"] == "sumo"
     assert [rule["lacking"] for rule in source["rules"]][1] == ["horn"]
-    assert main(["audit", "drive.rules", "--source", "none.xml"]) == 2
+    assert main(["show", "--audit", "drive.rules", "--source", "none.xml"]) == 2
     assert "R0701" in capsys.readouterr().err

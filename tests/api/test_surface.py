@@ -87,7 +87,7 @@ COMMANDS = {
 
 def test_every_command_can_be_called():
     folder = SOURCE.parent / "cli" / "commands"
-    commands = {file.stem for file in folder.glob("*.py")} - {
+    commands = {file.stem for file in folder.rglob("*.py")} - {
         "__init__",
         "completion",
         "help",

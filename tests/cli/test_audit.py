@@ -1,4 +1,4 @@
-"""``rulec audit`` as its user meets it."""
+"""``rulec show --audit`` as its user meets it."""
 
 import json
 
@@ -31,12 +31,12 @@ def folder(tmp_path, monkeypatch):
 
 
 def run(capsys, *arguments):
-    status = main(["audit", "--all", *arguments])
+    status = main(["show", "--audit", "--all", *arguments])
     return status, *capsys.readouterr()
 
 
 def test_each_kind_of_finding_is_counted(folder, capsys):
-    assert main(["audit", "island.rules", "--examples"]) == 0
+    assert main(["show", "--audit", "island.rules", "--examples"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "island: Rules of the island"
     for title, names in (
@@ -51,7 +51,7 @@ def test_each_kind_of_finding_is_counted(folder, capsys):
 
 
 def test_an_overview_fits_on_a_screen(capsys):
-    assert main(["audit", "de"]) == 0
+    assert main(["show", "--audit", "de"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) <= 40
     assert max(map(len, lines)) <= 80
@@ -280,7 +280,7 @@ def test_a_narrow_page():
     ],
 )
 def test_an_option_that_would_have_no_effect_is_refused(options, words, capsys):
-    assert main(["audit", "esterle2019", *options]) == 2
+    assert main(["show", "--audit", "esterle2019", *options]) == 2
     out, err = capsys.readouterr()
     assert out == ""
     assert words in err

@@ -9,7 +9,7 @@ from rulec import Session
 from rulec.analysis.diff import comparison_matrix
 from rulec.analysis.lineage import book_lineage
 from rulec.cache.cache_folder import cache_folder
-from rulec.cli.commands import show
+from rulec.cli.commands.reading import show
 from rulec.cli.main import main
 from rulec.rulebook.batch import answer_cache
 from support.builders.rulebook_projects import project_in
@@ -55,7 +55,7 @@ def answered(monkeypatch):
 QUESTIONS = {
     "analyze": ["analyze", "./book.rules"],
     "show": ["show", "./book.rules", "r"],
-    "tree": ["tree", "./book.rules"],
+    "tree": ["show", "--tree", "./book.rules"],
     "diff": ["diff", "--all", "./book.rules", "./other.rules"],
 }
 

@@ -35,21 +35,21 @@ FILES = ("file", "the word so far")
         (["check"], "est", [FILES, ("plain", "esterle2019")]),
         (["check", "esterle2019"], "pap", [FILES, ("plain", "paper")]),
         (["test"], "est", [FILES, ("plain", "esterle2019")]),
-        (["audit"], "est", [FILES, ("plain", "esterle2019")]),
-        (["audit", "--fail-on"], "unc", [("plain", "uncited")]),
+        (["show", "--audit"], "est", [FILES, ("plain", "esterle2019")]),
+        (["show", "--audit", "--fail-on"], "unc", [("plain", "uncited")]),
         (["doc"], "est", [FILES, ("plain", "esterle2019")]),
-        (["tree"], "est", [FILES, ("plain", "esterle2019")]),
+        (["show", "--tree"], "est", [FILES, ("plain", "esterle2019")]),
         (["compile"], "est", [FILES, ("plain", "esterle2019")]),
         (["compile"], "./my", [FILES]),
         (["verify", "x.jsonl", "-r"], "est", [FILES, ("plain", "esterle2019")]),
         (["maneuvers"], "s1", [FILES, ("plain", "s1")]),
-        (["traces"], "s2", [FILES, ("plain", "s2")]),
+        (["maneuvers", "--traces"], "s2", [FILES, ("plain", "s2")]),
         (["show"], "est", [FILES, ("plain", "esterle2019")]),
         (["show", "esterle2019"], "R", [("plain", name) for name in ("R1", "R2", "R3")]),
         (["show", "there_is_none"], "", []),
         (["show", "esterle2019", "--automaton"], "s", [("plain", "svg")]),
         (["explain"], "r0201", [("plain", "R0201")]),
-        (["completion"], "f", [("plain", "fish")]),
+        (["help", "--completion"], "f", [("plain", "fish")]),
         (["list"], "r", [("plain", "rulebooks"), ("plain", "rules")]),
         (["check", "--output-format"], "s", [("plain", "sarif")]),
     ],
@@ -72,7 +72,7 @@ def test_codes_come_with_their_titles():
 
 @pytest.mark.parametrize("shell", SHELLS)
 def test_the_script(shell, capsys):
-    assert main(["completion", shell]) == 0
+    assert main(["help", "--completion", shell]) == 0
     script = capsys.readouterr().out
     assert f"_RULEC_COMPLETE={shell}_complete" in script
     assert "%(" not in script
@@ -82,7 +82,7 @@ def test_the_script(shell, capsys):
 def test_the_shell_itself_takes_the_script(shell, capsys, tmp_path):
     if shutil.which(shell) is None:
         pytest.skip(f"there is no {shell} here")
-    main(["completion", shell])
+    main(["help", "--completion", shell])
     script = tmp_path / "script"
     script.write_text(capsys.readouterr().out)
     subprocess.run([shell, "-n", str(script)], check=True)
@@ -91,7 +91,7 @@ def test_the_shell_itself_takes_the_script(shell, capsys, tmp_path):
 def test_fish_offers_files_in_folders_and_whole_descriptions(capsys, tmp_path):
     if shutil.which("fish") is None:
         pytest.skip("there is no fish here")
-    main(["completion", "fish"])
+    main(["help", "--completion", "fish"])
     (tmp_path / "script").write_text(capsys.readouterr().out)
     (tmp_path / "books").mkdir()
     (tmp_path / "books" / "mine.rules").touch()
@@ -138,5 +138,5 @@ def test_the_program_answers_the_script():
 
 
 def test_another_shell(capsys):
-    assert main(["completion", "csh"]) == 2
+    assert main(["help", "--completion", "csh"]) == 2
     assert "it is one of bash, " in capsys.readouterr().err

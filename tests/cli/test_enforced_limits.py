@@ -11,7 +11,8 @@ from rulec.enforced_limits import HELD_A_BYTE, allow_for, enforced, limit_error
 from rulec.resource_limits import MEMORY, VARIABLE
 
 HUNGRY = (
-    "import sys; from rulec.cli import main as door; from rulec.cli.commands import list as verb\n"
+    "import sys; from rulec.cli import main as door\n"
+    "from rulec.cli.commands.reading import list as verb\n"
     "def eat(*_, **__): {}\n"
     "verb.command.callback = eat\n"
     "raise SystemExit(door.main())"

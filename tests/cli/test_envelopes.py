@@ -1,4 +1,4 @@
-"""``rulec envelopes`` as its user meets it."""
+"""``rulec maneuvers --envelopes`` as its user meets it."""
 
 import json
 
@@ -7,7 +7,12 @@ from rulec.cli.main import main
 
 def test_the_same_bounds_as_in_json(tmp_path, capsys):
     file = tmp_path / "e.jsonl"
-    assert main(["envelopes", "s1", "-r", "esterle2019", "--list", "3", "-o", str(file)]) == 0
+    assert (
+        main(
+            ["maneuvers", "--envelopes", "s1", "-r", "esterle2019", "--list", "3", "-o", str(file)]
+        )
+        == 0
+    )
     assert capsys.readouterr().out == f"wrote 3 of 16 satisfying maneuvers to {file}\n"
     main(["maneuvers", "s1", "-r", "esterle2019", "--list", "3", "--json"])
     told = json.loads(capsys.readouterr().out)["maneuvers"]
@@ -28,5 +33,8 @@ def test_the_same_bounds_as_in_json(tmp_path, capsys):
 def test_no_satisfying_maneuver_is_status_1(tmp_path, capfd):
     source = tmp_path / "stop.rules"
     source.write_text("rulebook stop\nuse paper\nhard rule A (v: vehicle) { require l(v) }\n")
-    assert main(["envelopes", "s2", "-r", str(source), "-o", "-", "--format", "csv"]) == 1
+    assert (
+        main(["maneuvers", "--envelopes", "s2", "-r", str(source), "-o", "-", "--format", "csv"])
+        == 1
+    )
     assert capfd.readouterr().out.startswith("maneuver,cost,margin_s,layer,")

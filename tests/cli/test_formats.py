@@ -1,4 +1,4 @@
-"""``rulec formats`` as its user meets it."""
+"""``rulec list formats`` as its user meets it."""
 
 import json
 import re
@@ -15,7 +15,7 @@ from support.unwrapped import unwrapped
 @pytest.fixture
 def listed(capsys):
     def run(*arguments):
-        status = main(["formats", *arguments])
+        status = main(["list", "formats", *arguments])
         captured = capsys.readouterr()
         return status, captured.out, captured.err
 

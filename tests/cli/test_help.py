@@ -1,4 +1,4 @@
-"""``rulec`` alone, ``rulec help``, ``rulec man`` and colour on demand."""
+"""``rulec`` alone, ``rulec help``, ``rulec help --man`` and colour on demand."""
 
 import os
 import re
@@ -6,7 +6,7 @@ import re
 import pytest
 
 from rulec.cli.main import main
-from rulec.cli.verb_table import VERB_GROUPS, VERBS
+from rulec.cli.verb_table import COMMANDS, VERB_GROUPS
 
 
 def run(capsys, *arguments):
@@ -68,10 +68,10 @@ def test_misuse_looks_like_other_mistakes(capsys):
 
 
 def test_the_manual_page_has_every_verb_and_option(capsys):
-    status, page, _ = run(capsys, "man")
+    status, page, _ = run(capsys, "help", "--man")
     assert status == 0
     assert page.startswith('.TH RULEC 1 "" "rulec ')
-    for verb in VERBS:
+    for verb in COMMANDS:
         assert f'.SS "rulec {verb} '.replace("-", r"\-") in page
     assert r".B \-\-fail\-on\-empty" in page
     assert '.SS "rulec draw drive ' in page
@@ -82,8 +82,8 @@ def test_the_manual_page_has_every_verb_and_option(capsys):
 
 
 def test_the_manual_page_as_a_file(tmp_path, capsys):
-    assert run(capsys, "man", "-o", str(tmp_path / "rulec.1"))[0] == 0
-    assert (tmp_path / "rulec.1").read_text() == run(capsys, "man")[1]
+    assert run(capsys, "help", "--man", "-o", str(tmp_path / "rulec.1"))[0] == 0
+    assert (tmp_path / "rulec.1").read_text() == run(capsys, "help", "--man")[1]
 
 
 @pytest.mark.parametrize(

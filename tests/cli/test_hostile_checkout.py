@@ -127,10 +127,10 @@ READING = [
     ["maneuvers", "s1", "-r", "esterle2019", "--after", "link"],
     ["draw", "scene", "link", "-o", "scene.svg"],
     ["draw", "trace", "link", "-r", "atlantis", "-o", "trace.svg"],
-    ["audit", "rulebooks/atlantis.rules", "--law", "link"],
-    ["audit", "rulebooks/atlantis.rules", "--compare", "link"],
+    ["show", "--audit", "rulebooks/atlantis.rules", "--law", "link"],
+    ["show", "--audit", "rulebooks/atlantis.rules", "--compare", "link"],
     ["monitor", "atlantis", "--restore", "link"],
-    ["verify-compiled", "link"],
+    ["compile", "--check", "link"],
     ["rates", "link"],
 ]
 

@@ -53,7 +53,7 @@ def ended(program, *arguments):
     [
         "rulec.version",
         "click",
-        "rulec.cli.commands.verify",
+        "rulec.cli.commands.traffic.verify",
         "rulec.automata.bundle.compiled_rulebook",
     ],
 )

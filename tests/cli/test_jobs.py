@@ -115,7 +115,7 @@ def test_output_of_questions_and_examples_does_not_depend_on_processes(
 )
 def test_drives_are_written_alike_by_any_number_of_processes(ending, drives, monkeypatch, capsys):
     monkeypatch.chdir(drives)
-    command = ["traces", "drives/a.xml", "--recorded", "-r", "./tiny.rules"]
+    command = ["maneuvers", "--traces", "drives/a.xml", "--recorded", "-r", "./tiny.rules"]
     for jobs in ("1", "2"):
         assert main([*command, "-o", f"{jobs}.{ending}", "-j", jobs]) == 0
         assert capsys.readouterr().out == f"wrote 3 drives to {jobs}.{ending}\n"
@@ -156,7 +156,7 @@ def test_a_number_from_the_environment_says_so(drives, monkeypatch, capsys):
 def test_processes_for_maneuvers_are_refused_and_those_of_the_environment_are_not_meant(
     tmp_path, monkeypatch, capsys
 ):
-    command = ["traces", "s1", "-o", str(tmp_path / "t.jsonl")]
+    command = ["maneuvers", "--traces", "s1", "-o", str(tmp_path / "t.jsonl")]
     assert main([*command, "-j", "2"]) == 2
     assert "-j is for drives: add --recorded." in capsys.readouterr().err
     monkeypatch.setenv("RULEC_JOBS", "2")

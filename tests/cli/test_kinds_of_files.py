@@ -20,7 +20,7 @@ FILES = {
 VERBS = {
     "check": ["check", "FILE"],
     "test": ["test", "FILE"],
-    "audit": ["audit", "FILE"],
+    "audit": ["show", "--audit", "FILE"],
     "maneuvers": ["maneuvers", "FILE", "-r", "esterle2019"],
     "draw drive": ["draw", "drive", "FILE", "-r", "esterle2019", "-o", "x.html", "--ego", "1"],
     "fleet": ["fleet", "FILE", "-r", "esterle2019", "-o", "out"],

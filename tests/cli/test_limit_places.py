@@ -56,7 +56,7 @@ ASKED = {
     "comparisons": (0, ["diff", "--all", "./small.rules", "./like.rules"], OF_A_RULE),
     "pairs": (0, ["analyze", "./small.rules"], OF_A_RULE),
     "type_depth": (1, ["check", "./small.rules"], "small.rules:3"),
-    "cites": (0, ["audit", "./small.rules", "--law", "law.md"], OF_A_RULE),
+    "cites": (0, ["show", "--audit", "./small.rules", "--law", "law.md"], OF_A_RULE),
     "lookback": (
         1,
         ["find", "once[<= 10 s] p", "t.jsonl", "-r", "./small.rules"],

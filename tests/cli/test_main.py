@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from rulec.cli.main import main
-from rulec.cli.verb_table import VERBS
+from rulec.cli.verb_table import COMMANDS, FORMER, VERBS, called
 
 RULEC = [sys.executable, "-c", "from rulec.cli.main import main; raise SystemExit(main())"]
 
@@ -29,9 +29,9 @@ def test_the_version_alone_needs_nothing_else_to_be_loaded():
     assert (done.returncode, done.stdout, done.stderr) == (0, "rulec 0.1.0\nFalse\n", "")
 
 
-@pytest.mark.parametrize("verb", VERBS)
-def test_every_verb_explains_itself(verb, capsys):
-    assert main([verb, "--help"]) == 0
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_explains_itself(command, capsys):
+    assert main([*command.split(), "--help"]) == 0
     assert "Usage: rulec" in capsys.readouterr().out
 
 
@@ -101,7 +101,7 @@ def on_terminal(arguments, environment):
 
 def test_a_terminal_gets_colour_and_progress(tmp_path):
     file = str(tmp_path / "t.jsonl")
-    shown = on_terminal(["traces", "s3", "--step", "0.5", "-o", file], {})
+    shown = on_terminal(["maneuvers", "--traces", "s3", "--step", "0.5", "-o", file], {})
     assert "writing" in shown
     assert "%" in shown
     shown = on_terminal(["verify", file, "-r", "esterle2019"], {})
@@ -130,7 +130,43 @@ def test_findings_have_colour_for_people_only(verb, tmp_path):
 
 def test_a_pipe_gets_neither(tmp_path):
     done = subprocess.run(
-        [*RULEC, "traces", "s2", "-o", str(tmp_path / "t.jsonl")], capture_output=True, check=True
+        [*RULEC, "maneuvers", "--traces", "s2", "-o", str(tmp_path / "t.jsonl")],
+        capture_output=True,
+        check=True,
     )
     assert done.stderr == b""
     assert b"\x1b" not in done.stdout
+
+
+@pytest.mark.parametrize("former", FORMER)
+def test_a_former_verb_is_taken_for_another_version_and_says_what_it_is_called(former, capsys):
+    assert main([former, "--help"]) == 0
+    out, err = capsys.readouterr()
+    assert err == f"rulec: `rulec {former}` is now called `rulec {FORMER[former]}`\n"
+    assert main([*FORMER[former].split(), "--help"]) == 0
+    assert capsys.readouterr() == (out, "")
+    assert main(["help", former]) == 0
+    assert capsys.readouterr().out == out
+
+
+def test_there_are_few_verbs_and_former_ones_are_hidden(capsys):
+    assert len(VERBS) <= 20
+    assert not FORMER.keys() & VERBS.keys()
+    assert set(FORMER.values()) <= COMMANDS.keys()
+    assert main(["treee"]) == 2
+    assert "did you mean `show --tree`?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "name", "rest"),
+    [
+        (["show", "de", "--tree", "--all"], "show --tree", ["de", "--all"]),
+        (["show", "--", "--tree"], "show", ["--", "--tree"]),
+        (["tree", "de"], "show --tree", ["de"]),
+        (["list", "formats", "sumo"], "list formats", ["sumo"]),
+        (["list", "rulebooks"], "list", ["rulebooks"]),
+        (["check", "--tree"], "check", ["--tree"]),
+    ],
+)
+def test_a_verb_is_asked_something_else_by_a_word_of_its_own(words, name, rest):
+    assert called(words) == (name, rest)

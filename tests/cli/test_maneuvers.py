@@ -1,4 +1,4 @@
-"""``rulec maneuvers`` and ``rulec traces`` as their user meets them."""
+"""``rulec maneuvers`` and ``rulec maneuvers --traces`` as their user meets them."""
 
 import json
 import re
@@ -228,7 +228,7 @@ def test_counting_is_enumerating_for_every_graph(adjacency, partition, tmp_path,
     _, out, _ = answer(capsys, *how, "--rulebook", str(source), "--json")
     counted = json.loads(out)
     file = str(tmp_path / "t.jsonl")
-    assert main(["traces", *how, "--partition", partition, "-o", file]) == 0
+    assert main(["maneuvers", "--traces", *how, "--partition", partition, "-o", file]) == 0
     capsys.readouterr()
     main(["verify", file, "--rulebook", str(source), "--json"])
     verdicts = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
@@ -243,26 +243,26 @@ def test_an_unknown_scenario_names_the_nearest(capsys):
 
 
 def test_traces_to_standard_output(capfdbinary):
-    assert main(["traces", "s1", "-o", "-"]) == 0
+    assert main(["maneuvers", "--traces", "s1", "-o", "-"]) == 0
     assert len(capfdbinary.readouterr().out.splitlines()) == 16
 
 
 def test_a_limit(tmp_path, capsys):
     file = tmp_path / "t.jsonl"
-    assert main(["traces", "s2", "--first", "5", "-o", str(file)]) == 0
+    assert main(["maneuvers", "--traces", "s2", "--first", "5", "-o", str(file)]) == 0
     assert len(file.read_text().splitlines()) == 5
     assert "wrote 5 of 139 traces" in capsys.readouterr().out
 
 
 def test_too_many_traces_are_not_begun(tmp_path, capsys):
     file = tmp_path / "t.jsonl"
-    assert main(["traces", "s2", "--step", "0.25", "-o", str(file)]) == 2
+    assert main(["maneuvers", "--traces", "s2", "--step", "0.25", "-o", str(file)]) == 2
     assert "--first" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
 
 def test_an_unwritable_file(tmp_path, capsys):
-    assert main(["traces", "s1", "-o", str(tmp_path / "no" / "t.jsonl")]) == 2
+    assert main(["maneuvers", "--traces", "s1", "-o", str(tmp_path / "no" / "t.jsonl")]) == 2
     assert "no such file or directory" in capsys.readouterr().err
 
 
@@ -636,7 +636,7 @@ def test_traces_of_what_is_not_known_have_the_same_verdicts(tmp_path, capsys, en
     file.write_text(DARK, encoding="utf-8")
     found = find_maneuvers(file, "esterle2019", horizon_s=2)
     about = [str(file), "-r", "esterle2019", "--horizon", "2"]
-    assert main(["traces", *about, "-o", str(traces)]) == 0
+    assert main(["maneuvers", "--traces", *about, "-o", str(traces)]) == 0
     capsys.readouterr()
     main(["verify", str(traces), "-r", "esterle2019", "--json"])
     verdicts = [json.loads(line)["satisfied"] for line in capsys.readouterr().out.splitlines()]
@@ -650,9 +650,11 @@ def test_bounds_and_pictures_read_what_is_not_known_alike(tmp_path, capsys):
     about = (str(file), "-r", "esterle2019", "--horizon", "2")
     told = tmp_path / "told.jsonl"
     plain = tmp_path / "plain.jsonl"
-    assert main(["envelopes", *about, "--list", "99", "-o", str(plain)]) == 0
+    assert main(["maneuvers", "--envelopes", *about, "--list", "99", "-o", str(plain)]) == 0
     assumed = ["--assume", "CONGESTED=true"]
-    assert main(["envelopes", *about, "--list", "99", "-o", str(told), *assumed]) == 0
+    assert (
+        main(["maneuvers", "--envelopes", *about, "--list", "99", "-o", str(told), *assumed]) == 0
+    )
     capsys.readouterr()
     _, out, _ = answer(capsys, *about, *assumed)
     satisfying = int(next(x for x in out.splitlines() if x.startswith("satisfying")).split()[1])
@@ -660,7 +662,7 @@ def test_bounds_and_pictures_read_what_is_not_known_alike(tmp_path, capsys):
     assert len(told.read_text().splitlines()) == layers * satisfying
     assert len(plain.read_text().splitlines()) == layers * satisfying
     never = ["--assume", "CONGESTED=false"]
-    assert main(["envelopes", *about, "--list", "99", "-o", str(told), *never]) == 0
+    assert main(["maneuvers", "--envelopes", *about, "--list", "99", "-o", str(told), *never]) == 0
     assert len(told.read_text().splitlines()) == layers * (satisfying - 1)
     capsys.readouterr()
     drawing = tmp_path / "graph.svg"
@@ -692,7 +694,7 @@ def test_what_is_mirrored_is_said(tmp_path, capsys):
     british, german = map(json.loads, capsys.readouterr().out.splitlines())
     assert (british["scene"]["mirrored"], german["scene"]["mirrored"]) == (True, False)
     table = tmp_path / "bounds.csv"
-    assert main(["envelopes", *scene, "-r", "gb", "-o", str(table)]) == 0
+    assert main(["maneuvers", "--envelopes", *scene, "-r", "gb", "-o", str(table)]) == 0
     assert "mirrored: d is positive to the right" in capsys.readouterr().err
     for picture in ("scene", "graph"):
         drawing = tmp_path / f"{picture}.svg"

@@ -11,6 +11,7 @@ import pytest
 
 from rulec.cli.main import VERBS, main, rulec
 from rulec.cli.options.output_options import TABLES, chosen_format, endings_of
+from rulec.cli.verb_table import COMMANDS as VERB_COMMANDS
 from rulec.resources import scenarios_folder
 from support.builders import sumo_files, track_tables
 
@@ -68,7 +69,7 @@ WITHOUT = {
     "fleet": "writes a folder of files in one format, which engines add to",
     "new": "writes a rulebook that is called as it is named",
     "fmt": "changes files in place",
-    "completion": "prints a script for the shell that is named",
+    "help --completion": "prints a script for the shell that is named",
     "help": "prints what `--help` prints",
     "lsp": "answers an editor",
 }
@@ -78,7 +79,7 @@ WITHOUT = {
 def commands(group, *names):
     """All commands below a group, with their names."""
     context = click.Context(group)
-    for name in group.list_commands(context):
+    for name in VERB_COMMANDS if group is rulec else group.list_commands(context):
         command = group.get_command(context, name)
         if isinstance(command, click.Group):
             yield from commands(command, *names, name)
@@ -239,10 +240,10 @@ BOOK = "rulebook tiny\nsignal loud default false\nhard rule quiet { require neve
         (["check", "./tiny.rules"], ".txt", "full"),
         (["analyze", "./tiny.rules"], ".json", "json"),
         (["test", "./tiny.rules"], ".xml", "junit"),
-        (["audit", "./tiny.rules"], ".md", "markdown"),
+        (["show", "--audit", "./tiny.rules"], ".md", "markdown"),
         (["explain", "R0101"], ".markdown", "markdown"),
         (["list", "codes"], ".json", "json"),
-        (["tree", "./tiny.rules"], ".txt", "text"),
+        (["show", "--tree", "./tiny.rules"], ".txt", "text"),
         (["monitor", "./tiny.rules", "--step", "1"], ".jsonl", "json"),
         (["maneuvers", "s1", "-r", "./tiny.rules"], ".json", "json"),
     ],
@@ -281,10 +282,10 @@ def test_a_monitor_that_is_interrupted_leaves_no_file(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", ["--output-format", "--format"])
 def test_the_former_name_is_taken_and_not_shown(name, capsys, tmp_path):
     file = tmp_path / "traces"
-    assert main(["traces", "s1", "-o", str(file), name, "csv", "--first", "1"]) == 0
+    assert main(["maneuvers", "--traces", "s1", "-o", str(file), name, "csv", "--first", "1"]) == 0
     assert file.read_text().startswith("trace,step,")
     capsys.readouterr()
-    assert main(["traces", "--help"]) == 0
+    assert main(["maneuvers", "--traces", "--help"]) == 0
     assert "--format " not in capsys.readouterr().out
 
 

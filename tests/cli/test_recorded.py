@@ -17,8 +17,8 @@ def road(tmp_path):
 
 @pytest.fixture
 def answer(capfd, road):
-    def run(*arguments, verb="maneuvers"):
-        status = main([verb, road, *arguments])
+    def run(*arguments, asked=()):
+        status = main(["maneuvers", *asked, road, *arguments])
         captured = capfd.readouterr()
         return status, captured.out, captured.err
 
@@ -180,7 +180,7 @@ def test_signals_that_mean_something_else_are_left_out(answer, tmp_path):
 
 def test_traces_in_a_rulebooks_words_are_judged_by_it(answer, tmp_path, capfd):
     file = str(tmp_path / "t.jsonl")
-    assert answer("-r", "esterle2019", "-o", file, verb="traces")[0] == 0
+    assert answer("-r", "esterle2019", "-o", file, asked=["--traces"])[0] == 0
     assert main(["verify", file, "-r", "esterle2019"]) == 0
     capfd.readouterr()
     (trace,) = map(json.loads, (tmp_path / "t.jsonl").read_text().splitlines())
@@ -189,7 +189,7 @@ def test_traces_in_a_rulebooks_words_are_judged_by_it(answer, tmp_path, capfd):
 
 
 def test_traces_without_one_have_all_that_is_known(answer):
-    status, out, _ = answer("-o", "-", verb="traces")
+    status, out, _ = answer("-o", "-", asked=["--traces"])
     trace = json.loads(out)
     assert (status, trace["objects"]) == (0, {"3": "car"})
     assert {"lanes", "two_wheeled"} < set(trace["states"][0])

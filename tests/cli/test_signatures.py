@@ -115,7 +115,7 @@ def test_what_is_no_key_is_refused(rules, key, capsys, tmp_path):
         ["verify", "traces.jsonl", "-r", "esterle2019"],
         ["maneuvers", "s1", "-r", "esterle2019"],
         ["draw", "scene", "s1", "-r", "esterle2019", "-o", "s1.svg"],
-        ["envelopes", "s1", "-r", "esterle2019", "-o", "s1.csv"],
+        ["maneuvers", "--envelopes", "s1", "-r", "esterle2019", "-o", "s1.csv"],
         ["monitor", "esterle2019"],
     ],
 )

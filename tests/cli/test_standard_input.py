@@ -60,7 +60,7 @@ def test_what_is_wrong_with_it_is_said_by_a_name_that_no_file_has(given):
         ["verify", "-", "-r", "-"],
         ["diff", "-", "-"],
         ["monitor", "-"],
-        ["audit", "-", "--compare", "-"],
+        ["show", "--audit", "-", "--compare", "-"],
     ],
 )
 def test_it_is_one_thing(given, arguments):
@@ -91,9 +91,13 @@ LAW = "# Act\n\n### Article 1 Keeping right\n\n(1) Keep right.\n"
 @pytest.mark.parametrize(
     ("data", "arguments", "says"),
     [
-        (LAW, ["audit", "./other.rules", "--law", "-"], ""),
-        ("# no articles", ["audit", "./other.rules", "--law", "-"], "standard input 2.rules"),
-        ("{}", ["verify-compiled", "-"], "standard input.json"),
+        (LAW, ["show", "--audit", "./other.rules", "--law", "-"], ""),
+        (
+            "# no articles",
+            ["show", "--audit", "./other.rules", "--law", "-"],
+            "standard input 2.rules",
+        ),
+        ("{}", ["compile", "--check", "-"], "standard input.json"),
         ("{}", ["maneuvers", "s1", "-r", "./other.rules", "--after", "-"], "standard input.json"),
         ("", ["maneuvers", "s1", "-r", "./other.rules", "--after", "-"], "standard input\n"),
     ],

@@ -14,7 +14,7 @@ from support.builders.terminal_signals import as_from_a_terminal
 
 RULEC = [sys.executable, "-c", "from rulec.cli.entry_point import run; raise SystemExit(run())"]
 MANEUVERS = ["maneuvers", "s1", "-r", "esterle2019"]
-TRACES = ["traces", "s3", "--step", "0.5", "-o", "-"]
+TRACES = ["maneuvers", "--traces", "s3", "--step", "0.5", "-o", "-"]
 
 
 @pytest.fixture(autouse=True)
@@ -75,7 +75,7 @@ def test_an_editor_that_says_goodbye_leaves_no_bug_behind():
     ],
 )
 def test_a_file_that_cannot_be_written_has_a_way_out(file, says):
-    done = run(["traces", "s1", "-o", file, "--output-format", "csv"])
+    done = run(["maneuvers", "--traces", "s1", "-o", file, "--output-format", "csv"])
     assert done.returncode == 2
     assert f"error[R0702]: the file cannot be written: {says}" in done.stderr.decode()
 
@@ -146,7 +146,8 @@ def started(arguments, folder):
 def test_a_signal_leaves_nothing_half_written(number, tmp_path):
     file = str(tmp_path / "traces.jsonl")
     process = started(
-        ["traces", "s2", "--step", "0.25", "--first", "5000000", "-o", file], tmp_path
+        ["maneuvers", "--traces", "s2", "--step", "0.25", "--first", "5000000", "-o", file],
+        tmp_path,
     )
     process.send_signal(number)
     process.communicate()
@@ -158,7 +159,18 @@ def test_files_that_exist_survive_what_goes_wrong(tmp_path):
     file = tmp_path / "traces.jsonl"
     file.write_text("old")
     process = subprocess.Popen(
-        [*RULEC, "traces", "s2", "--step", "0.25", "--first", "5000000", "-o", str(file)],
+        [
+            *RULEC,
+            "maneuvers",
+            "--traces",
+            "s2",
+            "--step",
+            "0.25",
+            "--first",
+            "5000000",
+            "-o",
+            str(file),
+        ],
         stderr=subprocess.PIPE,
         preexec_fn=as_from_a_terminal,
     )
@@ -172,7 +184,7 @@ def test_files_that_exist_survive_what_goes_wrong(tmp_path):
 
 
 def test_a_device_is_written_to_and_stays_one():
-    assert run(["traces", "s1", "-o", os.devnull]).returncode == 0
+    assert run(["maneuvers", "--traces", "s1", "-o", os.devnull]).returncode == 0
     assert not os.path.isfile(os.devnull)
 
 
@@ -182,7 +194,7 @@ def test_a_link_that_leads_nowhere_is_replaced_and_one_that_leads_somewhere_is_f
     link.symlink_to(target)
     target.write_text("old")
     for file in (loop, link):
-        assert run(["traces", "s1", "-o", str(file)]).returncode == 0
+        assert run(["maneuvers", "--traces", "s1", "-o", str(file)]).returncode == 0
         assert len(file.read_text().splitlines()) == 16
     assert link.is_symlink()
     assert target.read_text() != "old"

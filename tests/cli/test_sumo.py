@@ -24,8 +24,8 @@ def files(tmp_path):
     "words",
     [
         ["maneuvers", "FILE", "-r", "esterle2019", "--ego", "f.0"],
-        ["envelopes", "FILE", "-r", "esterle2019", "--ego", "f.0", "-o", "OUT.csv"],
-        ["traces", "FILE", "--ego", "f.0", "-o", "OUT.jsonl"],
+        ["maneuvers", "--envelopes", "FILE", "-r", "esterle2019", "--ego", "f.0", "-o", "OUT.csv"],
+        ["maneuvers", "--traces", "FILE", "--ego", "f.0", "-o", "OUT.jsonl"],
         ["draw", "scene", "FILE", "--ego", "f.0", "-o", "OUT.svg"],
         ["verify", "FILE", "-r", "gb", "--ego", "f.0"],
     ],

@@ -1,4 +1,4 @@
-"""``rulec tree`` as its user meets it."""
+"""``rulec show --tree`` as its user meets it."""
 
 import json
 import re
@@ -18,7 +18,7 @@ def folder(tmp_path, monkeypatch):
 
 
 def run(capsys, *arguments):
-    status = main(["tree", *arguments])
+    status = main(["show", "--tree", *arguments])
     return status, *capsys.readouterr()
 
 

@@ -264,7 +264,7 @@ def test_every_format_is_written_and_judged_alike(form, tmp_path, capsys):
     if form == "parquet":
         pytest.importorskip("pyarrow")
     path = tmp_path / f"traces.{form}"
-    assert main(["traces", "s1", "--step", "0.5", "-o", str(path)]) == 0
+    assert main(["maneuvers", "--traces", "s1", "--step", "0.5", "-o", str(path)]) == 0
     assert capsys.readouterr().out == f"wrote 672 of 672 traces to {path}\n"
     assert main(["verify", str(path), "--rulebook", "esterle2019", "--json"]) == 1
     answers = [json.loads(one) for one in capsys.readouterr().out.splitlines()]
@@ -277,7 +277,7 @@ def test_every_format_is_written_and_judged_alike(form, tmp_path, capsys):
 
 def test_csv_in_a_pipe(capsys, monkeypatch, tmp_path):
     path = tmp_path / "in"
-    assert main(["traces", "s1", "-o", "-", "--format", "csv", "--first", "3"]) == 0
+    assert main(["maneuvers", "--traces", "s1", "-o", "-", "--format", "csv", "--first", "3"]) == 0
     path.write_text(capsys.readouterr().out)
     with path.open() as stream:
         monkeypatch.setattr("sys.stdin", stream)

@@ -1,4 +1,4 @@
-"""``rulec verify-compiled`` as its user meets it."""
+"""``rulec compile --check`` as its user meets it."""
 
 import gzip
 import json
@@ -21,7 +21,7 @@ def file(tmp_path_factory):
 
 
 def test_what_is_proved(file, capsys):
-    assert main(["verify-compiled", str(file), "--json"]) == 0
+    assert main(["compile", "--check", str(file), "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)
     (of_file,) = answer["files"]
     assert answer["version"] == 1
@@ -44,7 +44,7 @@ def test_what_is_not_proved(file, tmp_path, capsys):
     machine["accepting"][0][0] = not machine["accepting"][0][0]
     data["rules"][0]["name"] = "r\x1b[2J"
     (tmp_path / "changed.json").write_bytes(sealed(data))
-    assert main(["verify-compiled", str(file), str(tmp_path / "changed.json")]) == 1
+    assert main(["compile", "--check", str(file), str(tmp_path / "changed.json")]) == 1
     out = capsys.readouterr().out
     assert "changed.json: rule r" in out
     assert "\x1b" not in out
@@ -61,12 +61,12 @@ def test_folders_and_patterns(file, tmp_path, monkeypatch, capsys):
     Path("one/notes.json").write_text("{}")
     Path("one/link").symlink_to("deep", target_is_directory=True)
     for named in (["one"], ["one/b*.json", "one/d*", "one/b.json"], ["one/b.json", "one/deep"]):
-        assert main(["verify-compiled", *named, "--json"]) == 0
+        assert main(["compile", "--check", *named, "--json"]) == 0
         files = json.loads(capsys.readouterr().out)["files"]
         assert [one["file"] for one in files] == ["one/b.json", "one/deep/c.json"]
     Path("none").mkdir()
     for named in ("none", "one/*.rules"):
-        assert main(["verify-compiled", named]) == 2
+        assert main(["compile", "--check", named]) == 2
         assert "error[R0733]" in capsys.readouterr().err
 
 
@@ -76,7 +76,7 @@ def test_what_may_have_been_a_compiled_rulebook_is_not_passed_over(file, tmp_pat
     (folder / "b.json").write_bytes(data)
     (folder / "b2.json.gz").write_bytes(gzip.compress(data))
     (folder / "notes.json").write_text('{"a": [1, 2]}')
-    assert main(["verify-compiled", str(folder)]) == 0
+    assert main(["compile", "--check", str(folder)]) == 0
     out, err = capsys.readouterr()
     assert out.endswith("2 rules: 2 proved, 0 not proved\n")
     assert err == f"rulec: passed over, as other JSON: {folder / 'notes.json'}\n"
@@ -84,7 +84,7 @@ def test_what_may_have_been_a_compiled_rulebook_is_not_passed_over(file, tmp_pat
     for content in (b"", data[:40], bytes(20_000), flipped):
         (folder / "damaged.json").write_bytes(content)
         for named in (folder, folder / "*.json"):
-            assert main(["verify-compiled", str(named)]) == 2
+            assert main(["compile", "--check", str(named)]) == 2
             assert f" --> {folder / 'damaged.json'}" in capsys.readouterr().err
 
 
@@ -97,18 +97,18 @@ def test_files_that_are_none(file, tmp_path, capsys):
     }
     for code, content in bad.items():
         (tmp_path / "bad.json").write_bytes(content)
-        assert main(["verify-compiled", str(tmp_path / "bad.json"), str(file)]) == 2
+        assert main(["compile", "--check", str(tmp_path / "bad.json"), str(file)]) == 2
         out, err = capsys.readouterr()
         assert f"[{code}]" in err
         assert "1 rule: 1 proved" in out
-    assert main(["verify-compiled", str(tmp_path / "missing.json")]) == 2
+    assert main(["compile", "--check", str(tmp_path / "missing.json")]) == 2
     assert "R0701" in capsys.readouterr().err
 
 
 def test_a_source_is_to_be_compiled_first_and_a_compiled_file_is_none(tmp_path, capsys):
     source = tmp_path / "a.rules"
     source.write_text("rulebook a\nsignal p\nhard rule r { require always p }\n")
-    assert main(["verify-compiled", str(source)]) == 2
+    assert main(["compile", "--check", str(source)]) == 2
     assert f"help: compile it first: `rulec compile {source} -o DIR`" in capsys.readouterr().err
     assert main(["compile", str(source), "-o", str(tmp_path)]) == 0
     assert main(["check", str(tmp_path / "a.json")]) == 1

@@ -274,7 +274,7 @@ def test_rules_without_a_verdict_are_named_hard_ones_first(tmp_path, capsys, mon
         "  ego_mass: loaded",
         "  visibility: comfort (soft)",
     ]
-    monkeypatch.setattr("rulec.cli.commands.verify.page_width", lambda: 40)
+    monkeypatch.setattr("rulec.cli.commands.traffic.verify.page_width", lambda: 40)
     main(["verify", three_cars(tmp_path), "-r", str(book)])
     lines = capsys.readouterr().out.splitlines()
     assert lines[lines.index("4 of 4 rules not judged: 3 want") + 1] == "  visibility, 1 ego_mass"

@@ -7,8 +7,9 @@ from importlib import metadata
 
 import pytest
 
-from rulec.cli.main import VERBS, main
+from rulec.cli.main import main
 from rulec.cli.usage_help import EXAMPLES
+from rulec.cli.verb_table import COMMANDS
 from rulec.rulebook.files.words_in_files import words_of_vocabularies
 from rulec.version import install_command
 
@@ -67,7 +68,10 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         ),
         (["explain", "spede"], "did you mean the word `speed`?"),
         (["verify", "-r", "de"], "  = help: such as `rulec verify traces.jsonl -r de`"),
-        (["verify", "-r", "de"], "`rulec traces s2 -r de -o traces.jsonl` writes some to try"),
+        (
+            ["verify", "-r", "de"],
+            "rulec maneuvers --traces s2 -r de -o traces.jsonl` writes some",
+        ),
         (["new"], "  = help: such as `rulec new belgium`"),
         (["compile", "de"], "  = help: such as `rulec compile de -o build/de`"),
         (["doc", "deutschland"], "  = help: did you mean `de` (Germany)?"),
@@ -91,8 +95,14 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         (["compile", "de", "-o", "x", "--step", "0,5"], "decimals have a point: 0.5"),
         (["verify", "https://x.org/a.xml", "-r", "nl"], "download it first"),
         (["monitor", "de", "fr"], "`fr` is an argument too many\n  = help: it takes one at a time"),
-        (["traces", "s1", "s2", "-o", "t.csv"], "for several `for s in s2 s3; do rulec traces"),
-        (["completion", "bash", "a", "b"], "error: `a b` is 2 arguments too many\n  = usage"),
+        (
+            ["maneuvers", "--traces", "s1", "s2", "-o", "t.csv"],
+            "for s in s2 s3; do rulec maneuvers --traces",
+        ),
+        (
+            ["help", "--completion", "bash", "a", "b"],
+            "error: `a b` is 2 arguments too many\n  = usage",
+        ),
         (["show", "de", "--at"], "error: --at is given without a value"),
         (["check", "--fail-on", "error", "--fail-on", "error"], "--fail-on is given twice"),
         (["show", "de", *(["--at", "2026-01-01"] * 3)], "--at is given 3 times, and takes one"),
@@ -142,8 +152,8 @@ def test_in_a_command(arguments, way_out, tmp_path, monkeypatch, capsys):
         ["draw", "graph", "s1", "-o", "s.svg"],
         ["draw", "trace", "t.jsonl", "-o", "s.svg"],
         ["draw", "drive", "drive.xml", "-o", "s.svg"],
-        ["traces", "s1", "-o", "t.csv"],
-        ["envelopes", "s1", "-o", "e.csv"],
+        ["maneuvers", "--traces", "s1", "-o", "t.csv"],
+        ["maneuvers", "--envelopes", "s1", "-o", "e.csv"],
         ["find", "true", "t.jsonl"],
     ],
 )
@@ -315,7 +325,7 @@ def test_a_new_rulebook_of_a_name_that_ships(tmp_path, monkeypatch, capsys):
 def test_every_example_of_a_command_is_one():
     for verb, (example, *_) in EXAMPLES.items():
         assert example.startswith(f"rulec {verb}")
-        assert verb.split()[0] in VERBS
+        assert verb.startswith("draw ") or verb in COMMANDS
 
 
 def test_of_many_files_in_the_folder_some_are_named_and_rulebooks_that_ship(

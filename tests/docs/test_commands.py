@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from rulec.cli.main import main
-from rulec.cli.verb_table import VERBS
+from rulec.cli.verb_table import COMMANDS
 from rulec.report.findings.finding_formats import FORMATS
-from rulec.report.verdict_findings.verdict_finding import FindingLine
+from rulec.report.findings.verdict_finding import FindingLine
 from tools.schema_tables import schema_tables
 
 PAGE = (Path(__file__).parents[2] / "docs" / "commands.md").read_text(encoding="utf-8")
@@ -30,7 +30,7 @@ def fields(data):
             return set()
 
 
-@pytest.mark.parametrize("verb", VERBS)
+@pytest.mark.parametrize("verb", COMMANDS)
 def test_every_verb(verb):
     assert f"`rulec {verb}" in PAGE
 
@@ -51,9 +51,9 @@ def test_every_field_of_a_finding():
         ["explain", "R0101", "--output-format", "json"],
         ["list", "scenarios", "--json"],
         ["show", "esterle2019", "R1", "--json"],
-        ["audit", "esterle2019", "--compare", "esterle2019", "--output-format", "json"],
-        ["tree", "esterle2019", "--json"],
-        ["tree", "--json"],
+        ["show", "--audit", "esterle2019", "--compare", "esterle2019", "--output-format", "json"],
+        ["show", "--tree", "esterle2019", "--json"],
+        ["show", "--tree", "--json"],
     ],
 )
 def test_every_field_of_an_answer(arguments, capsys):

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from rulec.cli.commands.lsp import command
+from rulec.cli.commands.writing.lsp import command
 from rulec.language_server.editor_settings import EDITORS, editor_settings
 
 ROOT = Path(__file__).resolve().parents[2]

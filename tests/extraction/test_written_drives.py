@@ -39,7 +39,7 @@ def test_the_same_verdicts(road, book, form, tmp_path, capsys):
         pytest.importorskip("pyarrow", reason="needs pyarrow: pip install 'rulec[parquet]'")
     status, expected = verdicts(capsys, road, "-r", book)
     file = tmp_path / f"drives.{form}"
-    assert main(["traces", road, "--recorded", "-r", book, "-o", str(file)]) == 0
+    assert main(["maneuvers", "--traces", road, "--recorded", "-r", book, "-o", str(file)]) == 0
     assert capsys.readouterr().out == f"wrote 3 drives to {file}\n"
     main(["verify", str(file), "-r", book, "--json"])
     found = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
@@ -54,7 +54,7 @@ def test_the_same_verdicts(road, book, form, tmp_path, capsys):
 
 def test_one_ego(road, tmp_path, capsys):
     file = tmp_path / "drives.jsonl"
-    assert main(["traces", road, "--recorded", "--ego", "4", "-o", str(file)]) == 0
+    assert main(["maneuvers", "--traces", road, "--recorded", "--ego", "4", "-o", str(file)]) == 0
     (line,) = file.read_text().splitlines()
     trace = json.loads(line)
     assert (trace["id"], trace["step_s"]) == ("4", 0.1)
@@ -69,7 +69,7 @@ def test_one_ego(road, tmp_path, capsys):
 
 def test_a_drive_can_be_drawn(road, tmp_path, capsys):
     file, picture = tmp_path / "drives.jsonl", tmp_path / "drive.svg"
-    main(["traces", road, "--recorded", "-r", "esterle2019", "-o", str(file)])
+    main(["maneuvers", "--traces", road, "--recorded", "-r", "esterle2019", "-o", str(file)])
     arguments = ["-r", "esterle2019", "--trace", "4", "-o", str(picture)]
     assert main(["draw", "trace", str(file), *arguments]) == 0
     assert ">position(3)<" in picture.read_text()
@@ -78,10 +78,19 @@ def test_a_drive_can_be_drawn(road, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["traces", "FILE", "-o", "-", "--recorded", "--ego", "44"], "no vehicle `44` that drives"),
-        (["traces", "FILE", "-o", "-", "--recorded", "--step", "1"], "--step is for maneuvers"),
-        (["traces", "FILE", "-o", "-", "--as-recorded"], "add --recorded"),
-        (["traces", "FILE", "-o", "-", "--recorded", "--assume", "wet=true"], "needs a rulebook"),
+        (
+            ["maneuvers", "--traces", "FILE", "-o", "-", "--recorded", "--ego", "44"],
+            "no vehicle `44` that drives",
+        ),
+        (
+            ["maneuvers", "--traces", "FILE", "-o", "-", "--recorded", "--step", "1"],
+            "--step is for maneuvers",
+        ),
+        (["maneuvers", "--traces", "FILE", "-o", "-", "--as-recorded"], "add --recorded"),
+        (
+            ["maneuvers", "--traces", "FILE", "-o", "-", "--recorded", "--assume", "wet=true"],
+            "needs a rulebook",
+        ),
         (["verify", "FILE", "-r", "vienna", "--ego", "5x"], "there is no vehicle `5x` that drives"),
         (
             ["verify", "FILE", "-r", "vienna", "--assume", "wet"],

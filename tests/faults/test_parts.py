@@ -10,7 +10,7 @@ import pytest
 
 import rulec
 from rulec.api.rulebook_compilation import machines
-from rulec.cli.commands.fleet import command as fleet
+from rulec.cli.commands.traffic.fleet import command as fleet
 from rulec.cli.main import main
 from rulec.diagnostics import RulecError
 from rulec.recordings import map_files, recording_files
@@ -326,7 +326,7 @@ def test_a_fault_that_no_verb_reports_still_ends_with_2(monkeypatch, capsys):
     from rulec.diagnostics.fault_messages import fault_of
 
     monkeypatch.setattr(
-        "rulec.cli.commands.formats.command.callback", lambda **_: fault_of(KeyError("unsaid"))
+        "rulec.cli.commands.reading.formats.command.callback", lambda **_: fault_of(KeyError("unsaid"))
     )
-    assert main(["formats"]) == 2
+    assert main(["list", "formats"]) == 2
     assert "KeyError 'unsaid'" in capsys.readouterr().err

@@ -101,7 +101,7 @@ def test_on_traces(monkeypatch, ends, copies):
 def test_the_command_names_it_and_ends_with_2(monkeypatch, capsys, ends):
     rule = PAPER.rules[0].name
     planted_in_runs(monkeypatch, PAPER, rule)
-    monkeypatch.setattr("rulec.cli.commands.verify.read_machines", lambda *_: PAPER)
+    monkeypatch.setattr("rulec.cli.commands.traffic.verify.read_machines", lambda *_: PAPER)
     assert main(["verify", SAMPLE, "-r", "esterle2019", "--json", "--end", ends]) == 2
     out, err = capsys.readouterr()
     for line in map(json.loads, out.splitlines()):
@@ -114,7 +114,7 @@ def test_the_command_names_it_and_ends_with_2(monkeypatch, capsys, ends):
 
 def test_the_traceback_is_there_on_request(monkeypatch, capsys):
     planted_in_runs(monkeypatch, PAPER, PAPER.rules[0].name)
-    monkeypatch.setattr("rulec.cli.commands.verify.read_machines", lambda *_: PAPER)
+    monkeypatch.setattr("rulec.cli.commands.traffic.verify.read_machines", lambda *_: PAPER)
     monkeypatch.setenv("RULEC_TRACEBACK", "1")
     assert main(["verify", SAMPLE, "-r", "esterle2019"]) == 2
     assert "Traceback" in capsys.readouterr().err

@@ -32,7 +32,7 @@ KEPT = {
 """At most ten of them stay, with their reasons."""
 
 REPEATED_MODULES = {
-    "maneuvers": "cli/commands has a file for each verb",
+    "maneuvers": "cli/commands has a file for each command",
     "tree": "likewise",
     "verify": "likewise",
 }

@@ -195,7 +195,9 @@ def test_examples_in_rulebooks_are_complete(book):
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_rulec_writes_says_how_it_ends(kind, tmp_path, capsys):
     path, again = tmp_path / f"t.{kind}", tmp_path / f"again.{kind}"
-    assert main(["traces", "s1", "--step", "1", "--first", "3", "-o", str(path)]) == 0
+    assert (
+        main(["maneuvers", "--traces", "s1", "--step", "1", "--first", "3", "-o", str(path)]) == 0
+    )
     capsys.readouterr()
     ways = list(rulec.read_traces(path))
     assert [trace.ends for trace in ways] == ["complete"] * 3

@@ -108,7 +108,7 @@ def test_table_v_by_counting(scenario, step, capsys):
 )
 def test_table_v_by_enumerating(scenario, step, capsys, tmp_path):
     file = str(tmp_path / "traces.jsonl")
-    assert main(["traces", scenario, "--step", step, "-o", file]) == 0
+    assert main(["maneuvers", "--traces", scenario, "--step", step, "-o", file]) == 0
     capsys.readouterr()
     _, _, traces, satisfying = TABLE_V[scenario, step]
     status = main(["verify", file, "--rulebook", "esterle2019", "--json"])

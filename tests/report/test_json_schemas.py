@@ -9,7 +9,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from rulec.cli.main import main, rulec
-from rulec.cli.verb_table import VERBS
+from rulec.cli.verb_table import COMMANDS, called
 from support.builders.road_scenes import CHILD_AT_THE_KERB
 from tools.json_schemas import SCHEMAS
 
@@ -47,12 +47,15 @@ DOCUMENTS = [
     ("findings", ["check", "WRONG", "--output-format", "json"]),
     ("findings", ["check", "esterle2019", "--output-format", "json"]),
     ("findings", ["analyze", "CONFLICT", "--output-format", "json"]),
-    ("audit", ["audit", "de", "--output-format", "json"]),
-    ("audit", ["audit", "esterle2019", "--compare", "esterle2019", "--output-format", "json"]),
+    ("audit", ["show", "--audit", "de", "--output-format", "json"]),
+    (
+        "audit",
+        ["show", "--audit", "esterle2019", "--compare", "esterle2019", "--output-format", "json"],
+    ),
     ("codes", ["explain", "R0101", "--output-format", "json"]),
     ("diff", ["diff", "de", "fr", "--rule", "rail*", "--output-format", "json"]),
     ("matrix", ["diff", "--all", "de", "fr", "--rule", "rail*", "--output-format", "json"]),
-    ("formats", ["formats", "--json"]),
+    ("formats", ["list", "formats", "--json"]),
     ("list", ["list", "--json"]),
     ("list", ["list", "codes", "--json"]),
     ("rules", ["list", "rules", "esterle2019", "--json"]),
@@ -65,14 +68,14 @@ DOCUMENTS = [
     ),
     ("maneuvers", ["maneuvers", "KERB", "-r", "esterle2019", "--json", "--list", "9", "--worlds"]),
     ("maneuvers", ["maneuvers", RECORDING, "--ego", "g.0", "-r", "esterle2019", "--json"]),
-    ("proofs", ["verify-compiled", "COMPILED", "--json"]),
+    ("proofs", ["compile", "--check", "COMPILED", "--json"]),
     ("rates", ["rates", "FOUND", "--by", "country", "--json"]),
     ("show", ["show", "esterle2019", "--json"]),
     ("show", ["show", "esterle2019", "R1", "--json"]),
     ("test", ["test", "esterle2019", "--output-format", "json"]),
     ("test", ["test", "FAILING", "--coverage", "--output-format", "json"]),
-    ("tree", ["tree", "de", "--json"]),
-    ("tree", ["tree", "--json"]),
+    ("tree", ["show", "--tree", "de", "--json"]),
+    ("tree", ["show", "--tree", "--json"]),
     ("words", ["explain", "beside", "vehicle", "near_lane_is_free", "--json"]),
 ]
 LINES = [
@@ -83,8 +86,11 @@ LINES = [
     ("verdict", ["verify", "BROKEN", "-r", "esterle2019", "--json"]),
     ("verdict", ["verify", RECORDING, "-r", "de", "--json", "--explain", "1"]),
     ("state", ["monitor", "esterle2019", "--json"]),
-    ("envelope", ["envelopes", "s1", "-r", "esterle2019", "-o", "-", "--format", "jsonl"]),
-    ("trace", ["traces", "s1", "--first", "5", "-o", "-", "--format", "jsonl"]),
+    (
+        "envelope",
+        ["maneuvers", "--envelopes", "s1", "-r", "esterle2019", "-o", "-", "--format", "jsonl"],
+    ),
+    ("trace", ["maneuvers", "--traces", "s1", "--first", "5", "-o", "-", "--format", "jsonl"]),
 ]
 
 
@@ -167,7 +173,7 @@ def test_a_compiled_rulebook_and_a_saved_monitor_keep_to_theirs(run, monkeypatch
     validator("compiled").validate(compiled)
     assert compiled["version"] == 6
     path = str(tmp_path / "out" / "esterle2019.json")
-    proofs = json.loads(run(["verify-compiled", path, "--json"]))
+    proofs = json.loads(run(["compile", "--check", path, "--json"]))
     validator("proofs").validate(proofs)
     assert [rule["proved"] for rule in proofs["files"][0]["rules"]] == [True] * 3
     saved = tmp_path / "saved.json"
@@ -188,8 +194,8 @@ def writes_json(verb):
 
 
 def test_no_verb_is_forgotten():
-    validated = {arguments[0] for _, arguments in [*DOCUMENTS, *LINES]}
-    assert {verb for verb in VERBS if writes_json(verb)} == validated
+    validated = {called(arguments)[0] for _, arguments in [*DOCUMENTS, *LINES]}
+    assert {command for command in COMMANDS if writes_json(command)} == validated
 
 
 def test_no_schema_is_forgotten():

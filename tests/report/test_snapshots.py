@@ -74,10 +74,18 @@ TEXTS = {
     "automaton": ["show", "esterle2019", "R3", "--automaton", "text"],
     "automaton_dot": ["show", "esterle2019", "R3", "--automaton", "dot"],
     "automaton_svg": ["show", "esterle2019", "R3", "--automaton", "svg"],
-    "audit": ["audit", "esterle2019", "--all"],
-    "audit_markdown": ["audit", "UNLIKE", "--output-format", "markdown", "--at", "2020-01-01"],
-    "tree": ["tree", "UNLIKE", "--at", "2020-01-01", "--all"],
-    "tree_all": ["tree"],
+    "audit": ["show", "--audit", "esterle2019", "--all"],
+    "audit_markdown": [
+        "show",
+        "--audit",
+        "UNLIKE",
+        "--output-format",
+        "markdown",
+        "--at",
+        "2020-01-01",
+    ],
+    "tree": ["show", "--tree", "UNLIKE", "--at", "2020-01-01", "--all"],
+    "tree_all": ["show", "--tree"],
     "explain": ["explain", "R0101"],
 }
 

@@ -168,7 +168,7 @@ def test_no_line_of_a_file_that_is_no_source_is_shown(secret, tree, capsys):
     for form in ("full", "json", "sarif", "github", "concise"):
         for argument in arguments:
             main(["check", *argument, "--output-format", form])
-    for verb in (["fmt"], ["test"], ["show"], ["tree"], ["audit"]):
+    for verb in (["fmt"], ["test"], ["show"], ["show", "--tree"], ["show", "--audit"]):
         main([*verb, "./b.rules"])
     out, err = capsys.readouterr()
     assert "hunter2" not in out + err

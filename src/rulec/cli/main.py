@@ -14,7 +14,15 @@ from rulec.cache.keeping import keeping
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.interruption import is_interrupted
 from rulec.cli.options.invocation import Invocation, invocation_of
-from rulec.cli.verb_table import VERB_GROUPS, VERBS, WITH_COMPILED
+from rulec.cli.verb_table import (
+    COMMANDS,
+    FORMER,
+    OTHER_QUESTIONS,
+    VERB_GROUPS,
+    VERBS,
+    WITH_COMPILED,
+    called,
+)
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.argument_names import naming_options
 from rulec.diagnostics.fault_messages import faults_found
@@ -65,42 +73,56 @@ _QUIET = click.Option(
 
 
 class _Verbs(click.Group):
-    """A group that imports a verb's file only when that verb is called."""
+    """A group that imports a command's file only when that command is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(VERBS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        if cmd_name not in VERBS:
+        if cmd_name not in COMMANDS:
             return None
-        module = cmd_name.replace("-", "_")
+        module, about = COMMANDS[cmd_name]
         command: click.Command = import_module(f"rulec.cli.commands.{module}").command
-        command.short_help = VERBS[cmd_name]  # also shown by shell completion
+        command.short_help = about  # also shown by shell completion
         command.name = cmd_name  # in the files every command is called `command`
+        if COLOR in command.params:
+            return command
         if cmd_name in WITH_COMPILED:
             kinds = command.commands.values() if isinstance(command, click.Group) else (command,)
             for verb in kinds:
-                if _REQUIRE_SIGNED not in verb.params:
-                    verb.params.append(_REQUIRE_SIGNED)
-        if COLOR not in command.params:
-            command.params += [COLOR, _QUIET]
+                verb.params.append(_REQUIRE_SIGNED)
+        command.params += [
+            click.Option([word], is_flag=True, expose_value=False, help=_other(cmd_name, word))
+            for word in OTHER_QUESTIONS.get(cmd_name, ())
+            if word.startswith("--")
+        ]
+        command.params += [COLOR, _QUIET]
         return command
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        if args[0] not in VERBS and not args[0].startswith("-"):
+        if args[0].startswith("-"):
+            return super().resolve_command(ctx, args)
+        if args[0] not in VERBS and args[0] not in FORMER:
             # Late import, only after an error: examples (2 ms).
             from rulec.cli.usage_help import unknown_verb
 
             ctx.fail(unknown_verb(args[0]))
-        return super().resolve_command(ctx, args)
+        if args[0] in FORMER and not ctx.resilient_parsing:
+            _say(f"`rulec {args[0]}` is now called `rulec {FORMER[args[0]]}`")
+        name, arguments = called(args)
+        return name, self.get_command(ctx, name), arguments
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         width = max(map(len, VERBS))
         for title, verbs in VERB_GROUPS.items():
             with formatter.section(title):
                 formatter.write_dl([(verb.ljust(width), about) for verb, about in verbs.items()])
+
+
+def _other(verb: str, word: str) -> str:
+    return f"{COMMANDS[f'{verb} {word}'][1]} It has options of its own: `rulec help {verb} {word}`."
 
 
 @click.command(

@@ -7,7 +7,7 @@ from inspect import cleandoc
 
 import click
 
-from rulec.cli.verb_table import VERB_GROUPS
+from rulec.cli.verb_table import COMMANDS, VERB_GROUPS
 from rulec.version import __version__
 
 
@@ -22,10 +22,10 @@ def manual_page(root: click.Context) -> str:
     lines += [f".B rulec\n{_plain(_usage(root))}", ".SH OPTIONS", *_options(root)]
     for title, verbs in VERB_GROUPS.items():
         lines.append(f".SH {_plain(title.upper())}")
-        for verb in verbs:
-            command = root.command.get_command(root, verb)
-            assert command is not None, "the table has verbs only"
-            lines += _command(click.Context(command, root, verb))
+        for name in (name for name in COMMANDS if name.split()[0] in verbs):
+            command = root.command.get_command(root, name)
+            assert command is not None, "the table has commands only"
+            lines += _command(click.Context(command, root, name))
     lines += [".SH EXIT STATUS", _plain(_EXIT_STATUS)]
     lines += [".SH ENVIRONMENT"]
     for name, meaning in _ENVIRONMENT.items():

@@ -8,17 +8,16 @@ from collections.abc import Iterator
 import click
 
 from rulec.cli.options.invocation import invocation_of
-from rulec.cli.verb_table import VERBS
+from rulec.cli.verb_table import FORMER, OTHER_QUESTIONS, VERBS
 from rulec.diagnostics import nearest_name
 
-_TRACES = "`rulec traces s2 -r de -o traces.jsonl` writes some to try"
-_RECORDINGS = "`rulec formats` lists the formats of recorded traffic"
+_TRACES = "`rulec maneuvers --traces s2 -r de -o traces.jsonl` writes some to try"
+_RECORDINGS = "`rulec list formats` lists the formats of recorded traffic"
 
 EXAMPLES = {
-    "audit": ("rulec audit de",),
     "analyze": ("rulec analyze de",),
     "compile": ("rulec compile de -o build/de",),
-    "completion": ("rulec completion bash",),
+    "compile --check": ("rulec compile --check build/de/de.json", "`rulec compile` writes one"),
     "diff": ("rulec diff de nl",),
     "doc": ("rulec doc de -o de.html",),
     "draw drive": ("rulec draw drive drive.xml -r de -o drive.svg", _RECORDINGS),
@@ -26,18 +25,19 @@ EXAMPLES = {
     "draw scene": ("rulec draw scene s2 -r de -o scene.svg",),
     "draw trace": ("rulec draw trace traces.jsonl -r de -o trace.svg", _TRACES),
     "draw": ("rulec draw scene s2 -r de -o scene.svg",),
-    "envelopes": ("rulec envelopes s2 -r de -o envelopes.csv",),
     "explain": ("rulec explain R0207",),
     "find": ("rulec find '(v: vehicle) gap(v) <= 10 m' traces.jsonl", _TRACES, _RECORDINGS),
     "fleet": ("rulec fleet drives -r de -o findings", _RECORDINGS),
+    "help --completion": ("rulec help --completion bash",),
+    "maneuvers --envelopes": ("rulec maneuvers --envelopes s2 -r de -o envelopes.csv",),
+    "maneuvers --traces": ("rulec maneuvers --traces s2 -r de -o traces.jsonl",),
     "maneuvers": ("rulec maneuvers s2 -r de", "`rulec list scenarios` shows those that ship"),
     "monitor": ("rulec monitor de < states.jsonl",),
     "new": ("rulec new belgium",),
     "rates": ("rulec rates findings.csv", "`rulec verify --exposure -o findings.csv` writes one"),
+    "show --audit": ("rulec show --audit de",),
     "show": ("rulec show de bus_leaving",),
-    "traces": ("rulec traces s2 -r de -o traces.jsonl",),
     "verify": ("rulec verify traces.jsonl -r de", _TRACES, _RECORDINGS),
-    "verify-compiled": ("rulec verify-compiled build/de/de.json", "`rulec compile` writes one"),
 }
 """For each verb an example command, and where its input comes from."""
 
@@ -47,9 +47,9 @@ _ONE_EACH = {
     "draw graph": _EACH_SCENARIO.format("draw graph", "svg"),
     "draw scene": _EACH_SCENARIO.format("draw scene", "svg"),
     "draw trace": "`for f in *.jsonl; do rulec draw trace $f -r de -o $f.svg; done`",
-    "envelopes": _EACH_SCENARIO.format("envelopes", "csv"),
+    "maneuvers --envelopes": _EACH_SCENARIO.format("maneuvers --envelopes", "csv"),
+    "maneuvers --traces": _EACH_SCENARIO.format("maneuvers --traces", "jsonl"),
     "monitor": "give each the states: `tee >(rulec monitor fr) < states.jsonl | rulec monitor de`",
-    "traces": _EACH_SCENARIO.format("traces", "jsonl"),
 }
 """For each verb with one question and one output file, how to ask several questions."""
 
@@ -59,6 +59,12 @@ _OF_OTHER_VERBS = {
     "--lock": "`rulec check` has it",
     "--rule": "`rulec verify`, `rulec test`, `rulec show` and `rulec diff` have it",
     "--watch": "`rulec check` and `rulec test` have it",
+    **{
+        word: f"`rulec {verb}` has it"
+        for verb, words in OTHER_QUESTIONS.items()
+        for word in words
+        if verb != "compile"
+    },
 }
 """Options that users may look for at the wrong verb."""
 
@@ -202,7 +208,8 @@ def _rulebook_hint(context: click.Context) -> tuple[str, ...]:
 
 def unknown_verb(name: str) -> str:
     """The message for an unknown verb."""
-    verb = _OTHER_WORDS.get(name.casefold()) or nearest_name(name, VERBS)
+    near = nearest_name(name, (*VERBS, *FORMER))
+    verb = _OTHER_WORDS.get(name.casefold()) or FORMER.get(near or "", near)
     way_out = f"did you mean `{verb}`?" if verb else "`rulec help` lists them"
     # Late import, only after an error: file search and its messages (3 ms).
     from rulec.rulebook.files.search_path import available_rulebooks

@@ -113,7 +113,7 @@ def no_fleet_input(path: str, why: str = "") -> RulecError:
         + (f": {why}" if why else ""),
         help=what_reads(path)
         or "write traces as Parquet, with the columns that docs/traces.md has, or give a "
-        "recording; `rulec formats` lists what is read",
+        "recording; `rulec list formats` lists what is read",
     )
 
 

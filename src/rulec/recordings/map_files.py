@@ -21,7 +21,7 @@ from rulec.recordings.recording_format import Glance, when_called
 if TYPE_CHECKING:
     from rulec.recordings.road_map import RoadMap
 
-MAP = FileFormat("a map", "`rulec formats` lists the maps that are read")
+MAP = FileFormat("a map", "`rulec list formats` lists the maps that are read")
 
 
 @dataclass(frozen=True, slots=True)

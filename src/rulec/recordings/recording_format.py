@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _HEAD_BYTES = 4096
 
 RECORDING = FileFormat(
-    "recorded traffic", "`rulec formats` lists the formats that are read, and how files look"
+    "recorded traffic", "`rulec list formats` lists the formats that are read, and how files look"
 )
 
 

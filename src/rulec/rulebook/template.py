@@ -110,7 +110,8 @@ def _changes(loaded: Loaded) -> Iterator[str]:
         yield ""
     options = _options(loaded)
     if options:
-        yield f"# What laws differ in; `rulec tree {base.name} --all` has numbers to set, too."
+        more = f"`rulec show --tree {base.name} --all` has numbers to set, too."
+        yield f"# What laws differ in; {more}"
         yield from (*options, "")
     if base.rules:
         yield "# A rule becomes your own law by its article, is left out, or may yield, as these:"

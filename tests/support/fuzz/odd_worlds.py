@@ -120,7 +120,7 @@ def odd_worlds(place, pick):
         case 2:
             return ["maneuvers", file, "-r", "esterle2019"]
         case 3 | 4:
-            return ["traces", file, "--recorded", "-o", str(folder / "made.jsonl")]
+            return ["maneuvers", "--traces", file, "--recorded", "-o", str(folder / "made.jsonl")]
         case 5:
             out = str(folder / "fleet")
             return ["fleet", file, "-r", "esterle2019", "-o", out, "-j", "1"]

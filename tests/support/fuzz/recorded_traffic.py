@@ -46,11 +46,19 @@ def recordings(place, pick):
             drawn = str(place.folder / pick.choice(("drive.svg", "drive.html")))
             return ["draw", "drive", file, "-r", book, "-o", drawn, *roads]
         case 2:
-            return ["audit", str(place.folder / "listed.rules"), "--source", file, *roads]
+            return ["show", "--audit", str(place.folder / "listed.rules"), "--source", file, *roads]
         case 3:
             return ["maneuvers", file, "-r", "esterle2019", *roads]
         case 4:
-            return ["traces", file, "--recorded", "-o", str(place.folder / "made.jsonl"), *roads]
+            return [
+                "maneuvers",
+                "--traces",
+                file,
+                "--recorded",
+                "-o",
+                str(place.folder / "made.jsonl"),
+                *roads,
+            ]
         case _:
             return ["verify", file, "-r", book, *roads, *pick.choice(([], ["--json"]))]
 

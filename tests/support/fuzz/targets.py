@@ -10,7 +10,8 @@ import click
 import pyarrow.csv
 import pyarrow.parquet
 
-from rulec.cli.main import VERBS, main, rulec
+from rulec.cli.main import main, rulec
+from rulec.cli.verb_table import COMMANDS
 from support.builders.compiled_files import sealed
 from support.fuzz.mutators import STRANGE_WORDS, mutated_json, mutated_words
 from support.fuzz.odd_worlds import odd_worlds
@@ -159,11 +160,11 @@ def sources(place, pick):
     file = place.write("tried.rules", text)
     match pick.randrange(12):
         case 0:
-            return ["tree", file]
+            return ["show", "--tree", file]
         case 1:
             return ["show", file, "--output-format", "json"]
         case 2:
-            return ["audit", file]
+            return ["show", "--audit", file]
         case 3:
             return ["doc", file, "-o", str(place.folder / "doc.html")]
         case 4:
@@ -197,7 +198,7 @@ def compiled(place, pick):
     file = place.write("tried.json", text)
     match pick.randrange(4):
         case 0:
-            return ["verify-compiled", file]
+            return ["compile", "--check", file]
         case 1:
             return ["show", file]
         case _:
@@ -229,7 +230,7 @@ def laws(place, pick):
     book = place.write("tried.rules", mutated_words(LISTED, pick, [LISTED, LAW]))
     book = pick.choice((book, str(place.folder / "listed.rules")))
     now = ["--law-now", str(place.folder / "law.md")] if pick.random() < 0.5 else []
-    return ["audit", book, "--law", file, *now, *pick.choice(([], ["--json"]))]
+    return ["show", "--audit", book, "--law", file, *now, *pick.choice(([], ["--json"]))]
 
 
 def listings(place, pick):
@@ -238,7 +239,7 @@ def listings(place, pick):
     base = str(place.folder / "base.rules")
     match pick.randrange(8):
         case 0:
-            return ["audit", file, "--json"]
+            return ["show", "--audit", file, "--json"]
         case 1:
             return [
                 "diff",
@@ -254,7 +255,7 @@ def listings(place, pick):
         case 4:
             return ["analyze", file, "-j", "1"]
         case 5:
-            return ["tree", file]
+            return ["show", "--tree", file]
         case _:
             return ["check", file]
 
@@ -262,7 +263,7 @@ def listings(place, pick):
 def saved_audits(place, pick):
     """Audits that new ones are compared with."""
     file = place.write("tried.json", mutated_json(place.text("audit.json"), pick))
-    return ["audit", str(place.folder / "listed.rules"), "--compare", file]
+    return ["show", "--audit", str(place.folder / "listed.rules"), "--compare", file]
 
 
 def saved_monitors(place, pick):
@@ -333,14 +334,14 @@ def formulas(place, pick):
 
 def arguments(place, pick):
     """Words after a verb."""
-    verb = pick.choice(list(VERBS))
+    verb = pick.choice(list(COMMANDS))
     command = rulec.get_command(click.Context(rulec), verb)
     # Who watches does so until somebody interrupts it.
     options = [name for one in command.params for name in one.opts if name != "--watch"]
     files = ["lane.rules", "traces.jsonl", "out/lane.json", "scenario.toml", "books", "nowhere"]
     words = [*options, *(str(place.folder / name) for name in files), "esterle2019", "1", "-"]
     words += [word.replace("\0", "") for word in STRANGE_WORDS]
-    return [verb, *(pick.choice(words) for _ in range(pick.randrange(6)))]
+    return [*verb.split(), *(pick.choice(words) for _ in range(pick.randrange(6)))]
 
 
 TARGETS = {

@@ -10,8 +10,8 @@ NOT_AN_AUDIT = Code(
     why="An audit can be compared with another rulebook, or with a JSON file written by `rulec "
     "audit`. This file is something else, or is incomplete.",
     bad="echo '{}' > old.json\nrulec audit esterle2019 --compare old.json",
-    good="rulec audit esterle2019 --output-format json > old.json\n"
-    "rulec audit esterle2019 --compare old.json",
+    good="rulec show --audit esterle2019 --output-format json > old.json\n"
+    "rulec show --audit esterle2019 --compare old.json",
     kind="command",
 )
 
@@ -23,6 +23,6 @@ NO_ARTICLES = Code(
     "`Article 5`, each after an empty line.",
     bad="echo 'Drive with care.' > act.md\nrulec audit de --law act.md",
     good="printf '### § 5 Overtaking\\n\\n(1) Overtake on the left.\\n' > act.md\n"
-    "rulec audit de --law act.md",
+    "rulec show --audit de --law act.md",
     kind="command",
 )

@@ -19,7 +19,7 @@ class _File(msgspec.Struct):
 
 
 def read_audits(path: Path) -> tuple[Audit, ...]:
-    """Read the output of ``rulec audit --output-format json``. Raises R0701 or R0705."""
+    """Read the output of ``rulec show --audit --output-format json``. Raises R0701 or R0705."""
     with opened(path) as stream:
         data = read_whole(stream, path, MAX_LAW_BYTES).removeprefix(codecs.BOM_UTF8)
     try:
@@ -34,5 +34,5 @@ def _no_audit(path: Path, reason: str) -> RulecError:
     return NOT_AN_AUDIT.error(
         SourceLocation(str(path)),
         f"this is not an audit{reason}",
-        help="write one with `rulec audit RULEBOOK --output-format json`",
+        help="write one with `rulec show --audit RULEBOOK --output-format json`",
     )

@@ -91,7 +91,7 @@ recording_options = combined(
     [
         _roads_options,
         input_format_option(
-            _RECORDING_FORMATS, f"recorded traffic, one of `rulec formats`.  {_SHOWN}"
+            _RECORDING_FORMATS, f"recorded traffic, one of `rulec list formats`.  {_SHOWN}"
         ),
     ]
 )
@@ -102,7 +102,7 @@ recording_or_trace_options = combined(
         _roads_options,
         input_format_option(
             (*_RECORDING_FORMATS, *TRACE_FORMATS),
-            "traces (jsonl, csv or parquet) or of recorded traffic (one of `rulec formats`).  "
+            "traces (jsonl, csv or parquet) or of recorded traffic (one of `rulec list formats`).  "
             "[default: detected from the file; for traces its ending, else jsonl]",
             former=["--format"],
         ),

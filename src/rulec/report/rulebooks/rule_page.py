@@ -170,7 +170,8 @@ def _untold(rule: Rule) -> str:
     untold = [name for name in names if name not in tellable]
     if not untold or len(untold) == len(names):
         return ""
-    return f"{', '.join(untold)}: by no format of recordings (rulec audit --source says which do)"
+    by_none = "by no format of recordings (rulec show --audit --source says which do)"
+    return f"{', '.join(untold)}: {by_none}"
 
 
 def in_english(phrase: Phrase, width: int) -> str:

@@ -1,6 +1,7 @@
 """Finds the rules of a text that lack a provision or an example, without parsing it.
 
-This serves for a remark on files without mistakes; `rulec audit` and `rulec test` give details.
+This serves for a remark on files without mistakes; `rulec show --audit` and `rulec test` give
+details.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""``rulec verify-compiled``: prove that compiled tables do what their formulas say."""
+"""``rulec compile --check``: prove that compiled tables do what their formulas say."""
 
 from __future__ import annotations
 

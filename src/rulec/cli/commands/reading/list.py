@@ -27,7 +27,7 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 
 
 @click.command(cls=Verb)
-@click.argument("kind", type=click.Choice([*KINDS, "rules"]), required=False)
+@click.argument("kind", type=click.Choice([*KINDS, "rules", "formats"]), required=False)
 @shared.rulebooks_argument("[RULEBOOK]...", required=False)
 @output_options(endings_of("text", "json"), "the list")
 @shared.topic_option("With `rules`: list only those on a topic")
@@ -42,6 +42,7 @@ def command(
     """List everything that can be named, with its title; without KIND all kinds except codes.
 
     `rules` are those of RULEBOOKs, by default of all: by topic, with the books that have each.
+    `formats`, of recorded traffic and maps, have options of their own: `rulec help list formats`.
 
     Exit status: 0 done, 2 a rulebook could not be read.
     """

@@ -1,4 +1,4 @@
-"""``rulec tree``: the inheritance of a rulebook's items, and which rulebooks extend which."""
+"""``rulec show --tree``: what a rulebook inherits, and which rulebooks extend which."""
 
 from __future__ import annotations
 

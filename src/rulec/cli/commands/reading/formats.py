@@ -1,4 +1,4 @@
-"""``rulec formats``: the formats of recordings and maps, and the signals they can provide."""
+"""``rulec list formats``: the formats of recordings and maps, and the signals they can provide."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def command(
     """List the supported formats of recorded traffic and of maps, or describe NAME.
 
     With --words also the words that each format can provide to a rulebook. A particular file may
-    provide fewer; `rulec audit R --source FILE` lists those.
+    provide fewer; `rulec show --audit R --source FILE` lists those.
     """
     # Late import, not for --help: signals derived from recordings, and msgspec (250 ms).
     from rulec.report.recordings import format_listing

@@ -1,4 +1,4 @@
-"""``rulec traces``: write maneuvers of a scenario, or recorded drives, as traces."""
+"""``rulec maneuvers --traces``: write maneuvers of a scenario, or recorded drives, as traces."""
 
 from __future__ import annotations
 

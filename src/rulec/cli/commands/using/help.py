@@ -8,7 +8,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from rulec.cli.options.verb_class import Verb
-from rulec.cli.verb_table import VERBS
+from rulec.cli.verb_table import FORMER, VERBS, called
 from rulec.diagnostics import nearest_name
 from rulec.report.findings.code_registry import code_named
 from rulec.settings import search_path
@@ -22,12 +22,15 @@ def _verbs(_: click.Context, __: click.Parameter, incomplete: str) -> list[Compl
     ]
 
 
-@click.command(cls=Verb)
+@click.command(cls=Verb, context_settings={"ignore_unknown_options": True})
 @click.argument("words", nargs=-1, metavar="[COMMAND]", shell_complete=_verbs)
 @click.pass_context
 def command(context: click.Context, words: tuple[str, ...]) -> None:
     """Show the help of COMMAND, such as `check` or `draw drive`; without COMMAND list all."""
     here = context.find_root()
+    if words and words[0] in (*VERBS, *FORMER):
+        name, rest = called(words)
+        words = (name, *rest)
     for word in words:
         known = here.command.list_commands(here) if isinstance(here.command, click.Group) else []
         subcommand = None

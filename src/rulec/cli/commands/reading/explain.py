@@ -13,7 +13,7 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_codes
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import put_answer, width_of
-from rulec.cli.verb_table import VERBS
+from rulec.cli.verb_table import FORMER, VERBS
 from rulec.diagnostics import any_of, first_of, nearest_name
 from rulec.diagnostics.code import Code
 from rulec.report.findings import code_registry
@@ -128,7 +128,7 @@ def _way_out(name: str) -> str:
     places = _places()
     if Path(name).suffix == SUFFIX and Path(name).is_file():
         return f"it is a file, which `rulec show {name}` explains"
-    if name in VERBS:
+    if name in VERBS or name in FORMER:
         return f"it is a command, which `rulec help {name}` explains"
     if near := nearest_name(name.upper(), code_registry.all_codes()):
         return f"did you mean `{near}`?"

@@ -181,8 +181,8 @@ def drive(
 ) -> None:
     """Draw a drive of the recording FILE from above: the road, all traffic, the violations.
 
-    FILE is recorded traffic, in one of `rulec formats`. A picture shows the moment of the first
-    violation; an HTML page plays the whole drive and lists all violations.
+    FILE is recorded traffic, in one of `rulec list formats`. A picture shows the moment of the
+    first violation; an HTML page plays the whole drive and lists all violations.
     """
     # Late import, not for --help: recordings, verdicts and pictures (400 ms).
     from rulec.api.pictures import drive_drawing

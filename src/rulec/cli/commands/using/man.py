@@ -1,4 +1,4 @@
-"""``rulec man``: all commands as a manual page."""
+"""``rulec help --man``: all commands as a manual page."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def command(context: click.Context, to: Output) -> None:
     """Write the manual page rulec(1), with every command and its options.
 
     \b
-    rulec man -o ~/.local/share/man/man1/rulec.1    for `man rulec`
-    rulec man | man -l -                            to read it at once
+    rulec help --man -o ~/.local/share/man/man1/rulec.1    for `man rulec`
+    rulec help --man | man -l -                            to read it at once
     """  # noqa: D301 - click reads the backspace
     put_answer(manual_page(context.find_root()), to)

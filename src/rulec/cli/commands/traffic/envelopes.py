@@ -1,4 +1,4 @@
-"""``rulec envelopes``: the bounds of maneuvers as a table."""
+"""``rulec maneuvers --envelopes``: the bounds of maneuvers as a table."""
 
 from __future__ import annotations
 

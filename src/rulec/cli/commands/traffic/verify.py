@@ -116,10 +116,10 @@ def command(
     Prints the violations of every trace and a summary; with --json one line per trace. A trace that
     cannot be judged is reported and does not stop the others.
 
-    FILE may also be recorded traffic in any format listed by `rulec formats`. Then the drive of
-    every vehicle is judged, and a table shows who violated what. A folder stands for all recordings
-    in it, at any depth, and a pattern such as `*.xml` for all files that match; several files get
-    one line each and a common table.
+    FILE may also be recorded traffic in any format listed by `rulec list formats`. Then the drive
+    of every vehicle is judged, and a table shows who violated what. A folder stands for all
+    recordings in it, at any depth, and a pattern such as `*.xml` for all files that match; several
+    files get one line each and a common table.
 
     With several rulebooks, as in -r de -r fr or -r laws/, everything is judged by each of them, and
     a table compares the results.
@@ -250,7 +250,7 @@ def _check_inputs(request: VerifyRequest) -> None:
                 check_readable(Path(path))
         raise click.UsageError(
             f"{option} is for recorded traffic, and no file looks like it; add `--input-format "
-            "tracks`, or another of `rulec formats`, to learn what is missing"
+            "tracks`, or another of `rulec list formats`, to learn what is missing"
         )
     if request.ends is not None and request.recordings:
         raise click.UsageError("--end is for traces; a recording is always cut.")

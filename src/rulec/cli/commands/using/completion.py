@@ -1,4 +1,4 @@
-"""``rulec completion``: the script that makes a shell complete rulec's commands."""
+"""``rulec help --completion``: the script that makes a shell complete rulec's commands."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ def command(context: click.Context, shell: str) -> None:
     """Print the script for SHELL: bash (4.4 or later), zsh or fish.
 
     \b
-    bash:  rulec completion bash > ~/.local/share/bash-completion/completions/rulec
-    zsh:   rulec completion zsh > "${fpath[1]}/_rulec"
-    fish:  rulec completion fish > ~/.config/fish/completions/rulec.fish
+    bash:  rulec help --completion bash > ~/.local/share/bash-completion/completions/rulec
+    zsh:   rulec help --completion zsh > "${fpath[1]}/_rulec"
+    fish:  rulec help --completion fish > ~/.config/fish/completions/rulec.fish
     """  # noqa: D301 - click reads the backspace
     kind = get_completion_class(shell)
     assert kind is not None, "these shells are click's own"

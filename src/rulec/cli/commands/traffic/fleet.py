@@ -66,8 +66,8 @@ def command(
     """Judge all drives in INPUT... and write the findings as Parquet files to DIR.
 
     INPUT is a Parquet table of traces, a Parquet table of tracks with a column `recording`,
-    recorded traffic in any format listed by `rulec formats`, a folder of such files, or a pattern.
-    The rows of a drive may be spread over several tables.
+    recorded traffic in any format listed by `rulec list formats`, a folder of such files, or a
+    pattern. The rows of a drive may be spread over several tables.
 
     DIR gets a manifest and a folder `book=HASH` with a file for each recording or piece of a table;
     it has a row for each drive, for each rule of the drive, and for each finding (docs/fleet.md).

@@ -1,4 +1,4 @@
-"""``rulec audit``: the basis of rulebooks."""
+"""``rulec show --audit``: the basis of rulebooks."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ _FOUND_WITH = {
     "--source",
     metavar="FILE|FORMAT",
     help="List which rules can be judged from a recording, or from files of a format (one of "
-    "`rulec formats`), and which words the other rules lack.",
+    "`rulec list formats`), and which words the other rules lack.",
 )
 @click.option(
     "--law",

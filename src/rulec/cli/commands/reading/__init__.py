@@ -1,0 +1,1 @@
+"""Commands to read and compare laws."""

@@ -1,0 +1,1 @@
+"""Commands to compile, and to look things up."""

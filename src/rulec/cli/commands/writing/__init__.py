@@ -1,0 +1,1 @@
+"""Commands to write rules."""
