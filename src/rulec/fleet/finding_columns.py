@@ -6,10 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 from typing import Any, Optional, TypeAlias
 
-import msgspec
-
 from rulec.report.findings import verdict_finding
-from rulec.report.json_document import JsonDocument
+from rulec.report.json_document import JsonDocument, made_class
 from rulec.trace.formats.arrow.parquet import arrow
 
 Cell: TypeAlias = "str | float | tuple[str, ...] | None"
@@ -36,19 +34,15 @@ items and a number is None.
 _IN_JSON: Mapping[type, Any] = {str: str, list: list[str]}
 """The types of columns that are never null."""
 
-FindingRowLine = msgspec.defstruct(
+FindingRowLine = made_class(
     "FindingRowLine",
-    [
-        (name, _IN_JSON.get(kind) or Optional[kind])  # noqa: UP045
+    {
+        name: _IN_JSON.get(kind) or Optional[kind]  # noqa: UP045
         for name, kind in COLUMNS.items()
-    ],
-    bases=(JsonDocument,),
-    namespace={
-        "__doc__": "A row of a drive, of a rule of it, or a finding.\n\n"
-        "See docs/rates.md; where one does not apply, a text is empty and a number null."
     },
-    frozen=True,
-    kw_only=True,
+    "A row of a drive, of a rule of it, or a finding.\n\n"
+    "See docs/rates.md; where one does not apply, a text is empty and a number null.",
+    JsonDocument,
 )
 """A row as a line of JSON."""
 

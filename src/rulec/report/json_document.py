@@ -80,6 +80,20 @@ def _inside(hint: Any) -> Inside | None:
     return lambda value: [make(item) for item in value] if value else value
 
 
+def made_class(
+    name: str, fields: Mapping[str, Any], about: str, base: type[msgspec.Struct] = JsonPart
+) -> Any:
+    """Make the class of a part that has these fields with their types."""
+    return msgspec.defstruct(
+        name,
+        [*fields.items()],
+        bases=(base,),
+        namespace={"__doc__": about},
+        frozen=True,
+        kw_only=True,
+    )
+
+
 def as_line(document: msgspec.Struct) -> str:
     """Write a document on one line."""
     return _ENCODER.encode(as_builtins(document))

@@ -6,13 +6,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Literal, get_type_hints
 
-import msgspec
-
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.monitoring.explain.margins import Margin
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged
-from rulec.report.json_document import JsonDocument
+from rulec.report.json_document import JsonDocument, made_class
 from rulec.report.text.terminal_text import cut
 from rulec.rulebook.rulebook_model import cited_law
 from rulec.value_display import short_repr
@@ -179,18 +177,13 @@ def time_in_words(finding: VerdictFinding) -> str:
     return f" at {at:g} s (from {finding.from_s:g} s to {finding.to_s:g} s)"
 
 
-_DOC = """A finding: a rule that is ``violated``, ``open`` or ``not_judged``.
-
-Fields that do not apply are null, an empty ``inherited_from`` means that the rule is the rulebook's
-own law.
-"""
-FindingLine = msgspec.defstruct(
+FindingLine = made_class(
     "FindingLine",
-    list(get_type_hints(VerdictFinding).items()),
-    bases=(JsonDocument,),
-    namespace={"__doc__": _DOC},
-    frozen=True,
-    kw_only=True,
+    get_type_hints(VerdictFinding),
+    "A finding: a rule that is ``violated``, ``open`` or ``not_judged``.\n\n"
+    "Fields that do not apply are null, an empty ``inherited_from`` means that the rule is the "
+    "rulebook's\nown law.\n",
+    JsonDocument,
 )
 """A finding in JSON."""
 _COLUMN_TYPES = {"tuple[str, ...]": list, "float | None": float}

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from rulec.rates.drive_counts import GroupKey
-from rulec.rates.rule_rates import Rate, ViolationRates
-from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
+from types import GenericAlias
+from typing import get_type_hints
+
+from rulec.rates.rule_rates import RuleRates, ViolationRates
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled, made_class
 
 
 class JudgedByData(JsonPart, frozen=True, kw_only=True):
@@ -17,49 +19,24 @@ class JudgedByData(JsonPart, frozen=True, kw_only=True):
     assumptions: str
 
 
-class RuleRatesData(JsonPart, frozen=True, kw_only=True):
-    """The rates of a rule in a group; see docs/rates.md."""
-
-    group: dict[str, str]
-    rulebook: str
-    rule: str
-    provision: str
-    strength: str
-    drives: int
-    hours: float
-    km: float | None
-    opportunities: int
-    perhaps_opportunities: int
-    exposed_h: float
-    perhaps_exposed_h: float
-    violated: int
-    perhaps_violated: int
-    per_hour: Rate | None
-    per_1000_km: Rate | None
-    per_opportunity: Rate | None
-
-
-class RatesDocument(JsonDocument, frozen=True, kw_only=True):
-    """The output of ``rulec rates --json``."""
-
-    by: tuple[GroupKey, ...]
-    drives: int
-    not_judged: int
-    judged_by: list[JudgedByData]
-    confidence: float
-    replicates: int
-    seed: int
-    rules: list[RuleRatesData]
+RuleRatesData = made_class(
+    "RuleRatesData",
+    {**get_type_hints(RuleRates), "group": dict[str, str]},
+    "The rates of a rule in a group; see docs/rates.md.",
+)
+_PARTS = {"judged_by": list[JudgedByData], "rules": GenericAlias(list, RuleRatesData)}
+RatesDocument = made_class(
+    "RatesDocument",
+    {**get_type_hints(ViolationRates), **_PARTS},
+    "The output of ``rulec rates --json``.",
+    JsonDocument,
+)
 
 
 def as_json(rates: ViolationRates) -> str:
     """Write rates over several lines."""
-    document = filled(
-        RatesDocument,
-        rates,
-        rules=[
-            filled(RuleRatesData, rule, group=dict(zip(rates.by, rule.group, strict=True)))
-            for rule in rates.rules
-        ],
-    )
-    return as_indented(document)
+    rules = [
+        filled(RuleRatesData, rule, group=dict(zip(rates.by, rule.group, strict=True)))
+        for rule in rates.rules
+    ]
+    return as_indented(filled(RatesDocument, rates, rules=rules))
