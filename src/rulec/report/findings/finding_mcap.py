@@ -75,10 +75,9 @@ class McapWriter:
 
 
 def _channels() -> tuple[JsonChannel, ...]:
-    return (
-        JsonChannel("/rulec/findings", "rulec.Finding", json.dumps(_FINDING)),
-        JsonChannel("/rulec/log", "foxglove.Log", json.dumps(_LOG)),
-        JsonChannel("/rulec/scene", "foxglove.SceneUpdate", json.dumps(_SCENE_UPDATE)),
+    return tuple(
+        JsonChannel(topic, name, json.dumps({"title": name, **_schema_of(example)}))
+        for topic, (name, example) in _EXAMPLES.items()
     )
 
 
@@ -112,9 +111,9 @@ def _scene_update(finding: VerdictFinding, begin_ns: int) -> dict[str, Any]:
     lasts_s = max((finding.to_s or 0.0) - begins_s, LEAST_SHOWN_S)
     position = {"x": finding.x, "y": finding.y, "z": _TEXT_HEIGHT_M}
     label = {
-        "pose": {"position": position, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}},
+        "pose": {"position": position, "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}},
         "billboard": True,
-        "font_size": 14,
+        "font_size": 14.0,
         "scale_invariant": True,
         "color": dict(zip("rgba", _COLOURS[finding.strength], strict=True)),
         "text": finding.says,
@@ -142,57 +141,25 @@ def _time(time_ns: int) -> dict[str, int]:
 _NO_SHAPES = ("arrows", "cubes", "spheres", "cylinders", "lines", "triangles", "models")
 
 
-def _object(**properties: Any) -> dict[str, Any]:
-    return {"type": "object", "properties": properties}
+def _schema_of(example: object) -> dict[str, Any]:
+    """The JSON schema of messages like this one; a list without items may contain any object."""
+    if isinstance(example, dict):
+        properties = {name: _schema_of(value) for name, value in example.items()}
+        return {"type": "object", "properties": properties}
+    if isinstance(example, list):
+        return {"type": "array", "items": _schema_of(example[0]) if example else {"type": "object"}}
+    return {"type": _TYPES[type(example)]}
 
 
-def _list(items: dict[str, Any]) -> dict[str, Any]:
-    return {"type": "array", "items": items}
-
-
-_NUMBER, _WHOLE, _STRING, _YES_OR_NO = (
-    {"type": name} for name in ("number", "integer", "string", "boolean")
-)
-_TYPES = {str: _STRING, float: _NUMBER, list: _list(_STRING)}
-_FINDING = {
-    "title": "rulec.Finding",
-    # Viewers support no alternatives: a value that may be null has its other type here, or is left
-    # out.
-    **_object(version=_WHOLE, **{name: _TYPES[kind] for name, kind in COLUMNS.items()}),
+_TYPES = {bool: "boolean", int: "integer", float: "number", str: "string"}
+_ANY = VerdictFinding(file="", strength="hard", outcome="violated", x=0.0, y=0.0)
+# Viewers support no alternatives: a value that may be null has its other type here, or is left out.
+_VALUES = {str: "", float: 0.0, list: [""]}
+_FINDING = {"version": 1, **{name: _VALUES[kind] for name, kind in COLUMNS.items()}}
+_DELETION = {"timestamp": _time(0), "type": 0, "id": ""}
+_EXAMPLES = {
+    "/rulec/findings": ("rulec.Finding", _FINDING),
+    "/rulec/log": ("foxglove.Log", _log(_ANY, 0)),
+    "/rulec/scene": ("foxglove.SceneUpdate", {**_scene_update(_ANY, 0), "deletions": [_DELETION]}),
 }
-_TIME = _object(sec=_WHOLE, nsec=_WHOLE)
-_LOG = {
-    "title": "foxglove.Log",
-    **_object(
-        timestamp=_TIME, level=_WHOLE, message=_STRING, name=_STRING, file=_STRING, line=_WHOLE
-    ),
-}
-_POSE = _object(
-    position=_object(x=_NUMBER, y=_NUMBER, z=_NUMBER),
-    orientation=_object(x=_NUMBER, y=_NUMBER, z=_NUMBER, w=_NUMBER),
-)
-_LABEL = _object(
-    pose=_POSE,
-    billboard=_YES_OR_NO,
-    font_size=_NUMBER,
-    scale_invariant=_YES_OR_NO,
-    color=_object(r=_NUMBER, g=_NUMBER, b=_NUMBER, a=_NUMBER),
-    text=_STRING,
-)
-_ENTITY = _object(
-    timestamp=_TIME,
-    frame_id=_STRING,
-    id=_STRING,
-    lifetime=_TIME,
-    frame_locked=_YES_OR_NO,
-    metadata=_list(_object(key=_STRING, value=_STRING)),
-    **{name: _list({"type": "object"}) for name in _NO_SHAPES},
-    texts=_list(_LABEL),
-)
-_SCENE_UPDATE = {
-    "title": "foxglove.SceneUpdate",
-    **_object(
-        deletions=_list(_object(timestamp=_TIME, type=_WHOLE, id=_STRING)),
-        entities=_list(_ENTITY),
-    ),
-}
+"""Topic -> its type, and a message."""
