@@ -77,6 +77,7 @@ def test_every_verb_of_a_session_is_a_function():
 
 
 COMMANDS = {
+    "compile_check": "verify_compiled",
     "fmt": "format",
     "maneuvers": "find_maneuvers",
     "monitor": "Monitor",

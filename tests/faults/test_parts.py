@@ -325,8 +325,7 @@ def test_pictures_and_rates(monkeypatch, tmp_path, capsys):
 def test_a_fault_that_no_verb_reports_still_ends_with_2(monkeypatch, capsys):
     from rulec.diagnostics.fault_messages import fault_of
 
-    monkeypatch.setattr(
-        "rulec.cli.commands.reading.formats.command.callback", lambda **_: fault_of(KeyError("unsaid"))
-    )
+    callback = "rulec.cli.commands.reading.formats.command.callback"
+    monkeypatch.setattr(callback, lambda **_: fault_of(KeyError("unsaid")))
     assert main(["list", "formats"]) == 2
     assert "KeyError 'unsaid'" in capsys.readouterr().err

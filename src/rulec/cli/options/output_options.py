@@ -10,7 +10,7 @@ import os
 import stat
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from functools import wraps
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -338,6 +338,8 @@ def _identity(path: str) -> object:
 def _texts(values: Iterable[Any]) -> Iterator[str]:
     """Texts in other parameters that may be paths."""
     for value in values:
+        if is_dataclass(value):
+            yield from _texts(getattr(value, one.name) for one in fields(value))
         for choice in value if isinstance(value, tuple) else (value,):
             if isinstance(choice, str | Path):
                 yield str(choice)

@@ -5,11 +5,13 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import field, fields
 from fractions import Fraction
+from functools import partial, wraps
 from glob import has_magic
 from math import isfinite
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import click
 from click.core import ParameterSource
@@ -42,6 +44,28 @@ def combined(options: Sequence[Callable[[Any], Any]]) -> Callable[[Decorated], D
         for option in reversed(options):
             function = option(function)
         return function
+
+    return decorate
+
+
+def asked(*names: str, make: Callable[..., Any] = click.option, **settings: Any) -> Any:
+    """A field whose value an option gives, which ``make`` makes with these settings."""
+    return field(metadata={"option": partial(make, *names, **settings)})
+
+
+def gathered(parameter: str, kind: type[Any]) -> Callable[[Decorated], Decorated]:
+    """The options that the fields of a class ask for; a verb gets an object of it."""
+    # Own options come before those that all recordings have.
+    order = sorted(fields(kind), key=lambda one: one.name not in kind.__annotations__)
+    options = [one.metadata["option"](one.name) for one in order]
+
+    def decorate(function: Decorated) -> Decorated:
+        @wraps(function)
+        def called(**values: Any) -> Any:
+            own = {one.name: values.pop(one.name) for one in order}
+            return function(**values, **{parameter: kind(**own)})
+
+        return combined(options)(cast("Decorated", called))
 
     return decorate
 

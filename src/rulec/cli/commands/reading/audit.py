@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -11,7 +11,7 @@ from rulec.analysis.audit.audit_kinds import KINDS
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
-from rulec.cli.options.scenario_options import recording_options, recording_source
+from rulec.cli.options.recording_options import RecordingOptions, as_typed, recording_options
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.options.standard_input import read_as_file
 from rulec.cli.options.verb_class import Verb
@@ -85,8 +85,8 @@ def command(
     source: str | None,
     law: str | None,
     law_now: str | None,
+    recorded: RecordingOptions,
     at: str,
-    **options: Any,
 ) -> int:
     """Report what each RULEBOOK (a name, or the path of a source) is based on.
 
@@ -110,11 +110,11 @@ def command(
     for kind, option in _FOUND_WITH.items():
         if kind in fatal and not given[option]:
             raise click.UsageError(f"--fail-on {kind} needs {option}: without, none is found")
-    if source is None and any(value is not None for value in options.values()):
+    if source is None and any(as_typed(recorded)):
         raise click.UsageError(
             "--map, --scenario and --input-format are about a recording: name it by --source"
         )
-    where = recording_source(source or "", options)
+    where = recorded.source(source or "")
     older = None
     if compare is not None:
         if Path(compare).suffix == ".json":

@@ -16,17 +16,19 @@ from rulec.cli.options.output_options import (
     input_format_option,
     output_options,
 )
+from rulec.cli.options.recording_options import (
+    TRACE_FORMATS,
+    DrivesOptions,
+    RecordingOptions,
+    drives_options,
+    recording_options,
+)
 from rulec.cli.options.rule_choice import refuse_unmatched, with_rules_like
 from rulec.cli.options.scenario_options import (
-    TRACE_FORMATS,
-    drives_options,
+    ReadingOptions,
+    SceneOptions,
     graph_options,
-    read_scene,
     reading_options,
-    recording_options,
-    recording_source,
-    requested_drives,
-    scene_reading,
 )
 from rulec.cli.options.standard_input import file_named
 from rulec.cli.options.verb_class import VerbGroup
@@ -175,9 +177,10 @@ def drive(
     patterns: tuple[str, ...],
     at_s: float | None,
     theme: Theme,
+    drives: DrivesOptions,
+    recorded: RecordingOptions,
     at: str,
     to: Output,
-    **options: Any,
 ) -> None:
     """Draw a drive of the recording FILE from above: the road, all traffic, the violations.
 
@@ -189,9 +192,9 @@ def drive(
 
     rules = read_machines(rulebook, at)
     vehicle, part, _ = ego.partition("#")
-    wanted = requested_drives((vehicle,) if vehicle else (), options, rules.vocabulary)
+    wanted = drives.requested((vehicle,) if vehicle else (), rules.vocabulary)
     kept = frozenset(rule.name for rule in _only(rules, patterns).rules) if patterns else None
-    recording = read_recording(recording_source(file_named(file), options))
+    recording = read_recording(recorded.source(file_named(file)))
     verdicts = rulec.verify_recording(recording, rules, wanted)
     with contained("not drawn", SourceLocation(file)):
         drawing = drive_drawing(verdicts, ego if part else "", kept, at_s)
@@ -263,22 +266,27 @@ def _only(rules: CompiledRulebook, patterns: tuple[str, ...]) -> CompiledRuleboo
 
 
 def _judged(
-    scenario: str, rulebook: str | None, number: int | None, at: str, **options: Any
+    scenario: str,
+    cut: SceneOptions,
+    missing: ReadingOptions,
+    *,
+    rulebook: str | None,
+    number: int | None,
+    at: str,
 ) -> Judged:
     """The graph, its maneuvers if there is a rulebook, and the maneuver shown."""
     if rulebook is None:
         if number is not None:
             raise click.UsageError("`--maneuver` takes a rulebook: give one with `-r R`.")
-        scene_reading(options, None)
-        scene = read_scene(scenario, options)
-        options["partition"] = options["partition"] or "paper"
+        missing.reading(None)
+        scene = cut.scene(scenario)
         with contained("not drawn", SourceLocation(scenario)):
-            return rulec.navigation_graph(scene, **options), None, None
+            return rulec.navigation_graph(scene, **cut.cells("paper")), None, None
     rules = read_machines(rulebook, at)
-    reading = scene_reading(options, rules.vocabulary)
-    scene = read_scene(scenario, options)
+    reading = missing.reading(rules.vocabulary)
+    scene = cut.scene(scenario)
     with contained("not drawn", SourceLocation(scenario)):
-        maneuvers = rulec.find_maneuvers(scene, rules, **reading, **options)
+        maneuvers = rulec.find_maneuvers(scene, rules, **reading, **cut.cells())
     place = number or 1
     maneuver = None
     legal = maneuvers.satisfying + maneuvers.open

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 import click
 
@@ -11,10 +11,10 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import TABLES, Output, output_options
 from rulec.cli.options.scenario_options import (
+    ReadingOptions,
+    SceneOptions,
     graph_options,
-    read_scene,
     reading_options,
-    scene_reading,
 )
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_written, read_machines
@@ -44,8 +44,9 @@ def command(
     rulebook: str,
     to: Output,
     number: int,
+    cut: SceneOptions,
+    missing: ReadingOptions,
     at: str,
-    **options: Any,
 ) -> int:
     """Write the envelopes of the cheapest satisfying maneuvers of SCENARIO (a name or a file).
 
@@ -59,10 +60,10 @@ def command(
     from rulec.report.maneuvers.envelope_table import write_envelopes
 
     rules = read_machines(rulebook, at)
-    reading = scene_reading(options, rules.vocabulary)
-    scene = read_scene(scenario, options)
+    reading = missing.reading(rules.vocabulary)
+    scene = cut.scene(scenario)
     with contained("no answer", SourceLocation(scenario)):
-        maneuvers = rulec.find_maneuvers(scene, rules, **reading, **options)
+        maneuvers = rulec.find_maneuvers(scene, rules, **reading, **cut.cells())
         cheapest = maneuvers.cheapest(number, perhaps=True)
     with output_stream(to) as (stream, name):
         write_envelopes(maneuvers.graph, cheapest, stream, name, cast("Format", to.form))

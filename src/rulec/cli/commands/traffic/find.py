@@ -8,12 +8,11 @@ from dataclasses import replace
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import (
     STANDARD_OUTPUT,
@@ -22,6 +21,14 @@ from rulec.cli.options.output_options import (
     endings_of,
     output_options,
     refuse_overwriting,
+)
+from rulec.cli.options.recording_options import (
+    DrivesOptions,
+    RecordingOptions,
+    assumptions,
+    drives_options,
+    egos_option,
+    recording_or_trace_options,
 )
 from rulec.cli.options.standard_input import not_standard_input, standard_input
 from rulec.cli.options.verb_class import Verb
@@ -38,7 +45,6 @@ from rulec.settings import search_path
 
 if TYPE_CHECKING:
     from rulec.extraction.moment_search import DriveMoments
-    from rulec.trace.formats.trace_files import Format
 
 FORMATS = {**endings_of("text", "json"), **TABLES}
 
@@ -66,9 +72,9 @@ FORMATS = {**endings_of("text", "json"), **TABLES}
     is_flag=True,
     help="List only moments that are certain, whatever the unknown values are.",
 )
-@scenario_options.egos_option
-@scenario_options.drives_options
-@scenario_options.recording_or_trace_options
+@egos_option
+@drives_options
+@recording_or_trace_options
 @output_options(FORMATS, "the moments")
 @shared.at_option
 def command(
@@ -81,7 +87,8 @@ def command(
     to: Output,
     *,
     sure: bool,
-    **options: Any,
+    drives: DrivesOptions,
+    recorded: RecordingOptions,
 ) -> int:
     """List the moments at which FORMULA holds in FILE..., recorded traffic or traces.
 
@@ -120,9 +127,9 @@ def command(
     tally = moment_rows.MomentTally()
     complete = not inputs.problems
 
-    def drives() -> Iterator[DriveMoments]:
+    def found() -> Iterator[DriveMoments]:
         nonlocal complete
-        for drive in _moments(query, inputs.paths, egos, options):
+        for drive in _moments(query, inputs.paths, egos, drives, recorded):
             if isinstance(drive, RulecError):
                 complete = False
                 complaints.add(drive)
@@ -137,7 +144,7 @@ def command(
         lines_of = partial(moment_rows.lines, width=page_width())
         as_lines = lines_of if to.form == "text" else moment_rows.json_lines
         with answer_lines(to) as write:
-            for drive in drives():
+            for drive in found():
                 for line in as_lines(drive):
                     write(line)
             if to.form == "text":
@@ -145,7 +152,7 @@ def command(
     else:
         with output_stream(to) as (stream, name):
             writer = RowWriter(to.form, stream, name, moment_rows.COLUMNS)
-            for drive in drives():
+            for drive in found():
                 writer.add(moment_rows.rows(drive))
             writer.close()
     print_written(to.path, to)
@@ -154,18 +161,22 @@ def command(
 
 
 def _moments(
-    query: FormulaQuery, paths: tuple[str, ...], egos: tuple[str, ...], options: dict[str, Any]
+    query: FormulaQuery,
+    paths: tuple[str, ...],
+    egos: tuple[str, ...],
+    drives: DrivesOptions,
+    recorded: RecordingOptions,
 ) -> Iterator[DriveMoments | RulecError]:
     """The moments of all drives of all files, and the errors of those that could not be read."""
     # Late import, as above.
     from rulec.extraction.moment_search import in_recordings, in_traces
     from rulec.trace.formats.trace_files import format_of, read_chunks
 
-    form: Format | None = scenario_options.trace_format(options)
-    named = options["input_format"] is not None
-    wanted = scenario_options.requested_drives(egos, options, query.vocabulary)
-    source = scenario_options.recording_source("-", options)
-    assumed = scenario_options.assumptions(None, options["assumed"], query.vocabulary)
+    form = recorded.trace_format
+    named = recorded.input_format is not None
+    wanted = drives.requested(egos, query.vocabulary)
+    source = recorded.source("-")
+    assumed = assumptions(None, drives.assumed, query.vocabulary)
     for path in paths:
         is_stream = path == STANDARD_OUTPUT
         try:

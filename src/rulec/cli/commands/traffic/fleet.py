@@ -11,8 +11,13 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.bundle.renamed_rulebook import with_distinct_names
 from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
+from rulec.cli.options.recording_options import (
+    DrivesOptions,
+    RecordingOptions,
+    drives_options,
+    recording_options,
+)
 from rulec.cli.options.standard_input import not_standard_input
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import read_machines, rulebooks_named, told_apart
@@ -50,8 +55,8 @@ if TYPE_CHECKING:
 )
 @shared.jobs_option("Judge N recordings, or pieces of tables, in parallel")
 @shared.end_option
-@scenario_options.drives_options
-@scenario_options.recording_options
+@drives_options
+@recording_options
 @shared.at_option
 def command(
     inputs: tuple[str, ...],
@@ -60,8 +65,9 @@ def command(
     on: Any,
     jobs: Jobs,
     ends: Ending | None,
+    drives: DrivesOptions,
+    recorded: RecordingOptions,
     at: str,
-    **options: Any,
 ) -> int:
     """Judge all drives in INPUT... and write the findings as Parquet files to DIR.
 
@@ -87,8 +93,8 @@ def command(
     complaints = Complaints()
     for name, rules in books.items():
         settings = FleetSettings(
-            scenario_options.requested_drives((), dict(options), rules.vocabulary),
-            scenario_options.recording_source("-", dict(options)),
+            drives.requested((), rules.vocabulary),
+            recorded.source("-"),
             ends,
             on,
             jobs,

@@ -8,7 +8,7 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -39,36 +39,83 @@ if TYPE_CHECKING:
     from rulec.scoring.maneuver_trajectories import TrajectoryScores
 
 
+@dataclass(frozen=True, slots=True)
+class ManeuverQuestions:
+    """The questions about a scenario's maneuvers besides their numbers."""
+
+    n_listed: int | None = shared.asked(
+        "--list",
+        make=shared.number_option,
+        help_text="List the N cheapest satisfying maneuvers.",
+    )
+    n_ranked: int | None = shared.asked(
+        "--rank",
+        make=shared.number_option,
+        help_text="List the N best maneuvers: ranked by what they violate (hard rules before soft "
+        "ones, by level and weight), then by cost.",
+    )
+    why: bool = shared.asked(
+        "--why",
+        is_flag=True,
+        help="Show for every rule how many maneuvers violate it, how many violate no other hard "
+        "rule, and an example; of listed maneuvers why each rule is open.",
+    )
+    n_classes: int | None = shared.asked(
+        "--classes",
+        make=shared.number_option,
+        help_text="Count the homotopy classes, and list the cheapest satisfying maneuver of N of "
+        "them.",
+    )
+    worlds: bool = shared.asked(
+        "--worlds",
+        is_flag=True,
+        help="If obstacles have several predictions, also count the maneuvers that remain when one "
+        "of them does something less likely.",
+    )
+
+    def answered(self, maneuvers: Maneuvers, form: str) -> ManeuverAnswers:
+        """The answers; in JSON also those that text gives only for several predictions."""
+        # Late import, already loaded here: maneuvers (130 ms).
+        from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
+
+        listed = None if self.n_listed is None else maneuvers.cheapest(self.n_listed, perhaps=True)
+        best = None
+        if not maneuvers.satisfying + maneuvers.open and self.n_ranked is None:
+            with errors_told():
+                best = maneuvers.best()
+        ranked = None if self.n_ranked is None else maneuvers.ranked(self.n_ranked)
+        shown = [*(listed or ()), *(rank.maneuver for rank in (*(best or ()), *(ranked or ())))]
+        uncertain = any(obstacle.alternatives for obstacle in maneuvers.graph.scenario.obstacles)
+        uncertain = uncertain or (self.worlds and form == "json")
+        classes = None
+        if self.n_classes is not None:
+            classes = (maneuvers.classes(), maneuvers.variants(self.n_classes))
+        judged = None
+        if maneuvers.words is not None:
+            judged = [own.rule.name for own in maneuvers.rule_outcomes() if own.judged]
+        return ManeuverAnswers(
+            judged=judged,
+            listed=listed,
+            best=best,
+            ranked=ranked,
+            chances=_chances(maneuvers, shown) if uncertain else {},
+            verdicts={maneuver.nodes: maneuvers.verdict(maneuver) for maneuver in listed or ()}
+            if maneuvers.in_doubt
+            else {},
+            worlds=_worlds(maneuvers) if self.worlds else None,
+            prunings=maneuvers.prunings() if self.why else None,
+            classes=classes,
+            driven=_driven(maneuvers, shown),
+        )
+
+
 @click.command(cls=Verb)
 @scenario_options.scenarios_argument
 @scenario_options.cell_options
 @shared.rulebooks_option(
     shared.RULEBOOK_HELP + " May be given several times, for counts side by side."
 )
-@shared.number_option("--list", "n_listed", "List the N cheapest satisfying maneuvers.")
-@shared.number_option(
-    "--rank",
-    "n_ranked",
-    "List the N best maneuvers: ranked by what they violate (hard rules before soft ones, by "
-    "level and weight), then by cost.",
-)
-@click.option(
-    "--why",
-    is_flag=True,
-    help="Show for every rule how many maneuvers violate it, how many violate no other hard rule, "
-    "and an example; of listed maneuvers why each rule is open.",
-)
-@shared.number_option(
-    "--classes",
-    "n_classes",
-    "Count the homotopy classes, and list the cheapest satisfying maneuver of N of them.",
-)
-@click.option(
-    "--worlds",
-    is_flag=True,
-    help="If obstacles have several predictions, also count the maneuvers that remain when one of "
-    "them does something less likely.",
-)
+@shared.gathered("questions", ManeuverQuestions)
 @click.option(
     "--after",
     metavar="FILE",
@@ -88,8 +135,10 @@ def command(
     after: Path | None,
     strict: bool,
     to: Output,
+    cut: scenario_options.SceneOptions,
+    missing: scenario_options.ReadingOptions,
+    questions: ManeuverQuestions,
     at: str,
-    **options: Any,
 ) -> int:
     """Count the maneuvers of each SCENARIO (a name or a file) that satisfy every hard rule.
 
@@ -122,7 +171,6 @@ def command(
         from rulec.planning.trace_history import read_past
 
         past = read_past(after)
-    questions = ManeuverQuestions(*(options.pop(field) for field in ManeuverQuestions.__slots__))
     counts: list[ManeuverCounts] = []
     failed = False
     for problem in inputs.problems:
@@ -131,10 +179,9 @@ def command(
         for path, rules in product(inputs.paths, machines):
             place = SourceLocation(path)
             with errors_told() if several else nullcontext(), contained("not evaluated", place):
-                own = dict(options)
-                reading = scenario_options.scene_reading(own, rules.vocabulary)
-                scene = scenario_options.read_scene(path, own)
-                maneuvers = rulec.find_maneuvers(scene, rules, after=past, **reading, **own)
+                reading = missing.reading(rules.vocabulary)
+                scene = cut.scene(path)
+                maneuvers = rulec.find_maneuvers(scene, rules, after=past, **reading, **cut.cells())
                 shown = questions.answered(maneuvers, to.form)
                 seconds = time.perf_counter() - begin
                 begin += seconds
@@ -183,52 +230,6 @@ def _shown(
     from rulec.report.maneuvers.maneuver_report import as_text
 
     return as_text(maneuvers, answers, seconds, page_width()) + ("\n" if several else "")
-
-
-@dataclass(frozen=True, slots=True)
-class ManeuverQuestions:
-    """The questions about a scenario's maneuvers besides their numbers."""
-
-    n_listed: int | None
-    n_ranked: int | None
-    why: bool
-    n_classes: int | None
-    worlds: bool
-
-    def answered(self, maneuvers: Maneuvers, form: str) -> ManeuverAnswers:
-        """The answers; in JSON also those that text gives only for several predictions."""
-        # Late import, already loaded here: maneuvers (130 ms).
-        from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
-
-        listed = None if self.n_listed is None else maneuvers.cheapest(self.n_listed, perhaps=True)
-        best = None
-        if not maneuvers.satisfying + maneuvers.open and self.n_ranked is None:
-            with errors_told():
-                best = maneuvers.best()
-        ranked = None if self.n_ranked is None else maneuvers.ranked(self.n_ranked)
-        shown = [*(listed or ()), *(rank.maneuver for rank in (*(best or ()), *(ranked or ())))]
-        uncertain = any(obstacle.alternatives for obstacle in maneuvers.graph.scenario.obstacles)
-        uncertain = uncertain or (self.worlds and form == "json")
-        classes = None
-        if self.n_classes is not None:
-            classes = (maneuvers.classes(), maneuvers.variants(self.n_classes))
-        judged = None
-        if maneuvers.words is not None:
-            judged = [own.rule.name for own in maneuvers.rule_outcomes() if own.judged]
-        return ManeuverAnswers(
-            judged=judged,
-            listed=listed,
-            best=best,
-            ranked=ranked,
-            chances=_chances(maneuvers, shown) if uncertain else {},
-            verdicts={maneuver.nodes: maneuvers.verdict(maneuver) for maneuver in listed or ()}
-            if maneuvers.in_doubt
-            else {},
-            worlds=_worlds(maneuvers) if self.worlds else None,
-            prunings=maneuvers.prunings() if self.why else None,
-            classes=classes,
-            driven=_driven(maneuvers, shown),
-        )
 
 
 def _driven(maneuvers: Maneuvers, shown: Sequence[Maneuver]) -> TrajectoryScores | None:

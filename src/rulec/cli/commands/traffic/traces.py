@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing
+from dataclasses import fields
 from functools import partial
 from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, TypeVar, cast
 
 import click
 from click.core import ParameterSource
 
 import rulec
 from rulec.batch.jobs import Jobs
-from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import TABLES, Output, output_options
+from rulec.cli.options.recording_options import (
+    DrivesOptions,
+    RecordingOptions,
+    as_typed,
+    drives_options,
+)
+from rulec.cli.options.scenario_options import SceneOptions, graph_options
 from rulec.cli.options.standard_input import file_named
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_lost, print_written, read_machines
@@ -28,6 +35,9 @@ from rulec.report.text.terminal_text import shown_count
 from rulec.trace.trace_model import all_traces
 
 if TYPE_CHECKING:
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.extraction.selection import RequestedDrives
+    from rulec.recordings.recording_format import RecordingSource
     from rulec.trace.formats.trace_files import Format
 
 MOST_TRACES = 10_000_000
@@ -38,7 +48,7 @@ Piece = TypeVar("Piece")
 
 
 @click.command(cls=Verb)
-@scenario_options.graph_options
+@graph_options
 @shared.rulebook_option(
     "a file of traces is in the words of one rulebook",
     "Write the traces in this rulebook's words, with the partition that it needs.",
@@ -59,7 +69,7 @@ Piece = TypeVar("Piece")
     "of what ego could do.",
 )
 @shared.jobs_option("With --recorded: write the drives of N vehicles in parallel")
-@scenario_options.drives_options
+@drives_options
 def command(
     scenario: str,
     rulebook: str | None,
@@ -67,7 +77,8 @@ def command(
     first: int | None,
     recorded: bool,
     jobs: Jobs,
-    **options: Any,
+    cut: SceneOptions,
+    drives: DrivesOptions,
 ) -> None:
     """Write every maneuver of SCENARIO (a name or a file) as a trace: JSON Lines, CSV or Parquet.
 
@@ -76,10 +87,15 @@ def command(
     """
     if recorded:
         file = Path(file_named(scenario))
-        _write_drives(file, to, jobs, rulebook=rulebook, first=first, options=options)
+        if (option := _given_maneuvers_option()) is not None:
+            raise click.UsageError(f"{option} is for maneuvers, not for --recorded drives.")
+        book = None if rulebook is None else read_machines(rulebook)
+        vocabulary = None if book is None else book.vocabulary
+        egos = () if cut.ego is None else (cut.ego,)
+        wanted_drives = drives.requested(egos, vocabulary)
+        _write_drives(cut.source(file), wanted_drives, book, to, jobs=jobs, first=first)
         return
-    about = {name: options.pop(name) for name in ("thresholds", "assumed", "as_recorded")}
-    option = next(scenario_options.given_drives_options(about), None)
+    option = next(as_typed(drives), None)
     context = click.get_current_context()
     if option is None and shared.is_from(context, "jobs", ParameterSource.COMMANDLINE):
         option = "-j"
@@ -89,14 +105,13 @@ def command(
     from rulec.planning.product.graph_product import count_paths
     from rulec.trace.formats.trace_files import kinds_in, write_traces
 
-    scene = scenario_options.read_scene(scenario, options)
+    scene = cut.scene(scenario)
     rules = None if rulebook is None else read_machines(rulebook)
     with contained("no answer", SourceLocation(scenario)):
         if rules is None:
-            options["partition"] = options["partition"] or "paper"
-            graph = rulec.navigation_graph(scene, **options).trace_graph()
+            graph = rulec.navigation_graph(scene, **cut.cells("paper")).trace_graph()
         else:
-            graph = rulec.find_maneuvers(scene, rules, **options).paths
+            graph = rulec.find_maneuvers(scene, rules, **cut.cells()).paths
         total = count_paths(graph)
     if first is None and total > MOST_TRACES:
         raise click.UsageError(
@@ -113,33 +128,28 @@ def command(
     print_written(f"{wanted:,} of {shown_count(total)} traces to {to.path}", to)
 
 
-_OF_DRIVES = {"ego", "thresholds", "assumed", "as_recorded"}
-_OF_DRIVES |= {"map_path", "input_format", "scenario_id", "frame_rate"}
-"""The options that have a meaning for drives."""
+_OF_MANEUVERS = {one.name for one in fields(SceneOptions)} - {"ego"}
+_OF_MANEUVERS -= {one.name for one in fields(RecordingOptions)}
+"""The options that have no meaning for drives."""
 
 
 def _write_drives(
-    file: Path,
+    source: RecordingSource,
+    wanted: RequestedDrives,
+    book: CompiledRulebook | None,
     to: Output,
-    jobs: Jobs,
     *,
-    rulebook: str | None,
+    jobs: Jobs,
     first: int | None,
-    options: dict[str, Any],
 ) -> None:
     # Late import, only for recordings: NumPy and shapely (200 ms).
     from rulec.batch.drive_batch import WrittenDrives, in_vehicle_order
     from rulec.trace.formats.trace_files import write_traces
 
-    if (option := _given_maneuvers_option(options)) is not None:
-        raise click.UsageError(f"{option} is for maneuvers, not for --recorded drives.")
-    book = None if rulebook is None else read_machines(rulebook)
-    vocabulary = None if book is None else book.vocabulary
-    egos = () if options["ego"] is None else (options["ego"],)
     drives = WrittenDrives(
-        scenario_options.recording_source(file, options),
-        scenario_options.requested_drives(egos, options, vocabulary),
-        vocabulary,
+        source,
+        wanted,
+        None if book is None else book.vocabulary,
         "" if book is None else book.traffic,
         cast("Format", to.form),
     )
@@ -169,15 +179,14 @@ def _write_drives(
     print_written(f"{count:,} drives to {to.path}", to)
 
 
-def _given_maneuvers_option(options: Mapping[str, Any]) -> str | None:
+def _given_maneuvers_option() -> str | None:
     """A given option, if any, that has no meaning for recorded drives."""
     context = click.get_current_context()
-    names = options.keys() - _OF_DRIVES
     return next(
         (
             parameter.opts[0]
             for parameter in context.command.params
-            if parameter.name in names
+            if parameter.name in _OF_MANEUVERS
             and shared.is_from(context, parameter.name, ParameterSource.COMMANDLINE)
         ),
         None,

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
-from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import (
     STANDARD_OUTPUT,
@@ -20,6 +19,15 @@ from rulec.cli.options.output_options import (
     Output,
     output_options,
     refuse_overwriting,
+)
+from rulec.cli.options.recording_options import (
+    DrivesOptions,
+    RecordingOptions,
+    as_typed,
+    assumptions,
+    drives_options,
+    egos_option,
+    recording_or_trace_options,
 )
 from rulec.cli.options.rule_choice import refuse_unmatched, with_rules_like
 from rulec.cli.options.verb_class import Verb
@@ -37,10 +45,46 @@ if TYPE_CHECKING:
     from rulec.cli.trace_run import TraceRun
     from rulec.fleet.drive_rows import DriveRows
     from rulec.report.verdicts.batch_table import BatchTally
-    from rulec.trace.formats.trace_files import Format
 
 _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
 """The formats in which every line names its rulebook."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class VerifyOptions:
+    """How traces and drives are judged, and what is said of them."""
+
+    n_explained: int | None = shared.asked(
+        "--explain",
+        make=shared.number_option,
+        help_text="Explain the first N violations of each file state by state.  [default: 1 for a "
+        "single file of traces, 0 with --json]",
+    )
+    every_part: bool = shared.asked(
+        "--every-part",
+        is_flag=True,
+        help="Show every part of the formula and every state in explanations, however large the "
+        "table.",
+    )
+    why: bool = shared.asked(
+        "--why",
+        is_flag=True,
+        help="Say which rules are open or not judged, and which words are missing for them.",
+    )
+    strict: bool = shared.asked(
+        "--strict",
+        is_flag=True,
+        help="Count open hard rules as violated: those undecided because values are unknown or the "
+        "trace is cut.",
+    )
+    ends: Ending | None = shared.asked(make=lambda _: shared.end_option)
+    step_s: Fraction | None = shared.asked(
+        make=lambda _: shared.step_option(
+            "For traces: use S seconds as the time step. A trace whose own step differs by more "
+            "than 5 % (more than the jitter of a logger's clock) is not judged."
+        )
+    )
+    egos: tuple[str, ...] = shared.asked(make=lambda _: egos_option)
 
 
 @click.command(cls=Verb)
@@ -49,36 +93,9 @@ _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
     shared.RULEBOOK_HELP + " May be given several times, for verdicts side by side."
 )
 @shared.rules_option("Judge only by rules that match PATTERN")
-@shared.number_option(
-    "--explain",
-    "n_explained",
-    "Explain the first N violations of each file state by state.  [default: 1 for a single file of "
-    "traces, 0 with --json]",
-)
-@click.option(
-    "--every-part",
-    is_flag=True,
-    help="Show every part of the formula and every state in explanations, however large the table.",
-)
-@click.option(
-    "--why",
-    is_flag=True,
-    help="Say which rules are open or not judged, and which words are missing for them.",
-)
-@click.option(
-    "--strict",
-    is_flag=True,
-    help="Count open hard rules as violated: those undecided because values are unknown or the "
-    "trace is cut.",
-)
-@shared.end_option
-@shared.step_option(
-    "For traces: use S seconds as the time step. A trace whose own step differs by more than 5 % "
-    "(more than the jitter of a logger's clock) is not judged."
-)
-@scenario_options.egos_option
-@scenario_options.drives_options
-@scenario_options.recording_or_trace_options
+@shared.gathered("asked", VerifyOptions)
+@drives_options
+@recording_or_trace_options
 @shared.jobs_option("Judge N recordings, or parts of a long one, in parallel")
 @output_options(
     FORMATS,
@@ -97,19 +114,14 @@ def command(
     files: tuple[str, ...],
     rulebooks: tuple[str, ...],
     patterns: tuple[str, ...],
-    n_explained: int | None,
-    every_part: bool,
-    why: bool,
-    strict: bool,
-    ends: Ending | None,
-    step_s: Fraction | None,
+    asked: VerifyOptions,
     to: tuple[Output, ...],
     at: str,
-    egos: tuple[str, ...],
     jobs: Jobs,
     *,
     exposure: bool,
-    **options: Any,
+    drives: DrivesOptions,
+    recorded: RecordingOptions,
 ) -> int:
     """Judge the traces in FILE..., as JSON Lines, CSV or Parquet; `-` is standard input.
 
@@ -133,15 +145,14 @@ def command(
     """
     inputs = input_files(files)
     refuse_overwriting(to, inputs.paths)
-    scenario_options.check_thresholds(options["thresholds"])
+    drives.check_thresholds()
     references = list(dict.fromkeys(rulebooks_named(rulebooks)))
     own = [read_machines(name, at) for name in references]
     refuse_unmatched(patterns, own)
     books = _told_apart([with_rules_like(book, patterns) for book in own], references)
     if len(books) > 1 and STANDARD_OUTPUT in inputs.paths:
         raise click.UsageError("standard input is read once; give a file, or one rulebook")
-    form = scenario_options.trace_format(options)
-    recordings = _recordings(inputs, form, named=options["input_format"] is not None)
+    recordings = _recordings(inputs, recorded)
     is_json_alone = to == (Output(STANDARD_OUTPUT, "json"),)
     is_small = len(inputs.paths) == len(books) == 1 and not recordings
     usual = 1 if is_small and not is_json_alone else 0
@@ -149,16 +160,11 @@ def command(
         inputs=inputs,
         recordings=recordings,
         traces=[path for path in inputs.paths if path not in recordings],
-        form=form,
-        ends=ends,
-        step_s=step_s,
-        egos=egos,
-        options=options,
+        asked=asked,
+        drives=drives,
+        recorded=recorded,
         jobs=jobs,
-        n_explained=usual if n_explained is None else n_explained,
-        every_part=every_part,
-        why=why,
-        strict=strict,
+        n_explained=usual if asked.n_explained is None else asked.n_explained,
     )
     _check_inputs(request)
     _check_outputs(request, to, n_books=len(books))
@@ -180,7 +186,7 @@ def command(
                     f"{'' if rules is books[0] else chr(10)}{headline(rules, page_width())}"
                 )
             if exposure:
-                outputs.to_rows = _to_rows(rows_of, rules.name, egos, options, ends)
+                outputs.to_rows = _to_rows(rows_of, rules.name, request)
             named = ["-r", reference, *(("--at", at) if at else ())]
             results.append(_judge(request, rules, outputs, complaints, named))
         if len(books) > 1:
@@ -213,16 +219,11 @@ class VerifyRequest:
     inputs: InputFiles
     recordings: Sequence[str]
     traces: Sequence[str]
-    form: Format | None
-    ends: Ending | None
-    step_s: Fraction | None
-    egos: tuple[str, ...]
-    options: Mapping[str, Any]
+    asked: VerifyOptions
+    drives: DrivesOptions
+    recorded: RecordingOptions
     jobs: Jobs
     n_explained: int
-    every_part: bool
-    why: bool
-    strict: bool
 
 
 @dataclass
@@ -241,9 +242,8 @@ class VerifyResult:
 
 def _check_inputs(request: VerifyRequest) -> None:
     """Refuse options that do not apply to the files. Raises click.UsageError, RulecError."""
-    about = {name: value for name, value in request.options.items() if name != "assumed"}
-    about["input_format"] = None
-    option = next(scenario_options.given_drives_options({"egos": request.egos, **about}), None)
+    only_drives = replace(request.drives, assumed=()), replace(request.recorded, input_format=None)
+    option = "--ego" if request.asked.egos else next(as_typed(*only_drives), None)
     if option and not request.recordings and not request.inputs.problems:
         for path in request.inputs.paths:
             if path != STANDARD_INPUT:
@@ -252,9 +252,9 @@ def _check_inputs(request: VerifyRequest) -> None:
             f"{option} is for recorded traffic, and no file looks like it; add `--input-format "
             "tracks`, or another of `rulec list formats`, to learn what is missing"
         )
-    if request.ends is not None and request.recordings:
+    if request.asked.ends is not None and request.recordings:
         raise click.UsageError("--end is for traces; a recording is always cut.")
-    step_s = request.step_s
+    step_s = request.asked.step_s
     if step_s is not None and (request.recordings or Fraction(str(float(step_s))) != step_s):
         raise click.UsageError("--step is a decimal, and for traces; a recording has its own step.")
 
@@ -285,11 +285,11 @@ def _judge(
     result = VerifyResult(BatchTally())
     if request.recordings or request.inputs.problems:
         recorded = _judge_recordings(request, rules, outputs, complaints, named)
-        _include(result, recorded, strict=request.strict)
+        _include(result, recorded, strict=request.asked.strict)
         result.complete &= recorded.complete
     if request.traces:
         traced = _judge_traces(request, rules, outputs, complaints)
-        _include(result, traced, strict=request.strict)
+        _include(result, traced, strict=request.asked.strict)
         result.complete &= traced.complete and not traced.total.not_judged
     return result
 
@@ -307,15 +307,17 @@ def _judge_recordings(
     from rulec.report.verdicts.recording_answer import AnswerLayout
 
     to_rows = outputs.to_rows
-    given = scenario_options.given_drives_options(request.options)
+    given = as_typed(request.drives, request.recorded)
     source = (*request.recordings, *named, *given)
     settings = JudgeSettings(
         rules,
-        scenario_options.requested_drives(request.egos, request.options, rules.vocabulary),
-        scenario_options.recording_source("-", dict(request.options)),
+        request.drives.requested(request.asked.egos, rules.vocabulary),
+        request.recorded.source("-"),
         to_explain=request.n_explained,
-        every_part=request.every_part,
-        layout=AnswerLayout(page_width(), request.why, source) if outputs.wants_text else None,
+        every_part=request.asked.every_part,
+        layout=AnswerLayout(page_width(), request.asked.why, source)
+        if outputs.wants_text
+        else None,
         lines=outputs.wants_lines,
         findings=outputs.wants_findings,
         to_rows=None if to_rows is None else to_rows.of_answer,
@@ -337,13 +339,11 @@ def _judge_traces(
     # Late import, not for recordings: formats of traces (30 ms).
     from rulec.cli.trace_run import TraceRun
 
-    assumed = scenario_options.assumptions(
-        request.ends, request.options["assumed"], rules.vocabulary
-    )
-    step = None if request.step_s is None else float(request.step_s)
-    n_explained, every_part = request.n_explained, request.every_part
+    assumed = assumptions(request.asked.ends, request.drives.assumed, rules.vocabulary)
+    step = None if request.asked.step_s is None else float(request.asked.step_s)
+    n_explained, every_part = request.n_explained, request.asked.every_part
     run = TraceRun(rules, outputs, complaints, n_explained, every_part)
-    run.files(request.traces, request.form, replace(assumed, step_s=step))
+    run.files(request.traces, request.recorded.trace_format, replace(assumed, step_s=step))
     return run
 
 
@@ -353,13 +353,7 @@ def _include(result: VerifyResult, run: RecordingRun | TraceRun, *, strict: bool
     result.total.include(run.total)
 
 
-def _to_rows(
-    rules: CompiledRulebook,
-    name: str,
-    egos: tuple[str, ...],
-    options: Mapping[str, Any],
-    ends: Ending | None,
-) -> DriveRows:
+def _to_rows(rules: CompiledRulebook, name: str, request: VerifyRequest) -> DriveRows:
     """The builder of rows of drives and rules; in them the rulebook has this name.
 
     Its hash remains that of the rulebook itself, by which findings of other calls have it.
@@ -368,14 +362,16 @@ def _to_rows(
     from rulec.fleet.drive_rows import DriveRows
     from rulec.fleet.judged_by import judged_by
 
-    wanted = scenario_options.requested_drives(egos, options, rules.vocabulary)
-    return DriveRows(rules, replace(judged_by(rules, wanted, ends or ""), rulebook=name))
+    wanted = request.drives.requested(request.asked.egos, rules.vocabulary)
+    return DriveRows(
+        rules, replace(judged_by(rules, wanted, request.asked.ends or ""), rulebook=name)
+    )
 
 
-def _recordings(inputs: InputFiles, form: Format | None, *, named: bool) -> list[str]:
-    """The files that are recorded traffic; if the format is ``named``, all or none of them."""
-    if form is not None:
+def _recordings(inputs: InputFiles, recorded: RecordingOptions) -> list[str]:
+    """The files that are recorded traffic; if the format is given, all or none of them."""
+    if recorded.trace_format is not None:
         return []
-    if named:
+    if recorded.input_format is not None:
         return list(inputs.paths)
     return [path for path in inputs.paths if path != STANDARD_INPUT and is_recording(path)]

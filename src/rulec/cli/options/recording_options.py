@@ -1,0 +1,198 @@
+"""Options for recorded traffic, for traces, and for the drives that are made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from rulec.cli.options.output_options import RenamedOption, input_format_option
+from rulec.cli.options.shared_options import asked, finite, gathered
+from rulec.monitoring.assumptions import Assumptions
+from rulec.recordings.format_table import FORMATS
+from rulec.recordings.recording_format import RecordingSource
+from rulec.trace import Value
+from rulec.trace.trace_model import Ending
+from rulec.vocabulary import Vocabulary
+
+if TYPE_CHECKING:
+    from rulec.extraction.selection import RequestedDrives
+    from rulec.trace.formats.trace_files import Format
+
+TRACE_FORMATS: tuple[Format, ...] = ("jsonl", "csv", "parquet")
+"""The formats of traces, listed here to avoid an import for --help."""
+
+_RECORDING_FORMATS = tuple(form.name for form in FORMATS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordingOptions:
+    """How to read recorded traffic, or traces."""
+
+    map_path: Path | None = asked(
+        "--map",
+        cls=RenamedOption,
+        former=["--net"],
+        metavar="FILE",
+        type=click.Path(dir_okay=False, path_type=Path),
+        help="The map, for recorded traffic that contains no roads.  [default: for SUMO data, "
+        "the net that the file names, or the only .net.xml file beside it]",
+    )
+    scenario_id: str | None = asked(
+        "--scenario",
+        metavar="ID",
+        help="Read only this recording of a file that contains several.",
+    )
+    frame_rate: float | None = asked(
+        "--frame-rate",
+        metavar="HZ",
+        type=click.FloatRange(min=0, min_open=True),
+        callback=finite,
+        help="Frames a second of recorded traffic: of a table with the column `frame`, or to "
+        "confirm time steps that speeds contradict.",
+    )
+    input_format: str | None = asked(
+        make=lambda _: input_format_option(
+            _RECORDING_FORMATS,
+            "recorded traffic, one of `rulec list formats`.  [default: detected from the file]",
+        )
+    )
+
+    @property
+    def trace_format(self) -> Format | None:
+        """The format of traces that is given, if any."""
+        return next((form for form in TRACE_FORMATS if form == self.input_format), None)
+
+    def source(self, file: str | Path) -> RecordingSource:
+        """The source of a file."""
+        form, scenario = self.input_format, self.scenario_id
+        return RecordingSource(Path(file), self.map_path, form, scenario, self.frame_rate)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordingOrTraceOptions(RecordingOptions):
+    """The same for files that may also be traces."""
+
+    input_format: str | None = asked(
+        make=lambda _: input_format_option(
+            (*_RECORDING_FORMATS, *TRACE_FORMATS),
+            "traces (jsonl, csv or parquet) or of recorded traffic (one of `rulec list formats`).  "
+            "[default: detected from the file; for traces its ending, else jsonl]",
+            former=["--format"],
+        )
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class DrivesOptions:
+    """How the drives of a recording become traces, and what is assumed about traces."""
+
+    assumed: tuple[str, ...] = asked(
+        "--assume",
+        multiple=True,
+        metavar="NAME=VALUE",
+        help="A value to assume, such as built_up=true: in traces wherever they do not provide "
+        "one, in recorded traffic always. Or `defaults`: missing values get their default, and "
+        "every trace is complete.",
+    )
+    thresholds: tuple[str, ...] = asked(
+        "--threshold",
+        multiple=True,
+        metavar="NAME=NUMBER",
+        help="Recorded traffic: set a threshold used to derive words, such as near_m=200.",
+    )
+    as_recorded: bool = asked(
+        "--as-recorded",
+        is_flag=True,
+        help="Recorded traffic: do not mirror it, even if the rulebook's traffic keeps to the "
+        "other side of the road.",
+    )
+
+    def check_thresholds(self) -> None:
+        """Check thresholds before any work. Raises click.UsageError."""
+        if self.thresholds:
+            # Late import, only for recordings: NumPy and shapely (150 ms).
+            from rulec.extraction.traffic_thresholds import threshold_options
+
+            try:
+                threshold_options(self.thresholds)
+            except ValueError as problem:
+                raise click.UsageError(_sentence(problem)) from None
+
+    def requested(self, egos: tuple[str, ...], vocabulary: Vocabulary | None) -> RequestedDrives:
+        """The drives of these vehicles.
+
+        Raises:
+            click.UsageError: an assumption or a threshold is invalid.
+        """
+        # Late import, only for recordings: NumPy and shapely (150 ms).
+        from rulec.extraction.selection import RequestedDrives, assumption_options
+        from rulec.extraction.traffic_thresholds import threshold_options
+
+        if self.assumed and vocabulary is None:
+            raise click.UsageError("--assume needs a rulebook that has these words: --rulebook R")
+        texts = [text for text in self.assumed if text != "defaults"]
+        try:
+            return RequestedDrives(
+                egos,
+                threshold_options(self.thresholds),
+                {} if vocabulary is None else assumption_options(texts, vocabulary),
+                self.as_recorded,
+                len(texts) < len(self.assumed),
+            )
+        except ValueError as problem:
+            raise click.UsageError(_sentence(problem)) from None
+
+
+egos_option = click.option(
+    "--ego",
+    "egos",
+    multiple=True,
+    metavar="ID",
+    help="Recorded traffic: use only this vehicle's drive.  [default: every vehicle's]",
+)
+
+recording_options = gathered("recorded", RecordingOptions)
+recording_or_trace_options = gathered("recorded", RecordingOrTraceOptions)
+drives_options = gathered("drives", DrivesOptions)
+
+_NAMES = {
+    "assumed": "--assume",
+    "thresholds": "--threshold",
+    "map_path": "--map",
+    "scenario_id": "--scenario",
+}
+"""The options that are not called as their values are."""
+
+
+def as_typed(*given: RecordingOptions | DrivesOptions) -> Iterator[str]:
+    """The options that are given, each with its value, as on a command line."""
+    values = ((one.name, getattr(own, one.name)) for own in given for one in fields(own))
+    for name, value in values:
+        for one in value if isinstance(value, tuple) else [value] if value else []:
+            yield _NAMES.get(name) or f"--{name.replace('_', '-')}"
+            if one is not True:
+                yield str(one)
+
+
+def assumptions(ends: Ending | None, texts: Sequence[str], vocabulary: Vocabulary) -> Assumptions:
+    """Assumptions about traces. Raises click.UsageError."""
+    values: Mapping[str, Value] = {}
+    if named := [text for text in texts if text != "defaults"]:
+        # Late import, only if values are assumed: NumPy and shapely (150 ms).
+        from rulec.extraction.selection import assumption_options
+
+        try:
+            values = assumption_options(named, vocabulary)
+        except ValueError as problem:
+            raise click.UsageError(_sentence(problem)) from None
+    return Assumptions(ends, values, len(named) < len(texts))
+
+
+def _sentence(problem: ValueError) -> str:
+    """The message of an error as a sentence, without a second mark after a question mark."""
+    text = str(problem)
+    return text if text.endswith("?") else f"{text}."
