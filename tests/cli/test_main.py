@@ -149,6 +149,17 @@ def test_a_former_verb_is_taken_for_another_version_and_says_what_it_is_called(f
     assert capsys.readouterr().out == out
 
 
+@pytest.mark.parametrize("command", [command for command in COMMANDS if " " in command])
+def test_a_verb_says_what_else_it_is_asked_and_where_that_is_described(command, capsys):
+    verb = command.split()[0]
+    assert main([verb, "--help"]) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    told = f"rulec help {command}" if verb == "list" else f"rulec {command} --help"
+    assert f"`{told}`" in shown
+    assert main(told.split()[1:]) == 0
+    assert capsys.readouterr().out.startswith(f"Usage: rulec {command} ")
+
+
 def test_there_are_few_verbs_and_former_ones_are_hidden(capsys):
     assert len(VERBS) <= 20
     assert not FORMER.keys() & VERBS.keys()

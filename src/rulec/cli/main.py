@@ -122,7 +122,8 @@ class _Verbs(click.Group):
 
 
 def _other(verb: str, word: str) -> str:
-    return f"{COMMANDS[f'{verb} {word}'][1]} It has options of its own: `rulec help {verb} {word}`."
+    about = COMMANDS[f"{verb} {word}"][1]
+    return f"{about} It has options of its own: `rulec {verb} {word} --help`."
 
 
 @click.command(
