@@ -17,6 +17,7 @@ import msgspec
 from msgspec import UnsetType
 
 Number = int | float
+_NOTHING = object()
 Inside: TypeAlias = Callable[[Any], Any]
 Filled = TypeVar("Filled", bound=msgspec.Struct)
 
@@ -44,13 +45,20 @@ def filled(kind: type[Filled], *sources: object, **own: Any) -> Filled:
     values = {}
     for name, required, nullable, inside in _fields(kind):
         if name in own:
-            value, absent = own[name], own[name] is None
+            value = own[name]
+            if value is None and not (required or nullable):
+                continue
         else:
-            source = next((one for one in sources if hasattr(one, name)), None)
-            value = None if source is None and not required else getattr(source, name)
-            absent = not value and type(value) not in (bool, int, float)
-        if absent and not required and not (nullable and name in own):
-            continue
+            for source in sources:
+                value = getattr(source, name, _NOTHING)
+                if value is not _NOTHING:
+                    break
+            else:
+                if required:
+                    raise AttributeError(name)
+                continue
+            if not (value or required or isinstance(value, int | float)):
+                continue
         if nullable and value == "":
             value = None
         values[name] = value if inside is None else inside(value)

@@ -271,7 +271,7 @@ def with_rules(
     kind: type[Filled], results: Sequence[Result], rulebook: CompiledRulebook
 ) -> list[Filled]:
     """Parts made of results and of their rules."""
-    rules = {rule.name: rule for rule in rulebook.rules}
+    rules = {rule.name: rule for rule in rulebook.rules} if results else {}
     # A rule that is too large at the recording's step is not among the compiled rules.
     return [filled(kind, result, rules.get(result.rule)) for result in results]
 
