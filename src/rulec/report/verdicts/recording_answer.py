@@ -235,19 +235,22 @@ class RecordingAnswer:
             )
 
     def _command(self, words: Sequence[str]) -> list[str]:
-        """A command that can be copied, in one or two lines; none if it does not fit."""
-        width, parts = self._layout.width, [quote(word) for word in words]
-        whole = " ".join(["see it: rulec", *parts])
-        if len(whole) <= width:
-            return [whole]
-        # An option stays beside its value
-        for number in range(len(parts) - 1, 0, -1):
-            if parts[number].startswith("-"):
-                first = " ".join(["see it: rulec", *parts[:number], "\\"])
-                later = INDENT + " ".join(parts[number:])
-                if len(first) <= width:
-                    return [first, later] if len(later) <= width else []
-        return []
+        """A command that can be copied, in at most three lines; none if it does not fit."""
+        lines = ["see it: rulec"]
+        for part in map(quote, words):
+            # An option stays beside its value
+            whole = f"{lines[-1]} {part}"
+            if part.startswith("-") or len(whole) + len(" \\") <= self._layout.width:
+                lines[-1] = whole
+            else:
+                *before, option = lines[-1].rsplit(" ", 1)
+                if option.startswith("-") and before:
+                    lines[-1:] = [*before, f"{INDENT}{option} {part}"]
+                else:
+                    lines.append(INDENT + part)
+        lines[:-1] = [f"{line} \\" for line in lines[:-1]]
+        fits = len(lines) <= 3 and max(map(len, lines)) <= self._layout.width
+        return lines if fits else []
 
     def _reasons(self) -> Iterator[str]:
         """Every rule once: judged, open or not judged, for which words; and all notes."""
