@@ -113,6 +113,21 @@ def test_every_rule_of_the_book_is_named_once(found, capsys):
         assert words.count(rule) == 1 or rule in declared, (rule, outcome)
 
 
+def test_json_names_every_rule_of_each_drive(found, capsys):
+    main(["verify", FOLLOWING, "-r", "de", "--why", "--json"])
+    rules, in_every = {rule.name for rule in rulec.compile_rulebook("de").rules}, []
+    for line in capsys.readouterr().out.splitlines():
+        drive = json.loads(line)
+        doubtful = {one["rule"] for name in ("open", "not_judged") for one in drive[name]}
+        assert doubtful | {*drive["judged"]} == rules
+        assert doubtful.isdisjoint(drive["judged"])
+        assert {*drive["idle"]} <= {*drive["judged"]}
+        assert not {one["rule"] for one in drive["violations"]} & {*drive["idle"]}
+        in_every.append({*drive["idle"]})
+    idle = {rule for rule, outcome in found.outcomes().items() if outcome == "idle"}
+    assert idle <= set.union(*in_every)
+
+
 def test_a_violation_is_explained_and_drawn(found, traced):
     for result in (found, traced):
         for finding in result.violations():

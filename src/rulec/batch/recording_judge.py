@@ -55,7 +55,7 @@ class JudgeSettings:
     of each file are explained, part by part if ``every_part``. The results may be text in this
     ``layout``, ``lines`` (of JSON, one per drive) and ``findings``. ``labels`` are names for files
     whose paths mean nothing to a reader. ``to_rows``, if given, makes the rows of drives and rules
-    for tables of findings.
+    for tables of findings. ``idle`` asks which rules nothing happened for.
     """
 
     rules: CompiledRulebook
@@ -68,6 +68,7 @@ class JudgeSettings:
     findings: bool
     labels: Mapping[str, str] = field(default_factory=dict)
     to_rows: RowMaker | None = None
+    idle: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,6 +265,7 @@ class _RecordingJudge:
                 yield DriveProblem(with_place(fault, SourceLocation(self._file)))
             explained = self._explained(answer)
         own = None if self._findings is None else self._findings.add(answer, explained)
+        idle = self._idle(answer)
         if self._settings.layout is not None:
             self._show(answer, explained, own)
         if self._settings.to_rows is not None:
@@ -272,16 +274,15 @@ class _RecordingJudge:
             # JSON of explanations and evidence, 30 ms: only where it is wanted.
             from rulec.report.verdicts import recording_json
 
-            yield recording_json.as_json(answer, verdicts, explained)
-        judged.tally.add(answer, [rule.name for rule in verdicts.rules.rules], self._idle(answer))
+            yield recording_json.as_json(answer, verdicts, explained, idle)
+        judged.tally.add(answer, [rule.name for rule in verdicts.rules.rules], idle or frozenset())
 
-    def _idle(self, found: DriveVerdict | NoDrive) -> frozenset[str]:
-        """The rules about nothing in a drive, if it is asked what became of each rule."""
-        layout = self._settings.layout
-        if layout is None or not layout.why or isinstance(found, NoDrive):
-            return frozenset()
+    def _idle(self, found: DriveVerdict | NoDrive) -> frozenset[str] | None:
+        """The rules for which nothing happened in a drive, if that is asked."""
+        if not self._settings.idle or isinstance(found, NoDrive):
+            return None
         if isinstance(found.answer, NotJudged):
-            return frozenset()
+            return None
         # Opportunities, 20 ms a drive: only where they are asked for.
         from rulec.monitoring.moments.drive_facts import idle_rules
 

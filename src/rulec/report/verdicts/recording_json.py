@@ -29,7 +29,10 @@ from rulec.report.verdicts.verdict_json import (
 
 
 class RecordedVerdict(TraceVerdict, frozen=True, kw_only=True):
-    """The verdict on the drive of vehicle ``trace``, in the recording's times."""
+    """The verdict on the drive of vehicle ``trace``, in the recording's times.
+
+    ``idle``, with ``--why``, are the ``judged`` rules for which nothing happened in it.
+    """
 
     recording: str
     mirrored: bool
@@ -37,6 +40,7 @@ class RecordedVerdict(TraceVerdict, frozen=True, kw_only=True):
     start_s: float
     step_s: float
     by_default: Sequence[str]
+    idle: Sequence[str] | UnsetType = UNSET
 
 
 class RecordedNotJudged(TraceNotJudged, frozen=True, kw_only=True):
@@ -71,7 +75,10 @@ def _margin_data(margin: Margin) -> MarginData:
 
 
 def as_json(
-    result: DriveVerdict | NoDrive, verdicts: RecordingVerdicts, explained: Sequence[Explanation]
+    result: DriveVerdict | NoDrive,
+    verdicts: RecordingVerdicts,
+    explained: Sequence[Explanation],
+    idle: frozenset[str] | None = None,
 ) -> str:
     """Write a vehicle's verdict with explanations of its first violations."""
     rules = verdicts.rules
@@ -105,4 +112,6 @@ def as_json(
         }
         violations.append(replace(data, **further))
     about = verdict_fields(answer, rules) | recorded
+    if idle is not None:
+        about["idle"] = [name for name in about["judged"] if name in idle]
     return as_line(filled(RecordedVerdict, answer, violations=violations, **about))

@@ -69,7 +69,8 @@ class VerifyOptions:
     why: bool = shared.asked(
         "--why",
         is_flag=True,
-        help="Say which rules are open or not judged, and which words are missing for them.",
+        help="Say of every rule whether something or nothing was found, nothing happened that it "
+        "is about, or it is open or not judged, and which words are missing.",
     )
     strict: bool = shared.asked(
         "--strict",
@@ -321,6 +322,7 @@ def _judge_recordings(
         lines=outputs.wants_lines,
         findings=outputs.wants_findings,
         to_rows=None if to_rows is None else to_rows.of_answer,
+        idle=request.asked.why,
     )
     run = RecordingRun(settings, outputs, complaints)
     for problem in request.inputs.problems:
