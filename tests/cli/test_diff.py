@@ -99,8 +99,10 @@ def test_any_number_of_books_side_by_side(tmp_path, capsys):
         "  c, a  no such rule",
     ]
     assert main([*asked, "--output-format", "markdown"]) == 0
-    assert "| `a` | none |  |" in (page := capsys.readouterr().out)
-    assert "| `b` | 1, 2 | Wade. |" in page
+    page = capsys.readouterr().out
+    assert "### ford\n\n- **c** (1, 2): Walk on" in page
+    assert "\n- **a, b** (1, 2): Wade.\n" in page
+    assert "- **b**: Do not.\n- **c, a**: no such rule\n" in page
     assert main([*asked, "--output-format", "csv"]) == 0
     rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
     assert [(row["rule"], row["rulebook"]) for row in rows] == [
@@ -240,16 +242,25 @@ def test_a_page(capsys):
     command = ["diff", "./new.rules", "./old.rules", "--output-format", "html", "-o", "page.html"]
     assert main(command) == 1
     assert capsys.readouterr().out == "wrote page.html\n"
-    seen = []
+    ids, links, words = [], [], []
 
-    class Headings(HTMLParser):
+    class Page(HTMLParser):
+        def handle_starttag(self, tag, attrs):
+            ids.extend(value for name, value in attrs if name == "id")
+            links.extend(value for name, value in attrs if name == "href")
+
         def handle_data(self, data):
-            if self.get_starttag_text() == "<code>":
-                seen.append(data)
+            words.append(data)
 
     with open("page.html", encoding="utf-8") as stream:  # noqa: PTH123
-        Headings().feed(stream.read())
-    assert {"leave_room", "no_passing", "no_horn", "no_crowd"} <= set(seen)
+        Page().feed(stream.read())
+    assert {"leave_room: new stricter", "no_passing: old stricter", "no_horn", "no_crowd"} <= {
+        *words
+    }
+    assert "#leave_room-new-stricter" in links
+    assert {link.removeprefix("#") for link in links} <= {*ids}
+    assert "new forbids, old allows" in words
+    assert any(word.startswith("0: ") for word in words), "what happens, in words"
 
 
 def test_some_rules_only(capsys):

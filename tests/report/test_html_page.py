@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.report.text.html_page import PageTexts, as_html
+from rulec.report.text.html_page import MOST_UNFOLDED, PageTexts, as_html
 from rulec.report.text.markdown import Heading, code, escaped, fenced, table, written
+from support.oracles.page_policy import check_policy
 
 VOID = {"meta", "hr", "br"}
 
@@ -26,6 +27,10 @@ class Read(HTMLParser):
         self.elements.append((tag, dict(attrs), tuple(self.open)))
         if tag not in VOID:
             self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        assert tag in VOID
+        self.handle_starttag(tag, attrs)
 
     def handle_endtag(self, tag):
         assert self.open.pop() == tag
@@ -80,6 +85,41 @@ def test_tables_say_what_is_a_header_of_what():
     assert [attrs["scope"] for attrs, _ in read.named("th")] == ["col", "col", "row", "row"]
     assert len(read.named("td")) == 2
     assert all("div" in inside for _, inside in read.named("table"))
+
+
+def test_what_is_long_or_below_a_fourth_heading_is_folded():
+    rows = [[str(row)] for row in range(MOST_UNFOLDED)]
+    blocks = [
+        Heading(2, "Short"),
+        table(["n"], rows[1:]),
+        Heading(2, "Long"),
+        table(["n"], rows),
+        Heading(3, "Rule"),
+        "it says",
+        Heading(4, "Formula"),
+        fenced("always p", "rulec"),
+        Heading(4, "Examples"),
+        "- none",
+        "---",
+        "the end",
+    ]
+    for is_closed in (True, False):
+        read = Read(as_html(written(blocks), PageTexts("A book", is_closed=is_closed)))
+        folds = read.named("details")
+        assert [attrs for attrs, _ in folds] == 3 * [{} if is_closed else {"open": None}]
+        assert [
+            attrs["id"]
+            for tag in ("h2", "h4")
+            for attrs, inside in read.named(tag)
+            if "summary" in inside
+        ] == ["long", "formula", "examples"]
+        assert ["details" in inside for _, inside in read.named("table")] == [False, True]
+        assert ["details" in inside for _, inside in read.named("p")] == [False, False]
+        assert ["details" in inside for _, inside in read.named("li")] == [True]
+
+
+def test_the_page_says_that_it_loads_nothing():
+    check_policy(as_html(PAGE, PageTexts("A book", "Contents")))
 
 
 def test_formulas_and_differences_are_coloured_by_class():

@@ -266,7 +266,9 @@ class RulebookQuestions(RulebookVerbs):
             return as_markdown(loaded, lineage, words)
         figures = ExampleFigures(loaded.rulebook.vocabulary)
         text = as_markdown(loaded, lineage, words, figures.add)
-        page = PageTexts(title_of(loaded.rulebook), contents_heading(words), language)
+        page = PageTexts(
+            title_of(loaded.rulebook), contents_heading(words), language, is_closed=True
+        )
         return as_html(text, page, figures.by_address)
 
     def new_rulebook(self, name: str, extends: str | None = None) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from html import escape
@@ -17,6 +17,7 @@ from pygments.lexer import Lexer
 from pygments.lexers.diff import DiffLexer
 
 from rulec.report.text.markdown import anchors
+from rulec.report.text.page_policy import policy
 from rulec.report.text.pygments_lexer import RulecLexer
 
 _STYLE = Path(__file__).with_name("html_page.css")
@@ -24,16 +25,23 @@ _STYLE = Path(__file__).with_name("html_page.css")
 _MOST_NESTED = 800
 """Deeper content (two levels for each nested list) is omitted, with all that follows it."""
 
+MOST_UNFOLDED = 30
+"""The most rows and paragraphs of a section that is never folded."""
+
 _LEXERS: dict[str, type[Lexer]] = {"rulec": RulecLexer, "diff": DiffLexer}
 
 
 @dataclass(frozen=True, slots=True)
 class PageTexts:
-    """A page's title, the heading above its list of contents, and its language."""
+    """A page's title, the heading above its list of contents, and its language.
+
+    What can be folded, which is long or below a heading of level 4, is open unless ``is_closed``.
+    """
 
     title: str
     contents: str = ""
     language: str = "en"
+    is_closed: bool = False
 
 
 def as_html(
@@ -54,7 +62,9 @@ def as_html(
     _scope_cells(tokens)
     _class_cells(tokens, cell_class)
     _draw_figures(tokens, figures or {})
-    body = parser.renderer.render(list(_wrapped(tokens, page.contents)), parser.options, {})
+    shown = list(_wrapped(_folded(tokens, page), page.contents))
+    body = parser.renderer.render(shown, parser.options, {})
+    style = f"\n{_STYLE.read_text(encoding='utf-8')}"
     return (
         "<!DOCTYPE html>\n"
         f'<html lang="{page.language}">\n'
@@ -62,8 +72,9 @@ def as_html(
         '<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         '<meta name="color-scheme" content="light dark">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy([style], [])}">\n'
         f"<title>{escape(page.title)}</title>\n"
-        f"<style>\n{_STYLE.read_text(encoding='utf-8')}</style>\n"
+        f"<style>{style}</style>\n"
         "</head>\n"
         f"<body>\n<main>\n{body}</main>\n</body>\n"
         "</html>"
@@ -122,7 +133,35 @@ def _draw_figures(tokens: Sequence[Token], figures: Mapping[str, str]) -> None:
                 child.content = svg.replace("<svg ", name, 1)
 
 
-def _wrapped(tokens: Sequence[Token], contents: str) -> Iterator[Token]:
+def _folded(tokens: Sequence[Token], page: PageTexts) -> Iterator[Token]:
+    """The tokens with folds: below headings of level 4, and long sections without headings."""
+    starts = [place for place, token in enumerate(tokens) if _starts(token)]
+    for start, end in pairwise([0, *starts, len(tokens)]):
+        section = tokens[start:end]
+        folds = bool(section) and _folds(section)
+        if folds:
+            yield _raw(f"<details{'' if page.is_closed else ' open'}><summary>\n")
+        for token in section:
+            yield token
+            if folds and token.type == "heading_close":
+                yield _raw("</summary>\n")
+        if folds:
+            yield _raw("</details>\n")
+
+
+def _starts(token: Token) -> bool:
+    return token.type in ("heading_open", "hr") and not token.level
+
+
+def _folds(section: Sequence[Token]) -> bool:
+    """Whether to fold a section, which begins with its heading."""
+    if section[0].tag == "h2":
+        parts = sum(token.type in ("tr_open", "paragraph_open", "fence") for token in section)
+        return parts > MOST_UNFOLDED
+    return section[0].tag == "h4"
+
+
+def _wrapped(tokens: Iterable[Token], contents: str) -> Iterator[Token]:
     below_contents = False
     for token in tokens:
         if token.type == "inline" and token.content == contents:

@@ -13,6 +13,10 @@ _START = re.compile(r"\s*([-+=]|\d+(?=[.)]))")
 _ADDRESS = re.compile(r"https?://[^\s<>|\\`]+")
 
 
+CONTENTS = "Contents"
+"""The heading of the list of contents of an English page."""
+
+
 def escaped(text: str) -> str:
     """A text on one line, with Markdown's special characters escaped."""
     plain = _SIGNS.sub(r"\\\g<0>", visible(text))
@@ -84,6 +88,28 @@ class Heading:
 
 Block = Heading | str
 """A heading, or anything else as Markdown."""
+
+
+def placed(blocks: Iterable[Block]) -> list[tuple[Heading, str]]:
+    """The headings of a page, each with its anchor."""
+    headings = [block for block in blocks if isinstance(block, Heading)]
+    names = anchors([heading.text for heading in headings])
+    return list(zip(headings, names, strict=True))
+
+
+def with_contents(top: Sequence[Block], title: str, body: Sequence[Block]) -> list[Block]:
+    """A page with a list of contents between its top and its body.
+
+    The list has the body's headings of levels 2 and 3 as links.
+    """
+    blocks = [*top, Heading(2, title), *body]
+    own = {id(block) for block in body}
+    contents = "\n".join(
+        f"{'  ' * (heading.level - 2)}- [{escaped(heading.text)}](#{place})"
+        for heading, place in placed(blocks)
+        if id(heading) in own and heading.level in (2, 3)
+    )
+    return [*top, blocks[len(top)], contents, *body]
 
 
 def written(blocks: Iterable[Block]) -> str:

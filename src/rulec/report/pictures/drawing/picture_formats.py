@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from hashlib import sha256
 from html import escape
 from pathlib import Path
 from typing import Literal, cast
@@ -14,6 +12,7 @@ from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.matplotlib_file import Printed, as_printed
 from rulec.report.pictures.drawing.styles import STYLES, Theme, as_css
+from rulec.report.text.page_policy import policy
 from rulec.report.text.terminal_text import visible
 
 Format = Literal["svg", "png", "pdf", "html"]
@@ -61,18 +60,6 @@ def as_bytes(drawing: Drawing, form: str, file: str, theme: Theme = "auto") -> b
     if form in ("png", "pdf"):
         return as_printed(whole, cast("Printed", form), file, dark=theme == "dark")
     return f"{as_svg(whole, theme)}\n".encode()
-
-
-def policy(styles: Iterable[str], scripts: Iterable[str]) -> str:
-    """The content policy of a page that loads nothing, for the texts of its own elements."""
-    own_styles, own_scripts = (
-        " ".join(map(_hash, texts)) or "'none'" for texts in (styles, scripts)
-    )
-    return f"default-src 'none'; style-src {own_styles}; script-src {own_scripts}"
-
-
-def _hash(text: str) -> str:
-    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
 
 
 def _as_page(drawing: Drawing) -> str:

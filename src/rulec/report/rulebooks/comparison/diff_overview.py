@@ -25,32 +25,38 @@ def as_overview(rulebook_diff: RulebookDiff, width: int) -> str:
     return "\n".join(line for text in lines for line in broken(text, width, later="  "))
 
 
-def _rows(rulebook_diff: RulebookDiff) -> Iterator[tuple[str, ...]]:
-    pairs = {
-        pair.first.name: pair
-        for pair in rulebook_diff.pairs
-        if pair.relation != "equal" or pair.first.strength != pair.second.strength
-    }
-    groups = {
+def differs(pair: RulePair) -> bool:
+    """Whether two rules forbid different traces, or with another strength."""
+    return pair.relation != "equal" or pair.first.strength != pair.second.strength
+
+
+def by_topic(rulebook_diff: RulebookDiff) -> dict[str, list[RulePair]]:
+    """The rules that differ, below the headings of their topics."""
+    pairs = {pair.first.name: pair for pair in rulebook_diff.pairs if differs(pair)}
+    return {
         visible(heading): differing
         for heading, names in by_group([rulebook_diff.first]).items()
         if (differing := [pairs[name] for name in names if name in pairs])
     }
+
+
+def _rows(rulebook_diff: RulebookDiff) -> Iterator[tuple[str, ...]]:
+    groups = by_topic(rulebook_diff)
     indent = 0 if groups.keys() == {OTHER} else max(map(cell_width, groups), default=0)
     for heading, differing in groups.items():
         for number, pair in enumerate(differing):
             about = heading if indent and not number else ""
-            relation = _relation(pair, rulebook_diff)
             cites = dict.fromkeys(map(first_provision, (pair.first, pair.second)))
             yield (
                 about + " " * (indent - cell_width(about)),
                 visible(pair.name),
-                visible(relation),
+                visible(relation(pair, rulebook_diff)),
                 visible(" | ".join(filter(None, cites))),
             )
 
 
-def _relation(pair: RulePair, rulebook_diff: RulebookDiff) -> str:
+def relation(pair: RulePair, rulebook_diff: RulebookDiff) -> str:
+    """How two rules that differ relate, in two or three words."""
     match pair.relation:
         case "equal":
             soft_in = rulebook_diff.first if pair.first.strength == "soft" else rulebook_diff.second

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 from rulec.report.rulebooks.rule_list import as_json, first_provision, rules_named
 from rulec.report.text.csv_text import csv_text
-from rulec.report.text.markdown import code, escaped
-from rulec.report.text.markdown import table as markdown_table
+from rulec.report.text.markdown import CONTENTS, Block, Heading, escaped, with_contents, written
 from rulec.report.text.terminal_text import broken, column_lines, cut, styled, visible
 from rulec.rulebook.rulebook_model import Rule, Rulebook, cited_law
 from rulec.rulebook.rules.rule_topics import by_group
@@ -52,7 +52,7 @@ def render(
             # markdown-it and Pygments take 0.1 s.
             from rulec.report.text.html_page import PageTexts, as_html
 
-            return as_html(_as_markdown(books, topic), PageTexts(_title(books, topic)))
+            return as_html(_as_markdown(books, topic), PageTexts(_title(books, topic), CONTENTS))
         case _:
             return _as_text(books, topic, width, in_full=in_full)
 
@@ -110,15 +110,21 @@ def _wrapped(sections: Sequence[_Section], width: int) -> list[str]:
     lines = []
     for section in sections:
         lines.append(styled(visible(section.title), "bold"))
-        alike: dict[str, list[str]] = {}
-        for book, rule, _ in section.says:
-            cite = cited_law(rule.cite, rule.inherited_from)
-            alike.setdefault("  ".join(filter(None, (cite, rule.says))), []).append(book)
-        for book, because in section.silent:
-            alike.setdefault(f"no such rule{because and f': {because}'}", []).append(book)
-        for text, books in alike.items():
-            lines += broken(visible(f"{', '.join(books)}  {text}"), width, "  ", "      ")
+        for books, *texts in _said(section):
+            text = "  ".join(filter(None, (books, *texts)))
+            lines += broken(visible(text), width, "  ", "      ")
     return lines
+
+
+def _said(section: _Section) -> list[tuple[str, str, str]]:
+    """What is said, each once: the rulebooks that share it, the provision, and the sentence."""
+    alike: dict[tuple[str, str], list[str]] = {}
+    for book, rule, _ in section.says:
+        cite = cited_law(rule.cite, rule.inherited_from)
+        alike.setdefault((cite, rule.says), []).append(book)
+    for book, because in section.silent:
+        alike.setdefault(("", f"no such rule{because and f': {because}'}"), []).append(book)
+    return [(", ".join(books), *texts) for texts, books in alike.items()]
 
 
 def _in_lines(sections: Sequence[_Section], width: int) -> list[str]:
@@ -146,13 +152,15 @@ def _provisions(rule: Rule, more: int) -> str:
 
 
 def _as_markdown(books: Sequence[Rulebook], topic: str) -> str:
-    parts = [f"# {escaped(_title(books, topic))}"]
-    for section in _rules(books):
-        rows = [
-            [code(book), escaped(cited_law(rule.cite, rule.inherited_from)), escaped(rule.says)]
-            for book, rule, _ in section.says
-        ]
-        rows += [[code(book), "none", escaped(because)] for book, because in section.silent]
-        table = markdown_table(["rulebook", "provision", "what it says"], rows)
-        parts += [f"## {code(section.title)}", table]
-    return "\n\n".join(parts)
+    topics = {topic.name: topic.title for book in books for topic in book.topics}
+    titles = {rule.name: topics[rule.topics[0]] for book in books for rule in book.rules}
+    body: list[Block] = []
+    for title, sections in groupby(_rules(books), lambda section: titles[section.title]):
+        body.append(Heading(2, title))
+        for section in sections:
+            said = [
+                f"- **{escaped(books)}**{cite and f' ({escaped(cite)})'}: {escaped(says)}"
+                for books, cite, says in _said(section)
+            ]
+            body += [Heading(3, section.title), "\n".join(said)]
+    return written(with_contents([Heading(1, _title(books, topic))], CONTENTS, body))

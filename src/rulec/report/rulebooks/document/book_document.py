@@ -72,24 +72,17 @@ def as_markdown(
 ) -> str:
     """The whole document; ``picture`` gives for an example the address of its image."""
     rulebook = loaded.rulebook
-    contents_here = Heading(2, contents_heading(words))
-    top: list[Block] = [Heading(1, title_of(rulebook)), *_top(rulebook, words), contents_here]
+    top: list[Block] = [Heading(1, title_of(rulebook)), *_top(rulebook, words)]
+    contents = contents_heading(words)
     body = list(_body(loaded, inherited, words, picture))
     index = Heading(2, words.say("Index of provisions"))
-    headings = [heading for heading in (*top, *body, index) if isinstance(heading, Heading)]
-    names = markdown.anchors([heading.text for heading in headings])
-    places = {id(heading): name for heading, name in zip(headings, names, strict=True)}
-    contents = "\n".join(
-        f"{'  ' * (heading.level - 2)}- [{escaped(heading.text)}](#{places[id(heading)]})"
-        for heading in (*body, index)
-        if isinstance(heading, Heading) and heading.level in (2, 3)
-    )
-    rules = {heading.text: places[id(heading)] for heading in headings if heading.level == 3}
+    headings = markdown.placed([*top, Heading(2, contents), *body])
+    rules = {heading.text: place for heading, place in headings if heading.level == 3}
+    body += _index(rulebook, inherited, index, rules, words)
     sources = ", ".join(code(source.name) for source in rulebook.sources)
     made_from = words.say("Made by rulec {} from {}.", __version__, sources)
     advice = f"{made_from} {words.say(NO_ADVICE)}"
-    end = (*_index(rulebook, inherited, index, rules, words), "---", advice)
-    return markdown.written([*top, contents, *body, *end])
+    return markdown.written([*markdown.with_contents(top, contents, body), "---", advice])
 
 
 def _top(rulebook: Rulebook, words: DocumentLanguage) -> Iterator[Block]:
