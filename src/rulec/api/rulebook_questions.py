@@ -224,7 +224,6 @@ class RulebookQuestions(RulebookVerbs):
         if width < _NARROWEST:
             raise ValueError(f"`width` is {_NARROWEST} columns or more, not {width}")
         from rulec.report.rulebooks import rule_page
-        from rulec.report.rulebooks.spoken_rules import spoken_book
 
         book = self.load_rulebook(reference)
         chosen = next((known for known in book.rules if known.name == rule), None)
@@ -232,9 +231,7 @@ class RulebookQuestions(RulebookVerbs):
             raise KeyError(f"{book.name} has no rule {rule}")
         compiled = self.compile_rulebook(replace(book, rules=(chosen,)))
         page = rule_page.page_of(chosen, compiled.rules[0], compiled.vocabulary)
-        (spoken,) = spoken_book(replace(book, rules=(chosen,))).rules
-        page = replace(page, rule=spoken)
-        return rule_page.as_text(page, book.name, book.vocabulary, width)
+        return rule_page.as_text(page, book, width)
 
     def doc(
         self,

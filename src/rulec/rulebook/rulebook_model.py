@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from rulec.diagnostics import Span
-from rulec.logic.formula import Formula
+from rulec.logic.formula import Atom, Formula
 from rulec.value_display import Rows, short_repr
 from rulec.vocabulary import Vocabulary
 
@@ -109,6 +109,8 @@ class Rule:
     condition: Formula | None = None
     inherited_from: str = ""
     topics: tuple[str, ...] = ()
+    defined: tuple[tuple[Atom, Formula], ...] = field(default=(), compare=False, repr=False)
+    """The uses of definitions in its formulas, in the form of atoms, and what they mean."""
 
 
 def parts_of(rule: Rule) -> RuleParts | None:

@@ -79,7 +79,7 @@ def _format(question: Question) -> Any:
 def _rules(question: Question) -> Any:
     """The rules in English."""
     book = rulec.load_rulebook(_written(question))
-    return as_builtins(rule_json.as_document(book.name, book.rules, book.vocabulary, None))
+    return as_builtins(rule_json.as_document(book, book.rules, None))
 
 
 def _test(question: Question) -> Any:

@@ -89,10 +89,8 @@ def example_answer(book: Rulebook, rule: Rule) -> ExampleAnswer:
 def english(book: Rulebook, rule: Rule) -> str:
     """A rule in plain English."""
     from rulec.report.rulebooks.rule_page import summary
-    from rulec.report.rulebooks.spoken_rules import spoken_book
 
-    (spoken,) = spoken_book(replace(book, rules=(rule,))).rules
-    return summary(spoken, book.name, book.vocabulary, _WIDTH)
+    return summary(rule, book, _WIDTH)
 
 
 def parent_answer(book: Rulebook, parent: Rulebook, rule: str) -> ParentAnswer:

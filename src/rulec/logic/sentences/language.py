@@ -101,6 +101,7 @@ class Language:
     atom_of: Pair
     truth: Pair
     same: Pair
+    kind: Pair
     relations: Mapping[Relation, Pair]
     times: str
 
@@ -134,6 +135,7 @@ class Language:
     iff: str
     xor: str
     implies: str
+    means: str
     where: str
     either: str
     both: str
@@ -141,6 +143,7 @@ class Language:
     both_of: str
     all_of: str
     one_of: str
+    none_of: str
     phase_line: str
     phase: str
     phase_joint: str

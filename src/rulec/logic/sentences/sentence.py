@@ -8,7 +8,7 @@ labels, as in contracts. Different formulas get different sentences.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 
 from rulec.logic import formula as ltl
@@ -18,6 +18,10 @@ from rulec.logic.sentences.language import Language
 
 MOST_IN_A_LINE = 3
 """Longer chains of ``and``, ``or`` and ``then`` become lists."""
+
+
+MOST_CLAUSES = 5
+"""Longer chains that end in another chain become lists."""
 
 
 class Shape(IntEnum):
@@ -49,6 +53,8 @@ class Phrase:
     items: tuple[Phrase, ...] = ()
     joint: str = ""
     n_clauses: int = 1
+    of: ltl.Formula | None = field(default=None, compare=False)
+    """The formula that it says."""
 
 
 def label(index: int) -> str:
@@ -89,6 +95,13 @@ def condition(formula: ltl.Formula, language: Language = ENGLISH, *, guards: boo
     return _after(lead, phrase(formula, language, inside=True), language)
 
 
+def meaning(name: ltl.Atom, formula: ltl.Formula, language: Language = ENGLISH) -> Phrase:
+    """What an atom stands for, as a sentence without full stop."""
+    said = phrase(formula, language, inside=True)
+    clause = wording.atom_clause(name, language, holds=True)
+    return replace(said, text=language.means.format(clause, said.text))
+
+
 Related = Callable[[str, str], bool]
 
 
@@ -103,14 +116,20 @@ def _for_every(variables: Sequence[tuple[str, str]], related: Related, language:
 
 def phrase(formula: ltl.Formula, language: Language = ENGLISH, *, inside: bool) -> Phrase:
     """A formula as a phrase. ``inside``: it refers to another time than the start of the trace."""
+    return replace(_phrase(formula, language, inside=inside), of=formula)
+
+
+def _phrase(formula: ltl.Formula, language: Language, *, inside: bool) -> Phrase:
     match formula:
-        case ltl.Unary(ltl.UnaryOperator.NOT, ltl.Comparison() as operand) if _is_some(operand):
+        case ltl.Unary(ltl.UnaryOperator.NOT, ltl.Comparison() as operand) if _says_some(operand):
             return phrase(replace(operand, relation="<"), language, inside=inside)
         case ltl.Unary(ltl.UnaryOperator.NOT, operand):
             denied = None if _counts(operand) else _clause(operand, language, holds=False)
             if denied is not None:
                 return _simple(denied, language, inside=inside)
             scope = phrase(operand, language, inside=inside)
+            if scope.text == language.one_of:
+                return replace(scope, text=language.none_of)
             return _after(language.not_so, scope, language, denies=True)
         case ltl.Unary(operator, operand, bound):
             lead = wording.adverb(operator, bound, language, inside=inside)
@@ -129,6 +148,8 @@ def phrase(formula: ltl.Formula, language: Language = ENGLISH, *, inside: bool) 
         case ltl.Binary(operator, bound=bound):
             pattern = wording.pattern_of(operator, bound, language, inside=inside)
             return _between(pattern, formula, language, inside=True)
+        case ltl.Comparison() if (kind := _kind(formula, language)) is not None:
+            return _simple(kind, language, inside=inside)
         case ltl.Comparison() if (count := wording.single_count(formula)) is not None:
             body, there_are = count.body, wording.counted(formula, count, language)
             every = _denied(body) if wording.is_none(formula) else None
@@ -155,10 +176,22 @@ def _denied(formula: ltl.Formula) -> ltl.Formula | None:
     return None
 
 
-def _is_some(formula: ltl.Comparison) -> bool:
+def _says_some(formula: ltl.Comparison) -> bool:
     """Whether it says that there is at least one object."""
-    is_one = formula.relation == ">=" and formula.limit == 1
-    return is_one and wording.single_count(formula) is not None
+    return wording.is_some(formula) and wording.single_count(formula) is not None
+
+
+def _kind(formula: ltl.Comparison, language: Language) -> str | None:
+    """The clause that an object is of a type, or is not, if the formula says no more."""
+    count, is_none = wording.single_count(formula), wording.is_none(formula)
+    if count is None or not (is_none or wording.is_some(formula)):
+        return None
+    match count.body:
+        case ltl.Same(left, right) if count.variable in (left, right) and left != right:
+            words = language.type_of(count.type, wording.spoken(count.type))
+            other = right if left == count.variable else left
+            return language.kind[is_none].format(other, words.one)
+    return None
 
 
 def _counts(formula: ltl.Formula) -> bool:
@@ -250,11 +283,14 @@ def _chain(formula: ltl.Binary, language: Language, *, inside: bool) -> Phrase:
     parts = tuple(phrase(part, language, inside=inside) for part in (rest, *reversed(operands)))
     is_and = formula.operator is ltl.BinaryOperator.AND
     joint = language.and_ if is_and else language.or_
-    if (
-        len(parts) <= MOST_IN_A_LINE
-        and all(part.shape is Shape.CLAUSE for part in parts[:-1])
-        and parts[-1].shape <= Shape.SCOPED
-    ):
+    fits_a_line = len(parts) <= MOST_IN_A_LINE and all(
+        part.shape is Shape.CLAUSE for part in parts[:-1]
+    )
+    last = parts[-1]
+    if fits_a_line and last.shape is Shape.JOINED and len(parts) + last.n_clauses <= MOST_CLAUSES:
+        head = ", ".join(part.text for part in parts[:-1])
+        return Phrase(f"{head}, {joint} {_together(last, language)}", Shape.LINE, (), joint)
+    if fits_a_line and last.shape <= Shape.SCOPED:
         shape = Shape.JOINED if parts[-1].shape is Shape.CLAUSE else Shape.LINE
         texts = [part.text for part in parts]
         comma = "," if shape is Shape.LINE else ""

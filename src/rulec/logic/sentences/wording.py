@@ -24,6 +24,9 @@ from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.language import Language, SpanWords
 from rulec.logic.sentences.spoken_words import SpokenAtom, SpokenQuantity
 
+_FROM_ZERO = re.compile(r"(?<![\w.,])0 (\S+) - (\d[\d.,]*) \1(?!\S)")
+"""A negative amount as rules write it, such as ``0 m/s^2 - 0.5 m/s^2``."""
+
 _SIGN = re.compile(r"<=|>=|!=|<|>|=")
 
 
@@ -117,7 +120,7 @@ def _aloud(text: str, terms: Sequence[Term], language: Language) -> str:
         for term in terms
         if isinstance(term, QuantityTerm)
     }
-    text = language.decimals(text)
+    text = _FROM_ZERO.sub(r"-\2 \1", language.decimals(text))
     if nouns:  # Replaced in one pass: a noun may contain another quantity's name.
         written = "|".join(re.escape(name) for name in sorted(nouns, key=len, reverse=True))
         text = re.sub(rf"(?<![\w.])(?:{written})(?![\w(])", lambda name: nouns[name[0]], text)
@@ -130,6 +133,11 @@ def single_count(comparison: Comparison) -> Count | None:
         case ((coefficient, Count() as count),) if coefficient == 1:
             return count
     return None
+
+
+def is_some(comparison: Comparison) -> bool:
+    """Whether a comparison of a single count says that there is such an object."""
+    return comparison.relation == ">=" and comparison.limit == 1
 
 
 def is_none(comparison: Comparison) -> bool:
@@ -148,7 +156,7 @@ def counted(comparison: Comparison, count: Count, language: Language) -> str:
     words = language.type_of(count.type, spoken(count.type))
     if is_none(comparison):
         return language.there_is_no.format(words.none, count.variable)
-    if comparison.relation == ">=" and comparison.limit == 1:
+    if is_some(comparison):
         return language.there_is.format(words.one, count.variable)
     is_one = comparison.limit == 1 and comparison.relation != "!="
     n = language.counted[comparison.relation].format(number_text(comparison.limit, language))

@@ -11,9 +11,9 @@ from rulec.logic.printing import formula_text
 from rulec.logic.sentences.sentence_layout import in_one_line
 from rulec.report.automata.automaton_model import Fate, Transition
 from rulec.report.json_document import JsonDocument, JsonPart, filled
-from rulec.report.rulebooks.rule_page import RulePage, ShortestTrace, phrase_of, restrictions_of
-from rulec.rulebook.rulebook_model import Certainty, Rule, Strength, Variable
-from rulec.vocabulary import Vocabulary
+from rulec.report.rulebooks.rule_page import RulePage, ShortestTrace
+from rulec.report.rulebooks.spoken_rules import sentences_of
+from rulec.rulebook.rulebook_model import Certainty, Rule, Rulebook, Strength, Variable
 
 
 class StateData(JsonPart, frozen=True, kw_only=True):
@@ -54,6 +54,7 @@ class RuleData(JsonPart, frozen=True, kw_only=True):
     topics: Sequence[str]
     sentence: str
     restrictions: Sequence[str]
+    definitions: Sequence[str]
     formula: str
     automaton: AutomatonData | UnsetType = UNSET
     step_s: float | UnsetType | None = UNSET
@@ -68,21 +69,22 @@ class RulesDocument(JsonDocument, frozen=True, kw_only=True):
     rules: Sequence[RuleData]
 
 
-def as_document(
-    rulebook: str, rules: Sequence[Rule], vocabulary: Vocabulary, page: RulePage | None
-) -> RulesDocument:
+def as_document(rulebook: Rulebook, rules: Sequence[Rule], page: RulePage | None) -> RulesDocument:
     """The rules, with automaton and traces if there is only one."""
-    return RulesDocument(rulebook=rulebook, rules=[_rule(rule, vocabulary, page) for rule in rules])
+    data = [_rule(rule, rulebook, page) for rule in rules]
+    return RulesDocument(rulebook=rulebook.name, rules=data)
 
 
-def _rule(rule: Rule, vocabulary: Vocabulary, page: RulePage | None) -> RuleData:
+def _rule(rule: Rule, rulebook: Rulebook, page: RulePage | None) -> RuleData:
+    said = sentences_of(rule, rulebook)
     data = filled(
         RuleData,
         rule,
         weight=float(rule.weight),
         step_s=UNSET,
-        sentence=in_one_line(phrase_of(rule, vocabulary)),
-        restrictions=[in_one_line(phrase) for phrase in restrictions_of(rule)],
+        sentence=in_one_line(said.requirement),
+        restrictions=[*map(in_one_line, said.restrictions)],
+        definitions=[*map(in_one_line, said.definitions)],
         formula=formula_text(rule.formula),
     )
     if page is None:

@@ -9,21 +9,19 @@ from fractions import Fraction
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.diagnostics.diagnostic import at
 from rulec.extraction.tellable_words import TELLABLE_WORDS
-from rulec.logic.fold import fold_constants
-from rulec.logic.formula import Constant, Unary, UnaryOperator
 from rulec.logic.free_names import names_in
 from rulec.logic.printing import formula_text
-from rulec.logic.sentences.english import ENGLISH, plural
-from rulec.logic.sentences.language import Language
-from rulec.logic.sentences.sentence import Phrase, Shape, condition, exemption, sentence
+from rulec.logic.sentences.english import plural
+from rulec.logic.sentences.sentence import Phrase
 from rulec.logic.sentences.sentence_layout import lines
 from rulec.logic.sentences.wording import amount, number_text, spoken
 from rulec.report.automata import automaton_text
 from rulec.report.automata.automaton_model import Automaton, automaton_of
+from rulec.report.rulebooks.spoken_rules import sentences_of
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.guard_text import GuardWording
 from rulec.report.text.terminal_text import broken, fact_lines, styled, visible
-from rulec.rulebook.rulebook_model import Rule, Variable
+from rulec.rulebook.rulebook_model import Rule, Rulebook, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_witness import WitnessTrace
 from rulec.witnesses.shortest_traces import shortest_traces
@@ -91,36 +89,8 @@ def _remarks(trace: WitnessTrace) -> Iterator[str]:
             )
 
 
-def phrase_of(rule: Rule, vocabulary: Vocabulary, language: Language = ENGLISH) -> Phrase:
-    """The rule as a sentence, without its exceptions."""
-    return sentence(
-        fold_constants(rule.required or rule.formula),
-        [(variable.name, variable.type) for variable in rule.variables],
-        lambda a, b: vocabulary.is_subtype(a, b) or vocabulary.is_subtype(b, a),
-        language,
-    )
-
-
-def restrictions_of(rule: Rule, language: Language = ENGLISH) -> list[Phrase]:
-    """The rule's condition and exceptions as sentences, except those excluded by options."""
-    phrases = [
-        exemption(formula, exemption_.scope, language)
-        for exemption_ in rule.exemptions
-        if (formula := fold_constants(exemption_.formula)) != Constant(False)
-    ]
-    applies = Constant(True) if rule.condition is None else fold_constants(rule.condition)
-    if applies == Constant(True):
-        return phrases
-    if applies == Constant(False):
-        return [Phrase(language.counts_never, Shape.CLAUSE)]
-    guarding = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
-    guards = isinstance(rule.required, Unary) and rule.required.operator in guarding
-    return [condition(applies, language, guards=guards), *phrases]
-
-
-def _sentences(rule: Rule, vocabulary: Vocabulary, width: int) -> str:
-    phrases = [phrase_of(rule, vocabulary), *restrictions_of(rule)]
-    return "\n".join(in_english(phrase, width) for phrase in phrases)
+def _sentences(rule: Rule, rulebook: Rulebook, width: int) -> str:
+    return "\n".join(in_english(said, width) for said in sentences_of(rule, rulebook).every)
 
 
 def _formula(rule: Rule, width: int) -> list[str]:
@@ -186,12 +156,12 @@ def in_english(phrase: Phrase, width: int) -> str:
     return "\n".join(shown)
 
 
-def summary(rule: Rule, rulebook: str, vocabulary: Vocabulary, width: int) -> str:
+def summary(rule: Rule, rulebook: Rulebook, width: int) -> str:
     """The rule in brief."""
-    return f"{head(rule, rulebook, width)}\n\n{_sentences(rule, vocabulary, width)}"
+    return f"{head(rule, rulebook.name, width)}\n\n{_sentences(rule, rulebook, width)}"
 
 
-def as_text(page: RulePage, rulebook: str, vocabulary: Vocabulary, width: int) -> str:
+def as_text(page: RulePage, rulebook: Rulebook, width: int) -> str:
     """The whole page."""
     formula = _formula(page.rule, width - len(INDENT))
     automaton = (
@@ -203,7 +173,7 @@ def as_text(page: RulePage, rulebook: str, vocabulary: Vocabulary, width: int) -
     if page.step_s is not None:
         automaton = f"for traces with steps of {amount(page.step_s, 's')}:\n{automaton}"
     sections = [
-        ("in English", _sentences(page.rule, vocabulary, width)),
+        ("in English", _sentences(page.rule, rulebook, width)),
         ("formula", _indented(formula)),
         ("automaton", _indented(automaton.split("\n"))),
         (
@@ -212,7 +182,7 @@ def as_text(page: RulePage, rulebook: str, vocabulary: Vocabulary, width: int) -
         ),
     ]
     blocks = [f"{styled(title, 'bold')}\n{text}" for title, text in sections]
-    return "\n\n".join([head(page.rule, rulebook, width), *blocks])
+    return "\n\n".join([head(page.rule, rulebook.name, width), *blocks])
 
 
 def _indented(texts: Sequence[str]) -> str:

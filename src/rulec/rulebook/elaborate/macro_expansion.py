@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TypeVar
 
 from rulec.diagnostics import Span
+from rulec.logic.formula import Atom, Formula
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.elaborate import constant_messages as say
 from rulec.rulebook.elaborate.scope import SIDES, AnyArgument, BoundVariable, Call, Evaluate, Scope
@@ -58,7 +59,19 @@ def expand_macro(
         used=set(),
         owner="definition",
     )
-    return evaluate(item.body, inner)
+    meaning = evaluate(item.body, inner)
+    if isinstance(meaning, Formula):
+        use_of = Atom(name, tuple([_actual(argument, scope) for argument in use.arguments]))
+        scope.constants.defined[use_of] = meaning
+    return meaning
+
+
+def _actual(argument: tree.Name, scope: Scope) -> str:
+    """The name by which the rule knows an argument."""
+    name = argument.text
+    known = scope.variables.get(name)
+    relation = scope.relations.get(name, name)
+    return known.actual if known else relation if isinstance(relation, str) else name
 
 
 def _closes_circle(use: tree.AtomUse, kind: str, scope: Scope) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
+from rulec.logic.formula import Atom, Formula
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS, OverLimitError
 from rulec.rulebook.overlay.rulebook_overlay import Overlay
@@ -25,6 +26,8 @@ class ConstantsAndMacros:
     numbers: dict[str, NumberByCases | None] = field(default_factory=dict)
     broken: set[str] = field(default_factory=set)
     """Definitions with a reported mistake."""
+    defined: dict[Atom, Formula] = field(default_factory=dict)
+    """The definitions used in the current rule, in the form of atoms, and what they mean."""
     parts: int = 0
     depth: int = 0
     """The number of parts of the current expression visited so far, and the current depth."""

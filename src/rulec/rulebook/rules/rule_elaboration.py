@@ -49,8 +49,10 @@ def translate_rule(
     variables = bound_variables(item.variables, symbols, mistakes.append)
     scope = Scope(symbols, constants, variables, mistakes, taken=frozenset(variables))
     parts = None
+    constants.defined.clear()
     with scope.within_limits("formula", item.name):
         parts = _parts_of(item, scope)
+    defined = tuple(constants.defined.items())
     formula = None if parts is None else _formula(item, parts, scope)
     if item.complete and formula is not None:
         mistakes += scope.unused(item.variables, item)
@@ -100,6 +102,7 @@ def translate_rule(
         exemptions=parts.exemptions,
         condition=parts.condition,
         topics=constants.overlay.topics_of(item),
+        defined=defined,
         inherited_from=law.name.text if law.name and not confirmed else "",
     )
     try:

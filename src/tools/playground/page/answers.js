@@ -106,7 +106,7 @@ export function rules({ rules: listed, rulebook }) {
         "article",
         {},
         element("h3", {}, `${rule.name} `, element("small", {}, [rule.strength, rule.cite, rule.book === rulebook ? "" : `from ${rule.book}`].filter(Boolean).join(" · "))),
-        ...lines(rule.sentence, ...rule.restrictions),
+        ...lines(rule.sentence, ...rule.restrictions, ...rule.definitions),
         rule.says ? element("p", { class: "says" }, rule.says) : null,
       ),
     );

@@ -144,23 +144,18 @@ def _shown(reference: str, request: ShowRequest, *, several: bool) -> tuple[str,
     # Late import, not for --help: rules and automata (60 ms).
     from rulec.report.json_document import as_indented, as_line
     from rulec.report.rulebooks import rule_json, rule_page
-    from rulec.report.rulebooks.spoken_rules import spoken_book
 
     page = None if chosen is None else _page(book, compiled, chosen)
-    spoken = spoken_book(book)
-    rules = spoken.rules
-    if chosen is not None and page is not None:
-        rules = tuple(rule for rule in spoken.rules if rule.name == chosen.name)
-        page = replace(page, rule=rules[0])
+    rules = book.rules if chosen is None else (chosen,)
     if request.to.form == "json":
-        document = rule_json.as_document(book.name, rules, book.vocabulary, page)
+        document = rule_json.as_document(book, rules, page)
         return as_line(document) if several else as_indented(document), paths
     width = width_of(request.to)
     if page is not None:
-        return rule_page.as_text(page, book.name, book.vocabulary, width), paths
+        return rule_page.as_text(page, book, width), paths
     if not rules:
         return f"{book.name} has no rules; `rulec explain NAME` explains what it defines", paths
-    pages = [rule_page.summary(rule, book.name, book.vocabulary, width) for rule in rules]
+    pages = [rule_page.summary(rule, book, width) for rule in rules]
     return "\n\n\n".join(pages), paths
 
 

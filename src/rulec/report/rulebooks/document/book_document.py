@@ -20,7 +20,6 @@ from rulec.report.rulebooks.document.book_rule import (
     time_in_force,
 )
 from rulec.report.rulebooks.document_language import IN_ENGLISH, DocumentLanguage
-from rulec.report.rulebooks.spoken_rules import spoken_book
 from rulec.report.text import markdown
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, linked, table
@@ -117,7 +116,7 @@ def _body(
     words: DocumentLanguage,
     picture: ExamplePicture | None,
 ) -> Iterator[Block]:
-    rulebook = spoken_book(loaded.rulebook, words.language)
+    rulebook = loaded.rulebook
     yield Heading(2, words.say("Rules"))
     yield words.say(ABOUT_RULES if rulebook.rules else "None.")
     own = [rule for rule in rulebook.rules if not rule.inherited_from]

@@ -15,8 +15,8 @@ from rulec.logic.sentences.sentence import Phrase
 from rulec.logic.sentences.sentence_layout import lines
 from rulec.logic.sentences.wording import amount, listed, number_text, spoken
 from rulec.report.rulebooks.document_language import IN_ENGLISH, DocumentLanguage
-from rulec.report.rulebooks.rule_page import phrase_of, restrictions_of
 from rulec.report.rulebooks.rule_provenance import provenance
+from rulec.report.rulebooks.spoken_rules import sentences_of
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, linked, table
 from rulec.rulebook.rulebook_model import Example, Rule, Rulebook
@@ -83,7 +83,7 @@ def rule_section(
     yield "\n".join(f"- **{name}:** {text}" for name, text in (*facts, *topics))
     yield Heading(4, say("In plain English"))
     language = words.language
-    for phrase in (phrase_of(rule, vocabulary, language), *restrictions_of(rule, language)):
+    for phrase in sentences_of(rule, rulebook, language).every:
         yield _sentence(phrase, language)
     yield Heading(4, say("Formula"))
     yield from _formula(rule, history.rule, words)

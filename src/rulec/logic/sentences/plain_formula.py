@@ -1,0 +1,116 @@
+"""Equivalent formulas that are said in fewer words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from functools import reduce
+
+from rulec.logic import formula as ltl
+from rulec.logic.free_names import rename_variables
+from rulec.logic.sentences.wording import is_none, is_some, single_count
+
+_CHAINS = (ltl.BinaryOperator.AND, ltl.BinaryOperator.OR)
+
+Fits = Callable[[str, str], bool]
+"""Whether every object of the first type is of the second."""
+
+
+def plain(formula: ltl.Formula, kinds: Mapping[str, str], fits: Fits) -> ltl.Formula:
+    """The formula with chains in one piece, and without objects that are the same as another.
+
+    ``kinds`` has the types of its free variables. "There is a vehicle x that is v and brakes" says
+    that v brakes (the one-point rule), and that v is a vehicle unless ``fits`` tells that anyway.
+    """
+
+    def inside(operand: ltl.Formula) -> ltl.Formula:
+        return plain(operand, kinds, fits)
+
+    match formula:
+        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
+            shorter = inside(operand)
+            if isinstance(shorter, ltl.Unary) and shorter.operator is ltl.UnaryOperator.NOT:
+                return shorter.operand
+            return ltl.Unary(ltl.UnaryOperator.NOT, shorter)
+        case ltl.Binary(operator) if operator in _CHAINS:
+            parts = [
+                part for own in _chain(operator, formula) for part in _chain(operator, inside(own))
+            ]
+            return _joined(operator, parts)
+        case ltl.Unary() | ltl.Binary():
+            return ltl.with_operands(formula, inside)
+        case ltl.Comparison(terms):
+            return _at_one_point(formula, kinds, fits) or replace(
+                formula,
+                terms=tuple([(factor, _counted(term, kinds, fits)) for factor, term in terms]),
+            )
+    return formula
+
+
+def _counted(term: ltl.Term, kinds: Mapping[str, str], fits: Fits) -> ltl.Term:
+    if not isinstance(term, ltl.Count):
+        return term
+    return replace(term, body=plain(term.body, {**kinds, term.variable: term.type}, fits))
+
+
+def _at_one_point(
+    formula: ltl.Comparison, kinds: Mapping[str, str], fits: Fits
+) -> ltl.Formula | None:
+    """What a comparison says of another object, if all that it counts is the same as that one."""
+    count = single_count(formula)
+    if count is None or not (is_none(formula) or is_some(formula)):
+        return None
+    parts = list(_chain(ltl.BinaryOperator.AND, count.body))
+    same = ((part, _other_than(count.variable, part)) for part in parts)
+    itself, other = next(((part, other) for part, other in same if other), (None, ""))
+    if itself is None:
+        return None
+    rest = [rename_variables(part, {count.variable: other}) for part in parts if part is not itself]
+    if not fits(kinds.get(other, ""), count.type):
+        if not rest:
+            return None
+        kind = ((Fraction(1), replace(count, body=itself)),)
+        rest.insert(0, ltl.Comparison(kind, ">=", Fraction(1)))
+    said = _joined(ltl.BinaryOperator.AND, rest or [ltl.Constant(True)])
+    return plain(ltl.Unary(ltl.UnaryOperator.NOT, said) if is_none(formula) else said, kinds, fits)
+
+
+def _other_than(variable: str, part: ltl.Formula) -> str:
+    """The variable that a part says to be the same as this one; empty if it says no such thing."""
+    if not isinstance(part, ltl.Same) or variable not in (part.left, part.right):
+        return ""
+    other = part.right if part.left == variable else part.left
+    return other if other != variable else ""
+
+
+def _chain(operator: ltl.BinaryOperator, formula: ltl.Formula) -> Iterator[ltl.Formula]:
+    """The operands of a chain of one operator, however it is grouped."""
+    if isinstance(formula, ltl.Binary) and formula.operator is operator:
+        yield from _chain(operator, formula.left)
+        yield from _chain(operator, formula.right)
+    else:
+        yield formula
+
+
+def _joined(operator: ltl.BinaryOperator, parts: list[ltl.Formula]) -> ltl.Formula:
+    return reduce(lambda left, right: ltl.Binary(operator, left, right), parts)
+
+
+def replaced(formula: ltl.Formula, names: Mapping[ltl.Formula, ltl.Formula]) -> ltl.Formula:
+    """The formula with the parts that have a name replaced by it, the largest first."""
+    name = names.get(formula)
+    if name is not None:
+        return name
+    match formula:
+        case ltl.Unary() | ltl.Binary():
+            return ltl.with_operands(formula, lambda operand: replaced(operand, names))
+        case ltl.Comparison(terms):
+            within = [
+                (factor, replace(term, body=replaced(term.body, names)))
+                if isinstance(term, ltl.Count)
+                else (factor, term)
+                for factor, term in terms
+            ]
+            return replace(formula, terms=tuple(within))
+    return formula
