@@ -9,8 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.analysis.audit.rulebook_audit import used_declarations
-from rulec.analysis.counterexample import counterexample, declarations_read, shared_vocabulary
+from rulec.analysis.counterexample import counterexample, declarations_read
 from rulec.analysis.shared_compilation import at_one_step, compile_shared
+from rulec.analysis.shared_vocabulary import shared_vocabulary
 from rulec.analysis.trace_display import SignalRow, trace_note, trace_table
 from rulec.logic.formula import (
     Atom,

@@ -149,16 +149,14 @@ leave_room: new is stricter: it forbids all that old forbids, and more
 
 no_passing: new is laxer: it allows all that old allows, and more
   old forbids, new allows
-    state        0        1         2
-    ───────────────────────────────────────────
-    station(v)   behind   beside    in_front_of
-    lateral(v)   left_of  right_of  left_of
-    congested    F        T         F
-    0: ego is behind v, ego is to the left of v and “traffic is not slow and
-      dense”
-    1: ego is beside v, ego is to the right of v and “traffic is slow and dense”
-    2: ego is in front of v, ego is to the left of v and “traffic is not slow
-      and dense”
+    state        0         1         2
+    ────────────────────────────────────────────
+    station(v)   behind    beside    in_front_of
+    lateral(v)   right_of  right_of  right_of
+    congested    T         T         T
+    0: ego is behind v, ego is to the right of v and “traffic is slow and dense”
+    1: ego is beside v
+    2: ego is in front of v
 
 only in old
   soft rule no_horn; new is silent on it: "in the act on noise"

@@ -7,10 +7,10 @@ import pytest
 from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Atom, Constant
 from rulec.logic.free_names import rename_variables
+from rulec.logic.one_point import plain, replaced
 from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.french import FRENCH
 from rulec.logic.sentences.german import GERMAN
-from rulec.logic.sentences.plain_formula import plain, replaced
 from rulec.logic.sentences.sentence_layout import lines
 from rulec.logic.sentences.spoken_words import spoken_formula
 from rulec.report.rulebooks.spoken_rules import MOST_LEVELS, atoms_in, counted_in, sentences_of

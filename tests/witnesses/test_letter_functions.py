@@ -19,11 +19,14 @@ from rulec.logic.formula import (
     Same,
     Unary,
     UnaryOperator,
+    atoms_of,
 )
 from rulec.rulebook.rulebook_model import Axiom, Variable
+from rulec.vocabulary import ObjectType
 from rulec.witnesses.letter_functions import (
     axiom_function,
     body_of,
+    can_be_true,
     count_function,
     counts_read,
     monitor_function,
@@ -129,12 +132,25 @@ def test_a_count_inside_another_one_is_left_undecided():
         count_function(outer, ObjectUniverse(TWO, VOCABULARY))
 
 
+def test_a_count_of_the_object_itself_is_decided_by_its_type():
+    of_type = Count("i", "thing", Same("i", "o"))
+    no_thing = Comparison(((Fraction(1), of_type),), "<", Fraction(1))
+    outer = Count("o", "thing", Binary(BinaryOperator.OR, no_thing, Atom("q", ("o",))))
+    types = {**VOCABULARY.types, "other": ObjectType("other")}
+    known = Itself(replace(VOCABULARY, types=types))
+    for kind, expected in (("thing", False), ("other", True)):
+        body = body_of(outer, ("x", kind), known)
+        assert body == Binary(BinaryOperator.OR, Constant(expected), Atom("q", ("x",)))
+    function = count_function(outer, ObjectUniverse(TWO, VOCABULARY))
+    assert sorted(function.counted) == [0, 1, 2]
+
+
 def test_too_many_letters_are_left_undecided():
     whole = Constant(True)
-    for number in range(15):
+    for number in range(22):
         whole = Binary(BinaryOperator.AND, whole, Atom("q", (f"x{number}",)))
     most = axiom_function(whole, VOCABULARY)
-    assert (len(most.letters), sum(most.letters)) == (1 << 15, 1)
+    assert (len(most.letters), sum(most.letters)) == (1 << 22, 1)
     with pytest.raises(UndecidedError, match="reads too much at once"):
         axiom_function(Binary(BinaryOperator.AND, whole, Atom("q", ("one_more",))), VOCABULARY)
 
@@ -142,19 +158,24 @@ def test_too_many_letters_are_left_undecided():
 def test_what_decides_nothing_is_left_out_of_a_body_where_all_has_defaults():
     near = Atom("place", ("o",), "near")
     count = Count("o", "thing", Binary(BinaryOperator.AND, Same("o", "x"), near))
-    assert plain_body_of(count, EXTRA, Itself(VOCABULARY)) == Constant(False)
-    assert plain_body_of(count, "x", Itself(VOCABULARY)) == replace(near, arguments=("x",))
+    known, extra = Itself(VOCABULARY), (EXTRA, "thing")
+    assert plain_body_of(count, extra, known) == Constant(False)
+    assert plain_body_of(count, ("x", "thing"), known) == replace(near, arguments=("x",))
     # Of what has no default a state has to say something for everybody
     declarations = VOCABULARY.declarations
     told = declarations | {"place": replace(declarations["place"], default=None)}
     untold = replace(VOCABULARY, declarations=told)
-    assert plain_body_of(count, EXTRA, Itself(untold)) == body_of(count, EXTRA)
+    body = plain_body_of(count, extra, Itself(untold))
+    assert not can_be_true(body)
+    assert [*atoms_of(body)] == [replace(near, arguments=(EXTRA,))]
 
 
 def test_bodies_speak_of_the_object_that_is_counted():
     count = Count("o", "thing", Binary(BinaryOperator.OR, Same("o", "x"), Atom("q", ("o",))))
-    assert body_of(count, "x") == Binary(BinaryOperator.OR, Constant(True), Atom("q", ("x",)))
-    assert body_of(count, EXTRA) == Binary(BinaryOperator.OR, Constant(False), Atom("q", (EXTRA,)))
+    known = Itself(VOCABULARY)
+    own, extra = (body_of(count, (name, "thing"), known) for name in ("x", EXTRA))
+    assert own == Binary(BinaryOperator.OR, Constant(True), Atom("q", ("x",)))
+    assert extra == Binary(BinaryOperator.OR, Constant(False), Atom("q", (EXTRA,)))
     assert speaks_of_extra(Read("q", (EXTRA,)))
     assert not speaks_of_extra(Read("q", ("x",)))
 

@@ -11,14 +11,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache, partial
 from itertools import chain, product
 
 from rulec.analysis.object_typings import answers_for_types
-from rulec.analysis.possible_traces import is_possible
+from rulec.analysis.possible_traces import is_possible, steadied
 from rulec.analysis.shared_compilation import AnalyzedRule
+from rulec.analysis.shared_vocabulary import shared_vocabulary
 from rulec.automata.alphabet import joined
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -30,7 +31,6 @@ from rulec.trace import Trace
 from rulec.vocabulary import (
     Declaration,
     Enumeration,
-    ObjectType,
     Quantity,
     Signal,
     Vocabulary,
@@ -41,6 +41,12 @@ from rulec.witnesses.object_universe import Itself, ObjectUniverse
 from rulec.witnesses.shortest_traces import shortest_word
 from rulec.witnesses.trace_synthesis import synthesize_trace
 from rulec.witnesses.undecided import ChangingConstantsError, UndecidedError
+
+MOST_KMH = 250
+"""A speed that a witness does not exceed if one as short does without."""
+
+LEAST_SIGN_KMH = 5
+"""The lowest speed limit that a witness has, likewise."""
 
 
 def counterexample(
@@ -130,20 +136,33 @@ class Contest:
             return self._given_also(axioms).trace()
         return self._trace(alphabet, universe, (*self._given, *axioms))
 
-    def not_below_zero(self) -> Contest:
-        """The same contest, without negative numbers that no rule or default suggests.
+    def plausible(self, traces: Iterable[Trace]) -> Contest | None:
+        """The same contest without numbers that no rule or default suggests; None if none has any.
 
-        Quantities with a negative default, or that a rule compares with zero or less, stay free.
+        These are negative numbers, except of quantities with a negative default or that a rule
+        compares with zero or less, and speeds beyond ``MOST_KMH``, unless that is a default.
         """
         rules = [analyzed.rule for analyzed in (self.forbidding, *self._allowing)]
         declared = self._universe.vocabulary.declarations
-        names = {name for rule in rules for name in declarations_read(rule)}
-        quantities = {
-            name: item
-            for name in sorted(names - _compared_with_no_more_than_zero(rules))
-            if isinstance(item := declared[name], Quantity) and (item.default or 0) >= 0
-        }
-        axioms = [said_not_below_zero(name, Itself(item)) for name, item in quantities.items()]
+        names = sorted({name for rule in rules for name in declarations_read(rule)})
+        signed = _compared_with_no_more_than_zero(rules)
+        quantities = {name: item for name in names if isinstance(item := declared[name], Quantity)}
+        axioms = [
+            said_within(name, Itself(item), ">=", 0)
+            for name, item in quantities.items()
+            if name not in signed and (item.default or 0) >= 0
+        ]
+        # A limit that is beyond all speeds by default, where no sign shows one, is one on a sign.
+        axioms += [
+            said_within(name, Itself(item), "<=", MOST_KMH)
+            if (item.default or 0) <= MOST_KMH
+            else said_within(name, Itself(item), ">=", LEAST_SIGN_KMH)
+            for name, item in quantities.items()
+            if item.unit == "km/h"
+        ]
+        within = replace(self._universe, axioms=tuple(axioms))
+        if all(is_possible(trace, within) for trace in traces):
+            return None
         return self._given_also(axioms)
 
     def within_limits(self, trace: Trace) -> Iterator[Contest]:
@@ -158,7 +177,7 @@ class Contest:
             if not isinstance(item, Quantity) or item.default is None:
                 continue
             usual = exact(float(item.default))
-            numbers = set(map(exact, numbers_in(trace, name)))
+            numbers = set(map(exact, _numbers_in(trace, name)))
             for value in sorted(numbers, key=lambda number: abs(number - usual)):
                 passed = [
                     limit for limit in limits if min(usual, value) <= limit <= max(usual, value)
@@ -186,17 +205,12 @@ class Contest:
         if word is None:
             return None
 
-        def shows(trace: Trace) -> bool:
-            return bool(self.forbidding.violations(trace, universe.vocabulary)) and not any(
-                allowed.violations(trace, universe.vocabulary) for allowed in self._allowing
-            )
-
         step = common_step((self.forbidding, *self._allowing))
         possible = partial(is_possible, universe=universe)
         try:
-            return synthesize_trace(alphabet.states_of(word), universe, step, shows, possible)
+            return synthesize_trace(alphabet.states_of(word), universe, step, self._shows, possible)
         except ChangingConstantsError as changing:
-            reads = [alphabet.read_of(name) for name in changing.names]
+            reads = [alphabet.read_of(subject) for subject in changing.subjects]
             axioms = [_said_of_constant(read, universe.vocabulary) for read in reads if read]
             # A constant that already has one value and still changes would recur for ever.
             if None in reads or not set(given).isdisjoint(chain.from_iterable(axioms)):
@@ -207,6 +221,18 @@ class Contest:
         traces = (self._given_also((*given[before:], *x)).trace() for x in every)
         counterexamples = [trace for trace in traces if trace is not None]
         return min(counterexamples, key=lambda trace: len(trace.states), default=None)
+
+    def steadied(self, trace: Trace) -> Trace:
+        """A trace of the contest with fewer changes of value from state to state."""
+        possible = partial(is_possible, universe=self._universe)
+        vocabulary = self._universe.vocabulary
+        return steadied(trace, vocabulary, lambda calmer: possible(calmer) and self._shows(calmer))
+
+    def _shows(self, trace: Trace) -> bool:
+        words = self._universe.vocabulary
+        return bool(self.forbidding.violations(trace, words)) and not any(
+            allowed.violations(trace, words) for allowed in self._allowing
+        )
 
     def _word(self, alphabet: JointAlphabet) -> tuple[JointLetter, ...] | None:
         letters = alphabet.candidates
@@ -223,9 +249,9 @@ class Contest:
 
 def _said_of_constant(read: Read, vocabulary: Vocabulary) -> list[Axiom]:
     """Axioms that a constant has one value, for each distinguished value; the default first."""
-    each: list[ltl.Formula] = [ltl.Atom(read.name, (), value) for value in read.values]
+    each: list[ltl.Formula] = [ltl.Atom(read.name, read.variables, value) for value in read.values]
     if not read.values:
-        own = ltl.Atom(read.name)
+        own = ltl.Atom(read.name, read.variables)
         each = [ltl.Unary(ltl.UnaryOperator.NOT, own), own]
     elif read.others:
         each.append(ltl.Unary(ltl.UnaryOperator.NOT, joined(ltl.BinaryOperator.OR, each)))
@@ -249,9 +275,11 @@ def _variables_of(declaration: Declaration) -> tuple[Variable, ...]:
 
 
 @lru_cache(maxsize=1024)
-def said_not_below_zero(name: str, declared: Itself[Declaration]) -> Axiom:
-    """The axiom that a quantity is not negative, for all objects."""
-    return _bounded(name, declared.item, ">=", Fraction(0))
+def said_within(
+    name: str, declared: Itself[Declaration], relation: ltl.Relation, limit: int
+) -> Axiom:
+    """The axiom that a quantity stands in a relation to a limit, for all objects."""
+    return _bounded(name, declared.item, relation, Fraction(limit))
 
 
 def _bounded(name: str, declaration: Declaration, relation: ltl.Relation, limit: Fraction) -> Axiom:
@@ -273,14 +301,9 @@ def _limits_of(rules: Iterable[CompiledRule]) -> dict[str, set[Fraction]]:
     return limits
 
 
-def numbers_in(trace: Trace, name: str | None = None) -> Iterator[float]:
-    """The numbers in a trace, of all its objects: those of one quantity, or all of them."""
-    values = [
-        value
-        for state in trace.states
-        for own, value in state.items()
-        if name is None or own == name
-    ]
+def _numbers_in(trace: Trace, name: str) -> Iterator[float]:
+    """The numbers of one quantity in a trace, of all its objects."""
+    values = (state[name] for state in trace.states if name in state)
     each = chain.from_iterable(
         value.values() if isinstance(value, Mapping) else (value,) for value in values
     )
@@ -346,52 +369,3 @@ def declarations_read(rule: CompiledRule) -> frozenset[str]:
         else:
             names.add(read.name)
     return frozenset(names)
-
-
-@dataclass(frozen=True, slots=True)
-class SharedVocabulary:
-    """The joint vocabulary of two rulebooks; names that one lacks or defines differently."""
-
-    vocabulary: Vocabulary
-    not_shared: frozenset[str]
-    unlike: frozenset[str]
-
-
-def shared_vocabulary(first: Vocabulary, second: Vocabulary) -> SharedVocabulary:
-    """The joint vocabulary of two vocabularies.
-
-    A declaration has no default where the two differ, so that traces state the value; it is
-    constant or presumed only if it is so in both. Raises UndecidedError.
-    """
-    return _shared_vocabulary(Itself(first), Itself(second))
-
-
-# Cached: all rules of two rulebooks share it, and facts derived from its axioms are stored with it.
-@lru_cache(maxsize=8)
-def _shared_vocabulary(own: Itself[Vocabulary], other: Itself[Vocabulary]) -> SharedVocabulary:
-    first, second = own.item, other.item
-    types: dict[str, ObjectType] = dict(first.types)
-    for name, kind in second.types.items():
-        if types.setdefault(name, kind).parent != kind.parent:
-            raise UndecidedError(f"`{name}` is a different type in the two")
-    declarations: dict[str, Declaration] = dict(first.declarations)
-    unlike = set()
-    for name, item in second.declarations.items():
-        known = declarations.setdefault(name, item)
-        if known == item:
-            continue
-        if _kind(known) != _kind(item):
-            unlike.add(name)
-        else:
-            declarations[name] = replace(
-                _kind(known) if known.default != item.default else known,
-                constant=known.constant and item.constant,
-                presumed=known.default == item.default and known.presumed and item.presumed,
-            )
-    not_shared = frozenset(first.declarations.keys() ^ second.declarations.keys())
-    vocabulary = Vocabulary(first.name, types, declarations)
-    return SharedVocabulary(vocabulary, not_shared, frozenset(unlike))
-
-
-def _kind(item: Declaration) -> Declaration:
-    return replace(item, default=None, constant=False, presumed=False)

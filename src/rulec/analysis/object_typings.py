@@ -14,10 +14,10 @@ from math import prod
 from typing import TypeVar
 
 from rulec.analysis.shared_compilation import AnalyzedRule
-from rulec.logic.formula import Constant, Count
+from rulec.logic.formula import Count
 from rulec.rulebook.rulebook_model import Axiom
 from rulec.vocabulary import Vocabulary
-from rulec.witnesses.letter_functions import counts_read, plain_body_of
+from rulec.witnesses.letter_functions import can_be_true, counts_read, plain_body_of
 from rulec.witnesses.object_universe import EXTRA, Itself, counts_in
 from rulec.witnesses.undecided import UndecidedError
 
@@ -73,6 +73,7 @@ def _counts_of(rule: AnalyzedRule, vocabulary: Vocabulary) -> Iterator[Count]:
     for count in counts_read(rule.rule.machine.reads):
         if _may_count(count, names, vocabulary):
             yield count
+            yield from counts_in(count.body)
     yield from _counts_of_facts(Itself(rule.axioms), Itself(vocabulary))
 
 
@@ -90,5 +91,6 @@ def _counts_of_facts(
 
 
 def _may_count(count: Count, names: Iterable[str], vocabulary: Vocabulary) -> bool:
-    never = Constant(False)
-    return any(plain_body_of(count, name, Itself(vocabulary)) != never for name in (*names, EXTRA))
+    known = Itself(vocabulary)
+    bodies = (plain_body_of(count, (name, count.type), known) for name in (*names, EXTRA))
+    return any(map(can_be_true, bodies))

@@ -10,6 +10,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.compiler import build_all, lower
 from rulec.logic.bounds import has_seconds, longest_divisor
 from rulec.logic.free_names import names_in
+from rulec.logic.one_point import plainly_counted
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import verify
 from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook
@@ -48,7 +49,8 @@ def compile_shared(
     machines: dict[object, CompiledRule] = {}
     laws: dict[object, int] = {}
     compiled_rules = []
-    for number, (book, chosen) in enumerate(zip(rulebooks, rules, strict=True), 1):
+    for number, (book, written) in enumerate(zip(rulebooks, rules, strict=True), 1):
+        chosen = {name: _shorter(rule, book.vocabulary) for name, rule in written.items()}
         keys = {name: _key(rule, book) for name, rule in chosen.items()}
         missing = {key: chosen[name] for name, key in keys.items() if key not in machines}
         lacking = replace(book, rules=tuple(missing.values()))
@@ -70,6 +72,12 @@ def compile_shared(
             }
         )
     return compiled_rules
+
+
+def _shorter(rule: Rule, vocabulary: Vocabulary) -> Rule:
+    """The rule without counts within counts of what is the same as another object."""
+    kinds = {variable.name: variable.type for variable in rule.variables}
+    return replace(rule, formula=plainly_counted(rule.formula, kinds, vocabulary.is_subtype))
 
 
 _NOT_COMPILED = (

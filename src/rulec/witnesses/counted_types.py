@@ -9,12 +9,13 @@ from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
 from rulec.automata.alphabet import reads_of
-from rulec.logic.formula import Constant, Count, Formula
+from rulec.logic.formula import Count, Formula
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_functions import (
     Digits,
     LetterFunction,
     all_digits,
+    can_be_true,
     plain_body_of,
     speaks_of_extra,
 )
@@ -63,7 +64,7 @@ def types_counted(
 def bodies_for(kind: str, counts: Sequence[Count], vocabulary: Vocabulary) -> dict[int, Formula]:
     """By the place of each count to which an object of a type may add: what it then satisfies."""
     return {
-        place: plain_body_of(count, EXTRA, Itself(vocabulary))
+        place: plain_body_of(count, (EXTRA, kind), Itself(vocabulary))
         for place, count in enumerate(counts)
         if vocabulary.is_subtype(kind, count.type)
     }
@@ -71,7 +72,7 @@ def bodies_for(kind: str, counts: Sequence[Count], vocabulary: Vocabulary) -> di
 
 def can_add(bodies: Iterable[Formula]) -> bool:
     """Whether an additional object may satisfy any of the bodies of counts."""
-    return any(body != Constant(False) for body in bodies)
+    return any(map(can_be_true, bodies))
 
 
 def _beside_extra(function: LetterFunction) -> LetterFunction:

@@ -156,10 +156,10 @@ class JointAlphabet:
                 )
         self.candidates: Sequence[JointLetter] = tuple(ways_to)
 
-    def read_of(self, name: str) -> Read | None:
-        """The joint read of an enumeration or signal without objects, None if there is none."""
+    def read_of(self, subject: state_synthesis.Subject) -> Read | None:
+        """The joint read of an enumeration or signal, None if there is none."""
         reads = (read for read in self._joint.reads if isinstance(read, Read))
-        return next((read for read in reads if (read.name, read.variables) == (name, ())), None)
+        return next((read for read in reads if (read.name, read.variables) == subject), None)
 
     @property
     def is_counting(self) -> bool:

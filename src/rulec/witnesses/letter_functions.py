@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import product
+from itertools import product, repeat
 from typing import TypeAlias
 
 from rulec.automata.alphabet import count_letters, joined, letters_with, propositions_of, reads_of
@@ -17,6 +17,7 @@ from rulec.automata.thresholds import scale
 from rulec.logic import formula as ltl
 from rulec.logic.fold import bit_sets, fold, fold_constants
 from rulec.logic.free_names import names_of, rename_variables, variables_of
+from rulec.logic.linear_comparison import stands
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.object_universe import (
     EXTRA,
@@ -27,7 +28,7 @@ from rulec.witnesses.object_universe import (
 )
 from rulec.witnesses.undecided import UndecidedError
 
-MOST_LETTERS = 1 << 15
+MOST_LETTERS = 1 << 22
 """An axiom or a count that reads more letters than this is left undecided."""
 
 Reads = tuple[Read | NumberRead, ...]
@@ -111,8 +112,12 @@ def monitor_function(machine: MealyMonitor, names: Mapping[str, str]) -> LetterF
 def axiom_function(formula: ltl.Formula, vocabulary: Vocabulary) -> LetterFunction:
     """The letter function of a non-temporal formula: 1 or 0. Raises UndecidedError."""
     reads, (holds,) = truths_of([formula], vocabulary)
-    letters = range(count_letters(reads))
-    return LetterFunction(reads, tuple(holds >> letter & 1 for letter in letters))
+    return LetterFunction(reads, tuple(_bits(holds, reads)))
+
+
+def _bits(letters: int, reads: Reads) -> list[int]:
+    """A set of letters as 0 or 1 for each letter. A shift for each would take quadratic time."""
+    return [*map(int, f"{letters:0{count_letters(reads)}b}"[::-1])]
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,33 +137,57 @@ class CountFunction:
 
 
 def count_function(count: ltl.Count, universe: ObjectUniverse) -> CountFunction:
-    """A count as a function of its universe. Raises UndecidedError if it contains other counts."""
-    if any(True for _ in counts_in(count.body)):
-        raise UndecidedError("a count contains another one")
+    """A count as a function of its universe.
+
+    Raises UndecidedError if it contains other counts than of the counted object itself, by type.
+    """
     vocabulary = universe.vocabulary
+    known = Itself(vocabulary)
     bodies = [
-        plain_body_of(count, name, Itself(vocabulary))
+        plain_body_of(count, (name, kind), known)
         for name, kind in universe.objects.items()
         if vocabulary.is_subtype(kind, count.type)
     ]
+    fitting = [kind for kind in vocabulary.types if vocabulary.is_subtype(kind, count.type)]
+    every = dict.fromkeys(plain_body_of(count, (EXTRA, kind), known) for kind in fitting)
+    further = [*filter(can_be_true, every)]
+    if any(True for body in (*bodies, *further) for _ in counts_in(body)):
+        raise UndecidedError("a count contains another one")
     own = {_key(read): read for read in reads_of(_all_of(bodies), vocabulary)}
     around = {
         _key(read): read
-        for read in reads_of(plain_body_of(count, EXTRA, Itself(vocabulary)), vocabulary)
+        for read in reads_of(_all_of(further), vocabulary)
         if not speaks_of_extra(read)
     }
     # In the order of first mention; for a number in both, the thresholds of `own` are used.
     reads = tuple((own | around | own).values())
     beside = [place for place, key in enumerate(own | around) if key in around]
-    truths = _truths(bodies, reads)
+    letters, numbers = _tabulated(tuple(bodies), reads, tuple(beside))
+    return CountFunction(count, LetterFunction(reads, letters), numbers)
+
+
+# Cached: a rule is compared with many others.
+@lru_cache(maxsize=16)
+def _tabulated(
+    bodies: tuple[ltl.Formula, ...], reads: Reads, beside: tuple[int, ...]
+) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """The class of each letter, by how many bodies are true and by the reads ``beside`` these.
+
+    And how many are true in each class.
+    """
+    columns: list[Iterable[int]] = [_bits(truth, reads) for truth in _truths(bodies, reads)]
+    every = (tuple([digits[place] for place in beside]) for digits in all_digits(reads))
+    others = every if beside else repeat((), count_letters(reads))
     classes: dict[tuple[int, ...], int] = {}
-    letters = []
-    for letter, digits in enumerate(all_digits(reads)):
-        number = sum(letters_of_body >> letter & 1 for letters_of_body in truths)
-        key = (number, *(digits[place] for place in beside))
-        letters.append(classes.setdefault(key, len(classes)))
-    function = LetterFunction(reads, tuple(letters))
-    return CountFunction(count, function, tuple(number for number, *_ in classes))
+    letters = tuple(
+        [
+            classes.setdefault((number, *digits), len(classes))
+            for number, digits in zip(
+                map(sum, zip(*columns or [repeat(0)], strict=False)), others, strict=False
+            )
+        ]
+    )
+    return letters, tuple([number for number, *_ in classes])
 
 
 def counts_read(reads: Iterable[Read | NumberRead]) -> list[ltl.Count]:
@@ -169,28 +198,63 @@ def counts_read(reads: Iterable[Read | NumberRead]) -> list[ltl.Count]:
 
 
 @lru_cache(maxsize=1024)
-def body_of(count: ltl.Count, name: str) -> ltl.Formula:
-    """The condition that an object must satisfy to be counted."""
-    return _settled(rename_variables(count.body, {count.variable: name}))
+def body_of(
+    count: ltl.Count, named: tuple[str, str], vocabulary: Itself[Vocabulary]
+) -> ltl.Formula:
+    """The condition that an object, ``named`` by its name and type, must satisfy to be counted."""
+    about = rename_variables(count.body, {count.variable: named[0]})
+    return _settled(about, named, vocabulary.item)
 
 
-@lru_cache(maxsize=1024)
-def plain_body_of(count: ltl.Count, name: str, vocabulary: Itself[Vocabulary]) -> ltl.Formula:
+def plain_body_of(
+    count: ltl.Count, named: tuple[str, str], vocabulary: Itself[Vocabulary]
+) -> ltl.Formula:
     """The same without parts that decide nothing, such as ``other = v and ...`` for another object.
 
-    Nothing is left out if it has a name without default, whose value a state has to give anyway.
+    What has no default is still read, as a state has to give its value anyway.
     """
-    whole = body_of(count, name)
-    defaults = [vocabulary.item.declarations[each].default for each in names_of(whole)]
-    return whole if None in defaults else fold_constants(whole)
+    name, kind = named
+    tests_types = any(True for _ in counts_in(count.body))
+    return _plain_body_of(count, (name, kind if tests_types else count.type), vocabulary)
 
 
-def _settled(formula: ltl.Formula) -> ltl.Formula:
-    """Replace each equality of two names by its truth value."""
-    if isinstance(formula, ltl.Unary | ltl.Binary):
-        return ltl.with_operands(formula, _settled)
-    if isinstance(formula, ltl.Same):
-        return ltl.Constant(formula.left == formula.right)
+@lru_cache(maxsize=1 << 13)
+def _plain_body_of(
+    count: ltl.Count, named: tuple[str, str], vocabulary: Itself[Vocabulary]
+) -> ltl.Formula:
+    whole = body_of(count, named, vocabulary)
+    plain = fold_constants(whole)
+    declared, kept = vocabulary.item.declarations, {*propositions_of(plain)}
+    untold = [
+        part
+        for part in propositions_of(whole)
+        if part not in kept and any(declared[name].default is None for name in names_of(part))
+    ]
+    if not untold:
+        return plain
+    any_value = joined(ltl.BinaryOperator.OR, (ltl.Constant(True), *untold))
+    return ltl.Binary(ltl.BinaryOperator.AND, plain, any_value)
+
+
+@lru_cache(maxsize=1 << 13)
+def can_be_true(body: ltl.Formula) -> bool:
+    """Whether an object may be counted, as far as a plain body says by itself."""
+    return fold_constants(body) != ltl.Constant(False)
+
+
+def _settled(formula: ltl.Formula, named: tuple[str, str], vocabulary: Vocabulary) -> ltl.Formula:
+    """Replace each equality of two names, and each test of the object's type, by its truth."""
+    match formula:
+        case ltl.Unary() | ltl.Binary():
+            return ltl.with_operands(formula, lambda part: _settled(part, named, vocabulary))
+        case ltl.Same(left, right):
+            return ltl.Constant(left == right)
+        case ltl.Comparison(((factor, ltl.Count(own, of_type, ltl.Same(left, right))),)) if {
+            left,
+            right,
+        } == {own, named[0]}:
+            number = factor * vocabulary.is_subtype(named[1], of_type)
+            return ltl.Constant(stands(number, formula.relation, formula.limit))
     return formula
 
 

@@ -87,7 +87,7 @@ def synthesize_trace(
             if not types and not changing:
                 raise
     if changing:
-        raise ChangingConstantsError(tuple(sorted({name for name, _ in changing})))
+        raise ChangingConstantsError(tuple(sorted(changing)))
     if types:
         raise UndecidedError(
             "further objects, needed for counts, are subject to the rule, too, or to facts"

@@ -10,10 +10,10 @@ class UndecidedError(Exception):
 class ChangingConstantsError(UndecidedError):
     """The shortest words change what is constant in a trace; other words may not.
 
-    ``names`` are the declarations whose values would have to change.
+    ``subjects`` are the declarations, and their objects, whose values would have to change.
     """
 
-    def __init__(self, names: tuple[str, ...]) -> None:
-        quoted = ", ".join(f"`{name}`" for name in names)
+    def __init__(self, subjects: tuple[tuple[str, tuple[str, ...]], ...]) -> None:
+        quoted = ", ".join(f"`{name}`" for name in dict.fromkeys(name for name, _ in subjects))
         super().__init__(f"{quoted}, which cannot change, would have to")
-        self.names = names
+        self.subjects = subjects

@@ -17,11 +17,10 @@ from typing import Literal
 
 from rulec.analysis.counterexample import (
     Contest,
-    numbers_in,
-    shared_vocabulary,
     shortest_contest,
 )
 from rulec.analysis.shared_compilation import AnalyzedRule
+from rulec.analysis.shared_vocabulary import shared_vocabulary
 from rulec.monitoring.state_view import value_in
 from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
@@ -96,15 +95,15 @@ def _compare(first: AnalyzedRule, second: AnalyzedRule, most: int) -> RuleCompar
 
 
 def _witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace, ...]:
-    """Diverse witnesses, with negative numbers only if no trace as short does without them."""
+    """Diverse witnesses, with implausible numbers only if no trace as short does without them."""
     traces = diverse_witnesses(contest, first, most)
-    if any(number < 0 for trace in traces for number in numbers_in(trace)):
-        with suppress(UndecidedError):
-            above = contest.not_below_zero()
-            plain = above.trace()
-            if plain is not None and len(plain.states) == len(first.states):
-                contest, traces = above, diverse_witnesses(above, plain, most)
-    return (*traces, *_further_witnesses(contest, traces, most - len(traces)))
+    with suppress(UndecidedError):
+        within = contest.plausible(traces)
+        plain = within and within.trace()
+        if within and plain and len(plain.states) == len(first.states):
+            contest, traces = within, diverse_witnesses(within, plain, most)
+    further = _further_witnesses(contest, traces, most - len(traces))
+    return tuple(map(contest.steadied, (*traces, *further)))
 
 
 def _further_witnesses(contest: Contest, traces: Sequence[Trace], most: int) -> Iterator[Trace]:

@@ -9,11 +9,12 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import Any
 
-from rulec.analysis.counterexample import declarations_read, shared_vocabulary
+from rulec.analysis.counterexample import declarations_read
 from rulec.analysis.diff.distinct_names import with_distinct_names
 from rulec.analysis.diff.rule_comparison import RuleComparison, RuleRelation, compare
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory, ConstantKind
 from rulec.analysis.shared_compilation import at_one_step, compile_shared
+from rulec.analysis.shared_vocabulary import shared_vocabulary
 from rulec.analysis.trace_display import TraceTable, special_types, trace_table
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.logic.free_names import names_in

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from enum import IntEnum
 
 from rulec.logic import formula as ltl
+from rulec.logic.one_point import is_none, is_some, single_count
 from rulec.logic.sentences import wording
 from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.language import Language
@@ -150,9 +151,9 @@ def _phrase(formula: ltl.Formula, language: Language, *, inside: bool) -> Phrase
             return _between(pattern, formula, language, inside=True)
         case ltl.Comparison() if (kind := _kind(formula, language)) is not None:
             return _simple(kind, language, inside=inside)
-        case ltl.Comparison() if (count := wording.single_count(formula)) is not None:
+        case ltl.Comparison() if (count := single_count(formula)) is not None:
             body, there_are = count.body, wording.counted(formula, count, language)
-            every = _denied(body) if wording.is_none(formula) else None
+            every = _denied(body) if is_none(formula) else None
             if every is not None:
                 body = every
                 words = language.type_of(count.type, wording.spoken(count.type))
@@ -178,24 +179,24 @@ def _denied(formula: ltl.Formula) -> ltl.Formula | None:
 
 def _says_some(formula: ltl.Comparison) -> bool:
     """Whether it says that there is at least one object."""
-    return wording.is_some(formula) and wording.single_count(formula) is not None
+    return is_some(formula) and single_count(formula) is not None
 
 
 def _kind(formula: ltl.Comparison, language: Language) -> str | None:
     """The clause that an object is of a type, or is not, if the formula says no more."""
-    count, is_none = wording.single_count(formula), wording.is_none(formula)
-    if count is None or not (is_none or wording.is_some(formula)):
+    count = single_count(formula)
+    if count is None or not (is_none(formula) or is_some(formula)):
         return None
     match count.body:
         case ltl.Same(left, right) if count.variable in (left, right) and left != right:
             words = language.type_of(count.type, wording.spoken(count.type))
             other = right if left == count.variable else left
-            return language.kind[is_none].format(other, words.one)
+            return language.kind[is_none(formula)].format(other, words.one)
     return None
 
 
 def _counts(formula: ltl.Formula) -> bool:
-    return isinstance(formula, ltl.Comparison) and wording.single_count(formula) is not None
+    return isinstance(formula, ltl.Comparison) and single_count(formula) is not None
 
 
 def _clause(formula: ltl.Formula, language: Language, *, holds: bool) -> str | None:

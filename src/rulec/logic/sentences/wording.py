@@ -19,6 +19,7 @@ from rulec.logic.formula import (
     Term,
     UnaryOperator,
 )
+from rulec.logic.one_point import is_none, is_some
 from rulec.logic.printing import term_text
 from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.language import Language, SpanWords
@@ -125,27 +126,6 @@ def _aloud(text: str, terms: Sequence[Term], language: Language) -> str:
         written = "|".join(re.escape(name) for name in sorted(nouns, key=len, reverse=True))
         text = re.sub(rf"(?<![\w.])(?:{written})(?![\w(])", lambda name: nouns[name[0]], text)
     return text.replace(" * ", f" {language.times} ")
-
-
-def single_count(comparison: Comparison) -> Count | None:
-    """The count, if the comparison compares a single count with a number, else None."""
-    match comparison.terms:
-        case ((coefficient, Count() as count),) if coefficient == 1:
-            return count
-    return None
-
-
-def is_some(comparison: Comparison) -> bool:
-    """Whether a comparison of a single count says that there is such an object."""
-    return comparison.relation == ">=" and comparison.limit == 1
-
-
-def is_none(comparison: Comparison) -> bool:
-    """Whether a comparison of a single count says that there is no such object."""
-    match comparison.relation, comparison.limit:
-        case ("=" | "<=", Fraction(numerator=0)) | ("<", Fraction(numerator=1, denominator=1)):
-            return True
-    return False
 
 
 def counted(comparison: Comparison, count: Count, language: Language) -> str:

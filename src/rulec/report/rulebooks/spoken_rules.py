@@ -9,9 +9,9 @@ from string import ascii_uppercase
 from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Atom, Constant, Count, Formula, Unary, UnaryOperator
 from rulec.logic.free_names import names_in, reads_in, rename_variables, variables_of
+from rulec.logic.one_point import plain, replaced
 from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.language import Language
-from rulec.logic.sentences.plain_formula import plain, replaced
 from rulec.logic.sentences.sentence import (
     Phrase,
     Shape,

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Comparison, Count, Same, Unary
 from rulec.logic.formula import UnaryOperator as Op
 from rulec.logic.kleene import holds
-from rulec.logic.sentences.plain_formula import plain, replaced
+from rulec.logic.one_point import plain, replaced
 from rulec.logic.sentences.sentence import phrase
 from rulec.logic.sentences.sentence_layout import in_one_line
 from rulec.monitoring.state_view import StateView

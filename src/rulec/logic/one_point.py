@@ -1,4 +1,4 @@
-"""Equivalent formulas that are said in fewer words."""
+"""Equivalent formulas without objects that are the same as another (the one-point rule)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from functools import reduce
 
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import rename_variables
-from rulec.logic.sentences.wording import is_none, is_some, single_count
 
 _CHAINS = (ltl.BinaryOperator.AND, ltl.BinaryOperator.OR)
 
@@ -45,6 +44,17 @@ def plain(formula: ltl.Formula, kinds: Mapping[str, str], fits: Fits) -> ltl.For
                 formula,
                 terms=tuple([(factor, _counted(term, kinds, fits)) for factor, term in terms]),
             )
+    return formula
+
+
+def plainly_counted(formula: ltl.Formula, kinds: Mapping[str, str], fits: Fits) -> ltl.Formula:
+    """The formula with only what it counts made plain, so that it counts as often as before."""
+    match formula:
+        case ltl.Unary() | ltl.Binary():
+            return ltl.with_operands(formula, lambda part: plainly_counted(part, kinds, fits))
+        case ltl.Comparison(terms):
+            counted = [(factor, _counted(term, kinds, fits)) for factor, term in terms]
+            return replace(formula, terms=tuple(counted))
     return formula
 
 
@@ -95,6 +105,27 @@ def _chain(operator: ltl.BinaryOperator, formula: ltl.Formula) -> Iterator[ltl.F
 
 def _joined(operator: ltl.BinaryOperator, parts: list[ltl.Formula]) -> ltl.Formula:
     return reduce(lambda left, right: ltl.Binary(operator, left, right), parts)
+
+
+def single_count(comparison: ltl.Comparison) -> ltl.Count | None:
+    """The count, if the comparison compares a single count with a number, else None."""
+    match comparison.terms:
+        case ((coefficient, ltl.Count() as count),) if coefficient == 1:
+            return count
+    return None
+
+
+def is_some(comparison: ltl.Comparison) -> bool:
+    """Whether a comparison of a single count says that there is such an object."""
+    return comparison.relation == ">=" and comparison.limit == 1
+
+
+def is_none(comparison: ltl.Comparison) -> bool:
+    """Whether a comparison of a single count says that there is no such object."""
+    match comparison.relation, comparison.limit:
+        case ("=" | "<=", Fraction(numerator=0)) | ("<", Fraction(numerator=1, denominator=1)):
+            return True
+    return False
 
 
 def replaced(formula: ltl.Formula, names: Mapping[ltl.Formula, ltl.Formula]) -> ltl.Formula:
