@@ -140,7 +140,8 @@ class Contest:
         """The same contest without numbers that no rule or default suggests; None if none has any.
 
         These are negative numbers, except of quantities with a negative default or that a rule
-        compares with zero or less, and speeds beyond ``MOST_KMH``, unless that is a default.
+        compares with zero or less, distances below 1 m, and speeds beyond ``MOST_KMH``, unless that
+        is a default.
         """
         rules = [analyzed.rule for analyzed in (self.forbidding, *self._allowing)]
         declared = self._universe.vocabulary.declarations
@@ -148,7 +149,7 @@ class Contest:
         signed = _compared_with_no_more_than_zero(rules)
         quantities = {name: item for name in names if isinstance(item := declared[name], Quantity)}
         axioms = [
-            said_within(name, Itself(item), ">=", 0)
+            said_within(name, Itself(item), ">=", int(item.unit == "m" and bool(item.default)))
             for name, item in quantities.items()
             if name not in signed and (item.default or 0) >= 0
         ]
