@@ -108,8 +108,8 @@ def test_countries_are_compared_with_a_witness(browser):
     (pair,) = browser.ask("compare", **question)["result"]["rules"]
     assert pair["relation"] == "stricter"
     (witness,) = pair["first_forbids"]
-    # As the README shows it.
-    assert [state.get("speed", 0) for state in witness["states"]] == [0, 1]
+    assert [state["station"]["b"] for state in witness["states"]] == ["behind", "beside"]
+    assert [state.get("speed", 0) for state in witness["states"]] == [1, 1]
 
 
 def test_rules_are_said_in_english_and_a_text_is_tidied(browser):

@@ -94,7 +94,7 @@ def letters_with(
 
     ``reads`` are those of a formula over these propositions.
     """
-    everything = (1 << count_letters(reads)) - 1
+    total = count_letters(reads)
     about: dict[object, tuple[Read | NumberRead, int]] = {}
     stride = 1
     for read in reads:
@@ -105,11 +105,25 @@ def letters_with(
     for proposition in propositions:
         read, stride = about[ltl.subject_of(proposition)]
         # The letters whose digit is 0 come in runs, as long as the stride.
-        zeros = ((1 << stride) - 1) * (everything // ((1 << stride * read.size) - 1))
+        period = stride * read.size
+        zeros = _repeated((1 << stride) - 1, period, total // period)
         sets[proposition] = sum(
             zeros << (digit * stride) for digit in _digits_with(proposition, read)
         )
     return sets
+
+
+def _repeated(bits: int, period: int, times: int) -> int:
+    """Copies of a bit set, one after the other, by doubling: dividing takes far longer."""
+    whole = length = 0
+    while times:
+        if times & 1:
+            whole |= bits << length
+            length += period
+        bits |= bits << period
+        period *= 2
+        times >>= 1
+    return whole
 
 
 def _digits_with(proposition: ltl.Proposition, read: Read | NumberRead) -> Sequence[int]:

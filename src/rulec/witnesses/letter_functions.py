@@ -28,8 +28,11 @@ from rulec.witnesses.object_universe import (
 )
 from rulec.witnesses.undecided import UndecidedError
 
-MOST_LETTERS = 1 << 22
-"""An axiom or a count that reads more letters than this is left undecided."""
+MOST_LETTERS = 1 << 15
+"""An axiom, or a count of further objects, that reads more letters than this is left undecided."""
+
+MOST_COUNTED_LETTERS = 1 << 22
+"""So is a count of a universe's own objects; there are few of these."""
 
 Reads = tuple[Read | NumberRead, ...]
 Digits: TypeAlias = tuple[int, ...]
@@ -83,7 +86,7 @@ class LetterFunction:
     """A function from letters of some reads about objects to letter classes."""
 
     reads: Reads
-    letters: tuple[int, ...]
+    letters: bytes | tuple[int, ...]
 
     def value(self, digits: Sequence[int]) -> int:
         """The class of the letter with these digits."""
@@ -112,7 +115,7 @@ def monitor_function(machine: MealyMonitor, names: Mapping[str, str]) -> LetterF
 def axiom_function(formula: ltl.Formula, vocabulary: Vocabulary) -> LetterFunction:
     """The letter function of a non-temporal formula: 1 or 0. Raises UndecidedError."""
     reads, (holds,) = truths_of([formula], vocabulary)
-    return LetterFunction(reads, tuple(_bits(holds, reads)))
+    return LetterFunction(reads, bytes(_bits(holds, reads)))
 
 
 def _bits(letters: int, reads: Reads) -> list[int]:
@@ -170,24 +173,25 @@ def count_function(count: ltl.Count, universe: ObjectUniverse) -> CountFunction:
 @lru_cache(maxsize=16)
 def _tabulated(
     bodies: tuple[ltl.Formula, ...], reads: Reads, beside: tuple[int, ...]
-) -> tuple[tuple[int, ...], tuple[int, ...]]:
+) -> tuple[bytes | tuple[int, ...], tuple[int, ...]]:
     """The class of each letter, by how many bodies are true and by the reads ``beside`` these.
 
     And how many are true in each class.
     """
-    columns: list[Iterable[int]] = [_bits(truth, reads) for truth in _truths(bodies, reads)]
+    columns: list[Iterable[int]] = [
+        _bits(truth, reads) for truth in _truths(bodies, reads, MOST_COUNTED_LETTERS)
+    ]
     every = (tuple([digits[place] for place in beside]) for digits in all_digits(reads))
     others = every if beside else repeat((), count_letters(reads))
     classes: dict[tuple[int, ...], int] = {}
-    letters = tuple(
-        [
-            classes.setdefault((number, *digits), len(classes))
-            for number, digits in zip(
-                map(sum, zip(*columns or [repeat(0)], strict=False)), others, strict=False
-            )
-        ]
-    )
-    return letters, tuple([number for number, *_ in classes])
+    numbers = map(sum, zip(*columns or [repeat(0)], strict=False))
+    letters = [
+        classes.setdefault((number, *digits), len(classes))
+        for number, digits in zip(numbers, others, strict=False)
+    ]
+    # Bytes take an eighth of the memory.
+    table = bytes(letters) if len(classes) < 256 else tuple(letters)
+    return table, tuple([number for number, *_ in classes])
 
 
 def counts_read(reads: Iterable[Read | NumberRead]) -> list[ltl.Count]:
@@ -282,9 +286,9 @@ def truths_of(formulas: Sequence[ltl.Formula], vocabulary: Vocabulary) -> tuple[
     return reads, _truths(formulas, reads)
 
 
-def _truths(formulas: Sequence[ltl.Formula], reads: Reads) -> list[int]:
+def _truths(formulas: Sequence[ltl.Formula], reads: Reads, most: int = MOST_LETTERS) -> list[int]:
     total = count_letters(reads)
-    if total > MOST_LETTERS:
+    if total > most:
         raise UndecidedError("a fact or a count reads too much at once")
     sets = letters_with(reads, propositions_of(_all_of(formulas)))
     algebra = bit_sets(sets, (1 << total) - 1)

@@ -79,7 +79,7 @@ class _OwnDiagram(_Nodes):
 
 
 @lru_cache(maxsize=1024)
-def _own_diagram(letters: tuple[int, ...], sizes: tuple[int, ...]) -> _OwnDiagram:
+def _own_diagram(letters: bytes | tuple[int, ...], sizes: tuple[int, ...]) -> _OwnDiagram:
     """The diagram of a letter function; cached, because a rule is compared with many others."""
     return _OwnDiagram(letters, sizes)
 
