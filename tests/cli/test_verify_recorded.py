@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import shlex
 from pathlib import Path
 
 import pytest
@@ -120,14 +121,18 @@ def test_what_is_assumed_is_not_missing(verify):
     assert "2 drives: nothing against all 2 rules" in out.splitlines()
 
 
-def test_the_command_that_draws_has_the_options_that_were_given(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize("folder", ["", "a folder/of recordings with a rather long name/"])
+def test_the_command_that_draws_has_the_options_that_were_given(
+    folder, tmp_path, monkeypatch, capsys
+):
     monkeypatch.chdir(tmp_path)
     Path("tiny.rules").write_text(BOOK)
-    file = Path(three_cars(tmp_path)).name
+    (tmp_path / folder).mkdir(parents=True, exist_ok=True)
+    file = folder + Path(three_cars(tmp_path / folder)).name
     options = ["-r", "./tiny.rules", "--as-recorded", "--assume", "built_up=false"]
     assert main(["verify", file, *options]) == 1
     out = capsys.readouterr().out
-    command = out.partition("see it: ")[2].replace(" \\\n", "").split()
+    command = shlex.split(out.partition("see it: ")[2].replace("\\\n", ""))
     assert command[:4] == ["rulec", "draw", "drive", file]
     assert {"--as-recorded", "built_up=false"} < {*command}
     assert max(map(len, out.splitlines())) <= 80
