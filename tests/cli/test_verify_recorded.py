@@ -214,7 +214,7 @@ def test_what_is_not_told_is_not_taken_for_its_default(verify):
     lines = out.splitlines()
     at = lines.index("1 of 2 rules not judged: 1 want built_up")
     assert lines[at - 1] == "2 drives: nothing found in 1 judged rule"
-    assert lines[at + 1] == "  `--assume built_up=VALUE` would let 1 of them be judged"
+    assert lines[at + 1] == "  `--assume built_up=VALUE` would let 1 of them be judged: true, false"
     assert "satisfied" not in out
     assert "  built_up: slow" in verify("--why")[1].splitlines()
     _, out, _ = verify("--json", "--ego", "4")

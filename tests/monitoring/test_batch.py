@@ -23,7 +23,6 @@ from rulec.monitoring.batch.columns.column_numbers import digits_of
 from rulec.monitoring.batch.columns.column_states import shared_states
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.trace_groups import group_traces
-from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.limits import MonitoringLimits
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify, verify_or_reason
@@ -31,6 +30,7 @@ from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
 from rulec.trace.trace_columns import TraceColumns, layout_of
+from rulec.trace.trace_model import present_in
 from support.builders.rulebooks import (
     always,
     both,

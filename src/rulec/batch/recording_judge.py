@@ -55,7 +55,8 @@ class JudgeSettings:
     of each file are explained, part by part if ``every_part``. The results may be text in this
     ``layout``, ``lines`` (of JSON, one per drive) and ``findings``. ``labels`` are names for files
     whose paths mean nothing to a reader. ``to_rows``, if given, makes the rows of drives and rules
-    for tables of findings. ``idle`` asks which rules nothing happened for.
+    for tables of findings. ``idle`` asks which rules drives gave no opportunity to
+    violate.
     """
 
     rules: CompiledRulebook
@@ -278,7 +279,7 @@ class _RecordingJudge:
         judged.tally.add(answer, [rule.name for rule in verdicts.rules.rules], idle or frozenset())
 
     def _idle(self, found: DriveVerdict | NoDrive) -> frozenset[str] | None:
-        """The rules for which nothing happened in a drive, if that is asked."""
+        """The rules that a drive gave no opportunity to violate, if that is asked."""
         if not self._settings.idle or isinstance(found, NoDrive):
             return None
         if isinstance(found.answer, NotJudged):

@@ -106,7 +106,8 @@ class RecordingRun:
             self.complete &= bool(piece.tally.judged)
             self.open_hard |= bool(piece.tally.open_hard)
             if self.to.wants_text:
-                first = in_short(piece, page_width()) if several else piece.answer
+                is_short = several and not self.settings.idle
+                first = in_short(piece, page_width()) if is_short else piece.answer
                 self.to.text("\n".join([first, *piece.explained]))
             if piece.findings is not None:
                 self.to.add(piece.findings)

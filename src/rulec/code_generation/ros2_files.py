@@ -17,6 +17,8 @@ from rulec.vocabulary import Declaration, Enumeration, Quantity
 
 _NODE = Path(__file__).parent / "ros2_texts" / "node.cpp"
 
+_STATUSES = ("OK", "NULL", "BAD_TYPE", "TWICE", "TOO_MANY", "EXCLUDED_BY_FACTS")
+
 UNKNOWN_NUMBER = "1.0e300"
 """Beyond 2^53, so that a field left at this default is an unknown number."""
 
@@ -173,7 +175,9 @@ def _verdict_message(layout: MonitorLayout) -> Iterator[str]:
     for number, own in enumerate(layout.rules):
         yield f"uint16 {layout.fields.constants[RULE, own.rule.name]}={number}"
     yield "std_msgs/Header header  # that of the state"
-    yield "uint8 status  # 0, or why the state was refused: R_NULL to R_EXCLUDED_BY_FACTS"
+    for number, status in enumerate(_STATUSES):
+        yield f"uint8 STATUS_{status}={number}"
+    yield "uint8 status  # any but OK: the state was refused, and may violate everything"
     yield "uint8 best  # of all hard rules together"
     yield "uint8 worst"
     yield f"uint8[{len(layout.rules)}] rules_best  # of each rule, by its constant"
@@ -202,9 +206,13 @@ def _core(layout: MonitorLayout) -> Iterator[str]:
     yield "public:"
     yield "    Core() { rulec_init(&monitor_); }"
     yield ""
-    yield "    // The status of the step; the verdict is written if that is RULEC_OK."
+    yield "    // The status of the step; if a state is refused, everything is violated at worst."
     yield "    rulec_status take(const State &state, Verdict &verdict)"
     yield "    {"
+    yield "        verdict.best = RULEC_SATISFIED;"
+    yield "        verdict.worst = RULEC_VIOLATED;"
+    yield "        verdict.rules_best.fill(RULEC_SATISFIED);"
+    yield "        verdict.rules_worst.fill(RULEC_VIOLATED);"
     yield "        rulec_input input;"
     yield "        rulec_input_unknown(&input);"
     yield "        objects_.resize(state.objects.size());"

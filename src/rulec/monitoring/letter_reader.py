@@ -15,6 +15,7 @@ from rulec.monitoring.axiom_violations import StatePlace, impossible_state
 from rulec.monitoring.monitoring_messages import MISSING_VALUE
 from rulec.monitoring.state_view import StateView
 from rulec.trace import State, Value
+from rulec.trace.trace_model import present_in
 
 Digits = int | list[int]
 """The digits of one read in all states; a single number if they are equal."""
@@ -172,16 +173,3 @@ def missing_value(
         f"{where} does not say the `{name}`{of}, which rule `{rule}` needs",
         help="say it in every state, `null` where it is not known, or declare a default for it",
     )
-
-
-def present_in(
-    number: int, objects: Mapping[str, str], present: Mapping[str, tuple[int, int]]
-) -> Mapping[str, str]:
-    """The objects present in a state, with their types; ``present`` is as in a trace."""
-    if not present:
-        return objects
-    return {
-        name: kind
-        for name, kind in objects.items()
-        if name not in present or present[name][0] <= number <= present[name][1]
-    }

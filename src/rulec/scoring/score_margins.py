@@ -14,12 +14,12 @@ from rulec.monitoring.bindings import Cast
 from rulec.monitoring.explain.explained_parts import Deciding
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.explain.margins import Margin, choosing_comparisons, margin_in
-from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.verdict import RuleFor, Violation, rule_for
 from rulec.scoring.candidate_score import CandidateScore
 from rulec.scoring.charges import at
 from rulec.scoring.judged_anew import verdicts_of
+from rulec.trace.trace_model import present_in
 from rulec.value_display import short_repr
 
 

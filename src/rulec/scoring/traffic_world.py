@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import floor
 
 import numpy as np
 import shapely
@@ -44,10 +45,10 @@ class TrafficWorld:
     """A recorded or live world, prepared once for any number of futures of ``ego``.
 
     The ``recording`` has the map and all participants with everything known or predicted of them;
-    ego is one of them, by default the one that the file names. The present is the step at ``now_s``
-    (s of the recording), by default ego's last one; ego's later states are ignored. ``wanted``
-    gives thresholds and assumptions; its egos are ignored. Raises RulecError R0612 if ego is not in
-    the recording, or nobody is there at that time.
+    ego is one of them, by default the one that the file names. The present is the last step not
+    after ``now_s`` (s of the recording), by default ego's last one; ego's later states are ignored.
+    ``wanted`` gives thresholds and assumptions; its egos are ignored. Raises RulecError R0612 if
+    ego is not in the recording, or nobody is there at that time.
     """
 
     __repr__ = short_repr
@@ -95,7 +96,8 @@ class TrafficWorld:
         """The present time step."""
         if self.now_s is None:
             return max(self._body.states)
-        return round(max(-1e18, min(self.now_s / self.recording.step_s, 1e18)))
+        # A state is not known before its time; a step's own time may be a float just below it
+        return floor(max(-1e18, min(self.now_s / self.recording.step_s, 1e18)) + 1e-6)
 
     @cached_property
     def past(self) -> NDArray[float64]:

@@ -55,6 +55,24 @@ class Trace:
     ends: Ending = "complete"
     told: frozenset[str] | None = None
 
+    def steps(self) -> Iterator[tuple[State, Mapping[str, str]]]:
+        """Each state with the objects that are present in it, as ``Monitor.step`` takes them."""
+        for number, state in enumerate(self.states):
+            yield state, present_in(number, self.objects, self.present)
+
+
+def present_in(
+    number: int, objects: Mapping[str, str], present: Mapping[str, tuple[int, int]]
+) -> Mapping[str, str]:
+    """The objects present in a state, with their types; ``present`` is as in a trace."""
+    if not present:
+        return objects
+    return {
+        name: kind
+        for name, kind in objects.items()
+        if name not in present or present[name][0] <= number <= present[name][1]
+    }
+
 
 @dataclass(frozen=True, slots=True)
 class TraceGraph:

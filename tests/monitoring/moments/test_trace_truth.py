@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from rulec.logic.formula import atoms_of
 from rulec.logic.kleene import holds
 from rulec.logic.semantics import truth_values
-from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.moments import trace_truth
 from rulec.monitoring.moments.trace_truth import ReadyFormula, TraceTruth, tables_of
 from rulec.monitoring.state_view import StateView
 from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
+from rulec.trace.trace_model import present_in
 from rulec.vocabulary.partial_values import UNKNOWN
 from support.generators.timed_formulas import TIMED_VOCABULARY, timed_formulas
 

@@ -10,10 +10,10 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.verdict import Violation
 from rulec.trace import Trace
 from rulec.trace.trace_columns import TraceCells, layout_of, smallest_unsigned
+from rulec.trace.trace_model import present_in
 
 Shape: TypeAlias = tuple[object, ...]
 

@@ -18,7 +18,6 @@ from rulec.files.read_files import MAX_SAVED_BYTES, opened, read_whole
 from rulec.files.written_files import refuse_unwritable, written_whole
 from rulec.logic.codec import number_from_data
 from rulec.monitoring.constant_values import with_constants
-from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.monitoring_messages import UNRESTORABLE_MONITOR
 from rulec.monitoring.online.monitor_state import SoFar
 from rulec.monitoring.online.running_monitor import RunningMonitor
@@ -26,7 +25,7 @@ from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.trace import Trace
 from rulec.trace.formats.json_line_problems import is_beginning
 from rulec.trace.formats.json_lines import LiveState
-from rulec.trace.trace_model import check_trace
+from rulec.trace.trace_model import check_trace, present_in
 
 
 def replay_trace(trace: Trace, rulebook: CompiledRulebook) -> RunningMonitor:

@@ -11,7 +11,7 @@ from rulec.automata.thresholds import exact_step
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding
 from rulec.monitoring.implied_values import with_implied_in_graph
-from rulec.monitoring.letter_reader import LetterReader, present_in
+from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import StateValidator, check_objects
 from rulec.monitoring.uncertainty.lazy_bindings import known_bits
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
@@ -21,6 +21,7 @@ from rulec.planning.product.graph_bindings import graph_bindings, layer_by_layer
 from rulec.planning.product.graph_instance import GraphInstance
 from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import TraceGraph
+from rulec.trace.trace_model import present_in
 
 HARD: tuple[Strength, ...] = ("hard",)
 SOFT: tuple[Strength, ...] = ("soft",)

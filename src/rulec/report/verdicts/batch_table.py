@@ -87,9 +87,10 @@ def as_text(
     violated = [rule for rule in rules.rules if rule.name in total.drives]
     if violated:
         rows = [("violated", "", " drives", " recordings")]
+        most = width - len("  hard  1,000/1,000  recordings")
         rows += [
             (
-                verdict_report.short_title(rule),
+                cut(visible(verdict_report.short_title(rule)), most),
                 rule.strength,
                 f"{total.drives[rule.name]:,}/{total.judged:,}",
                 f"{total.recordings[rule.name]:,}/{total.judged_recordings:,}",

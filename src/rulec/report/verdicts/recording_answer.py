@@ -14,7 +14,7 @@ from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.report.text.terminal_text import broken, counted, cut, mirrored, table_lines, visible
 from rulec.report.verdicts import verdict_report
 from rulec.report.verdicts.violation_tally import RuleOutcome, ViolationTally
-from rulec.vocabulary import Quantity
+from rulec.vocabulary import Enumeration, Quantity
 
 if TYPE_CHECKING:
     from rulec.report.findings.verdict_finding import VerdictFinding
@@ -187,8 +187,9 @@ class RecordingAnswer:
             item = declared.get(word)
             if item is None or item.parameters or isinstance(item, Quantity):
                 continue
+            values = item.values if isinstance(item, Enumeration) else ("true", "false")
             value = f"`--assume {word}=VALUE`" if self._layout.source else f"a known {word}"
-            text = f"{value} would let {number:,} of them be judged"
+            text = f"{value} would let {number:,} of them be judged: {', '.join(values)}"
             yield from self._wrapped(text, INDENT, most=1)
             return
 
@@ -236,8 +237,10 @@ class RecordingAnswer:
 
     def _command(self, words: Sequence[str]) -> list[str]:
         """A command that can be copied, in at most three lines; none if it does not fit."""
-        lines = ["see it: rulec"]
-        for part in map(quote, words):
+        lines, parts = ["see it: rulec"], [quote(word) for word in words]
+        if len(whole := " ".join([*lines, *parts])) <= self._layout.width:
+            return [whole]
+        for part in parts:
             # An option stays beside its value
             whole = f"{lines[-1]} {part}"
             if part.startswith("-") or len(whole) + len(" \\") <= self._layout.width:
@@ -257,18 +260,16 @@ class RecordingAnswer:
         verdicts, tally = self._verdicts, self._tally
         by_outcome: dict[RuleOutcome, list[str]] = {}
         for rule, outcome in tally.outcomes(self._rules).items():
-            if rule not in tally.open_rules:
-                by_outcome.setdefault(outcome, []).append(rule)
-        about = ", since nothing happened that they are about"
+            by_outcome.setdefault(outcome, []).append(rule)
+        about = ", without an opportunity to violate them (as in `rulec rates`)"
         for outcome, what in (("nothing found", ""), ("idle", about)):
             if names := by_outcome.get(outcome):
                 yield from self._wrapped(f"{outcome}{what}: {', '.join(names)}")
         vocabulary = verdicts.rules.vocabulary
         # It may also depend on the types that participants of unknown type have
         order = [*vocabulary.declarations, *vocabulary.types]
-        open_rules = [rule for rule in tally.open_rules if rule not in tally.first_s]
-        if open_rules:
-            yield from self._wrapped(f"open: {', '.join(open_rules)}")
+        if open_rules := by_outcome.get("open"):
+            yield from self._wrapped(f"open in some drive: {', '.join(open_rules)}")
             words = sorted(tally.open_on, key=order.index)
             if words:
                 yield from self._wrapped(f"depends on {', '.join(words)}", INDENT)

@@ -31,7 +31,7 @@ from rulec.report.verdicts.verdict_json import (
 class RecordedVerdict(TraceVerdict, frozen=True, kw_only=True):
     """The verdict on the drive of vehicle ``trace``, in the recording's times.
 
-    ``idle``, with ``--why``, are the ``judged`` rules for which nothing happened in it.
+    ``idle``, with ``--why``, are the ``judged`` rules that it gave no opportunity to violate.
     """
 
     recording: str

@@ -12,8 +12,8 @@ from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.monitoring.verdict import Verdict, VerdictOutcome
 
 RuleOutcome: TypeAlias = Literal["found", "nothing found", "idle", "open", "not judged"]
-"""What became of a rule in drives: violated in some drive; judged in some, without a violation;
-judged, but with nothing in any drive that it is about; open in some, judged in none; or neither."""
+"""What became of a rule in drives: violated in some; else open in some; else judged in some,
+without a violation; judged, but none of them gave an opportunity to violate it; judged in none."""
 
 
 @dataclass(slots=True)
@@ -80,11 +80,12 @@ class ViolationTally:
     def _outcome(self, rule: str) -> RuleOutcome:
         if rule in self.first_s:
             return "found"
+        if rule in self.open_rules:
+            return "open"
         n_judged = self.judged_in[rule]
         if not n_judged:
-            return "open" if rule in self.open_rules else "not judged"
-        is_idle = n_judged == self.idle_in[rule] and rule not in self.open_rules
-        return "idle" if is_idle else "nothing found"
+            return "not judged"
+        return "idle" if n_judged == self.idle_in[rule] else "nothing found"
 
     def add(
         self,

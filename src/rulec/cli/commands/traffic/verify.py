@@ -69,8 +69,8 @@ class VerifyOptions:
     why: bool = shared.asked(
         "--why",
         is_flag=True,
-        help="Say of every rule whether something or nothing was found, nothing happened that it "
-        "is about, or it is open or not judged, and which words are missing.",
+        help="Say of every rule whether something or nothing was found, it had no opportunity to "
+        "be violated, or it is open or not judged, and which words are missing.",
     )
     strict: bool = shared.asked(
         "--strict",

@@ -12,7 +12,7 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError
 from rulec.monitoring.axiom_violations import StatePlace, impossible_state
 from rulec.monitoring.bindings import Binding
-from rulec.monitoring.letter_reader import missing_value, present_in
+from rulec.monitoring.letter_reader import missing_value
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     MOST_COUNTED,
@@ -37,6 +37,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
 )
 from rulec.trace import Trace, Value
 from rulec.trace.interned import Interned
+from rulec.trace.trace_model import present_in
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
 
