@@ -62,6 +62,16 @@ def test_a_rule_that_differs_has_a_line(capsys):
     assert capsys.readouterr().out == out
 
 
+@pytest.mark.parametrize("topic", ["pedestrian crossing", "Crosswalk", "pedestrian_crossings"])
+def test_a_crossing_for_pedestrians_is_none_of_rails(topic, capsys):
+    assert main(["diff", "de", "gb", "--topic", topic]) == 0
+    head, days, *rest = capsys.readouterr().out.splitlines()
+    assert head.startswith(f"de, gb on {topic}: ")
+    assert days == "law as of: de 2022-01-28, gb 2024-06-20"
+    assert "give_way_to_pedestrians" in rest
+    assert not any("level_crossing" in line for line in rest)
+
+
 def test_that_a_rule_is_soft_in_one_of_them_is_a_difference(tmp_path, capsys):
     (tmp_path / "mild.rules").write_text(
         'rulebook mild\nextends old\nsoften rule no_passing because "seldom"\n'
@@ -100,6 +110,7 @@ def test_any_number_of_books_side_by_side(tmp_path, capsys):
     ]
     assert main([*asked, "--output-format", "markdown"]) == 0
     page = capsys.readouterr().out
+    assert "This is no legal advice" in page
     assert "### ford\n\n- **c** (1, 2): Walk on" in page
     assert "\n- **a, b** (1, 2): Wade.\n" in page
     assert "- **b**: Do not.\n- **c, a**: no such rule\n" in page

@@ -50,8 +50,16 @@ def on_topic(books: Sequence[Rulebook], word: str) -> tuple[Rulebook, ...]:
     topics = {topic.name: topic.title for book in books for topic in book.topics}
     known = _topics_for(asked, topics)
     if not known:
-        similar = (main for main, words in synonyms_of_the_field().items() if asked in words)
-        known = next(filter(None, (_topics_for(main, topics) for main in similar)), set())
+        similar = [
+            word
+            for main, words in synonyms_of_the_field().items()
+            if asked in words
+            for word in (main, *words)
+        ]
+        # A crosswalk is a pedestrian crossing before it is part of a level crossing's title
+        found = [_named(word, topics) for word in similar]
+        found += [_topics_for(word, topics) for word in similar]
+        known = next(filter(None, found), set())
     if not known:
         raise LookupError(_unknown(asked, topics))
     return tuple(
@@ -61,13 +69,28 @@ def on_topic(books: Sequence[Rulebook], word: str) -> tuple[Rulebook, ...]:
 
 
 def _topics_for(asked: str, topics: dict[str, str]) -> set[str]:
-    of_group = {*topic_groups().get(asked, ())}
-    if of_group or asked in topics:
-        return of_group & topics.keys() or {asked} & topics.keys()
-    words = {*asked.split("_")}
+    named = _named(asked, topics)
+    if named:
+        return named
+    words = {*map(_singular, asked.split("_"))}
     return {
-        name for name, title in topics.items() if words <= {*name.split("_")} | {*_words(title)}
+        name
+        for name, title in topics.items()
+        if words <= {_singular(word) for word in (*name.split("_"), *_words(title))}
     }
+
+
+def _named(asked: str, topics: dict[str, str]) -> set[str]:
+    """The topics of the group, or the topic, that is called so, whether one or several."""
+    groups = topic_groups()
+    for group in groups:
+        if _singular(group) == _singular(asked):
+            return {*groups[group]} & topics.keys()
+    return {name for name in topics if _singular(name) == _singular(asked)}
+
+
+def _singular(word: str) -> str:
+    return word.removesuffix("s")
 
 
 def _words(title: str) -> Iterable[str]:

@@ -350,7 +350,10 @@ def _judge_traces(
 
 
 def _include(result: VerifyResult, run: RecordingRun | TraceRun, *, strict: bool) -> None:
-    result.violated |= bool(run.total.outcomes["violated"]) or (strict and run.open_hard)
+    is_broken = bool(run.total.outcomes["violated"])
+    if strict and run.open_hard and not is_broken:
+        click.echo("note: a hard rule is open, which counts as violated by `--strict`", err=True)
+    result.violated |= is_broken or (strict and run.open_hard)
     result.judged |= run.judged
     result.total.include(run.total)
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
+from rulec.report.rulebooks.document.book_document import NO_ADVICE
 from rulec.report.rulebooks.rule_list import as_json, first_provision, rules_named
 from rulec.report.text.csv_text import csv_text
 from rulec.report.text.markdown import CONTENTS, Block, Heading, escaped, with_contents, written
@@ -61,21 +62,30 @@ def _title(books: Sequence[Rulebook], topic: str) -> str:
     return f"{', '.join(book.name for book in books)} on {topic}"
 
 
+def _dates(books: Sequence[Rulebook]) -> str:
+    """The days of the books' texts, as far as they say; empty if none does."""
+    days = [f"{book.name} {book.as_of}" for book in books if book.as_of]
+    return f"law as of: {', '.join(days)}" if days else ""
+
+
 def _as_text(books: Sequence[Rulebook], topic: str, width: int, *, in_full: bool) -> str:
     counts = ", ".join(f"{len(book.rules):,}" for book in books)
     more = "" if in_full else " (-v: every sentence)"
     title = f"{_title(books, topic)}: {counts} rules{more}"
     head = broken(visible(title), width, later="  ")
+    dates = broken(visible(said), width, later="  ") if (said := _dates(books)) else []
     layouts: list[Callable[[], list[str]]] = [
         lambda: _wrapped(_rules(books), width),
         lambda: _in_lines(_rules(books), width),
         lambda: _in_lines(_topics(books), width),
     ]
     for layout in layouts:
-        lines = [*head, *layout()]
-        if in_full or len(lines) <= MOST_LINES:
+        below = layout()
+        if in_full or len(head) + len(below) <= MOST_LINES:
             break
-    return "\n".join(lines)
+    if in_full or len(head) + len(dates) + len(below) <= MOST_LINES:
+        head += dates
+    return "\n".join([*head, *below])
 
 
 def _rules(books: Sequence[Rulebook]) -> list[_Section]:
@@ -163,4 +173,9 @@ def _as_markdown(books: Sequence[Rulebook], topic: str) -> str:
                 for books, cite, says in _said(section)
             ]
             body += [Heading(3, section.title), "\n".join(said)]
-    return written(with_contents([Heading(1, _title(books, topic))], CONTENTS, body))
+    head: list[Block] = [
+        Heading(1, _title(books, topic)),
+        NO_ADVICE,
+        *filter(None, [_dates(books)]),
+    ]
+    return written(with_contents(head, CONTENTS, body))
