@@ -231,6 +231,19 @@ def test_several_rulebooks_side_by_side(verify):
     ]
 
 
+def test_what_is_assumed_need_be_known_to_one_of_several_rulebooks(verify):
+    """A word that one law alone has is assumed for it; of a word that none has it is said."""
+    own = "rulebook own\nsignal humid\nhard rule damp { require always humid }\n"
+    Path("own.rules").write_text(own)
+    status, out, err = verify(A, "-r", "./own.rules", "--assume", "humid=false", "--json")
+    assert (status, err) == (1, "")
+    rules = [[one["rule"] for one in json.loads(x)["violations"]] for x in out.splitlines()]
+    assert rules == [["damp"]] * 3 + [[], ["slow"], []]
+    status, _, err = verify(A, "-r", "./own.rules", "--assume", "humit=false")
+    assert status == 2
+    assert "does not know `humit`" in err
+
+
 def test_several_rulebooks_on_traces_and_in_files(verify):
     Path("slower.rules").write_text(SLOWER)
     Path("t.jsonl").write_text(

@@ -189,7 +189,8 @@ def command(
             if exposure:
                 outputs.to_rows = _to_rows(rows_of, rules.name, request)
             named = ["-r", reference, *(("--at", at) if at else ())]
-            results.append(_judge(request, rules, outputs, complaints, named))
+            own_request = replace(request, drives=_speaking_of(rules, books, drives))
+            results.append(_judge(own_request, rules, outputs, complaints, named))
         if len(books) > 1:
             # Late import, only if there are recordings: verdicts and recordings.
             from rulec.report.verdicts import side_by_side
@@ -201,6 +202,19 @@ def command(
         answered=all(result.judged and result.complete for result in results),
         failed=any(result.violated for result in results),
     )
+
+
+def _speaking_of(
+    rules: CompiledRulebook, books: Sequence[CompiledRulebook], drives: DrivesOptions
+) -> DrivesOptions:
+    """The options without assumptions about words that another of the rulebooks knows alone."""
+
+    def is_others(text: str) -> bool:
+        name = text.partition("=")[0].strip()
+        knowing = [book for book in books if name in book.vocabulary.declarations]
+        return bool(knowing) and all(book is not rules for book in knowing)
+
+    return replace(drives, assumed=tuple([x for x in drives.assumed if not is_others(x)]))
 
 
 def _told_apart(books: list[CompiledRulebook], references: Sequence[str]) -> list[CompiledRulebook]:
