@@ -168,7 +168,7 @@ def test_a_number_stands_out_when_it_passes_a_limit_not_whenever_it_changes():
     data = as_builtins(explanation_data(found))
     assert data["facts"][0] == {
         "reads": "gap(a)",
-        "values": (3, 2.5, 1.4),
+        "values": [3, 2.5, 1.4],
         "changed": True,
         "decides": True,
         "unit": "m",
