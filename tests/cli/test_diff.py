@@ -106,14 +106,14 @@ def test_any_number_of_books_side_by_side(tmp_path, capsys):
         "  a, b  1, 2  Wade.",
         "ford_at_night",
         "  b  Do not.",
-        "  c, a  no such rule",
+        "  c, a  no rule of this name",
     ]
     assert main([*asked, "--output-format", "markdown"]) == 0
     page = capsys.readouterr().out
     assert "This is no legal advice" in page
     assert "### ford\n\n- **c** (1, 2): Walk on" in page
     assert "\n- **a, b** (1, 2): Wade.\n" in page
-    assert "- **b**: Do not.\n- **c, a**: no such rule\n" in page
+    assert "- **b**: Do not.\n- **c, a**: no rule of this name\n" in page
     assert main([*asked, "--output-format", "csv"]) == 0
     rows = list(csv.DictReader(capsys.readouterr().out.splitlines()))
     assert [(row["rule"], row["rulebook"]) for row in rows] == [

@@ -14,6 +14,11 @@ from rulec.report.text.terminal_text import broken, column_lines, cut, styled, v
 from rulec.rulebook.rulebook_model import Rule, Rulebook, cited_law
 from rulec.rulebook.rules.rule_topics import by_group
 
+_APART = (
+    "Rules of one name stand together. A rulebook without a rule of that name may say the same in "
+    "another one."
+)
+
 MOST_LINES = 40
 """A text has at most as many lines as fit on a screen, unless it is wanted in full."""
 
@@ -133,7 +138,7 @@ def _said(section: _Section) -> list[tuple[str, str, str]]:
         cite = cited_law(rule.cite, rule.inherited_from)
         alike.setdefault((cite, rule.says), []).append(book)
     for book, because in section.silent:
-        alike.setdefault(("", f"no such rule{because and f': {because}'}"), []).append(book)
+        alike.setdefault(("", f"no rule of this name{because and f': {because}'}"), []).append(book)
     return [(", ".join(books), *texts) for texts, books in alike.items()]
 
 
@@ -176,6 +181,7 @@ def _as_markdown(books: Sequence[Rulebook], topic: str) -> str:
     head: list[Block] = [
         Heading(1, _title(books, topic)),
         NO_ADVICE,
+        _APART,
         *filter(None, [_dates(books)]),
     ]
     return written(with_contents(head, CONTENTS, body))
