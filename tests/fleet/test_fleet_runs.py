@@ -547,3 +547,21 @@ def test_what_is_odd_about_recordings_is_told(tmp_path):
         tuple(done.tally.remarks)
     }
     assert {tuple(row["remarks"]) for row in rows if row["kind"] != "drive"} == {()}
+
+
+@pytest.mark.parametrize("book", ["de", "esterle2019", "./mixed.rules"])
+def test_drives_are_counted_as_by_verify(book, tmp_path, capsys, monkeypatch):
+    """Violated, open, nothing found and only soft rules, of the same drives."""
+    samples = Path("docs/samples").resolve()
+    monkeypatch.chdir(tmp_path)
+    Path("mixed.rules").write_text(
+        "rulebook mixed\nuse road\nhard rule dry { require never wet }\n"
+        "soft rule slow { require always speed <= 40 km/h }\n"
+    )
+    files = [str(samples / name) for name in ("following.xml", "passing.fcd.xml")]
+    main(["fleet", *files, "-r", book, "-o", "found", "--map", str(samples / "passing.net.xml")])
+    (line,) = [x for x in capsys.readouterr().out.splitlines() if x.startswith("drives ")]
+    main(["verify", *files, "-r", book, "--map", str(samples / "passing.net.xml")])
+    last = capsys.readouterr().out.splitlines()[-1]
+    counts = re.sub(r", \d+ not judged$", "", last.partition(": ")[2])
+    assert line.partition("judged: ")[2] == counts

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.fleet.runs.fleet_run import FleetRun
 from rulec.fleet.runs.fleet_tally import FleetTally
+from rulec.monitoring.verdict import VerdictOutcome
 from rulec.report.text.terminal_text import visible
-from rulec.report.verdicts import side_by_side
+from rulec.report.verdicts import side_by_side, verdict_report
 from rulec.report.verdicts.batch_table import BatchTally
 
 _MOST_REASONS = 5
@@ -26,10 +28,7 @@ def compared(runs: Sequence[tuple[CompiledRulebook, FleetRun]]) -> str:
 
 def _verdicts(tally: FleetTally) -> BatchTally:
     """The tally as a tally of verdicts, without recordings."""
-    verdicts = BatchTally(not_judged=tally.drives["not_judged"])
-    verdicts.outcomes["satisfied"] = tally.drives["kept"]
-    verdicts.outcomes["violated"] = tally.drives["violated"]
-    verdicts.outcomes["open"] = tally.drives["open"]
+    verdicts = BatchTally(Counter(_outcomes(tally)), not_judged=tally.drives["not judged"])
     for (rule, outcome), number in tally.rules.items():
         if outcome != "not_judged":
             verdicts.judged_in[rule] += number
@@ -38,6 +37,14 @@ def _verdicts(tally: FleetTally) -> BatchTally:
         elif outcome == "open":
             verdicts.open_in[rule] += number
     return verdicts
+
+
+def _outcomes(tally: FleetTally) -> dict[VerdictOutcome, int]:
+    return {
+        outcome: tally.drives[outcome]
+        for outcome in verdict_report.OUTCOMES
+        if tally.drives[outcome]
+    }
 
 
 def visible_lines(lines: list[str]) -> str:
@@ -49,10 +56,8 @@ def _drives(run: FleetRun) -> Iterator[str]:
     tally, by = run.tally, run.by
     chosen = "".join(f", {text}" for text in (by.thresholds, by.assumptions) if text)
     yield f"rulebook    {by.rulebook} ({by.rulebook_hash[:12]}), rulec {by.rulec}{chosen}"
-    yield (
-        f"drives      {tally.judged:,} judged: {tally.drives['kept']:,} satisfied, "
-        f"{tally.drives['violated']:,} violated, {tally.drives['open']:,} open"
-    )
+    _, _, outcomes = verdict_report.summary(_outcomes(tally), 0, "drive").partition(": ")
+    yield f"drives      {tally.judged:,} judged: {outcomes}"
     distance = f", {tally.km:,.1f} km" if tally.km else ""
     driven = f"{tally.hours:,.2f} h" if tally.hours >= 1 else f"{tally.hours * 3600:,.1f} s"
     yield f"driven      {driven}{distance}"
@@ -62,10 +67,10 @@ def _drives(run: FleetRun) -> Iterator[str]:
     if len(tally.remarks) > _MOST_REASONS:
         others = len(tally.remarks) - _MOST_REASONS
         yield f"note        and {others:,} more; the column `remarks` has them all"
-    if not tally.drives["not_judged"]:
+    if not tally.drives["not judged"]:
         return
     reasons = tally.reasons.most_common(_MOST_REASONS)
-    yield f"not judged  {tally.drives['not_judged']:,}:"
+    yield f"not judged  {tally.drives['not judged']:,}:"
     for why, count in reasons:
         where = tally.examples[why]
         where = where if count == 1 else f"as in {where}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Set
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from rulec.trace.formats.arrow.parquet import arrow
 
 _NAMES = ("file", "recording", "vehicle")
 _COLUMNS = (
-    *("kind", "outcome", "rule", "ego", "because", *_NAMES),
+    *("kind", "outcome", "strength", "rule", "ego", "because", *_NAMES),
     *("duration_s", "distance_m", "remarks"),
 )
 
@@ -23,9 +24,10 @@ ROWS_AT_ONCE = 1 << 12
 class FleetTally:
     """Sums over drives.
 
-    ``drives``: outcome -> number. ``rules``: rule and outcome -> number of drives. ``reasons``: why
-    drives were not judged -> number. ``examples``: such a reason -> the alphabetically first file
-    with such a drive; in a table without file names, its recording or trace. ``remarks``: what is
+    ``drives``: a verdict's outcome, or "not judged" -> number. ``rules``: rule and outcome ->
+    number of drives. ``reasons``: why drives were not judged -> number. ``examples``: such a
+    reason -> the alphabetically first file with such a drive; in a table without file names, its
+    recording or trace. ``remarks``: what is
     odd about a recording -> the number of its drives; ``examples`` has these, too. ``unread``:
     number of files, recordings and traces (not vehicles) that could not be judged. ``lost``: units
     whose process was killed twice. ``faults`` of rulec -> how many rows they cost.
@@ -59,26 +61,39 @@ class FleetTally:
     @property
     def judged(self) -> int:
         """The number of drives that have a verdict."""
-        return self.drives.total() - self.drives["not_judged"]
+        return self.drives.total() - self.drives["not judged"]
+
+
+def _outcome(drive: str, rules: Set[tuple[str, str]]) -> str:
+    """A drive's outcome as in a verdict, by its row, and by outcomes and strengths of its rules."""
+    if drive == "open":
+        if ("violated", "soft") in rules:
+            return "only soft rules"
+        return "open" if ("open", "hard") in rules else "nothing found"
+    return "satisfied" if drive == "kept" else drive.replace("_", " ")
 
 
 def tally_of(path: Path) -> FleetTally:
     """The sums over a file of findings."""
     _, parquet = arrow(str(path))
     tally = FleetTally()
+    drive, rules = "", set[tuple[str, str]]()
     with parquet.ParquetFile(path) as source:
         for batch in source.iter_batches(ROWS_AT_ONCE, columns=list(_COLUMNS), use_threads=False):
             for row in zip(*(batch.column(name).to_pylist() for name in _COLUMNS), strict=True):
-                kind, outcome, rule, ego, because, *names, duration_s, distance_m, remarks = row
+                kind, outcome, strength, rule, ego, because, *names, duration, driven, remarks = row
                 where = next(filter(None, names), "")
                 if because and SAYS in because:
                     tally.faults[because] += 1
                 if kind == "rule":
                     tally.rules[rule, outcome] += 1
+                    rules.add((outcome, strength))
                 elif kind == "drive":
-                    tally.drives[outcome] += 1
-                    tally.hours += (duration_s or 0.0) / 3600
-                    tally.km += (distance_m or 0.0) / 1000
+                    # The rows of its rules follow that of a drive
+                    tally.drives.update([_outcome(drive, rules)] if drive else [])
+                    drive, rules = outcome, set()
+                    tally.hours += (duration or 0.0) / 3600
+                    tally.km += (driven or 0.0) / 1000
                     tally.remarks.update(remarks)
                     for remark in remarks:
                         tally.examples[remark] = min(where, tally.examples.get(remark, where))
@@ -88,4 +103,5 @@ def tally_of(path: Path) -> FleetTally:
                         tally.reasons[because] += 1
                         tally.examples[because] = min(where, tally.examples.get(because, where))
                         tally.unread += not ego
+    tally.drives.update([_outcome(drive, rules)] if drive else [])
     return tally
