@@ -66,7 +66,7 @@ if TYPE_CHECKING:
     from rulec.extraction.traces.recorded_drive import NoDrive as NoDrive
     from rulec.extraction.traffic_thresholds import Thresholds as Thresholds
     from rulec.monitoring.assumptions import Assumptions as Assumptions
-    from rulec.monitoring.batch.verdict_columns import VerdictColumns as VerdictColumns
+    from rulec.monitoring.batch.cell_verdicts import VerdictColumns as VerdictColumns
     from rulec.monitoring.explain.explanation import Explanation as Explanation
     from rulec.monitoring.moments.formula_moments import Moment as Moment
     from rulec.monitoring.online.four_valued import VerdictRange as VerdictRange
@@ -166,7 +166,7 @@ _HOME = {
     "rulec.extraction.traces.recorded_drive": "Drive NoDrive",
     "rulec.extraction.traffic_thresholds": "Thresholds",
     "rulec.monitoring.assumptions": "Assumptions",
-    "rulec.monitoring.batch.verdict_columns": "VerdictColumns",
+    "rulec.monitoring.batch.cell_verdicts": "VerdictColumns",
     "rulec.monitoring.explain.explanation": "Explanation",
     "rulec.monitoring.moments.formula_moments": "Moment",
     "rulec.monitoring.online.four_valued": "VerdictRange",

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rulec.extraction.recording_verdicts import RecordingVerdicts
     from rulec.extraction.selection import RequestedDrives
     from rulec.monitoring.assumptions import Assumptions
-    from rulec.monitoring.batch.verdict_columns import VerdictColumns
+    from rulec.monitoring.batch.cell_verdicts import VerdictColumns
     from rulec.monitoring.verdict import NotJudged, Verdict
     from rulec.rates.drive_counts import GroupKey
     from rulec.rates.rule_rates import ViolationRates

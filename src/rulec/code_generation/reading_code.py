@@ -84,16 +84,16 @@ class ReadingCode:
         return self._call("value", value, table, *sizes)
 
     def _value(self, name: str, arguments: Sequence[str], places: Places) -> str:
-        return self._expression(name, [places[variable] for variable in arguments])
+        return self._fields.expression(name, [places[variable] for variable in arguments])
 
     def _truth(self, formula: ltl.Formula, places: Places) -> str:
         def identity(same: ltl.Same) -> str:
             left, right = places[same.left], places[same.right]
-            return self._word("YES") if left == right else self._is_same(left, right)
+            return "RULEC_YES" if left == right else f"(({left} == {right}) ? RULEC_YES : RULEC_NO)"
 
         algebra: Algebra[str] = Algebra(
             proposition=lambda proposition: self._proposition(proposition, places),
-            constant=lambda value: self._word("YES" if value else "NO"),
+            constant=lambda value: "RULEC_YES" if value else "RULEC_NO",
             identity=identity,
             negation=partial(self._call, "not"),
             conjunction=partial(self._call, "and"),
@@ -122,8 +122,8 @@ class ReadingCode:
         each = inner[count.variable] = "each" if alias is None else inner[alias]
         body = self._truth(count.body, inner)
         kind = self._fields.types.index(count.type)
-        counts = self._call("counts", self._input, each, self._whole(kind), body)
-        lines = self._counting(counts) if alias is None else self._returning(counts)
+        counts = self._call("counts", "in", each, self._whole(kind), body)
+        lines = self._counting(counts) if alias is None else [f"return {counts};"]
         return self._function("uint32_t", "count", {inner[x]: places[x] for x in free}, lines)
 
     def _sum(self, read: NumberRead, places: Places) -> str:
@@ -137,7 +137,7 @@ class ReadingCode:
                 # Doubles are ordered as their decimals are.
                 sides = sum(1 if inclusive else 2 for _, inclusive in flags)
                 pair = [self._value(term.name, term.arguments, inner) for term in (first, second)]
-                lines = self._returning(self._call("order", *pair, self._whole(sides)))
+                lines = [f"return {self._call('order', *pair, self._whole(sides))};"]
             case _:
                 lines = self._weighed(read, inner)
         return self._function("uint16_t", "sum", {inner[x]: places[x] for x in free}, lines)
@@ -166,47 +166,33 @@ class ReadingCode:
             and max(map(abs, whole)) <= _LARGEST_FACTOR
             and max(map(abs, bounds)) <= _LARGEST_LIMIT
         )
-        return self._shaped(
+        parts = [
             self._array("double", "factors", [float(factor) for factor in factors]),
             self._array("double", "limits", [float(limit) for limit in limits]),
             self._array("uint8_t", "inclusive", [int(side.inclusive) for side in read.thresholds]),
-            *[self._array("int64_t", "whole", own) if fits else None for own in (whole, bounds)],
-            sizes=(len(factors), len(limits)),
-        )
+            *[self._array("int64_t", "whole", own) if fits else "NULL" for own in (whole, bounds)],
+            *map(self._whole, (len(factors), len(limits))),
+        ]
+        name = self._defined("shape", f"static const rulec_shape {NAME} = {{{', '.join(parts)}}};")
+        return f"&{name}"
 
     def _function(self, kind: str, about: str, places: Places, lines: Sequence[str]) -> str:
         """A call of a function with this body; ``places`` maps its parameters to arguments."""
         name = self._defined(about, self._function_pattern(kind, list(places), lines))
-        return f"{name}({', '.join([self._input, *places.values()])})"
+        return f"{name}({', '.join(['in', *places.values()])})"
 
     def _defined(self, about: str, pattern: str) -> str:
         """The name of a definition; equal definitions are made once."""
         if pattern not in self._named:
-            name = self._named[pattern] = self._name(about, len(self._named))
+            name = self._named[pattern] = f"rulec_{about}_{len(self._named)}"
             self.definitions.append(pattern.replace(NAME, name))
         return self._named[pattern]
-
-    # Parts that differ between languages
-
-    _input = "in"
-
-    def _name(self, about: str, number: int) -> str:
-        return f"rulec_{about}_{number}"
-
-    def _word(self, name: str) -> str:
-        return f"RULEC_{name}"
 
     def _call(self, name: str, *arguments: str) -> str:
         return f"rulec_{name}({', '.join(arguments)})"
 
     def _whole(self, number: int) -> str:
         return f"{number}u"
-
-    def _expression(self, name: str, places: Sequence[str]) -> str:
-        return self._fields.expression(name, places)
-
-    def _is_same(self, left: str, right: str) -> str:
-        return f"(({left} == {right}) ? RULEC_YES : RULEC_NO)"
 
     def _array(self, kind: str, about: str, items: Sequence[float]) -> str:
         shown: dict[str, Callable[[Any], str]] = {
@@ -215,14 +201,6 @@ class ReadingCode:
         }
         content = ", ".join(map(shown.get(kind, "{}u".format), items))
         return self._defined(about, f"static const {kind} {NAME}[{len(items)}u] = {{{content}}};")
-
-    def _shaped(self, *arrays: str | None, sizes: tuple[int, int]) -> str:
-        parts = [*[array or "NULL" for array in arrays], *map(self._whole, sizes)]
-        name = self._defined("shape", f"static const rulec_shape {NAME} = {{{', '.join(parts)}}};")
-        return f"&{name}"
-
-    def _returning(self, value: str) -> list[str]:
-        return [f"return {value};"]
 
     def _counting(self, counts: str) -> list[str]:
         return [

@@ -26,7 +26,7 @@ from rulec.monitoring.batch.alike_traces import (
     traces_of_lines,
     traces_placed,
 )
-from rulec.monitoring.batch.cell_verdicts import verify_cells
+from rulec.monitoring.batch.cell_verdicts import VerdictColumns, verify_cells
 from rulec.monitoring.batch.columns.block_columns import groups_of
 from rulec.monitoring.batch.columns.column_states import shared_states
 from rulec.monitoring.batch.columns.columnize import UnencodableError
@@ -34,7 +34,6 @@ from rulec.monitoring.batch.joined.joined_columns import joined_columns
 from rulec.monitoring.batch.joined.joined_states import joined_states
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind
 from rulec.monitoring.batch.trace_groups import Placed
-from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.bindings import Cast, types_of
 from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.limits import LIMITS

@@ -2,20 +2,69 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
 from itertools import chain
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch.verdict_columns import (
-    JointCells,
-    RuleBinding,
-    VerdictColumns,
-    verdict_columns,
-)
+from rulec.monitoring.batch.machines.joint_machine import join_machines
+from rulec.monitoring.batch.machines.table_run import first_lost, first_lost_of_one, run, run_alone
 from rulec.monitoring.bindings import Cast
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.trace.trace_columns import TraceCells, TraceColumns
+from rulec.value_display import short_repr
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RuleBinding:
+    """A rule bound to ``objects`` from step ``first`` to ``last`` (inclusive).
+
+    ``last`` is None for each trace's own end. Bindings are compared by identity, since they are
+    keys.
+    """
+
+    rule: CompiledRule
+    objects: Mapping[str, str]
+    first: int
+    last: int | None
+
+    @property
+    def stretch(self) -> tuple[int, int | None]:
+        """The first and the last step."""
+        return self.first, self.last
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class VerdictColumns:
+    """Verdicts for a binding; ``accepted`` follows the layout's order of traces.
+
+    ``unread`` are traces without a verdict, since a value is missing or impossible on the
+    binding's stretch; what is said of them is meaningless.
+    """
+
+    __repr__ = short_repr
+
+    task: RuleBinding
+    accepted: NDArray[np.bool_]
+    unread: NDArray[np.intp]
+    _lost_at: Callable[[NDArray[np.intp]], NDArray[np.int64]] = field(compare=False, repr=False)
+
+    @property
+    def violated(self) -> NDArray[np.intp]:
+        """The traces that violate the rule."""
+        return np.flatnonzero(~self.accepted)
+
+    def lost_at(self) -> NDArray[np.int64]:
+        """The first state that loses the rule for each of ``violated``, or -1.
+
+        It is -1 if only the end of the trace, or of the objects' stretch, decides.
+        """
+        return self._lost_at(self.violated)
 
 
 def verify_cells(traces: TraceCells, rulebook: CompiledRulebook) -> list[VerdictColumns]:
@@ -25,11 +74,9 @@ def verify_cells(traces: TraceCells, rulebook: CompiledRulebook) -> list[Verdict
     all_letters = _letters_by_cell(traces, bound_rules, rulebook)
     for binding, letters in zip(bound_rules, all_letters, strict=True):
         by_stretch.setdefault(binding.stretch, []).append((binding, letters))
-    joint = (
-        JointCells(traces.layout, traces.cells, *zip(*group, strict=True))
-        for group in by_stretch.values()
-    )
-    return _verdicts(joint, bound_rules)
+    verdicts = chain.from_iterable(_verdicts(traces, group) for group in by_stretch.values())
+    by_binding = {verdict.task: verdict for verdict in verdicts}
+    return [by_binding[binding] for binding in bound_rules]
 
 
 def rule_bindings(
@@ -49,14 +96,6 @@ def rule_bindings(
         for rule in rulebook.rules
         for binding in cast.bindings(rule)
     ]
-
-
-def _verdicts(
-    joint: Iterable[JointCells], bound_rules: Sequence[RuleBinding]
-) -> list[VerdictColumns]:
-    verdicts = chain.from_iterable(map(verdict_columns, joint))
-    by_binding = {verdict.task: verdict for verdict in verdicts}
-    return [by_binding[binding] for binding in bound_rules]
 
 
 def _letters_by_cell(
@@ -90,3 +129,62 @@ def _word(binding: RuleBinding, reader: LetterReader, first: int, last: int) -> 
         if first == last:
             return [-1]
         return [_word(binding, reader, place, place)[0] for place in range(first, last + 1)]
+
+
+def _verdicts(
+    traces: TraceCells, group: Sequence[tuple[RuleBinding, Sequence[int]]]
+) -> Iterator[VerdictColumns]:
+    """Verdicts for some bindings with a common stretch, and their letters in all cells."""
+    first, last = group[0][0].stretch
+    read = [_read(traces, binding, letters) for binding, letters in group]
+    machines = [
+        (binding.rule.machine, letters)
+        for (binding, _), (_, letters) in zip(group, read, strict=True)
+    ]
+    for joint in join_machines(machines):
+        verdicts = run(joint, traces.cells, traces.layout, first, last)
+        for bit, member in enumerate(joint.members):
+            (binding, _), (unread, letters) = group[member], read[member]
+            yield VerdictColumns(
+                task=binding,
+                accepted=(verdicts & np.uint8(1 << bit)) != 0,
+                unread=unread,
+                _lost_at=partial(_lost_at, traces, binding, letters),
+            )
+
+
+def _lost_at(
+    traces: TraceCells, binding: RuleBinding, own: Sequence[int], chosen: NDArray[np.intp]
+) -> NDArray[np.int64]:
+    """As ``VerdictColumns.lost_at`` for these traces; ``own`` are the letters of the cells."""
+    layout, cells = traces.layout, traces.cells
+    first, last = binding.stretch
+    ends = layout.lengths[chosen] if last is None else np.full(len(chosen), last + 1)
+    machine = binding.rule.machine
+    if len(ends) and run_alone(len(ends), int(ends[0]) - first, len(machine.successors)):
+        letters = np.array(own)
+        words = (cells[layout.places(trace, first, last)] for trace in chosen.tolist())
+        lost = np.array([first_lost_of_one(machine, letters.take(word)) for word in words])
+    else:
+        # The ends are in descending order: those after a step come first.
+        by_step = (
+            cells[layout.starts[step] + chosen[: np.searchsorted(-ends, -step)]]
+            for step in range(first, int(ends[0]) if len(ends) else first)
+        )
+        lost = first_lost(machine, own, by_step, ends - first)
+    return np.where(lost < 0, lost, lost + first)
+
+
+def _read(
+    traces: TraceCells, binding: RuleBinding, letters: Sequence[int]
+) -> tuple[NDArray[np.intp], tuple[int, ...]]:
+    """The unread traces, and the letters, with 0 for cells without one, which occur only there."""
+    if min(letters, default=0) >= 0:
+        return np.empty(0, dtype=np.intp), tuple(letters)
+    (first, last), layout = binding.stretch, traces.layout
+    start = layout.starts[first]
+    end = layout.starts[-1 if last is None else last + 1]
+    missing = np.array(letters) < 0
+    places = np.flatnonzero(missing.take(traces.cells[start:end])) + start
+    unread = np.unique(layout.traces_at(places))
+    return unread, tuple([max(letter, 0) for letter in letters])

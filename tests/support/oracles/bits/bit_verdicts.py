@@ -11,9 +11,8 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.thresholds import exact
 from rulec.logic.bounds import in_steps
 from rulec.logic.formula import Atom, Comparison, Proposition
-from rulec.monitoring.batch.cell_verdicts import rule_bindings
+from rulec.monitoring.batch.cell_verdicts import RuleBinding, rule_bindings
 from rulec.monitoring.batch.columns.column_numbers import Mask
-from rulec.monitoring.batch.verdict_columns import RuleBinding
 from rulec.trace.trace_columns import Array, TraceColumns, layout_of
 from support.oracles.bits.column_reading import ColumnReader, NotGivenError
 from support.oracles.bits.trace_planes import Across
