@@ -301,10 +301,19 @@ def test_columns_that_lack_what_a_rule_needs():
     assert [one.code for one in answer.error.diagnostics] == ["R0504"]
 
 
-def test_a_place_that_is_none_among_the_values():
-    place = np.array([0, 3], dtype=np.uint8)
-    columns = TraceColumns(layout_of([2]), {("place", ("c",)): place}, {"c": "car"})
-    with pytest.raises(ValueError, match="`place` of `c` has place 3, of 3 values"):
+@pytest.mark.parametrize(
+    ("key", "values", "said"),
+    [
+        (("place", ("c",)), [0, 3], "`place` of `c` has place 3, of 3 values"),
+        (("place", ("c",)), [0, -1], "`place` of `c` has place -1, of 3 values"),
+        (("place", ("c",)), [0], "has 1 entries, for 2 states"),
+        (("place", ()), [0, 0], "`place` is about 0 objects, not 1"),
+        (("plaice", ("c",)), [0, 0], "`plaice` of `c` is of no name that "),
+    ],
+)
+def test_an_array_that_does_not_fit(key, values, said):
+    columns = TraceColumns(layout_of([2]), {key: np.array(values)}, {"c": "car"})
+    with pytest.raises(ValueError, match=said):
         verify_columns(columns, crowded("stutter"))
 
 

@@ -12,11 +12,7 @@ from rulec.api.pictures import drive_drawing, trace_drawing
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.argument_kinds import expected
-from rulec.extraction.recording_verdicts import (
-    DriveVerdict,
-    RecordingVerdicts,
-    explain_drive,
-)
+from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts, explain_drive
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.monitoring.batch.batch_verify import verify_many
@@ -196,7 +192,7 @@ class JudgedDrives(Judged):
         names = [rule.name for rule in own.rules.rules]
         for found in own.answers():
             idle: frozenset[str] = frozenset()
-            if isinstance(found, DriveVerdict) and isinstance(found.answer, Verdict):
+            if isinstance(found, DriveVerdict):
                 idle = idle_rules(found.drive.arrays, own.rules, found.answer)
             tally.add(found, names, idle)
         return tally.outcomes([*names, *[rule.name for rule in own.rules.too_large]])

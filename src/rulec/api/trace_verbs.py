@@ -190,7 +190,7 @@ class TraceVerbs(SessionSettings):
     def verify_columns(self, columns: TraceColumns, rules: Rules) -> list[Verdict | NotJudged]:
         """Judge traces given as arrays, in their order; their ids are their numbers from 0.
 
-        Raises ValueError for a place that is none among the values of an enumeration.
+        Raises ValueError for an array that fits no name of the vocabulary, or not the layout.
         """
         from rulec.monitoring.batch.batch_verify import verify_columns
 

@@ -282,8 +282,6 @@ class _RecordingJudge:
         """The rules that a drive gave no opportunity to violate, if that is asked."""
         if not self._settings.idle or isinstance(found, NoDrive):
             return None
-        if isinstance(found.answer, NotJudged):
-            return None
         # Opportunities, 20 ms a drive: only where they are asked for.
         from rulec.monitoring.moments.drive_facts import idle_rules
 

@@ -25,7 +25,7 @@ from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import AlikeLines, LineBlock
 from rulec.trace.formats.table_blocks import Block
-from rulec.trace.trace_columns import Array, Layout, TraceColumns
+from rulec.trace.trace_columns import Array, Key, Layout, TraceColumns
 from rulec.trace.trace_model import Ending
 from rulec.vocabulary import Enumeration, Vocabulary
 
@@ -124,16 +124,10 @@ def traces_of_lines(block: LineBlock, lines: AlikeLines, vocabulary: Vocabulary)
 def traces_of_columns(columns: TraceColumns, vocabulary: Vocabulary) -> AlikeTraces:
     """Traces that a caller gives as columns, with their numbers as ids.
 
-    Raises ValueError for a place that is none among the values of an enumeration.
+    Raises ValueError for an array that fits no name of the vocabulary, or not the layout.
     """
-    for (name, items), values in columns.values.items():
-        declaration = vocabulary.declarations.get(name)
-        if isinstance(declaration, Enumeration):
-            most, n_values = int(values.max(initial=0)), len(declaration.values)
-            if most >= n_values:
-                of = f" of `{', '.join(items)}`" if items else ""
-                message = f"the array for `{name}`{of} has place {most}, of {n_values} values"
-                raise ValueError(f"{message}, which count from 0")
+    for key in columns.values:
+        _check_array(columns, key, vocabulary)
     said = {name for name, _ in columns.values}
     return AlikeTraces(
         places=range(columns.layout.n_traces),
@@ -144,6 +138,24 @@ def traces_of_columns(columns: TraceColumns, vocabulary: Vocabulary) -> AlikeTra
         traces=lambda number: trace_at(columns, number, vocabulary),
         ends="complete",
     )
+
+
+def _check_array(columns: TraceColumns, key: Key, vocabulary: Vocabulary) -> None:
+    (name, items), values, n_states = key, columns.values[key], columns.layout.n_states
+    what = f"the array for `{name}`{' of `' + ', '.join(items) + '`' if items else ''}"
+    declaration = vocabulary.declarations.get(name)
+    if declaration is None:
+        raise ValueError(f"{what} is of no name that `{vocabulary.name}` has")
+    if len(items) != len(declaration.parameters):
+        raise ValueError(f"{what} is about {len(items)} objects, not {len(declaration.parameters)}")
+    for column in (values, columns.unknown.get(key, values), columns.upper.get(key, values)):
+        if len(column) != n_states:
+            raise ValueError(f"{what} has {len(column)} entries, for {n_states} states")
+    if isinstance(declaration, Enumeration):
+        wrong = values[(values < 0) | (values >= len(declaration.values))]
+        if len(wrong):
+            most = len(declaration.values)
+            raise ValueError(f"{what} has place {wrong[0]}, of {most} values, which count from 0")
 
 
 def _trace(item: Trace | RulecError) -> Trace:

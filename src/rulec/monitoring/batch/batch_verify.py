@@ -37,9 +37,7 @@ from rulec.monitoring.batch.trace_groups import Placed
 from rulec.monitoring.bindings import Cast, types_of
 from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.limits import LIMITS
-from rulec.monitoring.state_validation import (
-    check_objects,
-)
+from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import LONG, rulebook_for_trace, said, verify_or_reason
@@ -127,7 +125,12 @@ def _verify_chunk(
             except (TypeError, AttributeError, LookupError, RulecError):
                 continue  # it is no trace, or a constant changes, which ``verify`` will say
     for alike in filter(partial(_are_many, fewest=fewest), shapes.values()):
-        _verify_group([own for own in alike if _is_framed(own[1])], rulebook, answers)
+        framed = [own for own in alike if _is_framed(own[1])]
+        # What is irregular is judged with others, or alone.
+        with suppress(*_IRREGULAR):
+            if framed:
+                rules = rules_for(framed[0][1], rulebook)
+                _verify_alike(traces_placed(framed, rules.vocabulary), rules, answers)
     for kind, placed in kinds.items():
         left = [own for own in placed if answers[own[0]] is None]
         if _are_many(left, fewest):
@@ -182,16 +185,6 @@ def _is_framed(trace: Trace) -> bool:
     except (RulecError, TypeError):
         return False
     return True
-
-
-def _verify_group(
-    traces: Sequence[Placed], rulebook: CompiledRulebook, answers: list[Answer | None]
-) -> None:
-    # What is irregular is judged with others, or alone.
-    with suppress(*_IRREGULAR):
-        if traces:
-            rules = rules_for(traces[0][1], rulebook)
-            _verify_alike(traces_placed(traces, rules.vocabulary), rules, answers)
 
 
 def _with_derived_values(trace: Trace, vocabulary: Vocabulary) -> Trace:

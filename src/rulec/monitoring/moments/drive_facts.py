@@ -13,7 +13,7 @@ from rulec.monitoring.moments.exposure import Exposure, alike_exposures
 from rulec.monitoring.moments.name_tables import ColumnTables
 from rulec.monitoring.moments.road_class import road_classes
 from rulec.monitoring.moments.trace_truth import TraceTruth, tables_of
-from rulec.monitoring.verdict import Verdict
+from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.trace import Trace
 from rulec.trace.trace_arrays import TraceArrays
 
@@ -38,8 +38,12 @@ def facts_of(
     return facts
 
 
-def idle_rules(trace: TraceArrays, rulebook: CompiledRulebook, verdict: Verdict) -> frozenset[str]:
+def idle_rules(
+    trace: TraceArrays, rulebook: CompiledRulebook, verdict: Verdict | NotJudged
+) -> frozenset[str]:
     """The judged rules that a trace certainly gives no opportunity to violate."""
+    if isinstance(verdict, NotJudged):
+        return frozenset()
     exposures = facts_of(trace, rulebook, verdict).exposure.items()
     return frozenset([name for name, own in exposures if not own.perhaps_opportunities])
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rulec.monitoring.batch.columns.column_numbers import partial_values
 from rulec.trace import Trace
-from rulec.trace.trace_columns import Array, Key, TraceCells, TraceColumns, smallest_unsigned
+from rulec.trace.trace_columns import Array, TraceCells, TraceColumns, smallest_unsigned
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 
 MOST_CODES = 1 << 16
@@ -74,12 +74,13 @@ def states_at(
     steps = (columns.layout.starts.searchsorted(places, side="right") - 1).tolist()
     states: list[dict[str, Any]] = [{} for _ in steps]
     for (name, items), values in columns.values.items():
-        key = name, items
-        upper, unknown = (
-            None if own is None else own.take(places) for own in _doubts(columns, key)
+        upper, unknown = columns.upper.get((name, items)), columns.unknown.get((name, items))
+        own_values = partial_values(
+            values.take(places),
+            None if upper is None else upper.take(places),
+            None if unknown is None else unknown.take(places),
+            vocabulary.declarations[name],
         )
-        declaration = vocabulary.declarations[name]
-        own_values = partial_values(values.take(places), upper, unknown, declaration)
         since, until = _stretch(columns, items)
         for state, step, value in zip(states, steps, own_values, strict=True):
             if since <= step <= until:
@@ -88,10 +89,6 @@ def states_at(
                     inner = inner.setdefault(part, {})
                 inner[path[-1]] = value
     return states
-
-
-def _doubts(columns: TraceColumns, key: Key) -> Iterable[Array | None]:
-    return columns.upper.get(key), columns.unknown.get(key)
 
 
 def _stretch(columns: TraceColumns, items: Iterable[str]) -> tuple[int, int]:
