@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rulec.resources import grammar_file
-from rulec.syntax.grammar import tables_of
+from rulec.syntax.table_generation import tables_of
 
 
 def parser_tables() -> str:

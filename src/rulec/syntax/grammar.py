@@ -1,17 +1,17 @@
-"""Runs the grammar; the only file that depends on Lark."""
+"""Runs the grammar: an LALR(1) parser with a contextual lexer, on the tables that Lark makes.
+
+Lark's own loop is not used: with its tokens and trees, which are to be converted, it takes four
+times as long, and 40 ms to load. A test compares both.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 from functools import cache
-
-import lark
-from lark import Lark, Token, Tree
-from lark.exceptions import UnexpectedInput, UnexpectedToken
-from lark.grammar import Rule
-from lark.lexer import TerminalDef
+from typing import TypeAlias
 
 from rulec.resources import grammar_file
-from rulec.syntax import parser_tables
 from rulec.syntax.parse_nodes import (
     MAX_DEPTH,
     Mismatch,
@@ -20,105 +20,168 @@ from rulec.syntax.parse_nodes import (
     Start,
     TooDeep,
 )
-
-STARTS: tuple[Start, ...] = ("item", "rule_head", "clause", "example_head", "state", "formula")
+from rulec.syntax.parser_tables import (
+    END,
+    GrammarRule,
+    ParserTables,
+    behind_spaces,
+    from_text,
+    stamp,
+)
 
 _LEVELS = frozenset(
     (*("infix", "prefix", "group", "compare"), *("arithmetic", "minus", "conditional", "aggregate"))
 )
 
+_Part: TypeAlias = "ParseNode | ParseLeaf"
+
 
 def parse_piece(start: Start, text: str, begin: int, end: int) -> ParseNode | Mismatch | TooDeep:
     """Parse characters ``begin`` to ``end`` of a text. Positions count from the text's start."""
-    try:
-        # Not a `TextSlice`: Lark would count the lines before every piece anew, which takes
-        # quadratic time in all.
-        tree = _lark().parse(text[begin:end], start=start)
-    except UnexpectedInput as error:
-        position = begin + _position(error, end - begin)
-        return Mismatch(position, _accepted(start, text[begin:position]))
-    return _neutral(tree, begin)
-
-
-@cache
-def _lark() -> Lark:
-    """The parser from its tables, which are rebuilt if they are stale."""
-    grammar = grammar_file("rulec.lark").read_text(encoding="utf-8")
-    try:
-        text = grammar_file("rulec.tables.json").read_text(encoding="utf-8")
-        ready = parser_tables.from_text(text, parser_tables.stamp(grammar, lark.__version__))
-    except (OSError, ValueError):
-        ready = None
-    return _made(grammar) if ready is None else Lark.load(ready)
-
-
-def _made(grammar: str) -> Lark:
-    return Lark(
-        grammar,
-        parser="lalr",
-        lexer="contextual",
-        start=list(STARTS),
-        propagate_positions=True,
-        maybe_placeholders=False,
-    )
-
-
-def tables_of(grammar: str) -> str:
-    """The text of ``grammar/rulec.tables.json``."""
-    data, memo = _made(grammar).memo_serialize([TerminalDef, Rule])
-    serialized = {"data": data, "memo": memo}
-    return parser_tables.to_text(parser_tables.stamp(grammar, lark.__version__), serialized)
+    run = _Run.of(start)
+    position = run.through(text, begin, end)
+    if position is None and not run.ends():
+        position = end
+    if position is not None:
+        return Mismatch(position, _accepted(start, text, begin, position))
+    too_deep = _too_deep(run.root) if run.n_levels > MAX_DEPTH else None
+    return too_deep or run.root
 
 
 def accepted_after(start: Start, text: str) -> frozenset[str]:
     """The terminals that may follow the beginning of a piece; none if it cannot be read."""
+    return _accepted(start, text, 0, len(text))
+
+
+@cache
+def _tables() -> ParserTables:
+    """The tables, which are made anew if they are stale."""
+    grammar = grammar_file("rulec.lark").read_text(encoding="utf-8")
     try:
-        return _accepted(start, text)
-    except UnexpectedInput:
+        text = grammar_file("rulec.tables.json").read_text(encoding="utf-8")
+        ready = from_text(text, stamp(grammar))
+    except (OSError, ValueError):
+        ready = None
+    return ready or _made(grammar)
+
+
+def _made(grammar: str) -> ParserTables:
+    # Lark, 40 ms: only if somebody has changed the grammar.
+    from rulec.syntax.table_generation import tables_of
+
+    made = from_text(tables_of(grammar), stamp(grammar))
+    assert made is not None, "they are of this grammar"
+    return made
+
+
+def _accepted(start: Start, text: str, begin: int, end: int) -> frozenset[str]:
+    """The terminals that may follow these characters; none if they cannot be read.
+
+    They are parsed again, up to the wrong token: acting on it has hidden what else could follow.
+    """
+    run = _Run.of(start)
+    if run.through(text, begin, end) is not None:
         return frozenset()
+    return frozenset(run.next_kinds())
 
 
-def _position(error: UnexpectedInput, end: int) -> int:
-    if isinstance(error, UnexpectedToken) and error.token.type == "$END":
-        return end
-    return end if error.pos_in_stream is None else error.pos_in_stream
+@dataclass(slots=True)
+class _Run:
+    """A run of the parser: the states on its stack, and what was matched between each two.
 
-
-def _accepted(start: Start, good: str) -> frozenset[str]:
-    """The terminals that could follow the readable part.
-
-    It is parsed again, because Lark's error lists only terminals found after the parser had acted
-    on the wrong token, and omits many that could have followed.
+    A list is what a rule matched that makes no node: its parts belong to the node around it.
     """
-    state = _lark().parse_interactive(good, start=start)
-    state.exhaust_lexer()
-    return frozenset(state.accepts())  # type: ignore[no-untyped-call]
+
+    tables: ParserTables
+    last_state: int
+    states: list[int]
+    matched: list[_Part | list[_Part]] = field(default_factory=list)
+    n_levels: int = 0
+
+    @staticmethod
+    def of(start: Start) -> _Run:
+        """A run at the beginning of a piece."""
+        tables = _tables()
+        return _Run(tables, tables.last_states[start], [tables.first_states[start]])
+
+    @property
+    def root(self) -> ParseNode:
+        """The node of a complete piece."""
+        (root,) = self.matched
+        assert isinstance(root, ParseNode)
+        return root
+
+    def through(self, text: str, begin: int, end: int) -> int | None:
+        """Read all tokens; returns where one does not fit, None if all do."""
+        tables, states, matched = self.tables, self.states, self.matched
+        position = begin
+        while True:
+            match = tables.token_matcher(states[-1])(text, position, end)
+            if match is None:
+                behind = behind_spaces(text, position, end)
+                if behind in (position, end):
+                    return None if behind == end else behind
+                position = behind
+                continue
+            kind = match.lastgroup
+            assert kind is not None, "each alternative is named"
+            first, position = match.span(kind)
+            target = self._reduced(kind)
+            if target is None:
+                return first
+            states.append(target)
+            matched.append(ParseLeaf(kind, text[first:position], first, position))
+
+    def ends(self) -> bool:
+        """Whether the piece may end here; this completes it."""
+        self._reduced(END)
+        return self.states[-1] == self.last_state
+
+    def next_kinds(self) -> Iterator[str]:
+        """The terminals that may follow, and the end."""
+        for kind in self.tables.actions[self.states[-1]]:
+            trial = replace(self, states=[*self.states], matched=[*self.matched])
+            fits = trial.ends() if kind == END else trial._reduced(kind) is not None
+            if fits and kind.isupper():
+                yield kind
+
+    def _reduced(self, kind: str) -> int | None:
+        """Apply the rules that end before a token; the state behind it, None if it does not fit."""
+        actions, rules, states = self.tables.actions, self.tables.rules, self.states
+        while True:
+            action = actions[states[-1]].get(kind)
+            if action is None or action >= 0:
+                return action
+            rule = rules[~action]
+            if not rule.passes:
+                self._reduce(rule)
+            del states[-rule.size :]
+            states.append(actions[states[-1]][rule.symbol])
+            if kind == END and states[-1] == self.last_state:
+                return None
+
+    def _reduce(self, rule: GrammarRule) -> None:
+        parts: list[_Part] = []
+        for own in self.matched[-rule.size :]:
+            if isinstance(own, list):
+                parts += own
+            else:
+                parts.append(own)
+        made: _Part | list[_Part] = parts
+        if rule.kind is not None:
+            self.n_levels += rule.kind in _LEVELS
+            made = ParseNode(rule.kind, tuple(parts), parts[0].start, parts[-1].end)
+        self.matched[-rule.size :] = [made]
 
 
-def _neutral(tree: Tree[Token], begin: int) -> ParseNode | TooDeep:
-    """Convert Lark's tree to parse nodes, from the leaves up.
-
-    This is not recursive, because a hostile tree may be very deep.
-    """
-    done: list[ParseNode | ParseLeaf] = []
-    todo: list[tuple[Tree[Token] | Token, int, bool]] = [(tree, 0, False)]
+def _too_deep(root: ParseNode) -> TooDeep | None:
+    """The first part that is inside too many others. Not recursive: a hostile tree is very deep."""
+    todo: list[tuple[_Part, int]] = [(root, 0)]
     while todo:
-        node, depth, ready = todo.pop()
-        if isinstance(node, Token):
-            start = begin + (node.start_pos or 0)
-            done.append(ParseLeaf(node.type, str(node), start, start + len(node)))
-        elif ready:
-            first = len(done) - len(node.children)
-            meta = node.meta
-            inside = tuple(done[first:])
-            span = begin + meta.start_pos, begin + meta.end_pos
-            done[first:] = [ParseNode(str(node.data), inside, *span)]
-        elif depth > MAX_DEPTH:
-            return TooDeep(begin + node.meta.start_pos)
-        else:
-            below = depth + (node.data in _LEVELS)
-            todo.append((node, depth, True))
-            todo.extend((child, below, False) for child in reversed(node.children))
-    root = done[0]
-    assert isinstance(root, ParseNode)
-    return root
+        node, depth = todo.pop()
+        if isinstance(node, ParseNode):
+            if depth > MAX_DEPTH:
+                return TooDeep(node.start)
+            below = depth + (node.kind in _LEVELS)
+            todo += [(child, below) for child in reversed(node.children)]
+    return None

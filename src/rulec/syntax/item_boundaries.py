@@ -37,6 +37,10 @@ class Landmarks:
         token = self.tokens[index] if 0 <= index < len(self.tokens) else None
         return token.text if token is not None and token.kind == kind else ""
 
+    def symbol(self, index: int) -> str:
+        """The symbol at a place, outside of quotes; empty if there is none."""
+        return self._text(index, "symbol")
+
     def is_symbol(self, index: int, text: str) -> bool:
         """Whether a token is this symbol, outside of quotes."""
         return self._text(index, "symbol") == text
@@ -137,7 +141,7 @@ class Landmarks:
         token = self.tokens[index]
         if token.kind != "word":
             return False
-        if self.is_word(index + 1, "rule") and (self._heads_a_rule(index) or token.first):
+        if (token.first or self._heads_a_rule(index)) and self.is_word(index + 1, "rule"):
             return not self.is_word(index - 1, *keywords.CHANGE_WORDS, *keywords.RULE_WORDS)
         if not token.first or self._heads_a_rule(index - 1):
             return False
@@ -165,8 +169,10 @@ class Landmarks:
     def begins_clause(self, index: int) -> bool:
         """Whether a clause begins at a token."""
         token = self.tokens[index]
-        if token.kind != "word" or token.text not in keywords.CLAUSE_WORDS:
-            return self._begins_in_force(index)
+        if token.kind != "word":
+            return False
+        if token.text not in keywords.CLAUSE_WORDS:
+            return token.text == "in" and self._begins_in_force(index)
         if token.text == "unless" and self.is_word(index - 1, "also"):
             return False
         if token.first or not self.wants_more(index - 1):
@@ -174,8 +180,8 @@ class Landmarks:
         return self.is_symbol(index - 1, "{") and not self._stands_alone(index)
 
     def _begins_in_force(self, index: int) -> bool:
-        """Whether this is ``in force`` and not a level named ``force``."""
-        if not (self.is_word(index, "in") and self.is_word(index + 1, "force")):
+        """Whether this ``in`` begins ``in force`` and not a level named ``force``."""
+        if not self.is_word(index + 1, "force"):
             return False
         if self.is_symbol(index + 2, "{") or self.is_word(index + 2, "weight"):
             return False

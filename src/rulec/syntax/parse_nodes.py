@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 Start = Literal["item", "rule_head", "clause", "example_head", "state", "formula"]
 
@@ -11,8 +11,7 @@ MAX_DEPTH = 200
 """The deepest nesting of operators and parentheses: far above any law, far below Python's stack."""
 
 
-@dataclass(frozen=True, slots=True)
-class ParseLeaf:
+class ParseLeaf(NamedTuple):
     """A token of the grammar."""
 
     kind: str
@@ -21,8 +20,7 @@ class ParseLeaf:
     end: int
 
 
-@dataclass(frozen=True, slots=True)
-class ParseNode:
+class ParseNode(NamedTuple):
     """Match of a grammar rule, from character ``start`` to ``end``."""
 
     kind: str

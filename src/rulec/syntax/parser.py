@@ -16,6 +16,7 @@ from rulec.syntax.assembly import Part, assemble_file, assemble_rule
 from rulec.syntax.building import formulas, items
 from rulec.syntax.building.formulas import NodeValues
 from rulec.syntax.file_pieces import ExamplePieces, Piece, RulePieces, span_of
+from rulec.syntax.grammar import parse_piece
 from rulec.syntax.keywords import DECLARATION_WORDS, HEADER_WORDS, ITEM_WORDS, RESERVED
 from rulec.syntax.messages import structure
 from rulec.syntax.messages.lookalikes import hidden_meaning
@@ -146,9 +147,6 @@ class PieceReader:
         if piece.last - piece.first > MAX_PIECE:
             self.mistakes.append(_messages().too_long(self._first_token(piece), MAX_PIECE))
             return None
-        # Lark and its tables, 50 ms: only where there is something to be read.
-        from rulec.syntax.grammar import parse_piece
-
         match parse_piece(start, self.source.text, span.start, span.end):
             case Mismatch() as mismatch:
                 why = _messages().explain(self.source, self.tokens, piece, mismatch)

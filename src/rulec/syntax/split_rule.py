@@ -91,13 +91,13 @@ class RuleSplitter:
         while index < len(self.tokens):
             if self.marks.begins_clause(index) or self.marks.begins_item_inside(index):
                 break
-            if braces == 0 and self.marks.is_symbol(index, "}"):
+            symbol = self.marks.symbol(index)
+            if braces == 0 and (
+                symbol == "}" or self._begins_anew(first, index, inside=parentheses > 0)
+            ):
                 break
-            if braces == 0 and self._begins_anew(first, index, inside=parentheses > 0):
-                break
-            braces += self.marks.is_symbol(index, "{") - self.marks.is_symbol(index, "}")
-            closes = self.marks.is_symbol(index, ")")
-            parentheses = max(0, parentheses + self.marks.is_symbol(index, "(") - closes)
+            braces += (symbol == "{") - (symbol == "}")
+            parentheses = max(0, parentheses + (symbol == "(") - (symbol == ")"))
             index += 1
         return index
 
@@ -133,13 +133,13 @@ class RuleSplitter:
         while index < len(self.tokens):
             if self.marks.begins_clause(index) or self.marks.begins_item_inside(index):
                 break
-            closes = self.marks.is_symbol(index, "}")
-            if depth == 0 and (closes or self.marks.is_symbol(index, ";")):
+            symbol = self.marks.symbol(index)
+            if depth == 0 and symbol in ("}", ";"):
                 states.append(Piece("state", begin, index))
                 begin = index + 1
-                if closes:
+                if symbol == "}":
                     return ExamplePieces(head, tuple(states), begin), False
-            depth += self.marks.is_symbol(index, "{") - closes
+            depth += (symbol == "{") - (symbol == "}")
             index += 1
         self.mistakes.append(self.say.no_close("the example", opened, index))
         states.append(Piece("state", begin, index, reported=begin == index))

@@ -9,7 +9,7 @@ from pygments.lexer import RegexLexer, bygroups
 from pygments.token import Comment, Keyword, Literal, Name, Number, Operator, Punctuation, String
 from pygments.token import Text as Blank
 
-from rulec.syntax import highlighting as words
+from rulec.report.text import highlighting_words as words
 
 _NAMED: Any = bygroups(  # type: ignore[no-untyped-call]
     Keyword.Declaration, Blank.Whitespace, Name.Function

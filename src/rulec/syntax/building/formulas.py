@@ -38,8 +38,11 @@ class NodeValues:
         return tuple(map(self._text, node.leaves("STRING")))
 
     def _text(self, leaf: ParseLeaf) -> tree.Text:
+        inner = leaf.text[1:-1]
+        if inner.isascii() and inner.isprintable() and "\\" not in inner:
+            return tree.Text(inner, span=self.span(leaf))
         value: list[str] = []
-        characters = enumerate(leaf.text[1:-1], leaf.start + 1)
+        characters = enumerate(inner, leaf.start + 1)
         for position, character in characters:
             if character == "\\":
                 _, escaped = next(characters)

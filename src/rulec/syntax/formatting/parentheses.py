@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Final
 
 from rulec.syntax.keywords import (
@@ -59,11 +58,11 @@ def _fitted(node: ParseNode, *, shows: bool) -> ParseNode:
         else _fitted(_without_spare(node, child, whole=whole), shows=shows)
         for child in node.children
     )
-    fitted = replace(node, children=children)
+    fitted = node._replace(children=children)
     if shows and node.kind == "infix":
         # Redundant parentheses are gone by now: they would hide an operator at the end.
         left, *rest = children
-        fitted = replace(fitted, children=(_end_shown(left, fitted), *rest))
+        fitted = fitted._replace(children=(_end_shown(left, fitted), *rest))
     return fitted
 
 
@@ -96,7 +95,7 @@ def _end_shown(part: ParseNode | ParseLeaf, around: ParseNode) -> ParseNode | Pa
         opening = ParseLeaf("LPAR", "(", part.start, part.start)
         closing = ParseLeaf("RPAR", ")", part.end, part.end)
         return ParseNode("group", (opening, part, closing), part.start, part.end)
-    return replace(part, children=(*before, _end_shown(last, around)))
+    return part._replace(children=(*before, _end_shown(last, around)))
 
 
 def _is_narrow(sign: ParseLeaf, operand: ParseNode | ParseLeaf, around: ParseNode) -> bool:
