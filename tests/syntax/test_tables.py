@@ -22,13 +22,12 @@ from support.oracles.lark_parser import parsed_by_lark
 GRAMMAR = grammar_file("rulec.lark").read_text(encoding="utf-8")
 FILE = grammar_file("rulec.tables.json").read_text(encoding="utf-8")
 PROGRAMS = Path(__file__).parents[1] / "programs"
-FILES = sorted(
-    [
-        *rulebooks_folder().rglob("*.rules"),
-        *rulebooks_folder().rglob("*.words"),
-        *PROGRAMS.rglob("*.rules"),
-    ]
-)
+SHIPPED = sorted(rulebooks_folder().rglob("*.rules"))
+ALWAYS = ("esterle2019.rules", "vienna.rules", "paper.rules")
+FILES = [
+    *sorted(PROGRAMS.rglob("*.rules")),
+    *[pytest.param(file, marks=[] if file.name in ALWAYS else pytest.mark.long) for file in SHIPPED],
+]
 
 
 def test_the_tables_are_up_to_date():

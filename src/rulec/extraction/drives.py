@@ -247,7 +247,7 @@ class Drives:
         return plans
 
     def _look_ahead(self, road: DrivenRoad, places: RoadPlaces, asked: _Key) -> None:
-        """Make the drive ``asked`` and others awaiting these places, up to about ``MOST_CELLS``."""
+        """Make the drive ``asked`` and others awaiting these places, up to ``MOST_CELLS``."""
         part = self._parts.get(road)
         awaited = {asked} if part is None else part.awaited | {asked}
         members: dict[_Key, tuple[str, int, slice]] = {}
@@ -255,9 +255,11 @@ class Drives:
         for row, name, columns in self._plans.get(road, []):
             found = (row, columns.start) in awaited and self._there(places, row, columns)
             if found and cells < MOST_CELLS:
-                members[row, columns.start] = (name, *found)
                 n_there = np.count_nonzero(places.tracks.present[:, found[1]].any(axis=1))
-                cells += int(n_there) * (columns.stop - columns.start)
+                own = int(n_there) * (columns.stop - columns.start)
+                if not members or cells + own <= MOST_CELLS:
+                    members[row, columns.start] = (name, *found)
+                    cells += own
         if asked in members and len(members) >= FEWEST_TOGETHER:
             self._ready |= self._made_together(places, members)
         if part is not None:

@@ -36,8 +36,9 @@ if TYPE_CHECKING:
 _MOST_KEPT = 1 << 6
 """Most selections of rules that are kept; beyond this all are dropped."""
 
-MOST_STATES = 1 << 13
-"""Drives are verified together once they have this many states; more would take more memory."""
+MOST_STATES, MOST_CELLS_TOGETHER = 1 << 13, 1 << 18
+"""Drives are verified together once they have this many states, or cells of participants in states;
+more would take more memory."""
 
 
 def rounded_rulebooks(rulebook: CompiledRulebook, step_s: float) -> tuple[CompiledRulebook, ...]:
@@ -134,13 +135,15 @@ class RecordingVerdicts(Rows):
     def answers(self) -> Iterator[DriveVerdict | NoDrive]:
         """The verdict on each drive, in the order of the file."""
         waiting: list[Drive | NoDrive] = []
-        states = 0
+        states = cells = 0
         for drive in self.drives:
             waiting.append(drive)
-            states += drive.arrays.n_states if isinstance(drive, Drive) else 0
-            if states >= MOST_STATES:
+            if isinstance(drive, Drive):
+                states += drive.arrays.n_states
+                cells += int(drive.arrays.starts[-1])
+            if states >= MOST_STATES or cells >= MOST_CELLS_TOGETHER:
                 yield from self._verified(waiting)
-                waiting, states = [], 0
+                waiting, states, cells = [], 0, 0
         yield from self._verified(waiting)
 
     def _verified(self, drives: Sequence[Drive | NoDrive]) -> Iterator[DriveVerdict | NoDrive]:
