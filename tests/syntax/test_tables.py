@@ -26,7 +26,10 @@ SHIPPED = sorted(rulebooks_folder().rglob("*.rules"))
 ALWAYS = ("esterle2019.rules", "vienna.rules", "paper.rules")
 FILES = [
     *sorted(PROGRAMS.rglob("*.rules")),
-    *[pytest.param(file, marks=[] if file.name in ALWAYS else pytest.mark.long) for file in SHIPPED],
+    *[
+        pytest.param(file, marks=[] if file.name in ALWAYS else pytest.mark.long)
+        for file in SHIPPED
+    ],
 ]
 
 
