@@ -8,16 +8,14 @@ may have other triggers, such as `never (p and not q)` and `never (not q and p)`
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import combinations
 from typing import Any, TypeAlias
 
 from rulec.validation.unprovable import require
 
 SCOPES = ("initially", "at start", "at end", "throughout", "at some point")
 _GUARDING = ("always", "never")
-_MOST_THROUGHOUT = 4
-_MOST_PHASES = 8
-"""Formulas grow exponentially with exceptions that hold throughout; larger ones are not proved."""
+_MOST_PHASES = 64
+"""Exceptions that hold throughout say each phase several times; more phases are not proved."""
 
 
 def prove_parts(rule: Mapping[str, Any]) -> None:
@@ -106,23 +104,16 @@ def _counted(phases: Sequence[Phase], exemptions: Sequence[tuple[str, Any]]) -> 
     denied = {scope: [_not(tree) for own, tree in exemptions if own == scope] for scope in SCOPES}
     start, end = _all(denied["at start"]), _all(denied["at end"])
     all_along, failing = _all(denied["at some point"]), denied["throughout"]
-    bounded = any(bound for _, bound in phases)
-    few = len(failing) <= _MOST_THROUGHOUT and len(phases) <= _MOST_PHASES
-    require(not failing or (few and not bounded), "its exceptions are too many for this checker")
-    if len(phases) == 2:
-        return _any(
-            _remainder(
-                phases[0],
-                _all([_all([start, all_along]), *now]),
-                _all([phases[1][0], _all([end, all_along]), *(e for e in failing if e not in now)]),
-            )
-            for now in _choices(failing)
-        )
-    (first, bound), last = phases[0], len(phases) - 1
     failing = [part for number, part in enumerate(failing) if part not in failing[:number]]
+    if failing:
+        require(not any(bound for _, bound in phases), "it bounds a phase that exceptions divide")
+        require(len(phases) <= _MOST_PHASES, "its phases are too many for this checker")
+    if len(phases) == 2:
+        return _border(phases, _all([start, all_along]), _all([end, all_along]), failing)
+    (first, bound), last = phases[0], len(phases) - 1
 
     def entered(number: int, due: Sequence[Any]) -> Any:
-        """The formula from a phase's start on; each of ``due`` must still fail at some point."""
+        """The formula from a phase's start on; what is ``due`` must still fail at some point."""
         if number == last:
             return phases[number][0]
         here = within(number, due)
@@ -131,26 +122,27 @@ def _counted(phases: Sequence[Phase], exemptions: Sequence[tuple[str, Any]]) -> 
     def within(number: int, due: Sequence[Any]) -> Any:
         tree, own = phases[number]
         phase, is_last = _all([tree, all_along]), number == last - 1
+        at_last = end if is_last else True
         if not due:
-            return _remainder((phase, own), end if is_last else True, entered(number + 1, due))
-        ways = []
-        for now in _choices(due):
-            rest = [part for part in due if part not in now]
-            onward = []
-            if not (is_last and rest):
-                step = ["next", entered(number + 1, rest)]
-                onward.append(_all([end, step]) if is_last else step)
-            if now:
-                onward.append(["next", within(number, rest)])
-            if onward:
-                ways.append(_all([*now, _any(onward)]))
+            return _remainder((phase, own), at_last, entered(number + 1, ()))
+        onward = [_all([at_last, ["next", entered(number + 1, ())]]), ["next", within(number, ())]]
+        later = [] if is_last else [["next", entered(number + 1, due)]]
+        ways = [*later, _all([*due, _any(onward)])]
         return ["until", phase, _all([phase, _any(ways)])]
 
-    return ["then", first, entered(1, failing), *bound]
+    # Each fails up to an end of its own; up to the last of these ends, all of them do.
+    each: list[list[Any]] = [[part] for part in failing] or [[]]
+    return ["then", first, _all([entered(1, due) for due in each]), *bound]
 
 
-def _choices(trees: Sequence[Any]) -> list[tuple[Any, ...]]:
-    return [chosen for n in range(len(trees) + 1) for chosen in combinations(trees, n)]
+def _border(phases: Sequence[Phase], before: Any, behind: Any, failing: Sequence[Any]) -> Any:
+    """The two instants around the border of two phases."""
+    (first, _), (second, _) = phases
+    behind = _all([second, behind])
+    if not failing:
+        return _remainder(phases[0], before, behind)
+    each = [_any([part, ["next", part]]) for part in failing]
+    return ["until", first, _all([first, before, ["next", behind], *each])]
 
 
 def _remainder(phase: Phase, at_last: Any, behind: Any) -> Any:

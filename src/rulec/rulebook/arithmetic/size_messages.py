@@ -6,16 +6,16 @@ from rulec.diagnostics.code import Code
 
 FORMULA_TOO_LARGE = Code(
     "R0323",
-    title="a formula becomes too large when definitions, conditions and exceptions are expanded",
-    why="Each of them is expanded where it is used. Definitions that use others twice, several "
-    "conditional numbers, and exceptions that hold throughout multiply the size.",
-    bad="rulebook example\nsignal wet, a, b, c, d, e\nhard rule r {\n  require never (wet then "
-    "not wet)\n"
-    "  unless a throughout unless b throughout unless c throughout\n"
-    "  unless d throughout unless e throughout\n}\n",
-    good="rulebook example\nsignal wet, a, b, c, d, e\nhard rule r {\n  require never (wet then "
-    "not wet)\n"
-    "  unless a or b or c or d or e throughout\n}\n",
+    title="a formula becomes too large when definitions and conditions are expanded",
+    why="Each of them is expanded where it is used. Definitions that use others several times, and "
+    "several conditional numbers, multiply the size.",
+    bad="rulebook example\nsignal d0\n"
+    + "".join(
+        f"define d{n} = {' and '.join([f'd{n - 1}'] * 8)}\n"  # 8 times as large as the one before
+        for n in range(1, 6)
+    )
+    + "hard rule r { require never d5 }\n",
+    good="rulebook example\nsignal d0\ndefine d1 = d0\nhard rule r { require never d1 }\n",
 )
 
 TOO_LONG = Code(

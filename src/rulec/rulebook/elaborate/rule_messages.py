@@ -259,24 +259,16 @@ def unfitting_exception(problem: str, item: tree.RuleItem, *, first_state_only: 
             labels=labels,
         )
     unless = [unless for unless in item.unless if unless.scope in (None, "throughout")][-1]
-    if problem == "bounded phase":
-        return UNFITTING_SCOPE.at(
-            unless.span,
-            "an exception cannot hold `throughout` where `then` has a bound, such as `[<= 2 s]`",
-            expected="expected `at start`, `at end` or `at some point` after it",
-            help=offering(
-                "write `at start`, `at end` or `at some point` behind it, whichever is meant; or "
-                "leave the bounds of `then` out; or write two rules, one with the exception and "
-                "one with the bounds",
-                *with_scope(unless.span, "at start", "at end", "at some point"),
-            ),
-            labels=labels,
-        )
-    return FORMULA_TOO_LARGE.at(
+    return UNFITTING_SCOPE.at(
         unless.span,
-        "with this one, too many exceptions of the rule have to hold `throughout` its phases: "
-        "each multiplies the formula",
-        help="join some of them by `or` in one `unless`, if one of them may follow the other",
+        "an exception cannot hold `throughout` where `then` has a bound, such as `[<= 2 s]`",
+        expected="expected `at start`, `at end` or `at some point` after it",
+        help=offering(
+            "write `at start`, `at end` or `at some point` behind it, whichever is meant; or "
+            "leave the bounds of `then` out; or write two rules, one with the exception and "
+            "one with the bounds",
+            *with_scope(unless.span, "at start", "at end", "at some point"),
+        ),
         labels=labels,
     )
 

@@ -12,8 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
-from math import comb
 from typing import Literal
 
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Formula, Unary, UnaryOperator
@@ -23,17 +21,11 @@ from rulec.rulebook.rulebook_model import Exemption, ExemptionScope, Rule
 
 _THEN, _UNTIL = BinaryOperator.THEN, BinaryOperator.UNTIL
 
-MOST_THROUGHOUT = 4
-"""The most exceptions of a rule that must hold throughout; the formula grows exponentially."""
-
-_MOST_WAYS = 2_000
-"""The most ways in which they can fail in different phases; more phases give more ways."""
-
 
 class ExemptionError(Exception):
-    """A formula guards no stretch, or bounds its phases, or has too many exemptions."""
+    """A formula guards no stretch, or bounds its phases."""
 
-    def __init__(self, problem: Literal["no stretch", "bounded phase", "too many"]) -> None:
+    def __init__(self, problem: Literal["no stretch", "bounded phase"]) -> None:
         super().__init__(problem)
         self.problem = problem
 
@@ -42,7 +34,7 @@ def exempted(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
     """The formula with its exceptions.
 
     Raises ExemptionError: for another scope than ``initially`` of a formula that guards no
-    stretch, for ``throughout`` if a phase's length is bounded, and if too many hold throughout.
+    stretch, and for ``throughout`` if a phase's length is bounded.
     """
     inside = [exemption for exemption in exemptions if exemption.scope != "initially"]
     initially = [exemption.formula for exemption in exemptions if exemption.scope == "initially"]
@@ -93,43 +85,32 @@ def _counted(phases: list[_Phase], exemptions: Sequence[Exemption]) -> Formula:
         return all_of(
             [phases[0].formula, *(negated(exemption.formula) for exemption in exemptions)]
         )
-    throughout = denied.get("throughout", [])
-    if len(throughout) > MOST_THROUGHOUT:
-        raise ExemptionError("too many")
+    throughout = tuple(dict.fromkeys(denied.get("throughout", [])))
     if throughout and any(phase.bound is not None for phase in phases):
         raise ExemptionError("bounded phase")
-    if comb(len(phases) - 1 + len(throughout), len(throughout)) * 2 ** len(throughout) > _MOST_WAYS:
-        raise ExemptionError("too many")
     at_start, at_end = all_of(denied.get("at start", [])), all_of(denied.get("at end", []))
     everywhere = all_of(denied.get("at some point", []))
     if len(phases) == 2:
-        return _border(
-            phases, all_of([at_start, everywhere]), all_of([at_end, everywhere]), throughout
-        )
-    return _Inner(phases, at_start, at_end, everywhere).whole(tuple(dict.fromkeys(throughout)))
+        before, behind = (all_of([own, everywhere]) for own in (at_start, at_end))
+        return _border(phases, before, behind, throughout)
+    return _Inner(phases, at_start, at_end, everywhere).whole(throughout)
 
 
 def _border(
-    phases: list[_Phase], before: Formula, behind: Formula, throughout: Sequence[Formula]
+    phases: list[_Phase], before: Formula, behind: Formula, somewhere: Sequence[Formula]
 ) -> Formula:
     """The formula of two phases, split at the border between them.
 
     ``before`` holds in the last instant of the first phase, ``behind`` in the first instant of the
-    second.
+    second, each of ``somewhere`` in one of both.
     """
     first, second = phases
-    ways = [
-        _ends(
-            first,
-            all_of([before, *now]),
-            all_of(
-                [second.formula, behind, *(formula for formula in throughout if formula not in now)]
-            ),
-        )
-        for n in range(len(throughout) + 1)
-        for now in combinations(throughout, n)
-    ]
-    return any_of(ways)
+    behind = all_of([second.formula, behind])
+    if not somewhere:
+        return _ends(first, before, behind)
+    each = [any_of([own, Unary(UnaryOperator.NEXT, own)]) for own in somewhere]
+    last = all_of([first.formula, before, Unary(UnaryOperator.NEXT, behind), *each])
+    return Binary(_UNTIL, first.formula, last)
 
 
 def _ends(phase: _Phase, at_last: Formula, behind: Formula) -> Formula:
@@ -159,36 +140,33 @@ class _Inner:
     at_end: Formula
     everywhere: Formula
 
-    def whole(self, somewhere: tuple[Formula, ...]) -> Formula:
-        """The formula of all phases, each of ``somewhere`` holding somewhere in the stretch."""
-        first = self.phases[0]
-        return Binary(_THEN, first.formula, self._enter(1, somewhere), first.bound)
+    def whole(self, somewhere: Sequence[Formula]) -> Formula:
+        """The formula of all phases, each of ``somewhere`` holding somewhere in the stretch.
 
-    def _enter(self, index: int, rest: tuple[Formula, ...]) -> Formula:
+        Each may find an end of its own: up to the last of these ends, all of them hold somewhere.
+        """
+        first = self.phases[0]
+        inner = all_of([self._enter(1, own) for own in somewhere or (None,)])
+        return Binary(_THEN, first.formula, inner, first.bound)
+
+    def _enter(self, index: int, somewhere: Formula | None) -> Formula:
         if index == len(self.phases) - 1:
             return self.phases[-1].formula
-        inside = self._inside(index, rest)
+        inside = self._inside(index, somewhere)
         return all_of([self.at_start, inside]) if index == 1 else inside
 
-    def _inside(self, index: int, rest: tuple[Formula, ...]) -> Formula:
+    def _inside(self, index: int, somewhere: Formula | None) -> Formula:
         """The formula from some instant of an inner phase on."""
         phase = replace(
             self.phases[index], formula=all_of([self.phases[index].formula, self.everywhere])
         )
         is_last = index == len(self.phases) - 2
-        if not rest:
-            at_last = self.at_end if is_last else all_of([])
-            return _ends(phase, at_last, self._enter(index + 1, rest))
-        ways: list[Formula] = []
-        for n in range(len(rest) + 1):
-            for now in combinations(rest, n):
-                left = tuple([formula for formula in rest if formula not in now])
-                onward = []
-                if not (is_last and left):
-                    step = Unary(UnaryOperator.NEXT, self._enter(index + 1, left))
-                    onward.append(all_of([self.at_end, step]) if is_last else step)
-                if now:
-                    onward.append(Unary(UnaryOperator.NEXT, self._inside(index, left)))
-                if onward:
-                    ways.append(all_of([*now, any_of(onward)]))
+        at_last = self.at_end if is_last else all_of([])
+        if somewhere is None:
+            return _ends(phase, at_last, self._enter(index + 1, None))
+        leaves = all_of([at_last, Unary(UnaryOperator.NEXT, self._enter(index + 1, None))])
+        stays = Unary(UnaryOperator.NEXT, self._inside(index, None))
+        ways = [all_of([somewhere, any_of([leaves, stays])])]
+        if not is_last:
+            ways.insert(0, Unary(UnaryOperator.NEXT, self._enter(index + 1, somewhere)))
         return Binary(_UNTIL, phase.formula, all_of([phase.formula, any_of(ways)]))
