@@ -1,38 +1,36 @@
 """Pickles of plain data and NumPy arrays, read without running anything that they name.
 
-See CPython's ``pickletools``, which documents the machine and its opcodes; protocols 2 to 5.
-Python's own reader calls whatever a pickle names; this one knows a few names, builds their values
-itself, and refuses all others.
+Python's ``pickletools`` splits a pickle into opcodes with their arguments, and documents them;
+protocols 2 to 5 are read. Python's own reader calls whatever a pickle names; this one knows a few
+names, builds their values itself, and refuses all others.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from io import BytesIO
 from math import prod
 from pathlib import Path
+from pickletools import genops
 from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
 
+from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.file_format import BinaryFormat
 from rulec.recordings.encodings.wire_format import wire_file
 from rulec.recordings.encodings.xml_element import short
-from rulec.recordings.scenarionet.pickle_machine import (
-    MOST_OPCODES,
-    PickledArray,
-    PickledName,
-    PickleMachine,
-    called,
-)
 
-LONGEST_NAME = 200
+MOST_OPCODES = 5_000_000
+"""Limit on opcodes, each of which makes at most one value; a scene of 20 s has 100,000."""
 MOST_AXES = 4
+
 _OLDEST, _NEWEST = 2, 5
 _LARGEST_KEY = 1 << 63
 _LARGEST_ITEM_BYTES = 4096
-
 _ARRAY_CORES = ("numpy.core.multiarray", "numpy._core.multiarray")
 _NUMERIC_CORES = ("numpy.core.numeric", "numpy._core.numeric")
 _NAMES: Mapping[str, str] = MappingProxyType(
@@ -59,6 +57,75 @@ _ORDERS = frozenset("<>|=")
 _DTYPE = re.compile(r"[<>|=]?(?:b1|[iu][1248]|f[248]|[US][0-9]{1,4})")
 
 
+@dataclass(frozen=True, slots=True)
+class PickledName:
+    """A name that a pickle may call, and the function that it stands for."""
+
+    name: str
+    makes: str
+
+
+@dataclass(slots=True)
+class PickledArray:
+    """An array or number type that is complete only once its state was read."""
+
+    value: np.ndarray[Any, Any] | np.dtype[Any] | None = None
+
+
+@dataclass(slots=True)
+class PickleMachine:
+    """The machine that executes a pickle. Its methods raise RulecError R0610."""
+
+    data: bytes
+    path: Path
+    form: BinaryFormat
+    begin: int = 0
+    stack: list[Any] = field(default_factory=list)
+    marks: list[int] = field(default_factory=list)
+    memo: dict[int, Any] = field(default_factory=dict)
+    copied: int = 0
+
+    def wrong(self, why: str) -> RulecError:
+        """The error at the current opcode."""
+        return self.form.refused(self.path, why, self.begin)
+
+    def copy(self, count: int) -> None:
+        """Count copied values: a small file may refer to a large value again and again."""
+        self.copied += count
+        if self.copied > max(MOST_OPCODES, len(self.data)):
+            raise self.wrong("it copies more than there is in it")
+
+    def push(self, value: Any) -> None:
+        """Push a value onto the stack."""
+        self.stack.append(value)
+
+    def top(self) -> Any:
+        """The top of the stack, which is above the last mark."""
+        if len(self.stack) <= (self.marks[-1] if self.marks else 0):
+            raise self.wrong("it takes a value where there is none")
+        return self.stack[-1]
+
+    def pop(self) -> Any:
+        """Pop the top of the stack."""
+        self.top()
+        return self.stack.pop()
+
+    def since_mark(self) -> list[Any]:
+        """Pop all values above the last mark."""
+        if not self.marks:
+            raise self.wrong("it takes values from a mark on where there is none")
+        start = self.marks.pop()
+        values = self.stack[start:]
+        del self.stack[start:]
+        return values
+
+    def last(self, kind: type, container: str) -> Any:
+        """The top of the stack, which must be of a kind."""
+        if type(self.top()) is not kind:
+            raise self.wrong(f"it adds to {_called(self.stack[-1])} as to a {container}")
+        return self.stack[-1]
+
+
 def read_pickle(path: Path, form: BinaryFormat) -> Any:
     """The value in a pickle: ``None``, numbers, texts, bytes, lists, tuples, dicts, sets, arrays.
 
@@ -69,21 +136,31 @@ def read_pickle(path: Path, form: BinaryFormat) -> Any:
     machine = PickleMachine(data, path, form)
     if data[0] != 0x80:
         raise machine.wrong("it does not begin with a protocol, as pickles since protocol 2 do")
-    return _run(machine)
-
-
-def _run(machine: PickleMachine) -> Any:
-    """The value of a whole pickle."""
+    stream = BytesIO(data)
+    opcodes = genops(stream)
     for _ in range(MOST_OPCODES):
-        machine.begin = machine.place
-        opcode = machine.take(1)
+        machine.begin = place = stream.tell()
+        opcode = data[place : place + 1]
         if opcode == b".":
             return _settled(machine.pop())
-        action = _ACTIONS.get(opcode)
-        if action is None:
+        if opcode and opcode not in _ACTIONS:
             raise machine.wrong(f"it has the opcode {opcode!r}, which no scenario needs")
-        action(machine)
+        try:
+            _, argument, _ = next(opcodes)
+        except UnicodeDecodeError:
+            raise machine.wrong("a text is not UTF-8, or a name is not ASCII") from None
+        except ValueError:
+            why = "it ends before what begins here; it has been cut short, or is none"
+            raise machine.wrong(why) from None
+        _ACTIONS[opcode](machine, argument)
     raise machine.wrong(f"it has more than {MOST_OPCODES:,} opcodes")
+
+
+def _called(value: Any) -> str:
+    """A value's type in words, for messages."""
+    if isinstance(value, PickledName):
+        return f"`{short(value.name)}`"
+    return "an array" if isinstance(value, PickledArray) else f"a {type(value).__name__}"
 
 
 def _settled(value: Any) -> Any:
@@ -91,51 +168,27 @@ def _settled(value: Any) -> Any:
     return value.value if isinstance(value, PickledArray) and value.value is not None else value
 
 
-def _protocol(machine: PickleMachine) -> None:
-    protocol = machine.number("<B")
+def _protocol(machine: PickleMachine, protocol: int) -> None:
     if not _OLDEST <= protocol <= _NEWEST:
         raise machine.wrong(f"it is of protocol {protocol}; {_OLDEST} to {_NEWEST} are read")
 
 
-def _whole(machine: PickleMachine) -> None:
-    content = machine.counted("<B")
-    if len(content) > 8:
-        raise machine.wrong(f"it has a whole number of {len(content)} bytes; at most 8 are read")
-    machine.push(int.from_bytes(content, "little", signed=True))
+def _whole(machine: PickleMachine, number: int) -> None:
+    size = max(number, ~number).bit_length() // 8 + 1
+    if size > 8:
+        raise machine.wrong(f"it has a whole number of {size} bytes; at most 8 are read")
+    machine.push(number)
 
 
-def _text(form: str) -> Callable[[PickleMachine], None]:
-    def action(machine: PickleMachine) -> None:
-        try:
-            machine.push(machine.counted(form).decode("utf-8", "surrogatepass"))
-        except UnicodeDecodeError:
-            raise machine.wrong("a text is not UTF-8") from None
-
-    return action
-
-
-def _pushes(value_of: Callable[[PickleMachine], Any]) -> Callable[[PickleMachine], None]:
-    def action(machine: PickleMachine) -> None:
-        machine.push(value_of(machine))
-
-    return action
-
-
-def _tuple(count: int) -> Callable[[PickleMachine], None]:
-    def action(machine: PickleMachine) -> None:
+def _tuple(count: int) -> Callable[[PickleMachine, None], None]:
+    def action(machine: PickleMachine, _: None) -> None:
         values = [_settled(machine.pop()) for _ in range(count)]
         machine.push(tuple(reversed(values)))
 
     return action
 
 
-def _append(machine: PickleMachine) -> None:
-    value = _settled(machine.pop())
-    machine.last(list, "list").append(value)
-
-
-def _appends(machine: PickleMachine) -> None:
-    values = machine.since_mark()
+def _add(machine: PickleMachine, values: list[Any]) -> None:
     machine.last(list, "list").extend(map(_settled, values))
 
 
@@ -143,7 +196,7 @@ def _key(machine: PickleMachine, key: Any) -> Any:
     """A dictionary key of a type for which a file cannot choose many keys with equal hashes."""
     if isinstance(key, str) or (isinstance(key, int | None) and abs(key or 0) < _LARGEST_KEY):
         return key
-    raise machine.wrong(f"{called(key)} is a key; texts and whole numbers may be")
+    raise machine.wrong(f"{_called(key)} is a key; texts and whole numbers may be")
 
 
 def _set_items(machine: PickleMachine, values: list[Any]) -> None:
@@ -154,44 +207,34 @@ def _set_items(machine: PickleMachine, values: list[Any]) -> None:
         target[_key(machine, key)] = _settled(value)
 
 
-def _set_item(machine: PickleMachine) -> None:
+def _set_item(machine: PickleMachine, _: None) -> None:
     value, key = machine.pop(), machine.pop()
     _set_items(machine, [key, value])
 
 
-def _add_items(machine: PickleMachine) -> None:
-    values = machine.since_mark()
-    machine.last(set, "set").update([_key(machine, value) for value in values])
+def _add_items(machine: PickleMachine, _: None) -> None:
+    values = {_key(machine, value) for value in machine.since_mark()}
+    machine.last(set, "set").update(values)
 
 
-def _mark(machine: PickleMachine) -> None:
-    machine.marks.append(len(machine.stack))
+def _frozen_set(machine: PickleMachine, _: None) -> None:
+    machine.push({_key(machine, value) for value in machine.since_mark()})
 
 
-def _memoize(machine: PickleMachine) -> None:
-    _put(machine, len(machine.memo))
+def _put(machine: PickleMachine, number: int | None) -> None:
+    machine.memo[len(machine.memo) if number is None else number] = machine.top()
 
 
-def _put(machine: PickleMachine, number: int) -> None:
-    value = machine.pop()
-    machine.push(value)
-    machine.memo[number] = value
-
-
-def _get(form: str) -> Callable[[PickleMachine], None]:
-    def action(machine: PickleMachine) -> None:
-        number = machine.number(form)
-        if number not in machine.memo:
-            raise machine.wrong(f"it refers to its value {number}, which does not exist yet")
-        machine.push(machine.memo[number])
-
-    return action
+def _get(machine: PickleMachine, number: int) -> None:
+    if number not in machine.memo:
+        raise machine.wrong(f"it refers to its value {number}, which does not exist yet")
+    machine.push(machine.memo[number])
 
 
 def _named(machine: PickleMachine, module: Any, name: Any) -> None:
     # The text of nested tuples that share their parts doubles with each level: types come first
     if not isinstance(module, str) or not isinstance(name, str):
-        raise machine.wrong(f"it asks for something by {called(module)} and {called(name)}")
+        raise machine.wrong(f"it asks for something by {_called(module)} and {_called(name)}")
     full = f"{module} {name}"
     if full not in _NAMES:
         import_name = f"{short(module)}.{short(name)}"
@@ -201,26 +244,15 @@ def _named(machine: PickleMachine, module: Any, name: Any) -> None:
     machine.push(PickledName(full.replace(" ", "."), _NAMES[full]))
 
 
-def _global(machine: PickleMachine) -> None:
-    parts = []
-    for _ in range(2):
-        end = machine.data.find(b"\n", machine.place, machine.place + LONGEST_NAME)
-        if end < 0:
-            raise machine.wrong("it asks for something with a long name")
-        parts.append(machine.take(end - machine.place).decode("utf-8", "replace"))
-        machine.take(1)
-    _named(machine, *parts)
-
-
-def _stack_global(machine: PickleMachine) -> None:
+def _stack_global(machine: PickleMachine, _: None) -> None:
     name, module = machine.pop(), machine.pop()
     _named(machine, module, name)
 
 
-def _reduce(machine: PickleMachine) -> None:
+def _reduce(machine: PickleMachine, _: None) -> None:
     arguments, named = machine.pop(), machine.pop()
     if not isinstance(named, PickledName) or not isinstance(arguments, tuple):
-        raise machine.wrong(f"it calls {called(named)}")
+        raise machine.wrong(f"it calls {_called(named)}")
     match named.makes, arguments:
         case "array", _:
             machine.push(PickledArray())
@@ -253,10 +285,10 @@ def _reduce(machine: PickleMachine) -> None:
             raise machine.wrong(f"it calls `{named.name}` with what that does not take")
 
 
-def _build(machine: PickleMachine) -> None:
+def _build(machine: PickleMachine, _: None) -> None:
     state, target = machine.pop(), machine.pop()
     if not isinstance(target, PickledArray) or not isinstance(state, tuple):
-        raise machine.wrong(f"it gives {called(target)} a state")
+        raise machine.wrong(f"it gives {_called(target)} a state")
     match target.value, state:
         case np.dtype() as kind, (_, str() as order, None, None, None, *_) if order in _ORDERS:
             way: Literal["<", ">", "="] = "<" if order == "<" else ">" if order == ">" else "="
@@ -285,59 +317,41 @@ def _array(
     return np.frombuffer(raw, kind).reshape(tuple(sizes), order="F" if is_fortran else "C")
 
 
-def _no_more(machine: PickleMachine) -> None:
-    machine.pop()
-
-
-def _pop_mark(machine: PickleMachine) -> None:
-    machine.since_mark()
-
-
-_ACTIONS: Mapping[bytes, Callable[[PickleMachine], None]] = MappingProxyType(
+_ACTIONS: Mapping[bytes, Callable[[PickleMachine, Any], None]] = MappingProxyType(
     {
         b"\x80": _protocol,
-        b"\x95": lambda machine: machine.number("<Q") and None,
-        b"N": _pushes(lambda _: None),
-        b"\x88": _pushes(lambda _: True),
-        b"\x89": _pushes(lambda _: False),
-        b"J": _pushes(lambda machine: machine.number("<i")),
-        b"K": _pushes(lambda machine: machine.number("<B")),
-        b"M": _pushes(lambda machine: machine.number("<H")),
+        b"\x95": lambda *_: None,
+        b"N": lambda machine, _: machine.push(None),
+        b"\x88": lambda machine, _: machine.push(True),
+        b"\x89": lambda machine, _: machine.push(False),
         b"\x8a": _whole,
-        b"G": _pushes(lambda machine: machine.number(">d")),
-        b"\x8c": _text("<B"),
-        b"X": _text("<I"),
-        b"\x8d": _text("<Q"),
-        b"C": _pushes(lambda machine: machine.counted("<B")),
-        b"B": _pushes(lambda machine: machine.counted("<I")),
-        b"\x8e": _pushes(lambda machine: machine.counted("<Q")),
-        b"\x96": _pushes(lambda machine: machine.counted("<Q")),
-        b"]": _pushes(lambda _: []),
-        b"}": _pushes(lambda _: {}),
-        b"\x8f": _pushes(lambda _: set()),
-        b")": _pushes(lambda _: ()),
+        **dict.fromkeys((b"J", b"K", b"M", b"G"), PickleMachine.push),
+        **dict.fromkeys((b"\x8c", b"X", b"\x8d"), PickleMachine.push),
+        **dict.fromkeys((b"C", b"B", b"\x8e"), PickleMachine.push),
+        b"\x96": lambda machine, content: machine.push(bytes(content)),
+        b"]": lambda machine, _: machine.push([]),
+        b"}": lambda machine, _: machine.push({}),
+        b"\x8f": lambda machine, _: machine.push(set()),
+        b")": lambda machine, _: machine.push(()),
         b"\x85": _tuple(1),
         b"\x86": _tuple(2),
         b"\x87": _tuple(3),
-        b"t": _pushes(lambda machine: tuple(map(_settled, machine.since_mark()))),
-        b"a": _append,
-        b"e": _appends,
+        b"t": lambda machine, _: machine.push(tuple(map(_settled, machine.since_mark()))),
+        b"a": lambda machine, _: _add(machine, [machine.pop()]),
+        b"e": lambda machine, _: _add(machine, machine.since_mark()),
         b"s": _set_item,
-        b"u": lambda machine: _set_items(machine, machine.since_mark()),
+        b"u": lambda machine, _: _set_items(machine, machine.since_mark()),
         b"\x90": _add_items,
-        b"\x91": _pushes(lambda machine: {_key(machine, x) for x in machine.since_mark()}),
-        b"(": _mark,
-        b"0": _no_more,
-        b"1": _pop_mark,
-        b"\x94": _memoize,
-        b"q": lambda machine: _put(machine, machine.number("<B")),
-        b"r": lambda machine: _put(machine, machine.number("<I")),
-        b"h": _get("<B"),
-        b"j": _get("<I"),
-        b"c": _global,
+        b"\x91": _frozen_set,
+        b"(": lambda machine, _: machine.marks.append(len(machine.stack)),
+        b"0": lambda machine, _: machine.pop() and None,
+        b"1": lambda machine, _: machine.since_mark() and None,
+        **dict.fromkeys((b"\x94", b"q", b"r"), _put),
+        **dict.fromkeys((b"h", b"j"), _get),
+        b"c": lambda machine, full: _named(machine, *full.split(" ", 1)),
         b"\x93": _stack_global,
         b"R": _reduce,
         b"b": _build,
     }
 )
-"""Opcode -> its action. None: it would make an object of a class, or refer to external data."""
+"""Opcode -> its action. All others would make an object of a class, or refer to external data."""
