@@ -36,49 +36,21 @@ def scan(
     *,
     end: Callable[[str], None] | None = None,
     comment: Callable[[str], None] | None = None,
-) -> None:
-    """Scan an XML file once, with callbacks for element starts, element ends, and comments.
-
-    Raises RulecError R0610 if it is not such a file, R0701 if it cannot be read.
-    """
-    parser = ParserCreate()
-
-    def element(name: str, attributes: dict[str, str]) -> None:
-        begin(XmlElement(name, attributes, parser, path, form))
-
-    _scan(parser, path, form, element, end=end, comment=comment)
-
-
-def scan_names(
-    path: Path,
-    form: XmlFormat,
-    begin: Callable[[str, dict[str, str], int], None],
-    *,
-    end: Callable[[str], None],
-    text: Callable[[str], None],
-) -> None:
-    """Scan an XML file once; ``begin`` gets each element's name, attributes and line.
-
-    Text comes in pieces of some kB. Raises RulecError as ``scan`` does.
-    """
-    parser = ParserCreate()
-
-    def element(name: str, attributes: dict[str, str]) -> None:
-        begin(name, attributes, parser.CurrentLineNumber)
-
-    _scan(parser, path, form, element, end=end, text=text)
-
-
-def _scan(
-    parser: XMLParserType,
-    path: Path,
-    form: XmlFormat,
-    element: Callable[[str, dict[str, str]], None],
-    *,
-    end: Callable[[str], None] | None = None,
-    comment: Callable[[str], None] | None = None,
     text: Callable[[str], None] | None = None,
 ) -> None:
+    """Scan an XML file once, with callbacks for element starts and ends, comments, and text.
+
+    ``begin`` gets the same object for every element, and must not keep it. Text comes in pieces of
+    some kB. Raises RulecError R0610 if it is not such a file, R0701 if it cannot be read.
+    """
+    parser = ParserCreate()
+    # One for all: a file has millions, and to make one takes as long as to read its attributes
+    latest = XmlElement("", {}, parser, path, form)
+
+    def element(name: str, attributes: dict[str, str]) -> None:
+        latest.name, latest.attributes = name, attributes
+        begin(latest)
+
     def root(name: str, attributes: dict[str, str]) -> None:
         if name != form.root:
             why = f"it is XML, but of `{short(name)}`, not of `{form.root}`"

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Floats
 from rulec.diagnostics import RulecError, nearest_name
-from rulec.recordings.encodings.xml_element import LARGEST, number_in, short
+from rulec.recordings.encodings.xml_element import LARGEST, number_in, numbers_in, short
 from rulec.value_display import short_repr
 
 MOST_ROWS = 20_000_000
@@ -231,11 +231,7 @@ def checked_numbers(values: Sequence[str], largest: float = LARGEST) -> tuple[Fl
     Booleans become 1 and 0 if the column holds nothing else.
     """
     try:
-        # One look at all of them: what ``number_in`` refuses in each
-        whole = "".join(values)
-        if "_" in whole or not whole.isascii():
-            raise ValueError
-        numbers = np.fromiter(map(float, values), float, len(values))
+        numbers = np.fromiter(numbers_in(values), float, len(values))
     except ValueError:
         spelt = {value: _number(value) for value in set(values)}
         if {value.strip().casefold() for value in spelt} <= _FLAGS:

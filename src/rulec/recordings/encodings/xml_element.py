@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from xml.parsers.expat import XMLParserType
@@ -17,7 +18,7 @@ LARGEST = 1e8
 class XmlElement:
     """An element of a file while it is read. Its methods raise RulecError R0610."""
 
-    # Not frozen: a recording has millions, and a frozen one takes five times as long to make
+    # Not frozen: one serves for all elements of a file, one after the other
     name: str
     attributes: dict[str, str]
     parser: XMLParserType
@@ -74,6 +75,13 @@ def number_in(text: str) -> float:
     if "_" in text or not text.strip().isascii():
         raise ValueError(text)
     return float(text)
+
+
+def numbers_in(texts: Collection[str]) -> list[float]:
+    """The numbers in texts, checked together. Raises ValueError as ``number_in`` does."""
+    whole = "".join(texts)
+    is_plain = whole.isascii() and "_" not in whole
+    return list(map(float if is_plain else number_in, texts))
 
 
 def short(text: str) -> str:

@@ -221,6 +221,10 @@ def _frozen_set(machine: PickleMachine, _: None) -> None:
     machine.push({_key(machine, value) for value in machine.since_mark()})
 
 
+def _drop(_: Any) -> None:
+    """What is popped to be forgotten."""
+
+
 def _put(machine: PickleMachine, number: int | None) -> None:
     machine.memo[len(machine.memo) if number is None else number] = machine.top()
 
@@ -344,8 +348,8 @@ _ACTIONS: Mapping[bytes, Callable[[PickleMachine, Any], None]] = MappingProxyTyp
         b"\x90": _add_items,
         b"\x91": _frozen_set,
         b"(": lambda machine, _: machine.marks.append(len(machine.stack)),
-        b"0": lambda machine, _: machine.pop() and None,
-        b"1": lambda machine, _: machine.since_mark() and None,
+        b"0": lambda machine, _: _drop(machine.pop()),
+        b"1": lambda machine, _: _drop(machine.since_mark()),
         **dict.fromkeys((b"\x94", b"q", b"r"), _put),
         **dict.fromkeys((b"h", b"j"), _get),
         b"c": lambda machine, full: _named(machine, *full.split(" ", 1)),

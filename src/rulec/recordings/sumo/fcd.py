@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 
 from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.recordings.encodings.safe_xml import scan
-from rulec.recordings.encodings.xml_element import LARGEST, XmlElement, number_in, short
+from rulec.recordings.encodings.xml_element import LARGEST, XmlElement, numbers_in, short
 from rulec.recordings.recording_messages import NET_MISSING
 from rulec.recordings.sumo.fcd_content import (
     BODIES,
@@ -27,18 +27,12 @@ from rulec.recordings.sumo.fcd_content import (
     FloatingCarData,
     fcd_head,
 )
-from rulec.recordings.sumo.plain_fcd import read_plain_fcd
 
-_place_of = itemgetter(*PLACE)
+_place_of = itemgetter("id", *PLACE)
 
 
 def read_fcd(path: Path) -> FloatingCarData:
     """The content of a file. Raises RulecError R0610 for another kind, R0701 if unreadable."""
-    return read_plain_fcd(path) or read_fcd_as_xml(path)
-
-
-def read_fcd_as_xml(path: Path) -> FloatingCarData:
-    """The content of a file in any form that XML allows. Raises as ``read_fcd`` does."""
     data = FloatingCarData()
     carriers = 0
 
@@ -71,10 +65,9 @@ def read_fcd_as_xml(path: Path) -> FloatingCarData:
 def _add(data: FloatingCarData, element: XmlElement) -> None:
     name, attributes = element.name, element.attributes
     try:
-        x, y, angle = map(number_in, _place_of(attributes))
-        speed = number_in(attributes[SPEED]) if SPEED in attributes else 0.0
-        acceleration = number_in(attributes.get("acceleration", "nan"))
-        key = attributes["id"]
+        key, *place = _place_of(attributes)
+        motion = attributes.get(SPEED, "0"), attributes.get("acceleration", "nan")
+        x, y, angle, speed, acceleration = numbers_in((*place, *motion))
     except (KeyError, ValueError):
         raise _wrong(element) from None
     if x == y == NOWHERE:
@@ -104,10 +97,10 @@ def _add(data: FloatingCarData, element: XmlElement) -> None:
     track.accelerations.append(acceleration if abs(acceleration) < LARGEST else float("nan"))
     if "signals" in attributes:
         track.lamps[moment] = int(element.number("signals"))
-    place = attributes.get("lane") or attributes.get("edge")
-    if place and place not in data.on:
+    on = attributes.get("lane") or attributes.get("edge")
+    if on and on not in data.on:
         kind = "lane" if attributes.get("lane") else "edge"
-        data.on[place] = kind, element.parser.CurrentLineNumber
+        data.on[on] = kind, element.parser.CurrentLineNumber
 
 
 def _wrong(element: XmlElement) -> RulecError:
