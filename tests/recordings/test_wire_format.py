@@ -12,6 +12,7 @@ from rulec.diagnostics import RulecError
 from rulec.recordings.encodings import wire_format
 from rulec.recordings.encodings.file_format import BinaryFormat
 from rulec.recordings.encodings.wire_format import Field, Message, WireFile, Words, wire_file
+from rulec.recordings.encodings.wire_tables import tables_of
 from support.builders.wire_bytes import counted, double, field, varint, whole
 
 FORM = BinaryFormat("a test", "there is no way out", 1000)
@@ -207,3 +208,34 @@ def test_a_file_that_is_not_there(tmp_path):
     with pytest.raises(RulecError) as caught:
         wire_file(tmp_path / "file.pb", FORM)
     assert caught.value.diagnostics[0].code == "R0701"
+
+
+def test_a_schema_makes_tables():
+    tables = tables_of(
+        """
+Id: 1 value uint
+Named: Id, 2 @name text
+Colour = red - green
+Sign = 3 stop, 70 yield
+Node: Named, 4 colour Colour, 5 next/node Node*,
+  6 - Id, 7 sign Sign
+""",
+        "other",
+        {},
+    )
+    node = tables["Node"]
+    assert list(node) == [1, 2, 4, 5, 6, 7]
+    assert node[2] == Field("@name", "text")
+    assert node[4] == Field("colour", Words({0: "red", 2: "green"}, "other"))
+    assert (node[5].name, node[5].many) == ("next/node", True)
+    assert node[5].holds is node
+    assert node[6] == Field("", {1: Field("value", "uint")})
+    assert node[7].holds == Words({3: "stop", 70: "yield"}, "other")
+
+
+@pytest.mark.parametrize(
+    "schema", ["1 value uint", "Id: 1 value", "Id: 1 value uint 2", "Id: 1 value number"]
+)
+def test_what_is_no_schema(schema):
+    with pytest.raises((KeyError, ValueError)):
+        tables_of(schema, "", {})

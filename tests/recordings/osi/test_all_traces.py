@@ -29,9 +29,9 @@ import shapely
 
 from rulec import read_recording
 from rulec.recordings.encodings.wire_format import Field, WireFile
-from rulec.recordings.osi import osi_tables as tables
 from rulec.recordings.osi import trace_file
 from rulec.recordings.osi.message_fields import fields_of, ids_of, part
+from rulec.recordings.osi.osi_tables import TABLES
 from rulec.scenario.recorded.route import lanelet_area
 from support.builders.recorded_data import RECORDINGS
 
@@ -54,10 +54,10 @@ if not FOLDER.is_dir():
     pytest.skip("OSI's traces are not here: set RULEC_RECORDINGS", allow_module_level=True)
 
 ASSIGNED = {
-    1: Field("id", tables.ID),
-    4: Field("assigned_lane_id", tables.ID, many=True),
-    5: Field("attributes", {4: Field("to_rear", tables.VECTOR)}),
-    9: Field("classified", {1: Field("assigned_lane_id", tables.ID, many=True)}),
+    1: Field("id", TABLES["Id"]),
+    4: Field("assigned_lane_id", TABLES["Id"], many=True),
+    5: Field("attributes", {4: Field("to_rear", TABLES["Vector"])}),
+    9: Field("classified", {1: Field("assigned_lane_id", TABLES["Id"], many=True)}),
 }
 """What readers of traffic have no use for."""
 
@@ -78,8 +78,8 @@ def test_its_counts(name):
 
 def assigned(file):
     """Step, object, its lanes, and how far its rear axle lies ahead of its middle."""
-    frame_table = {**tables.GROUND_TRUTH, 5: Field("moving_object", ASSIGNED, many=True)}
-    view = {**tables.SENSOR_VIEW, 7: Field("global_ground_truth", frame_table)}
+    frame_table = {**TABLES["GroundTruth"], 5: Field("moving_object", ASSIGNED, many=True)}
+    view = {**TABLES["SensorView"], 7: Field("global_ground_truth", frame_table)}
     is_mcap = file.suffix == ".mcap"
     messages = trace_file._in_mcap(file) if is_mcap else trace_file._in_osi(file)
     for step, (kind, data) in enumerate(messages):

@@ -15,7 +15,6 @@ from zlib import crc32
 
 from rulec.files.read_files import opened
 from rulec.recordings.encodings.file_format import FileFormat
-from rulec.recordings.encodings.packed_chunks import unpacked
 from rulec.recordings.encodings.xml_element import short
 
 MAGIC = b"\x89MCAP0\r\n"
@@ -130,7 +129,7 @@ class _Contents:
             expected = f"expected at most {LARGEST_RECORD:,}, and all of them"
             raise self.form.refused(self.path, why, place, expected=expected)
         try:
-            whole = unpacked(packed, method, size)
+            whole = _unpacked(packed, method, size)
         except ValueError as problem:
             why = f"a chunk cannot be unpacked: {problem}"
             raise self.form.refused(self.path, why, place) from None
@@ -174,3 +173,29 @@ def _text(content: bytes, at: int) -> tuple[str, int]:
     if size > len(content) - begin:
         raise struct.error
     return content[begin : begin + size].decode(), begin + size
+
+
+def _unpacked(packed: bytes, method: str, size: int) -> bytes:
+    """The unpacked bytes of a chunk; ``method`` is ``lz4`` (frames), ``zstd``, or empty for none.
+
+    Raises ValueError if the chunk is damaged, has another size, or uses another method.
+    """
+    if not method:
+        content = packed
+    elif method in ("lz4", "zstd"):
+        # Few files use this packing
+        import cramjam
+
+        buffer = bytearray(size)
+        library = cramjam.lz4 if method == "lz4" else cramjam.zstd
+        try:
+            # It never writes beyond the buffer, whatever size the chunk states
+            count = library.decompress_into(packed, buffer)
+        except cramjam.DecompressionError:
+            raise ValueError(f"it is packed ({method}), and damaged or not of its size") from None
+        content = bytes(buffer[:count])
+    else:
+        raise ValueError("it is packed by another method than lz4 or zstd")
+    if len(content) != size:
+        raise ValueError(f"it has {len(content):,} bytes instead of {size:,}")
+    return content

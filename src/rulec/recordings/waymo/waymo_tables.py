@@ -9,47 +9,51 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from rulec.recordings.encodings.wire_format import Field, Table, Words
+from rulec.recordings.encodings.wire_tables import tables_of
 from rulec.recordings.recording import LaneMark
 
-POINT: Table = {1: Field("x", "double"), 2: Field("y", "double"), 3: Field("z", "double")}
+# The words are our own: a cyclist's type is that of a bicycle, a surface street is any lane but a
+# freeway or a cycle lane, and a flashing light, which has no colour, is unknown.
+_TABLES = tables_of(
+    """
+Point: 1 x double, 2 y double, 3 z double
 
-OBJECT_TYPES = Words({1: "vehicle", 2: "pedestrian", 3: "bicycle", 4: "unknown"}, other="unknown")
-"""Object types as participants' types; a cyclist is a bicycle."""
+ObjectType = 1 vehicle, 2 pedestrian, 3 bicycle, 4 unknown
+State: 2 center_x double, 3 center_y double, 4 center_z double, 5 length float, 6 width float,
+  8 heading float, 9 velocity_x float, 10 velocity_y float, 11 valid bool
+Track: 1 id int, 2 object_type ObjectType, 3 states State*
 
-STATE: Table = {
-    2: Field("center_x", "double"),
-    3: Field("center_y", "double"),
-    4: Field("center_z", "double"),
-    5: Field("length", "float"),
-    6: Field("width", "float"),
-    8: Field("heading", "float"),
-    9: Field("velocity_x", "float"),
-    10: Field("velocity_y", "float"),
-    11: Field("valid", "bool"),
-}
-TRACK: Table = {
-    1: Field("id", "int"),
-    2: Field("object_type", OBJECT_TYPES),
-    3: Field("states", STATE, many=True),
-}
+Colour = 1 red, 4 red, 2 yellow, 5 yellow, 3 green, 6 green
+LaneState: 1 lane int, 2 state Colour, 3 stop_point Point
+MapState: 1 lane_states LaneState*
 
-COLOURS = Words(
-    {
-        **dict.fromkeys((1, 4), "red"),
-        **dict.fromkeys((2, 5), "yellow"),
-        **dict.fromkeys((3, 6), "green"),
-    },
-    other="unknown",
+LineType = 1 broken_white, 2 solid_white, 3 solid_double_white, 4 broken_yellow,
+  5 broken_double_yellow, 6 solid_yellow, 7 solid_double_yellow, 8 passing_double_yellow
+Boundary: 1 lane_start_index int, 2 lane_end_index int, 3 boundary_feature_id int,
+  4 boundary_type LineType
+Neighbour: 1 feature_id int, 2 self_start_index int, 3 self_end_index int,
+  4 neighbor_start_index int, 5 neighbor_end_index int
+LaneType = 1 highway, 3 bicycleLane
+Lane: 1 speed_limit_mph double, 2 type LaneType, 8 polyline Point*, 9 entry_lanes int*,
+  10 exit_lanes int*, 11 left_neighbors Neighbour*, 12 right_neighbors Neighbour*,
+  13 left_boundaries Boundary*, 14 right_boundaries Boundary*
+Line: 2 polyline Point*
+StopSign: 1 lane int*
+Crosswalk: 1 polygon Point*
+MapFeature: 1 id int, 3 lane Lane, 4 road_line Line, 5 road_edge Line, 7 stop_sign StopSign,
+  8 crosswalk Crosswalk
+
+ScenarioId: 5 scenario_id text
+Scenario: 1 timestamps_seconds double*, 2 tracks Track*, ScenarioId, 6 sdc_track_index int,
+  7 dynamic_map_states MapState*, 8 map_features MapFeature*
+""",
+    "unknown",
+    {},
 )
-"""Colours of lights and arrows; a flashing light has none of them and is unknown."""
+SCENARIO = _TABLES["Scenario"]
 
-LANE_STATE: Table = {
-    1: Field("lane", "int"),
-    2: Field("state", COLOURS),
-    3: Field("stop_point", POINT),
-}
-MAP_STATE: Table = {1: Field("lane_states", LANE_STATE, many=True)}
+SCENARIO_ID = _TABLES["ScenarioId"]
+"""The field read first from a record that may not be wanted."""
 
 MARKS: Mapping[str, LaneMark | None] = MappingProxyType(
     {
@@ -62,69 +66,3 @@ MARKS: Mapping[str, LaneMark | None] = MappingProxyType(
         "unknown": None,
     }
 )
-LINE_TYPES = Words(
-    {
-        1: "broken_white",
-        2: "solid_white",
-        3: "solid_double_white",
-        4: "broken_yellow",
-        5: "broken_double_yellow",
-        6: "solid_yellow",
-        7: "solid_double_yellow",
-        8: "passing_double_yellow",
-    },
-    other="unknown",
-)
-
-BOUNDARY: Table = {
-    1: Field("lane_start_index", "int"),
-    2: Field("lane_end_index", "int"),
-    3: Field("boundary_feature_id", "int"),
-    4: Field("boundary_type", LINE_TYPES),
-}
-NEIGHBOUR: Table = {
-    1: Field("feature_id", "int"),
-    2: Field("self_start_index", "int"),
-    3: Field("self_end_index", "int"),
-    4: Field("neighbor_start_index", "int"),
-    5: Field("neighbor_end_index", "int"),
-}
-
-LANE_TYPES = Words({1: "highway", 3: "bicycleLane"}, other="unknown")
-"""Lane types as lanelets' types; a surface street is any lane but a freeway or a cycle lane."""
-
-LANE: Table = {
-    1: Field("speed_limit_mph", "double"),
-    2: Field("type", LANE_TYPES),
-    8: Field("polyline", POINT, many=True),
-    9: Field("entry_lanes", "int", many=True),
-    10: Field("exit_lanes", "int", many=True),
-    11: Field("left_neighbors", NEIGHBOUR, many=True),
-    12: Field("right_neighbors", NEIGHBOUR, many=True),
-    13: Field("left_boundaries", BOUNDARY, many=True),
-    14: Field("right_boundaries", BOUNDARY, many=True),
-}
-LINE: Table = {2: Field("polyline", POINT, many=True)}
-"""The fields shared by road lines and road edges."""
-
-STOP_SIGN: Table = {1: Field("lane", "int", many=True)}
-CROSSWALK: Table = {1: Field("polygon", POINT, many=True)}
-MAP_FEATURE: Table = {
-    1: Field("id", "int"),
-    3: Field("lane", LANE),
-    4: Field("road_line", LINE),
-    5: Field("road_edge", LINE),
-    7: Field("stop_sign", STOP_SIGN),
-    8: Field("crosswalk", CROSSWALK),
-}
-
-SCENARIO: Table = {
-    1: Field("timestamps_seconds", "double", many=True),
-    2: Field("tracks", TRACK, many=True),
-    5: Field("scenario_id", "text"),
-    6: Field("sdc_track_index", "int"),
-    7: Field("dynamic_map_states", MAP_STATE, many=True),
-    8: Field("map_features", MAP_FEATURE, many=True),
-}
-SCENARIO_ID: Table = {5: Field("scenario_id", "text")}
-"""The field read first from a record that may not be wanted."""
