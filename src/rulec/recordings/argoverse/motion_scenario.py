@@ -23,10 +23,10 @@ from rulec.recordings.argoverse.object_types import (
     OTHER_SIZE_M,
     USUAL_SIZES_M,
 )
-from rulec.recordings.argoverse.sweep_grid import rates
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.mending.derived_motion import accelerations_of, along
 from rulec.recordings.recording import MOST_STEPS, Participant, Recording
 from rulec.recordings.track import Track, tracked
 from rulec.trace.plain_arrays import most_frequent
@@ -104,12 +104,11 @@ def _participants(table: ArrowTable) -> Iterator[Participant]:
 def _participant(
     name: str, kind: str, steps: NDArray[int64], states: NDArray[float64]
 ) -> Participant:
-    x, y, heading, vx, vy = states.T
-    speed: NDArray[float64] = vx * np.cos(heading) + vy * np.sin(heading)
-    gained = rates(speed, steps.astype(float) * _STEP_S)
+    heading, speed = states[:, 2], along(states[:, 3:], states[:, 2])
+    gained = accelerations_of(speed, steps.astype(float) * _STEP_S)
     is_ego = name == EGO
     length, width = EGO_SIZE_M if is_ego else USUAL_SIZES_M.get(kind, OTHER_SIZE_M)
-    track = Track(steps, np.column_stack((x, y, heading, speed, gained)), length, width)
+    track = Track(steps, np.column_stack((states[:, :2], heading, speed, gained)), length, width)
     if is_ego:
         return tracked(name, "car", track)
     return tracked(name, MOTION_TYPES[kind], track, stated_error=ASSUMED_ERROR)

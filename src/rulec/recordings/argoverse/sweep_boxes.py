@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from rulec.recordings.argoverse.city_frame import CityPoses
 from rulec.recordings.argoverse.object_types import RIDES
-from rulec.recordings.argoverse.sweep_grid import rates
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable
+from rulec.recordings.mending.derived_motion import accelerations_of, along, velocities_of
 from rulec.recordings.recording import Participant
 from rulec.recordings.track import Track, tracked
 
@@ -95,8 +95,8 @@ def participant(
     box: TrackBoxes, kind: str, seconds: NDArray[float64], steps: NDArray[int64]
 ) -> Participant:
     """The participant of a type; ``seconds`` and ``steps`` are those of all sweeps."""
-    x, y = box.poses.translations[:, :2].T
-    heading, moments = box.poses.headings, seconds[box.sweeps]
-    speed = rates(x, moments) * np.cos(heading) + rates(y, moments) * np.sin(heading)
-    rows = np.column_stack((x, y, heading, speed, rates(speed, moments)))
+    places, heading = box.poses.translations[:, :2], box.poses.headings
+    moments = seconds[box.sweeps]
+    speed = along(velocities_of(places, moments), heading)
+    rows = np.column_stack((places, heading, speed, accelerations_of(speed, moments)))
     return tracked(box.id, kind, Track(steps[box.sweeps], rows, *box.size))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from numpy import float64, int64
+from numpy import int64
 from numpy.typing import NDArray
 
 from rulec.recordings.encodings.file_format import FileFormat
@@ -46,11 +46,3 @@ def on_grid(path: Path, form: FileFormat, moments: NDArray[int64]) -> tuple[NDAr
         )
         raise form.refused(path, why)
     return steps, step / NANOSECONDS
-
-
-def rates(values: NDArray[float64], seconds: NDArray[float64]) -> NDArray[float64]:
-    """The time derivatives of values, by central differences; 0 for a single value."""
-    if len(values) < 2:
-        return np.zeros(len(values))
-    gradients: NDArray[float64] = np.gradient(values, seconds)
-    return gradients

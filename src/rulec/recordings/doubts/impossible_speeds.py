@@ -9,6 +9,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
+from rulec.recordings.mending.derived_motion import accelerations_of, along, velocities_of
 from rulec.recordings.recording import Participant, Recording
 from rulec.recordings.track import Track, TrackStates
 
@@ -59,15 +60,14 @@ def _impossible(track: Track, step_s: float) -> NDArray[np.intp]:
 
 def _by_places(track: Track, step_s: float) -> NDArray[float64]:
     """Speeds along headings (m/s), from the positions before and after."""
-    x, y, heading = track.rows[:, :3].T
-    times = track.steps * step_s
-    speeds: NDArray[float64] = np.gradient(x, times) * np.cos(heading)
-    speeds += np.gradient(y, times) * np.sin(heading)
-    return speeds
+    velocities = velocities_of(track.rows[:, :2], (track.steps * step_s).astype(float64))
+    return along(velocities, track.rows[:, 2])
 
 
 def _mended(track: Track, impossible: NDArray[np.intp], step_s: float) -> Track:
     mended = track.rows.copy()
     mended[impossible, 3] = _by_places(track, step_s)[impossible]
-    mended[impossible, 4] = np.gradient(mended[:, 3], track.steps * step_s)[impossible]
+    mended[impossible, 4] = accelerations_of(mended[:, 3], (track.steps * step_s).astype(float64))[
+        impossible
+    ]
     return replace(track, rows=mended)

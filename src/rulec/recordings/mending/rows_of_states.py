@@ -39,19 +39,30 @@ def with_mended(recording: Recording, mend: Callable[[Participant], Participant]
 
 def with_states_at(body: Participant, steps: NDArray[int64]) -> Participant:
     """A participant with only those of its states that are at some steps, ascending."""
+    return with_rows(body, steps, rows_of(body)[steps_of(body).searchsorted(steps)])
+
+
+def with_rows(body: Participant, steps: NDArray[int64], rows: NDArray[float64]) -> Participant:
+    """A participant with these rows at ascending steps, with the outlines moved along.
+
+    At a step at which it has no state yet, its outline is that of the step before.
+    """
     if (outlines := outlines_on_track(body)) is not None:
-        track = outlines.track
-        own = replace(track, steps=steps, rows=track.rows[track.steps.searchsorted(steps)])
-        return replace(body, states=TrackStates(own), outlines=TrackOutlines(own))
-    kept = steps.tolist()
-    return replace(
-        body,
-        states={step: body.states[step] for step in kept},
-        outlines={step: body.outlines[step] for step in kept},
-    )
+        track = replace(outlines.track, steps=steps, rows=rows)
+        return replace(body, states=TrackStates(track), outlines=TrackOutlines(track))
+    states = {
+        step: TrackState(*row) for step, row in zip(steps.tolist(), rows.tolist(), strict=True)
+    }
+    moved: dict[int, Points] = {}
+    known = int(steps[0]) if len(steps) else 0
+    for step, state in states.items():
+        known = step if step in body.states else known
+        before, outline = body.states[known], body.outlines[known]
+        moved[step] = outline if state == before else _moved_outline(outline, before, state)
+    return replace(body, states=states, outlines=moved)
 
 
-def moved_outline(outline: Points, before: TrackState, now: TrackState) -> Points:
+def _moved_outline(outline: Points, before: TrackState, now: TrackState) -> Points:
     """An outline moved along with its body."""
     turned = now.heading - before.heading
     cos, sin = np.cos(turned), np.sin(turned)

@@ -10,11 +10,10 @@ from numpy import float64, int64, intp
 from numpy.typing import NDArray
 
 from rulec.recordings.mending.cut_tracks import missing_remark
-from rulec.recordings.mending.rows_of_states import moved_outline, rows_of, steps_of, with_mended
+from rulec.recordings.mending.rows_of_states import rows_of, steps_of, with_mended, with_rows
 from rulec.recordings.mending.track_jumps import DRIVERS
 from rulec.recordings.polylines import wrapped
-from rulec.recordings.recording import Lamp, Participant, Recording, TrackState
-from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.recordings.recording import Lamp, Participant, Recording
 
 LONGEST_HOLE_S = 1.0
 """Who is missing for longer is another participant when it returns, unless told otherwise."""
@@ -90,7 +89,6 @@ def _filled(body: Participant, steps: NDArray[int64], most: int, step_s: float) 
     holes = ((apart > 1) & (apart <= most)).nonzero()[0]
     if not len(holes) or body.states.keys() != body.outlines.keys():
         return body
-    track = body.states.track if isinstance(body.states, TrackStates) else None
     rows = rows_of(body)
     own = _Known(steps, rows, 2 * most, step_s)
     missing = [
@@ -100,28 +98,10 @@ def _filled(body: Participant, steps: NDArray[int64], most: int, step_s: float) 
         return body
     new_steps = np.concatenate(missing)
     new_rows = np.concatenate([own.at(some) for some in missing])
-    lamps = _lamps(body, steps, holes)
-    if track is not None:
-        order = np.concatenate((steps, new_steps)).argsort(kind="stable")
-        whole = Track(
-            np.concatenate((steps, new_steps))[order],
-            np.concatenate((rows, new_rows))[order],
-            track.length,
-            track.width,
-            track.shift,
-        )
-        return replace(body, states=TrackStates(whole), outlines=TrackOutlines(whole), lamps=lamps)
-    states, outlines = dict(body.states), dict(body.outlines)
-    for step, row in zip(new_steps.tolist(), new_rows, strict=True):
-        before = int(steps[steps.searchsorted(step) - 1])
-        states[step] = TrackState(*row.tolist())
-        outlines[step] = moved_outline(body.outlines[before], body.states[before], states[step])
-    return replace(
-        body,
-        states={step: states[step] for step in sorted(states)},
-        outlines={step: outlines[step] for step in sorted(outlines)},
-        lamps=lamps,
-    )
+    every = np.concatenate((steps, new_steps))
+    order = every.argsort(kind="stable")
+    whole = with_rows(body, every[order], np.concatenate((rows, new_rows))[order])
+    return replace(whole, lamps=_lamps(body, steps, holes))
 
 
 @dataclass(frozen=True, eq=False, slots=True)

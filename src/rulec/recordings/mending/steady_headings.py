@@ -6,7 +6,6 @@ A steering vehicle turns along its path: its centre drives on no circle smaller 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -14,10 +13,10 @@ from numpy import bool_, float64, int64, intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Floats
-from rulec.recordings.mending.rows_of_states import moved_outline, rows_of, steps_of, with_mended
+from rulec.recordings.mending.rows_of_states import rows_of, steps_of, with_mended, with_rows
 from rulec.recordings.polylines import wrapped
-from rulec.recordings.recording import Participant, Recording, TrackState
-from rulec.recordings.track import TrackOutlines, TrackStates, outlines_on_track
+from rulec.recordings.recording import Participant, Recording
+from rulec.recordings.track import outlines_on_track
 
 _LEAST_RADIUS_M = 2.0
 _LEAST_TURN = np.radians(30.0)
@@ -53,8 +52,7 @@ def with_steady_headings(recording: Recording) -> Recording:
 def _steadied(body: Participant, step_s: float) -> Participant:
     if body.standing or len(body.states) < 3 or not _DRIVERS.intersection(body.object_types):
         return body
-    on_track = outlines_on_track(body)
-    if on_track is None and body.states.keys() != body.outlines.keys():
+    if outlines_on_track(body) is None and body.states.keys() != body.outlines.keys():
         return body
     steps, rows = steps_of(body), rows_of(body)
     times: Floats = (steps * step_s).astype(float64)
@@ -63,16 +61,7 @@ def _steadied(body: Participant, step_s: float) -> Participant:
         return body
     steady = rows.copy()
     steady[:, 2] = heading
-    if on_track is not None:
-        track = replace(on_track.track, rows=steady)
-        return replace(body, states=TrackStates(track), outlines=TrackOutlines(track))
-    states = {
-        step: TrackState(*row) for step, row in zip(steps.tolist(), steady.tolist(), strict=True)
-    }
-    outlines = {
-        step: moved_outline(body.outlines[step], body.states[step], states[step]) for step in states
-    }
-    return replace(body, states=states, outlines=outlines)
+    return with_rows(body, steps, steady)
 
 
 def _steady(times: Floats, places: Floats, heading: Floats) -> Floats | None:
