@@ -36,22 +36,6 @@ def _waymo(source: RecordingSource) -> Iterator[Recording]:
     yield from when_called("waymo.waymo_file.read_waymo")(source.path, source.scenario_id)
 
 
-def _is_scenarionet(glance: Glance) -> bool:
-    return glance.name.endswith((".pkl", ".pickle"))
-
-
-def _is_waymo(glance: Glance) -> bool:
-    return ".tfrecord" in glance.name
-
-
-def _is_osi(glance: Glance) -> bool:
-    return glance.name.endswith((".osi", ".mcap")) or glance.head.startswith(b"\x89MCAP0\r\n")
-
-
-def _is_protobuf(glance: Glance) -> bool:
-    return glance.name.endswith(".pb")
-
-
 def _is_part(glance: Glance) -> bool:
     """True for the map of a scenario in parts, and for its planning problems."""
     path, stem = glance.path, glance.path.name[: glance.name.rindex(".pb")]
@@ -87,7 +71,7 @@ FORMATS = (
         name="commonroad-protobuf",
         title="CommonRoad scenarios in Protocol Buffers",
         files="*.pb, their parts beside each other",
-        recognises=_is_protobuf,
+        recognises=lambda glance: glance.name.endswith(".pb"),
         is_companion=_is_part,
         read=_one("commonroad.commonroad_protobuf.read_protobuf"),
     ),
@@ -121,7 +105,7 @@ FORMATS = (
         name="waymo",
         title="scenarios of Waymo's Open Motion Dataset",
         files="*.tfrecord, *.tfrecord-00000-of-01000",
-        recognises=_is_waymo,
+        recognises=lambda glance: ".tfrecord" in glance.name,
         read=_waymo,
         names=when_called("waymo.waymo_file.waymo_ids"),
     ),
@@ -179,7 +163,9 @@ FORMATS = (
         name="osi",
         title="ASAM OSI traces",
         files="*.osi, *.mcap",
-        recognises=_is_osi,
+        recognises=lambda glance: (
+            glance.name.endswith((".osi", ".mcap")) or glance.head.startswith(b"\x89MCAP0\r\n")
+        ),
         read=_one_on_map("osi.osi_recording.read_osi"),
         roads="its own, or --map",
     ),
@@ -187,7 +173,7 @@ FORMATS = (
         name="scenarionet",
         title="scenarios of ScenarioNet's: Waymo, nuScenes, nuPlan and others in one form",
         files="*.pkl",
-        recognises=_is_scenarionet,
+        recognises=lambda glance: glance.name.endswith((".pkl", ".pickle")),
         read=_one("scenarionet.scenarionet_file.read_scenarionet"),
     ),
     RecordingFormat(

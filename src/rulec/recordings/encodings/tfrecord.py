@@ -27,8 +27,6 @@ HEAD_BYTES = _HEAD.size
 _REVERSED_CASTAGNOLI = 0x82F63B78
 _MASK = 0xA282EAD8
 _ALL_BITS = 0xFFFFFFFF
-_LANES = 512
-"""The number of parts of a long record whose checksums are computed in parallel."""
 
 
 class TfRecord(NamedTuple):
@@ -86,48 +84,34 @@ def masked_checksum(content: bytes) -> int:
 
 
 def checksum(content: bytes) -> int:
-    """The CRC-32C of some bytes."""
-    size = len(content) // _LANES
-    state = _ALL_BITS
-    if size:
-        state = _checksum_of_parts(content[: size * _LANES], size, state)
-    table = _table().tolist()
-    for byte in content[size * _LANES :]:
-        state = table[(state ^ byte) & 0xFF] ^ (state >> 8)
-    return state ^ _ALL_BITS
+    """The CRC-32C of some bytes.
 
-
-def _checksum_of_parts(content: bytes, size: int, state: int) -> int:
-    """The register after ``_LANES`` parts of equal size.
-
-    The register is linear in itself and in the bytes. So all parts start with 0, in parallel, and
-    then each adds the effect of its predecessor's register, shifted by ``size`` bytes of 0.
+    The register is linear in itself and in the bytes. So each byte gives a register of its own, and
+    two neighbours become one by shifting the first as far as the second reaches, at each level
+    twice as far.
     """
-    columns = np.frombuffer(content, dtype=np.uint8).reshape(_LANES, size).T.astype(uint32)
-    registers = np.zeros(_LANES, dtype=uint32)
-    registers[0] = state
     table = _table()
-    for column in columns:
-        registers = table[(registers ^ column) & 0xFF] ^ (registers >> 8)
-    shifted = _shifted_bits(size)
-    total = int(registers[0])
-    for own in registers[1:].tolist():
-        moved = 0
-        for bit, image in enumerate(shifted):
-            if total >> bit & 1:
-                moved ^= image
-        total = moved ^ own
-    return total
-
-
-def _shifted_bits(size: int) -> list[int]:
-    """What each bit of the register becomes after ``size`` bytes of 0."""
-    table = _table()
+    registers = np.append(_ALL_BITS, table[np.frombuffer(content, dtype=np.uint8)]).astype(uint32)
     bits = np.uint32(1) << np.arange(32, dtype=uint32)
-    for _ in range(size):
-        bits = table[bits & 0xFF] ^ (bits >> 8)
-    images: list[int] = bits.tolist()
-    return images
+    shifted = table[bits & 0xFF] ^ (bits >> 8)
+    while len(registers) > 1:
+        if len(registers) % 2:
+            registers = np.append(np.uint32(0), registers)
+        registers = _shift(registers[::2], shifted) ^ registers[1::2]
+        shifted = _shift(shifted, shifted)
+    return int(registers[0]) ^ _ALL_BITS
+
+
+def _shift(registers: NDArray[uint32], shifted: NDArray[uint32]) -> NDArray[uint32]:
+    """Registers after some bytes of 0, by what these make of each of their bits."""
+    result = np.zeros(len(registers), dtype=uint32)
+    for first in range(0, 32, 8):
+        # What becomes of each value of a byte, from those of its bits
+        values = np.zeros(1, dtype=uint32)
+        for image in shifted[first : first + 8]:
+            values = np.append(values, values ^ image)
+        result ^= values[registers >> first & 0xFF]
+    return result
 
 
 @cache
