@@ -8,7 +8,7 @@ modality has its own times (µs).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -70,9 +70,9 @@ def read_d123(path: Path, map_path: Path | None = None) -> Recording:
     data_set, place = files.word(about, "dataset"), files.word(about, "location")
     boxes = _table(
         path.with_name(files.BOXES),
-        Nested(name="bounding_box_se3", listed=True, width=_BOX),
-        Nested(name="label", listed=True),
-        Nested(name="track_token", listed=True),
+        Nested(name="bounding_box_se3", kind="number", listed=True, width=_BOX),
+        Nested(name="label", kind="whole", listed=True),
+        Nested(name="track_token", kind="text", listed=True),
     )
     key = _key(boxes)
     moments = boxes.whole[f"{key}.timestamp_us"] * _MICROSECOND_NS
@@ -119,23 +119,8 @@ def _table(path: Path, *nested: Nested) -> ArrowTable:
     if not path.is_file():
         raise LOG.refused(path.with_name(files.SYNC), f"there is no `{path.name}` beside it")
     key = path.name.partition(".")[0]
-    named = tuple(
-        Nested(name=f"{key}.{column.name}", listed=column.listed, width=column.width)
-        for column in nested
-    )
-    numbers = tuple(column for column in named if column.width)
-    texts = tuple(column for column in named if column.name.endswith("token"))
-    whole = tuple(column for column in named if column not in (*numbers, *texts))
-    return read_table(
-        path,
-        LOG,
-        Wanted(
-            whole=(f"{key}.timestamp_us",),
-            nested_numbers=numbers,
-            nested_whole=whole,
-            nested_texts=texts,
-        ),
-    )
+    named = tuple([replace(column, name=f"{key}.{column.name}") for column in nested])
+    return read_table(path, LOG, Wanted(whole=(f"{key}.timestamp_us",), nested=named))
 
 
 def _key(table: ArrowTable) -> str:
@@ -175,7 +160,7 @@ def _tracks(table: ArrowTable, about: Mapping[Any, Any]) -> Iterator[TrackBoxes]
 
 def _ego(path: Path, sweeps: _Sweeps) -> TrackBoxes:
     """Ego's body at the times of boxes, interpolated between its recorded states."""
-    table = _table(path, Nested(name="imu_se3", width=_POSE))
+    table = _table(path, Nested(name="imu_se3", kind="number", width=_POSE))
     key, about = _key(table), files.said_in(table)
     size = _number(table, about.get("length")), _number(table, about.get("width"))
     middle = about.get("center_to_imu_se3")
@@ -213,7 +198,9 @@ def _lights(path: Path, sweeps: _Sweeps) -> dict[str, dict[int, str]]:
     """Lane -> time step -> state of its light, from the last record up to that time."""
     if not path.is_file():
         return {}
-    table = _table(path, Nested(name="lane_id", listed=True), Nested(name="status", listed=True))
+    table = _table(
+        path, *(Nested(name=name, kind="whole", listed=True) for name in ("lane_id", "status"))
+    )
     key = _key(table)
     lanes, shown = (table.nested[f"{key}.{name}"] for name in ("lane_id", "status"))
     if not np.array_equal(lanes.starts, shown.starts):

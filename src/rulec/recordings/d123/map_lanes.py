@@ -117,7 +117,7 @@ def with_lights(
 def _layers(path: Path) -> _Layers:
     wanted = Wanted(
         whole=("object_id", "map_layer"),
-        nested_bytes=(Nested(name="features"), Nested(name="wkb")),
+        nested=tuple([Nested(name=name, kind="bytes") for name in ("features", "wkb")]),
     )
     table = read_table(path, MAP, wanted)
     by_layer: dict[int, list[_Entry]] = defaultdict(list)

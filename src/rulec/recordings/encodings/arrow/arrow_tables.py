@@ -19,6 +19,7 @@ from rulec.recordings.encodings.arrow.arrow_messages import OddMessageError, bat
 from rulec.recordings.encodings.arrow.nested_columns import (
     Nested,
     NestedColumn,
+    NestedKind,
     OddColumnError,
     nested_column,
 )
@@ -72,21 +73,13 @@ class Wanted:
     numbers: tuple[str, ...] = ()
     whole: tuple[str, ...] = ()
     texts: tuple[str, ...] = ()
-    nested_numbers: tuple[Nested, ...] = ()
-    nested_whole: tuple[Nested, ...] = ()
-    nested_texts: tuple[Nested, ...] = ()
-    nested_bytes: tuple[Nested, ...] = ()
+    nested: tuple[Nested, ...] = ()
     optional: frozenset[str] = frozenset()
 
     @property
     def names(self) -> tuple[str, ...]:
         """The names of all columns to read."""
         return (*self.numbers, *self.whole, *self.texts, *(column.name for column in self.nested))
-
-    @property
-    def nested(self) -> tuple[Nested, ...]:
-        """The columns that hold lists, and those that hold bytes."""
-        return (*self.nested_numbers, *self.nested_whole, *self.nested_texts, *self.nested_bytes)
 
 
 def read_table(path: Path, form: FileFormat, wanted: Wanted) -> ArrowTable:
@@ -101,17 +94,24 @@ def read_table(path: Path, form: FileFormat, wanted: Wanted) -> ArrowTable:
         table = _read(arrow, data, path, form, wanted)
         table.validate(full=True)
         table = table.combine_chunks()
-        parts: dict[str, Any] = {name: table.column(name) for name in table.column_names}
+        columns: dict[str, Any] = {name: table.column(name) for name in table.column_names}
+
+        def read(names: Iterable[str], kind: NestedKind) -> dict[str, Any]:
+            there = (name for name in names if name in columns)
+            return {name: _READERS[kind](name, columns[name], arrow) for name in there}
+
         return ArrowTable(
             path=path,
             form=form,
             rows=table.num_rows,
-            numbers=_converted(
-                wanted.numbers, parts, lambda name, column: _numbers(name, column, arrow)
-            ),
-            whole=_converted(wanted.whole, parts, lambda name, column: _whole(name, column, arrow)),
-            texts=_converted(wanted.texts, parts, lambda name, column: _texts(name, column, arrow)),
-            nested=_nested(wanted, parts, arrow),
+            numbers=read(wanted.numbers, "number"),
+            whole=read(wanted.whole, "whole"),
+            texts=read(wanted.texts, "text"),
+            nested={
+                column.name: nested_column(column, columns[column.name], arrow, _READERS)
+                for column in wanted.nested
+                if column.name in columns
+            },
             metadata=table.schema.metadata or {},
         )
     except OddMessageError:
@@ -204,27 +204,6 @@ def _present(names: Iterable[str], path: Path, form: FileFormat, wanted: Wanted)
     return [name for name in wanted.names if name in known]
 
 
-def _converted(
-    names: Iterable[str], columns: Mapping[str, Any], convert: Callable[[str, Any], Any]
-) -> dict[str, Any]:
-    return {name: convert(name, columns[name]) for name in names if name in columns}
-
-
-def _nested(wanted: Wanted, columns: Mapping[str, Any], arrow: Any) -> dict[str, NestedColumn]:
-    kinds = (
-        (wanted.nested_numbers, _numbers),
-        (wanted.nested_whole, _whole),
-        (wanted.nested_texts, _texts),
-        (wanted.nested_bytes, _bytes),
-    )
-    return {
-        column.name: nested_column(column, columns[column.name], arrow, read)
-        for nested, read in kinds
-        for column in nested
-        if column.name in columns
-    }
-
-
 def _gap(name: str, column: Any) -> None:
     if column.null_count:
         row = int(np.argmax(column.is_null().to_numpy())) + 1
@@ -288,3 +267,11 @@ def _bytes(name: str, column: Any, arrow: Any) -> list[bytes]:
 def _chunks(column: Any) -> Iterator[tuple[NDArray[int64], list[str | None]]]:
     for chunk in getattr(column, "chunks", [column]):
         yield chunk.indices.to_numpy(zero_copy_only=False), chunk.dictionary.to_pylist()
+
+
+_READERS: Mapping[NestedKind, Callable[[str, Any, Any], Any]] = {
+    "number": _numbers,
+    "whole": _whole,
+    "text": _texts,
+    "bytes": _bytes,
+}

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy import int64
 from numpy.typing import NDArray
+
+NestedKind = Literal["number", "whole", "text", "bytes"]
+"""What the values of a column are."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,6 +22,7 @@ class Nested:
     """
 
     name: str
+    kind: NestedKind
     listed: bool = False
     width: int = 0
 
@@ -47,9 +51,12 @@ class OddColumnError(Exception):
 
 
 def nested_column(
-    wanted: Nested, column: Any, arrow: Any, read: Callable[[str, Any, Any], Any]
+    wanted: Nested,
+    column: Any,
+    arrow: Any,
+    readers: Mapping[NestedKind, Callable[[str, Any, Any], Any]],
 ) -> NestedColumn:
-    """The values of a column, converted by ``read``. Raises OddColumnError."""
+    """The values of a column, converted by the reader of its kind. Raises OddColumnError."""
     array = column.combine_chunks()
     starts = np.arange(len(array) + 1)
     if wanted.listed:
@@ -65,7 +72,7 @@ def nested_column(
         _whole(wanted.name, array)
         array = array.flatten()
     try:
-        values = read(wanted.name, arrow.chunked_array([array]), arrow)
+        values = readers[wanted.kind](wanted.name, arrow.chunked_array([array]), arrow)
     except OddColumnError as reason:
         at = None if reason.row is None else (reason.row - 1) // max(wanted.width, 1)
         row = None if at is None else int(np.searchsorted(starts, at, side="right"))
