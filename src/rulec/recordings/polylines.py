@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TypeVar
 
 import numpy as np
@@ -124,21 +124,6 @@ def paired(line: Points, other: Points) -> tuple[Points, Points]:
     # The ends are both's, however close a point is
     at[0], at[-1] = 0.0, 1.0
     return interpolated(at, parts[0], line), interpolated(at, parts[1], other)
-
-
-def leads_the_same_way(
-    bounds: Mapping[int, tuple[Points, Points]], own: int, other: object, *, left: bool
-) -> bool:
-    """Whether a lane leads the same way as the one named as its left or right neighbour.
-
-    Lanes are given by their left and right bounds. If so, their common border runs the same way in
-    both.
-    """
-    if not isinstance(other, int) or other == own or other not in bounds:
-        return False
-    side = 0 if left else 1
-    border, same, opposite = bounds[own][side], bounds[other][1 - side], bounds[other][side]
-    return ends_apart(border, same) <= ends_apart(border, opposite[::-1])
 
 
 def ends_apart(line: Points, other: Points) -> float:

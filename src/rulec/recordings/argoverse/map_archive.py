@@ -7,8 +7,8 @@ pedestrian crossings as two edges along which people walk. Both data sets have t
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
 
@@ -20,13 +20,8 @@ from numpy.typing import NDArray
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.typed_json import read_json
 from rulec.recordings.encodings.xml_element import LARGEST, short
-from rulec.recordings.polylines import (
-    ends_apart,
-    leads_the_same_way,
-    line_length,
-    paired,
-    without_repeats,
-)
+from rulec.recordings.lanes.lanes_along import with_sound_links
+from rulec.recordings.polylines import ends_apart, line_length, paired, without_repeats
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, Points
 from rulec.recordings.road_map import RoadMap, crosswalk
 
@@ -84,61 +79,41 @@ def read_map_archive(path: Path) -> RoadMap:
     archive = read_json(path, MAP_ARCHIVE, _MapArchive)
     if not archive.lane_segments:
         raise MAP_ARCHIVE.refused(path, "there is no lane segment in it")
-    lanelets: dict[str, Lanelet] = {}
-    for lanelet in (*_lanes(path, archive), *_crosswalks(path, archive)):
-        if lanelet.id in lanelets:
-            raise MAP_ARCHIVE.refused(path, f"`{short(lanelet.id)}` is in it twice")
-        lanelets[lanelet.id] = lanelet
+    lanes, crossings = list(_lanes(path, archive)), list(_crosswalks(path, archive))
+    names = [lanelet.id for lanelet in (*lanes, *crossings)]
+    if twice := [name for name, count in Counter(names).items() if count > 1]:
+        raise MAP_ARCHIVE.refused(path, f"`{short(twice[0])}` is in it twice")
+    lanelets = with_sound_links(lanes) | {crossing.id: crossing for crossing in crossings}
     return RoadMap(form="Argoverse 2 map", lanelets=lanelets, side="right", country="USA")
 
 
 def _lanes(path: Path, archive: _MapArchive) -> Iterator[Lanelet]:
-    bounds = {}
     for segment in archive.lane_segments.values():
         called = f"lane segment {segment.id}"
-        lines = segment.left_lane_boundary, segment.right_lane_boundary
-        own = _bounds(path, called, lines)
-        # At the edge of a map section, objects may have been cut to a point
-        if own is not None:
-            bounds[segment.id] = own
-    segments = [x for x in archive.lane_segments.values() if x.id in bounds]
-    before: dict[int, dict[int, None]] = defaultdict(dict)
-    for segment in segments:
-        before[segment.id].update(dict.fromkeys(segment.predecessors))
-    for segment in segments:
-        for after in segment.successors:
-            before[after][segment.id] = None
-    for segment in segments:
-        left, right = bounds[segment.id]
+        bounds = _bounds(path, called, (segment.left_lane_boundary, segment.right_lane_boundary))
         if segment.lane_type not in LANE_TYPES:
-            why = f"lane segment {segment.id} is of type `{short(segment.lane_type)}`"
+            why = f"{called} is of type `{short(segment.lane_type)}`"
             raise MAP_ARCHIVE.refused(path, why, expected=f"expected {', '.join(LANE_TYPES)}")
-        left, right = paired(left, right)
+        # At the edge of a map section, objects may have been cut to a point
+        if bounds is None:
+            continue
+        left, right = paired(*bounds)
         kinds = (*LANE_TYPES[segment.lane_type], *["intersection"] * segment.is_intersection)
+        beside = segment.left_neighbor_id, segment.right_neighbor_id
+        left_of, right_of = (None if lane is None else str(lane) for lane in beside)
         yield Lanelet(
             id=str(segment.id),
             left=left,
             right=right,
             centre=(left + right) / 2,
-            successors=_known(segment.successors, bounds),
-            predecessors=_known(before[segment.id], bounds),
-            left_of=_beside(segment.id, segment.left_neighbor_id, bounds, left=True),
-            right_of=_beside(segment.id, segment.right_neighbor_id, bounds, left=False),
+            successors=tuple(map(str, segment.successors)),
+            predecessors=tuple(map(str, segment.predecessors)),
+            left_of=left_of,
+            right_of=right_of,
             types=frozenset(kinds),
             left_mark=MARKS.get(segment.left_lane_mark_type),
             right_mark=MARKS.get(segment.right_lane_mark_type),
         )
-
-
-def _known(names: Iterable[int], bounds: Mapping[int, object]) -> tuple[str, ...]:
-    return tuple(str(name) for name in dict.fromkeys(names) if name in bounds)
-
-
-def _beside(
-    own: int, other: int | None, bounds: Mapping[int, tuple[Points, Points]], *, left: bool
-) -> str | None:
-    """The id of the neighbouring lane if it has the same direction."""
-    return str(other) if leads_the_same_way(bounds, own, other, left=left) else None
 
 
 MARKS: Mapping[str, LaneMark] = MappingProxyType(

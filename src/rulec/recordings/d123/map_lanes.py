@@ -8,7 +8,7 @@ MessagePack, in which arrays are maps of type, shape and bytes. Bounds have the 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -26,7 +26,8 @@ from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, re
 from rulec.recordings.encodings.arrow.nested_columns import Nested
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.xml_element import LARGEST
-from rulec.recordings.polylines import leads_the_same_way, line_length, paired, without_repeats
+from rulec.recordings.lanes.lanes_along import with_sound_links
+from rulec.recordings.polylines import line_length, paired, without_repeats
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, ObservedLight, Points
 from rulec.recordings.road_map import RoadMap, crosswalk_with_outline
 
@@ -85,7 +86,7 @@ def read_d123_map(path: Path) -> RoadMap:
     about = files.said_in(layers.table)
     data_set = files.word(about, "dataset")
     side, country = files.side_and_country(data_set, files.word(about, "location"))
-    lanelets = {x.id: x for x in _lanes(layers)}
+    lanelets = with_sound_links(_lanes(layers))
     if not lanelets:
         raise MAP.refused(path, "there is no lane in it")
     is_waymo = data_set.startswith(files.WAYMO)
@@ -142,64 +143,49 @@ def _lanes(layers: _Layers) -> Iterator[Lanelet]:
         if entry.id in entries:
             raise layers.wrong(entry, f"there are two lanes {entry.id}")
         entries[entry.id] = entry
-    bounds = {}
-    for name, entry in entries.items():
-        lines = [_line(layers, entry, f"{side}_boundary") for side in ("left", "right")]
-        # At the edge of a map section a lane may be cut to a point
-        if min(map(len, lines)) > 1:
-            bounds[name] = lines[0], lines[1]
     inside = {
         group.id
         for group in layers.of(_LANE_GROUP)
         if group.features.get("intersection_id") is not None
     }
-    before: dict[int, dict[int, None]] = defaultdict(dict)
-    for name in bounds:
-        before[name] |= dict.fromkeys(_ids(layers, entries[name], "predecessor_ids"))
-    for name in bounds:
-        for after in _ids(layers, entries[name], "successor_ids"):
-            before[after][name] = None
     paint = _Paint(layers)
-    for name, own in bounds.items():
-        entry = entries[name]
-        left, right = paired(*own)
+    for name, entry in entries.items():
+        bounds = [_line(layers, entry, f"{side}_boundary") for side in ("left", "right")]
         kind = entry.features.get("lane_type")
         if not isinstance(kind, int) or kind not in _TYPES:
             raise layers.wrong(entry, f"a lane is of the type {kind!s:.40}")
+        # At the edge of a map section a lane may be cut to a point
+        if min(map(len, bounds)) < 2:
+            continue
+        left, right = paired(bounds[0], bounds[1])
         crossing = ("intersection",) * (entry.features.get("lane_group_id") in inside)
         yield Lanelet(
             id=str(name),
             left=left,
             right=right,
             centre=(left + right) / 2,
-            successors=_known(_ids(layers, entry, "successor_ids"), bounds),
-            predecessors=_known(before[name], bounds),
-            left_of=_beside(entry, bounds, left=True),
-            right_of=_beside(entry, bounds, left=False),
+            successors=_ids(layers, entry, "successor_ids"),
+            predecessors=_ids(layers, entry, "predecessor_ids"),
+            left_of=_id(entry, "left_lane_id"),
+            right_of=_id(entry, "right_lane_id"),
             types=frozenset((*_TYPES[kind], *crossing)),
             limit_mps=_limit(layers, entry),
-            left_mark=paint.along(own[0]),
-            right_mark=paint.along(own[1]),
+            left_mark=paint.along(bounds[0]),
+            right_mark=paint.along(bounds[1]),
         )
 
 
-def _known(names: Iterable[int], bounds: Mapping[int, object]) -> tuple[str, ...]:
-    return tuple(str(name) for name in names if name in bounds)
-
-
-def _ids(layers: _Layers, entry: _Entry, name: str) -> list[int]:
+def _ids(layers: _Layers, entry: _Entry, name: str) -> tuple[str, ...]:
     ids = entry.features.get(name)
-    if ids is None:
-        return []
+    ids = [] if ids is None else ids
     if not isinstance(ids, list) or not all(isinstance(x, int) for x in ids):
         raise layers.wrong(entry, f"`{name}` is no list of ids")
-    return list(dict.fromkeys(ids))
+    return tuple(dict.fromkeys(map(str, ids)))
 
 
-def _beside(lane: _Entry, bounds: Mapping[int, tuple[Points, Points]], *, left: bool) -> str | None:
-    """The neighbour with the same direction; data sets also name other lanes as neighbours."""
-    other = lane.features.get("left_lane_id" if left else "right_lane_id")
-    return str(other) if leads_the_same_way(bounds, lane.id, other, left=left) else None
+def _id(entry: _Entry, name: str) -> str | None:
+    number = entry.features.get(name)
+    return str(number) if isinstance(number, int) else None
 
 
 def _limit(layers: _Layers, lane: _Entry) -> float | None:
@@ -287,7 +273,7 @@ def _stop_zones(layers: _Layers) -> Iterator[StopZone]:
     for entry in layers.of(_STOP_ZONE):
         kind = entry.features.get("stop_zone_type")
         if isinstance(kind, int) and kind in SIGNS:
-            lanes = tuple(map(str, _ids(layers, entry, "lane_ids")))
+            lanes = _ids(layers, entry, "lane_ids")
             yield StopZone(SIGNS[kind], _line(layers, entry, "outline"), lanes)
 
 

@@ -40,9 +40,14 @@ class FileFormat:
         help_text: str = "",
     ) -> RulecError:
         """The error (R0610) for a file that is not of this format, with the line if known."""
-        message = f"the file cannot be read as {self.words}: {why}"
-        where = SourceLocation(str(path), place)
+        at, line = self.placed(place)
+        message = f"the file cannot be read as {self.words}: {at}{why}"
+        where = SourceLocation(str(path), line)
         return NOT_A_RECORDING.error(where, message, expected=expected, help=help_text or self.help)
+
+    def placed(self, place: int | None) -> tuple[str, int | None]:
+        """What a message says of a place before its reason, and its line."""
+        return "", place
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,18 +63,6 @@ class BinaryFormat(FileFormat):
 
     largest_bytes: int = 50_000_000
 
-    def refused(
-        self,
-        path: Path,
-        why: str,
-        place: int | None = None,
-        *,
-        expected: str = "",
-        help_text: str = "",
-    ) -> RulecError:
-        """The error (R0610) for a file that is not of this format, with the byte if known."""
-        where = "" if place is None else f"at byte {place:,}, "
-        # Not ``super()``: a dataclass with slots is a new class, which ``super()`` does not know.
-        return FileFormat.refused(
-            self, path, f"{where}{why}", expected=expected, help_text=help_text
-        )
+    def placed(self, place: int | None) -> tuple[str, int | None]:
+        """The byte at a place, which has no line."""
+        return "" if place is None else f"at byte {place:,}, ", None

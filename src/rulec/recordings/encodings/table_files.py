@@ -7,6 +7,7 @@ import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -51,12 +52,7 @@ def open_table(path: Path, form: FileFormat, names: Sequence[str] = ()) -> Colum
     Raises RulecError R0610 for a file that is not a table, R0701 for one that cannot be read, R0706
     if Parquet cannot be read here.
     """
-
-    def refused(
-        why: str, place: int | None = None, *, expected: str = "", help_text: str = ""
-    ) -> RulecError:
-        return form.refused(path, why, place, expected=expected, help_text=help_text)
-
+    refused = partial(form.refused, path)
     with opened(path) as file:
         beginning = file.read(_BEGINNING)
     if is_parquet(path.name, beginning):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -12,7 +12,7 @@ import shapely
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.recordings.polylines import parallel_line
+from rulec.recordings.polylines import ends_apart, parallel_line
 from rulec.recordings.recording import (
     BUSES_ONLY,
     CYCLES_TOO,
@@ -87,6 +87,40 @@ def linked(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
         )
         for lane in lanelets.values()
     }
+
+
+def with_sound_links(lanelets: Iterable[Lanelet]) -> dict[str, Lanelet]:
+    """The lanelets by id, linked with others of them only, and with neighbours of their direction.
+
+    Predecessors are also those of which a lanelet is a successor. Maps of data sets are sections,
+    and name any lane beside another one its neighbour.
+    """
+    known = {lane.id: lane for lane in lanelets}
+    before = {name: dict.fromkeys(lane.predecessors) for name, lane in known.items()}
+    for name, lane in known.items():
+        for after in known.keys() & lane.successors:
+            before[after][name] = None
+    return {
+        name: replace(
+            lane,
+            successors=tuple([x for x in dict.fromkeys(lane.successors) if x in known]),
+            predecessors=tuple([x for x in before[name] if x in known]),
+            left_of=_beside(lane, known.get(lane.left_of or ""), left=True),
+            right_of=_beside(lane, known.get(lane.right_of or ""), left=False),
+        )
+        for name, lane in known.items()
+    }
+
+
+def _beside(own: Lanelet, other: Lanelet | None, *, left: bool) -> str | None:
+    """The id of a neighbour that leads the same way: the common border then does in both."""
+    if other is None or other is own:
+        return None
+    border, same, opposite = (
+        (own.left, other.right, other.left) if left else (own.right, other.left, other.right)
+    )
+    leads_alike = ends_apart(border, same) <= ends_apart(border, opposite[::-1])
+    return other.id if leads_alike else None
 
 
 def with_ends_that_meet(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
