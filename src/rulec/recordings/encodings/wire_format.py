@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal, NamedTuple, TypeAlias
+from typing import Literal, NamedTuple, TypeAlias, get_args
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.file_format import BinaryFormat
@@ -24,20 +24,16 @@ _LONGEST_VARINT = 10
 _GOES_ON = 0x80
 _ALL_BITS = (1 << 64) - 1
 _VARINT, _EIGHT_BYTES, _COUNTED, _FOUR_BYTES = 0, 1, 2, 5
-_SIZES: Mapping[int, int] = {_EIGHT_BYTES: 8, _FOUR_BYTES: 4}
 
 Kind = Literal["int", "uint", "sint", "bool", "double", "float", "text", "bytes"]
 _WIRE_TYPES: Mapping[Kind, int] = {
-    "int": _VARINT,
-    "uint": _VARINT,
-    "sint": _VARINT,
-    "bool": _VARINT,
+    **dict.fromkeys(get_args(Kind), _VARINT),
     "double": _EIGHT_BYTES,
     "float": _FOUR_BYTES,
     "text": _COUNTED,
     "bytes": _COUNTED,
 }
-_DOUBLE, _FLOAT = struct.Struct("<d"), struct.Struct("<f")
+_NUMBERS = {_EIGHT_BYTES: struct.Struct("<d"), _FOUR_BYTES: struct.Struct("<f")}
 
 
 class Words(NamedTuple):
@@ -54,6 +50,13 @@ class Field:
     name: str
     holds: Kind | Words | Table
     many: bool = False
+    wire_type: int = field(init=False, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        wire_type = _VARINT if isinstance(self.holds, Words) else _COUNTED
+        if isinstance(self.holds, str):
+            wire_type = _WIRE_TYPES[self.holds]
+        object.__setattr__(self, "wire_type", wire_type)
 
 
 Table: TypeAlias = Mapping[int, Field]
@@ -104,85 +107,85 @@ class WireFile:
         while place < end:
             begin = place
             key, place = self._varint(place, end)
-            number, wire_type = divmod(key, 8)
-            place, stop = self._content(wire_type, place, end, begin)
+            number, wire_type = key >> 3, key & 7
+            bits, place, stop = self._content(wire_type, place, end, begin)
             field = table.get(number)
-            if field is not None:
-                if depth == 0:
-                    self._n_values = 0
-                if number in known and not field.many:
-                    raise self.wrong(f"a message has a second field {number}", begin)
-                known.add(number)
-                if not _fits(field, wire_type):
-                    expected = str(_wire_type(field.holds))
-                    raise self.wrong(
-                        f"field {number} has the wire type {wire_type}", begin, expected
-                    )
-                yield from self._values(field, wire_type, place, stop, depth)
-            elif number == 0:
-                raise self.wrong("there is a field of the number 0, which none has", begin)
+            if field is None:
+                if number == 0:
+                    raise self.wrong("there is a field of the number 0, which none has", begin)
+                place = stop
+                continue
+            if depth == 0:
+                self._n_values = 0
+            if number in known and not field.many:
+                raise self.wrong(f"a message has a second field {number}", begin)
+            known.add(number)
+            if wire_type == field.wire_type:
+                self._count(place)
+                yield WireField(field, self._value(field, bits, place, stop, depth), place)
+            elif field.many and wire_type == _COUNTED:
+                yield from self._packed(field, place, stop)
+            else:
+                expected = str(field.wire_type)
+                raise self.wrong(f"field {number} has the wire type {wire_type}", begin, expected)
             place = stop
 
-    def _content(self, wire_type: int, place: int, end: int, begin: int) -> tuple[int, int]:
-        """The positions where the value of a field begins and ends."""
+    def _content(self, wire_type: int, place: int, end: int, begin: int) -> tuple[int, int, int]:
+        """The bits of a number of variable length, and where a value begins and ends."""
         if wire_type == _VARINT:
-            return place, self._varint(place, end)[1]
+            bits, stop = self._varint(place, end)
+            return bits, place, stop
         if wire_type == _COUNTED:
             count, place = self._varint(place, end)
-        elif wire_type in _SIZES:
-            count = _SIZES[wire_type]
+        elif wire_type in _NUMBERS:
+            count = _NUMBERS[wire_type].size
         else:
             raise self.wrong(f"a field has the wire type {wire_type}", begin, "0, 1, 2 or 5")
         if count > end - place:
             raise self._ends_early(begin)
-        return place, place + count
+        return 0, place, place + count
 
-    def _values(
-        self, field: Field, wire_type: int, place: int, stop: int, depth: int
-    ) -> Iterator[WireField]:
-        begin, holds = place, field.holds
-        packed = wire_type != _wire_type(holds)
-        # A packed value may be empty
-        while not packed or place < stop:
-            self._n_values += 1
-            if self._n_values > MOST_VALUES:
-                raise self.wrong(f"a message has more than {MOST_VALUES:,} values in it", begin)
-            if isinstance(holds, Mapping):
-                fields = tuple(self._fields(holds, place, stop, depth + 1))
-                yield WireField(field, Message(fields), place)
-                return
-            value, after = self._value(field, place, stop)
-            yield WireField(field, value, place)
+    def _count(self, begin: int) -> None:
+        self._n_values += 1
+        if self._n_values > MOST_VALUES:
+            raise self.wrong(f"a message has more than {MOST_VALUES:,} values in it", begin)
+
+    def _packed(self, field: Field, place: int, stop: int) -> Iterator[WireField]:
+        """Many numbers in one value."""
+        begin = place
+        while place < stop:
+            self._count(begin)
+            bits = 0
+            if field.wire_type == _VARINT:
+                bits, after = self._varint(place, stop)
+            elif (after := place + _NUMBERS[field.wire_type].size) > stop:
+                raise self._ends_early(place)
+            yield WireField(field, self._value(field, bits, place, after, 0), place)
             place = after
-            if not packed:
-                return
 
-    def _value(self, field: Field, place: int, stop: int) -> tuple[Value, int]:
-        match field.holds:
-            case "bytes":
-                return self.data[place:stop], stop
-            case "text":
-                return self._text(field, place, stop), stop
-            case "double" | "float" as kind:
-                number = _DOUBLE if kind == "double" else _FLOAT
-                if stop - place < number.size:
-                    raise self._ends_early(place)
-                return number.unpack_from(self.data, place)[0], place + number.size
-        bits, after = self._varint(place, stop)
-        match field.holds:
+    def _value(self, field: Field, bits: int, place: int, stop: int, depth: int) -> Value:
+        holds, wire_type = field.holds, field.wire_type
+        if wire_type in _NUMBERS:
+            number: float = _NUMBERS[wire_type].unpack_from(self.data, place)[0]
+            return number
+        if isinstance(holds, Words):
+            word = holds.by_number.get(_signed(bits), holds.other)
+            if not word:
+                why = f"`{field.name}` has the unknown value {_signed(bits)}"
+                raise self.wrong(why, place, f"one of {', '.join(map(str, holds.by_number))}")
+            return word
+        if wire_type == _COUNTED:
+            if not isinstance(holds, str):
+                return Message(tuple(self._fields(holds, place, stop, depth + 1)))
+            return self.data[place:stop] if holds == "bytes" else self._text(field, place, stop)
+        match holds:
             case "bool":
-                return bits != 0, after
+                return bits != 0
             case "uint":
-                return bits, after
+                return bits
             case "sint":
-                return (bits >> 1) ^ -(bits & 1), after
-            case Words(by_number, other):
-                word = by_number.get(_signed(bits), other)
-                if not word:
-                    why = f"`{field.name}` has the unknown value {_signed(bits)}"
-                    raise self.wrong(why, place, f"one of {', '.join(map(str, by_number))}")
-                return word, after
-        return _signed(bits), after
+                return (bits >> 1) ^ -(bits & 1)
+        return _signed(bits)
 
     def _text(self, field: Field, place: int, stop: int) -> str:
         try:
@@ -220,17 +223,6 @@ def wire_file(path: Path, form: BinaryFormat) -> WireFile:
     if not data:
         raise form.refused(path, "it is empty")
     return WireFile(data, path, form)
-
-
-def _wire_type(holds: Kind | Words | Table) -> int:
-    if isinstance(holds, str):
-        return _WIRE_TYPES[holds]
-    return _VARINT if isinstance(holds, Words) else _COUNTED
-
-
-def _fits(field: Field, wire_type: int) -> bool:
-    """Whether a wire type is the field's own, or that of many numbers packed into one value."""
-    return wire_type == _wire_type(field.holds) or (field.many and wire_type == _COUNTED)
 
 
 def _signed(bits: int) -> int:
