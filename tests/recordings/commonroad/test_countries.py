@@ -3,7 +3,13 @@
 import pytest
 
 from rulec import read_recording
-from rulec.recordings.commonroad.countries import LEFT_HAND, RIGHT_HAND, country_in, side_in
+from rulec.recordings.commonroad.countries import (
+    LEFT_HAND,
+    RIGHT_HAND,
+    country_in,
+    country_of,
+    side_in,
+)
 from support.builders.recordings import ROAD_XML
 
 
@@ -46,8 +52,21 @@ def test_the_benchmark_says_where_it_is_and_else_the_name(tmp_path, named, bench
     assert (found.country, found.side) == told
 
 
-def test_no_country_drives_on_both_sides():
+def test_no_code_is_that_of_two_countries():
     left, right = LEFT_HAND.split(), RIGHT_HAND.split()
-    assert not set(left) & set(right)
-    assert left == sorted(set(left))
-    assert right == sorted(set(right))
+    assert left == sorted(left)
+    assert right == sorted(right)
+    codes = [code for entry in left + right for code in entry.split("/")]
+    assert len(set(codes)) == len(codes)
+    assert all(len(entry) == len("DEU/DE/276") for entry in left + right)
+
+
+@pytest.mark.parametrize(
+    ("code", "country"),
+    [
+        *[("de", "DEU"), ("DE", "DEU"), ("276", "DEU"), ("gb", "GBR"), ("uk", "GBR")],
+        *[("036", "AUS"), ("xx", ""), ("000", ""), ("", "")],
+    ],
+)
+def test_a_country_by_its_other_codes(code, country):
+    assert country_of(code) == country

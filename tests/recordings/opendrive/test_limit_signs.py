@@ -285,7 +285,7 @@ def test_what_is_left_out_is_said(tmp_path):
     include = '<include file="other.xodr"/>'
     remarks = map_with(tmp_path, *signs, parts=(include,)).remarks
     left_out = (
-        "signs of countries whose catalogue is not known here are left out: 2 of AUT, 1 of DK"
+        "signs of countries whose catalogue is not known here are left out: 2 of AUT, 1 of DNK"
     )
     assert left_out in remarks
     assert "files that the map includes are not read: `other.xodr`" in remarks

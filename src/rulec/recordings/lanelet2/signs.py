@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from math import floor, isfinite
 
+from rulec.recordings.commonroad.countries import country_of
 from rulec.recordings.commonroad.traffic_signs import (
     CATALOGUED,
     LIMITS,
@@ -22,7 +23,6 @@ from rulec.recordings.commonroad.traffic_signs import (
 from rulec.recordings.encodings.speed_units import MPS_PER_KMH
 from rulec.recordings.lanelet2.lane_tags import velocity
 from rulec.recordings.lanelet2.osm_file import OsmFile, OsmRelation, OsmWay
-from rulec.recordings.lanelet2.region_codes import sign_parts
 from rulec.recordings.recording import Points
 
 AUTOWARE_SIGNS = {"stop_sign": "STOP", "yield_sign": "YIELD"}
@@ -46,7 +46,7 @@ def sign_of(kind: str) -> Sign:
     if limit is not None and int(limit["kmh"]) >= _SLOWEST_KMH:
         name = ZONE if limit["zone"] else MIN_SPEED if limit["least"] else MAX_SPEED
         return Sign(name, int(limit["kmh"]) * MPS_PER_KMH)
-    country, number = sign_parts(kind)
+    country, number = _sign_parts(kind)
     if country and country not in CATALOGUED | {"DEU"}:
         return Sign(UNKNOWN)
     if country:
@@ -59,9 +59,15 @@ def sign_of(kind: str) -> Sign:
     return Sign(UNKNOWN) if speed is None else Sign(MAX_SPEED, speed)
 
 
+def _sign_parts(kind: str) -> tuple[str, str]:
+    """The country and number in a sign's name such as `de206`; empty for other names."""
+    country, number = country_of(kind[:2]), kind[2:].lstrip("_-: ")
+    return (country, number) if country and number else ("", "")
+
+
 def plate_of(kind: str) -> str:
     """The number of the plate named by a subtype; empty for other signs."""
-    country, number = sign_parts(kind)
+    country, number = _sign_parts(kind)
     number = number.replace("_", "-")
     if country != "DEU" and (country not in CATALOGUED or sign_of(kind).name != UNKNOWN):
         return ""

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from rulec.recordings.commonroad.countries import side_in
+from rulec.recordings.commonroad.countries import country_of, side_in
 from rulec.recordings.lanelet2.map_lanelets import MapLanelet
 from rulec.recordings.lanelet2.osm_file import OsmFile
-from rulec.recordings.lanelet2.region_codes import country_of
 from rulec.recordings.recording import Side
 
 MOST_AT_ONE_PLACE = 100
@@ -90,9 +89,12 @@ def _others(own: str, names: Iterable[str]) -> tuple[str, ...]:
 
 
 def country_in(entries: Iterable[MapLanelet]) -> str:
-    """The country given by the lanelets; empty if they give none, or several."""
+    """The country given by the lanelets; empty if they give none, or several.
+
+    Their regions are such as `de` or `us-ca`.
+    """
     regions = {entry.region for entry in entries if entry.region}
-    countries = {country_of(region) for region in regions}
+    countries = {country_of(x[:2]) if x[2:3] in {"", "-"} else "" for x in regions}
     return countries.pop() if len(countries) == 1 else ""
 
 

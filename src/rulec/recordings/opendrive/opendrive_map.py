@@ -35,7 +35,7 @@ from rulec.recordings.opendrive.lane_types import (
 )
 from rulec.recordings.opendrive.pieces import RoadPiece, directions, neighbour, pieces_of
 from rulec.recordings.opendrive.posted_signs import posted_on, sign_remarks
-from rulec.recordings.opendrive.signal_catalogues import country_of
+from rulec.recordings.opendrive.signal_catalogues import country_named
 from rulec.recordings.opendrive.turning_speeds import without_turning_speeds
 from rulec.recordings.polylines import shares_along
 from rulec.recordings.recording import (
@@ -314,8 +314,8 @@ def _sides_shown(lanelets: Mapping[str, Lanelet]) -> set[Side]:
 
 def _country(content: OpenDrive) -> str:
     """The country that all signals and roads name; empty if they name none, or several."""
-    named = {country_of(x.country) for road in content.roads.values() for x in road.signals}
-    named |= {country_of(x.country) for road in content.roads.values() for x in road.types}
+    named = {country_named(x.country) for road in content.roads.values() for x in road.signals}
+    named |= {country_named(x.country) for road in content.roads.values() for x in road.types}
     codes = {x for x in named if len(x) == 3 and x.isascii() and x.isalpha()}
     return codes.pop() if len(codes) == 1 else ""
 

@@ -33,7 +33,7 @@ from rulec.recordings.opendrive.signal_catalogues import (
     LEAST_SPEED_END,
     NO_SIGN,
     catalogue_sign,
-    country_of,
+    country_named,
     has_catalogue,
     is_german_plate,
     may_limit,
@@ -193,7 +193,7 @@ def _hidden(sign: Sign) -> Sign:
 def sign_remarks(content: OpenDrive, posted: Mapping[str, Iterable[Posted]]) -> Iterator[str]:
     """Remarks on signs, and parts of the file, that are not read."""
     foreign = Counter(
-        country_of(x.country)
+        country_named(x.country)
         for road in content.roads.values()
         for x in road.signals
         if not (x.dynamic or x.speeds or x.type in NO_SIGN or has_catalogue(x))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from types import MappingProxyType
 
+from rulec.recordings.commonroad.countries import country_of
 from rulec.recordings.commonroad.traffic_signs import (
     CATALOGUED,
     LIMITS,
@@ -32,32 +33,6 @@ _OTHER_LIGHTS = frozenset(f"10000{number:02}" for number in (2, 7, 13, 14, 15, 1
 WALKERS_LIGHTS = frozenset({"1000002", "1000007"})
 CROSSWALK = "1000003"
 _STOP_LINE = "294"
-
-_CODES: Mapping[str, str] = MappingProxyType(
-    {
-        "US": "USA",
-        "ES": "ESP",
-        "AU": "AUS",
-        "RU": "RUS",
-        "AR": "ARG",
-        "BE": "BEL",
-        "FR": "FRA",
-        "GR": "GRC",
-        "HR": "HRV",
-        "CN": "CHN",
-        "IT": "ITA",
-        "DE": "DEU",
-        "GB": "GBR",
-        "SE": "SWE",
-        "AT": "AUT",
-        "CH": "CHE",
-        "NL": "NLD",
-        "JP": "JPN",
-        "PL": "POL",
-        "GERMANY": "DEU",
-    }
-)
-"""Countries' codes of two letters, which the standard uses since 1.6 -> those of three letters."""
 
 _GERMAN = frozenset({"", "DEU", "OPENDRIVE", "OPEN_DRIVE"})
 
@@ -94,9 +69,9 @@ NO_SIGN = frozenset({"", "-1", "none"})
 """Types of signals that are no signs of a catalogue, such as posts."""
 
 
-def country_of(code: str) -> str:
+def country_named(code: str) -> str:
     """The code of a country (ISO 3166, three letters); unknown codes are only put in capitals."""
-    return _CODES.get(code.upper(), code.upper())
+    return country_of(code) or code.upper()
 
 
 def is_light(signal: RoadSignal, controlled: Collection[str]) -> bool:
@@ -110,12 +85,12 @@ def is_light(signal: RoadSignal, controlled: Collection[str]) -> bool:
 
 def is_stop_line(signal: RoadSignal) -> bool:
     """Whether a signal is the German sign 294, a stop line."""
-    return signal.type == _STOP_LINE and country_of(signal.country) in _GERMAN
+    return signal.type == _STOP_LINE and country_named(signal.country) in _GERMAN
 
 
 def has_catalogue(signal: RoadSignal) -> bool:
     """Whether signs of a signal's country are known here, or it is one of the standard's own."""
-    return _is_standard(signal) or country_of(signal.country) in _GERMAN | CATALOGUED
+    return _is_standard(signal) or country_named(signal.country) in _GERMAN | CATALOGUED
 
 
 def _is_standard(signal: RoadSignal) -> bool:
@@ -127,7 +102,7 @@ def catalogue_sign(signal: RoadSignal) -> Sign:
 
     If it is about a speed and its number is not read, it is untold.
     """
-    country = country_of(signal.country)
+    country = country_named(signal.country)
     if signal.type in NO_SIGN or country not in _GERMAN | CATALOGUED:
         return Sign(UNKNOWN)
     name = next((x for x in _names(signal, country) if x != UNKNOWN), UNKNOWN)
@@ -153,13 +128,13 @@ def _numbers(signal: RoadSignal) -> tuple[str, str, str]:
 def _parts(signal: RoadSignal) -> tuple[str, str]:
     """A signal's type and subtype; some files write the whole German number as the type."""
     kind, parted, subtype = signal.type.partition("-")
-    is_whole = bool(kind and parted) and country_of(signal.country) in _GERMAN
+    is_whole = bool(kind and parted) and country_named(signal.country) in _GERMAN
     return (kind, subtype) if is_whole else (signal.type, signal.subtype)
 
 
 def is_german_plate(signal: RoadSignal) -> bool:
     """Whether a signal is a plate of Germany's catalogue, and no sign itself."""
-    return country_of(signal.country) in _GERMAN and is_plate(signal.type, "")
+    return country_named(signal.country) in _GERMAN and is_plate(signal.type, "")
 
 
 def plate_number(signal: RoadSignal) -> str:
@@ -167,7 +142,7 @@ def plate_number(signal: RoadSignal) -> str:
 
     Of other countries than Germany, what is not known here may be a plate.
     """
-    if country_of(signal.country) in _GERMAN:
+    if country_named(signal.country) in _GERMAN:
         return _numbers(signal)[0] if is_german_plate(signal) else ""
     if signal.type in NO_SIGN or signal.dynamic or signal.has_meaning or signal.board:
         return ""
@@ -180,7 +155,7 @@ def may_limit(signal: RoadSignal) -> bool:
 
     Where the country's sign for a limit is known, others may only if they have a speed.
     """
-    country = country_of(signal.country)
+    country = country_named(signal.country)
     if signal.type in NO_SIGN or signal.has_meaning or country in _GERMAN or _is_standard(signal):
         return False
     has_speed = signal.value is not None and signal.unit.lower() in SPEED_UNITS

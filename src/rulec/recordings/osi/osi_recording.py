@@ -7,9 +7,10 @@ from glob import escape
 from pathlib import Path
 
 from rulec.diagnostics import SourceLocation, first_of
+from rulec.recordings.commonroad.countries import country_of, side_in
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.map_files import MAP_FORMATS, read_map
-from rulec.recordings.osi.environment import country_of, weather_of
+from rulec.recordings.osi.environment import weather_of
 from rulec.recordings.osi.lane_messages import check_size, read_boundaries, read_lanes
 from rulec.recordings.osi.lane_network import LaneNetwork, lane_network
 from rulec.recordings.osi.light_heads import with_lights
@@ -49,14 +50,14 @@ def read_osi(path: Path, map_path: Path | None = None) -> Recording:
     if map_path is None and not any(is_lane(x) for x in network.lanelets.values()):
         map_path = _map_beside(path)
     road = None if map_path is None else read_map(map_path, grid.step_s)
-    country, by_country = country_of(content.country)
+    country = country_of(f"{content.country:03}")
     return Recording(
         name=path.name.split(".")[0] or path.name,
         step_s=grid.step_s,
         lanelets=_lanelets(content, network, grid, file) if road is None else road.lanelets,
         participants=tuple(_participants(content, grid, file)),
         form="ASAM OSI trace",
-        side=by_country or (network.side or _USUAL_SIDE if road is None else road.side),
+        side=side_in(country) or (network.side or _USUAL_SIDE if road is None else road.side),
         remarks=(
             *_remarks(content, grid),
             *(_network_remarks(network) if road is None else road.remarks),
