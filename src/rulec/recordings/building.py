@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from rulec.diagnostics import did_you_mean, named
 from rulec.diagnostics.argument_kinds import checked_kinds, expected, expected_fields
 from rulec.recordings.building_checks import BuildingChecks
-from rulec.recordings.encodings.xml_element import LARGEST
+from rulec.recordings.encodings.file_values import LARGEST
 from rulec.recordings.lane_centres.centre_lanelets import ALL_JUNCTIONS
 from rulec.recordings.lanes.lane_table import FASTEST_LIMIT_MPS, WIDEST_M
 from rulec.recordings.lanes.lanes_along import (

@@ -9,7 +9,7 @@ from numpy import float64
 from numpy.typing import ArrayLike, NDArray
 
 from rulec.diagnostics import Diagnostic, RulecError, did_you_mean, named
-from rulec.recordings.encodings.xml_element import LARGEST
+from rulec.recordings.encodings.file_values import LARGEST
 from rulec.recordings.lanes.lanes_along import CLOSEST_M
 from rulec.recordings.polylines import line_length, without_repeats
 from rulec.recordings.recording import LIGHT_COLOURS, LONGEST_M, Light, ObservedLight, Points

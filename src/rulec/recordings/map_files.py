@@ -15,7 +15,7 @@ from rulec.recordings import table_heads as heads
 from rulec.recordings.argoverse.argoverse_files import MAP as MAP_ARCHIVES
 from rulec.recordings.argoverse.argoverse_files import is_named
 from rulec.recordings.encodings.file_format import FileFormat
-from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.recording_format import Glance, when_called
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from rulec.diagnostics.fault_messages import contained
 from rulec.files.own_kinds import what_reads
 from rulec.files.read_files import is_folder, opened
 from rulec.recordings.encodings.csv_head import PARQUET
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.safe_xml import is_xml
-from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.map_files import MAP_FORMATS
 from rulec.recordings.recording_format import (

@@ -18,8 +18,8 @@ from rulec.extraction.recording_parts import egos_of, span_of, whole_recording
 from rulec.extraction.selection import RequestedDrives, chosen_side, with_night_assumed
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.source_tolerances import tolerances_of
+from rulec.recordings.encodings.file_values import LARGEST
 from rulec.recordings.encodings.speed_units import MPS_PER_KMH
-from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.mending.derived_motion import accelerations_of
 from rulec.recordings.mending.mended_recording import mended
 from rulec.recordings.recording import HEADINGS, Participant, Recording, is_lane

@@ -108,7 +108,7 @@ def test_a_round_body_has_its_radius_in_every_direction(written):
         ("<type>car</type>", "<type>carr</type>", "`type` is `carr`"),
         ("dynamic", "flying", "`role` is `flying`"),
         ('"0.1"', '"0"', "a time step of 0 s"),
-        ('"0.1"', '"soon"', "`timeStepSize` is `soon`"),
+        ('"0.1"', '"soon"', "`timeStepSize` of a `commonRoad` is `soon`"),
         ("<x>9</x>", "<x>nan</x>", "`x` is `nan`"),
         ("<x>9</x>", "<x>1e300</x>", "`x` is `1e300`"),
         ("<y>2</y>", "<y>1e300</y>", "`y` is `1e300`"),

@@ -54,7 +54,7 @@ def test_packed_maps_are_read(tmp_path):
         ('way id="1"', 'way id="2"', "there are two elements `way` with the id `2`"),
         ('relation id="4"', 'relation id="5"', "two elements `relation` with the id `5`"),
         ('id="1000"', 'id="first"', "`id` of a `node` is `first`"),
-        ('id="1000"', "", "a `node` has no `id`"),
+        ('id="1000"', "", "the element `node` has no `id`"),
         ('k="local_x" v="0"', 'k="local_x" v="nan"', "`local_x` of a `tag` is `nan`"),
         ('k="local_x" v="0"', 'k="local_x" v="1e9"', "`local_x` of a `tag` is `1e9`"),
         ('k="local_x" v="100"', 'k="local_x" v="1e6"', "a lanelet's bound is longer than 20 km"),

@@ -75,7 +75,9 @@ def test_who_is_there(tmp_path, before, after, rows):
 
 @pytest.mark.parametrize("number", ["1_0", "\u0661", "here", ""])
 def test_what_is_no_number(tmp_path, number):
-    with pytest.raises(RulecError, match=r"`x` of a `vehicle` is|a `vehicle` has no `x`") as caught:
+    with pytest.raises(
+        RulecError, match=r"`x` of a `vehicle` is|the element `vehicle` has no `x`"
+    ) as caught:
         read_fcd(written(tmp_path, PLAIN.replace('x="-1e2"', f'x="{number}"')))
     line = PLAIN[: PLAIN.index('x="-1e2"')].count("\n") + 1
     assert caught.value.diagnostics[0].place.line == line

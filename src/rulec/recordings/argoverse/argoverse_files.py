@@ -8,7 +8,7 @@ from pathlib import Path
 from rulec.diagnostics import named
 from rulec.files.read_files import is_folder
 from rulec.recordings.encodings.file_format import FileFormat
-from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.encodings.file_values import short
 
 SCENARIO = "scenario_*.parquet"
 ANNOTATIONS = "annotations*.feather"

@@ -18,8 +18,8 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.file_values import LARGEST, short
 from rulec.recordings.encodings.typed_json import read_json
-from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.recordings.lanes.lanes_along import with_sound_links
 from rulec.recordings.polylines import ends_apart, line_length, paired, without_repeats
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, Points

@@ -25,7 +25,7 @@ from rulec.recordings.argoverse.object_types import (
 )
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.file_format import FileFormat
-from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.mending.derived_motion import accelerations_of, along
 from rulec.recordings.recording import MOST_STEPS, Participant, Recording
 from rulec.recordings.track import Track, tracked

@@ -29,7 +29,7 @@ from rulec.recordings.argoverse.sweep_boxes import TrackBoxes, check_sizes, part
 from rulec.recordings.argoverse.sweep_grid import NANOSECONDS, on_grid
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.file_format import FileFormat
-from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.recording import Recording
 from rulec.trace.plain_arrays import most_frequent
 

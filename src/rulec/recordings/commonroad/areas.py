@@ -14,8 +14,8 @@ import numpy as np
 import shapely
 from shapely import affinity
 
+from rulec.recordings.encodings.file_values import LARGEST
 from rulec.recordings.encodings.tree import LONGEST_TEXT, SMALLEST, Texts, Tree
-from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.encodings.xml_tree import Way
 from rulec.recordings.recording import Points
 

@@ -12,8 +12,8 @@ from rulec.recordings.commonroad.countries import country_in
 from rulec.recordings.commonroad.scenario_content import Content, add, add_step, to_recording
 from rulec.recordings.commonroad.states import wanted_of_state
 from rulec.recordings.encodings.file_format import XmlFormat
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.tree import Tree
-from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.encodings.xml_tree import Alike, scan_trees, whole_tree
 from rulec.recordings.recording import Recording
 from rulec.recordings.road_map import RoadMap

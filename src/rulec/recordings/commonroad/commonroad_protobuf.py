@@ -13,9 +13,9 @@ from rulec.recordings.commonroad import protobuf_tables as tables
 from rulec.recordings.commonroad.commonroad_file import begin
 from rulec.recordings.commonroad.scenario_content import Content, add, add_step, to_recording
 from rulec.recordings.encodings.file_format import BinaryFormat
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.tree import LONGEST_TEXT, Tree
 from rulec.recordings.encodings.wire_format import Message, Table, WireField, WireFile, wire_file
-from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.recording import Recording
 
 PROTOBUF = BinaryFormat(

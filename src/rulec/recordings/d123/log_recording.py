@@ -26,7 +26,7 @@ from rulec.recordings.d123.map_lanes import read_d123_map, with_lights
 from rulec.recordings.d123.object_labels import LABELS, LEFT_OUT, type_of
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.arrow.nested_columns import Nested
-from rulec.recordings.encodings.xml_element import LARGEST, short
+from rulec.recordings.encodings.file_values import LARGEST, short
 from rulec.recordings.recording import Participant, Recording
 from rulec.trace.plain_arrays import most_frequent
 

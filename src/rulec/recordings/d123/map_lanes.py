@@ -25,7 +25,7 @@ from rulec.recordings.d123.stop_zones import SIGNS, StopZone, with_signs
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.arrow.nested_columns import Nested
 from rulec.recordings.encodings.file_format import FileFormat
-from rulec.recordings.encodings.xml_element import LARGEST
+from rulec.recordings.encodings.file_values import LARGEST
 from rulec.recordings.lanes.lanes_along import with_sound_links
 from rulec.recordings.polylines import line_length, paired, without_repeats
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, ObservedLight, Points

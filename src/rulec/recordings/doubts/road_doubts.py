@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import SourceLocation
 from rulec.recordings.doubts.long_ways import LongWays
-from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.polylines import arc_lengths, places_in
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
 from rulec.recordings.recording_messages import OTHER_NET

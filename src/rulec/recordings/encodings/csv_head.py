@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import zlib
 
-from rulec.recordings.encodings.xml_element import number_in
+from rulec.recordings.encodings.file_values import number_in
 from rulec.trace.formats.stream_lines import utf16
 
 PARQUET = (".parquet", ".pq")

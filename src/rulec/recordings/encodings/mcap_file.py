@@ -15,7 +15,7 @@ from zlib import crc32
 
 from rulec.files.read_files import opened
 from rulec.recordings.encodings.file_format import FileFormat
-from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.encodings.file_values import short
 
 MAGIC = b"\x89MCAP0\r\n"
 """The bytes at the beginning and the end of a file."""

@@ -13,7 +13,8 @@ from xml.parsers.expat import ExpatError, ParserCreate, XMLParserType, errors
 from rulec.diagnostics import RulecError
 from rulec.files.read_files import opened
 from rulec.recordings.encodings.file_format import FileFormat, XmlFormat
-from rulec.recordings.encodings.xml_element import XmlElement, short
+from rulec.recordings.encodings.file_values import short
+from rulec.recordings.encodings.tree import Tree
 from rulec.trace.formats.stream_lines import packed
 
 LONGEST_TAG = 1_000_000
@@ -32,7 +33,7 @@ _ENDS_EARLY = (
 def scan(
     path: Path,
     form: XmlFormat,
-    begin: Callable[[XmlElement], None],
+    begin: Callable[[Tree], None],
     *,
     end: Callable[[str], None] | None = None,
     comment: Callable[[str], None] | None = None,
@@ -40,15 +41,17 @@ def scan(
 ) -> None:
     """Scan an XML file once, with callbacks for element starts and ends, comments, and text.
 
-    ``begin`` gets the same object for every element, and must not keep it. Text comes in pieces of
-    some kB. Raises RulecError R0610 if it is not such a file, R0701 if it cannot be read.
+    ``begin`` gets the same object for every element, with no text, and must not keep it. Text comes
+    in pieces of some kB. Raises RulecError R0610 if it is not such a file, R0701 if it cannot be
+    read.
     """
     parser = ParserCreate()
     # One for all: a file has millions, and to make one takes as long as to read its attributes
-    latest = XmlElement("", {}, parser, path, form)
+    latest = Tree("", {}, 0, path, form)
 
     def element(name: str, attributes: dict[str, str]) -> None:
         latest.name, latest.attributes = name, attributes
+        latest.place = parser.CurrentLineNumber
         begin(latest)
 
     def root(name: str, attributes: dict[str, str]) -> None:

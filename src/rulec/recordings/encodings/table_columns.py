@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Floats
 from rulec.diagnostics import RulecError, nearest_name
-from rulec.recordings.encodings.xml_element import LARGEST, number_in, numbers_in, short
+from rulec.recordings.encodings.file_values import LARGEST, number_in, numbers_in, short
 from rulec.value_display import short_repr
 
 MOST_ROWS = 20_000_000

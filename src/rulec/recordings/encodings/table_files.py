@@ -25,6 +25,7 @@ from rulec.recordings.encodings.csv_head import (
     separator_of,
 )
 from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.table_columns import (
     MOST_COLUMNS,
     MOST_ROWS,
@@ -34,7 +35,6 @@ from rulec.recordings.encodings.table_columns import (
     Texts,
     checked_numbers,
 )
-from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.recording_messages import NOT_A_RECORDING
 from rulec.trace.formats.arrow.parquet_columns import parquet_columns, parquet_names
 from rulec.trace.formats.stream_lines import foreign, utf16

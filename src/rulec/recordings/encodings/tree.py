@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.file_format import FileFormat
-from rulec.recordings.encodings.xml_element import LARGEST, number_in, short
+from rulec.recordings.encodings.file_values import LARGEST, number_in, short
 
 MOST_ELEMENTS = 1_000_000
 """Limit on the elements in one child of the root, about 300 MB of memory."""
@@ -80,6 +80,16 @@ class Tree:
             raise self.wrong(f"the element `{self.name}` has no `{key}`")
         return value
 
+    def filled(self, key: str) -> str:
+        """An attribute's text, which must be neither missing nor empty."""
+        if not self.get(key):
+            raise self.wrong(f"the element `{self.name}` has no `{key}`")
+        return self.attributes[key]
+
+    def get(self, key: str) -> str:
+        """An attribute's text; empty if it is missing."""
+        return self.attributes.get(key, "")
+
     def id(self, key: str = "id") -> str:
         """The whole number in an attribute, without leading zeros."""
         text = self.attribute(key).strip()
@@ -92,16 +102,28 @@ class Tree:
         """The ids that all children with a name refer to."""
         return tuple([child.id("ref") for child in self.children if child.name == name])
 
-    def number(self, key: str = "") -> float:
-        """The number in the text or, with ``key``, in an attribute; it must not be huge."""
-        text = self.attribute(key) if key else self.text
+    def number(self, key: str = "", default: float | None = None) -> float:
+        """The number in the text or, with ``key``, in an attribute; its default if missing."""
+        if default is not None and key not in self.attributes:
+            return default
+        return self.as_number(key, self.attribute(key) if key else self.text)
+
+    def as_number(self, key: str, text: str) -> float:
+        """The number in a text, which must not be huge."""
         try:
             value = number_in(text)
         except ValueError:
             value = LARGEST
         if not abs(value) < LARGEST or len(text) == LONGEST_TEXT:
-            raise self.wrong(_quoted(key or self.name, text), f"a number below {LARGEST:.0e}")
+            raise self.wrong(self._quoted(text, key), f"a number below {LARGEST:.0e}")
         return value if abs(value) > SMALLEST else 0.0
+
+    def positive(self, key: str, default: float | None = None) -> float:
+        """A number above 0 in an attribute; its default if missing."""
+        value = self.number(key, default)
+        if value <= 0:
+            raise self.wrong(f"`{key}` of a `{self.name}` is {value:g}", "a number above 0")
+        return value
 
     def whole(self) -> int:
         """The whole number in the text, which must not be huge."""
@@ -111,13 +133,13 @@ class Tree:
         except ValueError:
             value = int(LARGEST)
         if not abs(value) < LARGEST or len(self.text) == LONGEST_TEXT:
-            raise self.wrong(_quoted(self.name, self.text), f"a whole number below {LARGEST:.0e}")
+            raise self.wrong(self._quoted(self.text), f"a whole number below {LARGEST:.0e}")
         return value
 
     def one_of(self, words: Collection[str]) -> str:
         """The text, which must be one of ``words``."""
         if self.word not in words:
-            raise self.wrong(_quoted(self.name, self.text), f"one of {', '.join(sorted(words))}")
+            raise self.wrong(self._quoted(self.text), f"one of {', '.join(sorted(words))}")
         return self.word
 
     @property
@@ -130,6 +152,6 @@ class Tree:
         expected = expected and f"expected {expected}"
         return self.form.refused(self.path, why, self.place, expected=expected)
 
-
-def _quoted(name: str, text: str) -> str:
-    return f"`{name}` is `{short(text.strip())}`" if text.strip() else f"`{name}` is empty"
+    def _quoted(self, text: str, key: str = "") -> str:
+        what = f"`{key}` of a `{self.name}`" if key else f"`{self.name}`"
+        return f"{what} is `{short(text.strip())}`" if text.strip() else f"{what} is empty"

@@ -17,9 +17,9 @@ from xml.etree import ElementTree
 from xml.parsers.expat import ExpatError, ParserCreate
 
 from rulec.recordings.encodings.file_format import FileFormat, XmlFormat
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.safe_xml import blocks_of, scan
 from rulec.recordings.encodings.tree import LONGEST_TEXT, MOST_ELEMENTS, AlikeElements, Tree
-from rulec.recordings.encodings.xml_element import XmlElement, short
 
 LARGEST_BYTES = 4_000_000
 """Files of more bytes are read one child of the root at a time, with little memory."""
@@ -53,10 +53,9 @@ def scan_trees(
     open_trees: list[Tree] = []
     count = 0
 
-    def begin(element: XmlElement) -> None:
+    def begin(element: Tree) -> None:
         nonlocal count
-        line = element.parser.CurrentLineNumber
-        tree = Tree(element.name, element.attributes, line, path, form)
+        tree = Tree(element.name, element.attributes, element.place, path, form)
         count += 1
         if len(open_trees) > 1:
             open_trees[-1].children.append(tree)

@@ -11,8 +11,8 @@ from collections.abc import Iterator, Mapping
 from math import isfinite
 from types import MappingProxyType
 
+from rulec.recordings.encodings.file_values import number_in
 from rulec.recordings.encodings.speed_units import MPS_PER_KMH, SPEED_UNITS
-from rulec.recordings.encodings.xml_element import number_in
 from rulec.recordings.recording import BUSES_ONLY, CYCLES_TOO, TAXIS_TOO, LaneMark
 
 _Tags = Mapping[str, str]

@@ -21,7 +21,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.files.read_files import opened
-from rulec.recordings.encodings.xml_element import LARGEST, number_in, short
+from rulec.recordings.encodings.file_values import LARGEST, number_in, short
 from rulec.recordings.lanelet2 import projections
 from rulec.recordings.lanelet2.osm_file import LANELET2, OsmFile
 from rulec.recordings.recording import Points

@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.file_format import XmlFormat
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.safe_xml import scan
-from rulec.recordings.encodings.xml_element import XmlElement, short
+from rulec.recordings.encodings.tree import Tree
 
 LANELET2 = XmlFormat(
     "a Lanelet2 map",
@@ -113,7 +114,7 @@ class _Scan:
     open: OsmNode | OsmWay | OsmRelation | None = None
     references: int = 0
 
-    def begin(self, element: XmlElement) -> None:
+    def begin(self, element: Tree) -> None:
         if self.depth == 1:
             self.open = self._opened(element)
         elif self.depth == 2 and self.open is not None:
@@ -123,11 +124,11 @@ class _Scan:
     def end(self, _: str) -> None:
         self.depth -= 1
 
-    def _opened(self, element: XmlElement) -> OsmNode | OsmWay | OsmRelation | None:
+    def _opened(self, element: Tree) -> OsmNode | OsmWay | OsmRelation | None:
         # Editors keep deleted elements in the file until the upload
         if element.get("action") == "delete" or element.get("visible") == "false":
             return None
-        place, file = element.parser.CurrentLineNumber, self.file
+        place, file = element.place, self.file
         match element.name:
             case "node":
                 node = OsmNode(place, _degrees(element, "lat", 90), _degrees(element, "lon", 360))
@@ -145,7 +146,7 @@ class _Scan:
                 return _entered(file.relations, OsmRelation(_id(element, "id"), place), element)
         return None
 
-    def _add(self, element: XmlElement, owner: OsmNode | OsmWay | OsmRelation) -> None:
+    def _add(self, element: Tree, owner: OsmNode | OsmWay | OsmRelation) -> None:
         # Kept fast: a large map has a million of these elements
         name = element.name
         if name == "nd" and isinstance(owner, OsmWay):
@@ -165,7 +166,7 @@ class _Scan:
             ):
                 owner.tags[key] = value.strip()
 
-    def _count(self, element: XmlElement) -> None:
+    def _count(self, element: Tree) -> None:
         self.references += 1
         if self.references > MOST_REFERENCES:
             raise element.wrong(f"there are more than {MOST_REFERENCES:,} references in it")
@@ -186,16 +187,16 @@ def read_osm(path: Path) -> OsmFile:
     return file
 
 
-def _id(element: XmlElement, key: str) -> str:
+def _id(element: Tree, key: str) -> str:
     """An id: a whole number, which editors make negative for new elements."""
-    text = element.text(key)
+    text = element.filled(key)
     digits = text.removeprefix("-")
     if not (digits.isascii() and digits.isdigit() and len(text) <= _LONGEST_ID):
         raise element.wrong(f"`{key}` of a `{element.name}` is `{short(text)}`", "a whole number")
     return text
 
 
-def _degrees(element: XmlElement, key: str, most: float) -> float:
+def _degrees(element: Tree, key: str, most: float) -> float:
     # Maps in metres leave the degrees empty
     if not element.get(key):
         return nan
@@ -208,7 +209,7 @@ def _degrees(element: XmlElement, key: str, most: float) -> float:
 def _entered(
     known: dict[str, OsmWay] | dict[str, OsmRelation],
     entry: OsmWay | OsmRelation,
-    element: XmlElement,
+    element: Tree,
 ) -> OsmWay | OsmRelation:
     if entry.id in known:
         raise element.wrong(f"there are two elements `{element.name}` with the id `{entry.id}`")

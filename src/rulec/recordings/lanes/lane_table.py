@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError, did_you_mean
 from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.file_values import LARGEST, short
 from rulec.recordings.encodings.speed_units import MPS_PER_KMH, MPS_PER_MPH
 from rulec.recordings.encodings.table_columns import (
     ColumnKind,
@@ -22,7 +23,6 @@ from rulec.recordings.encodings.table_columns import (
     unread_remark,
 )
 from rulec.recordings.encodings.table_files import open_table, table_of
-from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.recordings.lanes.lanes_along import (
     CLOSEST_M,
     LANE_TYPES,

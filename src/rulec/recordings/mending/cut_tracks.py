@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rulec.diagnostics import first_of
-from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.encodings.file_values import short
 
 _NAMED = 3
 

@@ -12,7 +12,7 @@ import shapely
 
 from rulec.diagnostics import first_of
 from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED
-from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.opendrive.content.elements import Lane, OpenDrive, record_at
 from rulec.recordings.opendrive.content.file_reader import OPENDRIVE, read_file
 from rulec.recordings.opendrive.crosswalks import crosswalks

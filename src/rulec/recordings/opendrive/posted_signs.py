@@ -22,7 +22,7 @@ from rulec.recordings.commonroad.traffic_signs import (
     effect_name,
     with_plates,
 )
-from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.opendrive.content.elements import (
     OpenDrive,
     Orientation,

@@ -7,8 +7,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from rulec.recordings.encodings.file_values import LARGEST
 from rulec.recordings.encodings.wire_format import Message, Table, WireField, WireFile
-from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.recording import Points
 
 Fields: TypeAlias = Mapping[str, Any]

@@ -21,8 +21,8 @@ import numpy as np
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.file_format import BinaryFormat
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.wire_format import wire_file
-from rulec.recordings.encodings.xml_element import short
 
 MOST_OPCODES = 5_000_000
 """Limit on opcodes, each of which makes at most one value; a scene of 20 s has 100,000."""

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.file_format import BinaryFormat
-from rulec.recordings.encodings.xml_element import LARGEST, short
+from rulec.recordings.encodings.file_values import LARGEST, short
 
 MOST_NUMBERS = 5_000_000
 """Limit on the numbers read from a scenario's arrays and lists; 20 s have some 100,000."""

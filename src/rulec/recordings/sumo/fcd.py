@@ -11,8 +11,9 @@ from operator import itemgetter
 from pathlib import Path, PurePosixPath
 
 from rulec.diagnostics import RulecError, SourceLocation, named
+from rulec.recordings.encodings.file_values import LARGEST, numbers_in, short
 from rulec.recordings.encodings.safe_xml import scan
-from rulec.recordings.encodings.xml_element import LARGEST, XmlElement, numbers_in, short
+from rulec.recordings.encodings.tree import Tree
 from rulec.recordings.recording_messages import NET_MISSING
 from rulec.recordings.sumo.fcd_content import (
     BODIES,
@@ -40,7 +41,7 @@ def read_fcd(path: Path) -> FloatingCarData:
         if not data.moments and "<" in text:
             data.head = fcd_head(text)
 
-    def begin(element: XmlElement) -> None:
+    def begin(element: Tree) -> None:
         nonlocal carriers
         if element.name in BODIES:
             carriers += 1
@@ -62,7 +63,7 @@ def read_fcd(path: Path) -> FloatingCarData:
     return data
 
 
-def _add(data: FloatingCarData, element: XmlElement) -> None:
+def _add(data: FloatingCarData, element: Tree) -> None:
     name, attributes = element.name, element.attributes
     try:
         key, *place = _place_of(attributes)
@@ -100,11 +101,11 @@ def _add(data: FloatingCarData, element: XmlElement) -> None:
     on = attributes.get("lane") or attributes.get("edge")
     if on and on not in data.on:
         kind = "lane" if attributes.get("lane") else "edge"
-        data.on[on] = kind, element.parser.CurrentLineNumber
+        data.on[on] = kind, element.place
 
 
-def _wrong(element: XmlElement) -> RulecError:
-    element.text("id")
+def _wrong(element: Tree) -> RulecError:
+    element.filled("id")
     for key in PLACE:
         element.number(key)
     for key in (SPEED, "acceleration"):

@@ -13,9 +13,9 @@ import numpy as np
 from numpy import int64, intp
 from numpy.typing import NDArray
 
+from rulec.recordings.encodings.file_values import LARGEST, short
 from rulec.recordings.encodings.table_columns import Columns
 from rulec.recordings.encodings.table_files import open_table
-from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.recordings.sumo.fcd_content import (
     BODIES,
     FCD,

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from rulec.recordings.encodings.file_format import XmlFormat
 from rulec.recordings.encodings.safe_xml import root_of, scan
-from rulec.recordings.encodings.xml_element import XmlElement
+from rulec.recordings.encodings.tree import Tree
 from rulec.recordings.sumo.fcd import demand_beside, named_beside
 from rulec.recordings.sumo.fcd_content import FcdHead
 from rulec.recordings.sumo.net import ProgrammeReader, SignalProgramme
@@ -29,7 +29,7 @@ def light_states_beside(path: Path, head: FcdHead) -> tuple[Path, ...]:
     """The files of recorded states: those named in additional files, or the only ``*.tls.xml``."""
     names: list[str] = []
 
-    def begin(element: XmlElement) -> None:
+    def begin(element: Tree) -> None:
         if element.name == "timedEvent" and element.get("type") == "SaveTLSStates":
             names.append(element.get("dest"))
 
@@ -57,7 +57,7 @@ def programmes_beside(path: Path, head: FcdHead) -> Mapping[str, SignalProgramme
         lights, switched = ProgrammeReader(), set[str]()
 
         def begin(
-            element: XmlElement, lights: ProgrammeReader = lights, switched: set[str] = switched
+            element: Tree, lights: ProgrammeReader = lights, switched: set[str] = switched
         ) -> None:
             lights.begin(element)
             if element.name == "wautJunction":
@@ -78,10 +78,10 @@ def read_light_states(path: Path) -> Mapping[str, SignalProgramme]:
     """
     changes: dict[str, list[tuple[float, str]]] = {}
 
-    def begin(element: XmlElement) -> None:
+    def begin(element: Tree) -> None:
         if element.name == "tlsState":
-            time, state = element.number("time"), element.text("state")
-            known = changes.setdefault(element.text("id"), [])
+            time, state = element.number("time"), element.filled("state")
+            known = changes.setdefault(element.filled("id"), [])
             if known and time < known[-1][0]:
                 raise element.wrong("its times are not in ascending order")
             if not known or known[-1][1] != state:

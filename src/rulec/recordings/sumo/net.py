@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from rulec.recordings.encodings.file_format import XmlFormat
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.safe_xml import scan
-from rulec.recordings.encodings.xml_element import XmlElement, short
+from rulec.recordings.encodings.tree import Tree
 from rulec.recordings.recording import LONGEST_M, Light, Points, Side
 from rulec.recordings.sumo.fcd_content import is_true
 
@@ -200,16 +201,16 @@ class ProgrammeReader:
         self._light: tuple[str, float, bool] | None = None
         self._phases: list[tuple[float, str]] = []
 
-    def begin(self, element: XmlElement) -> None:
+    def begin(self, element: Tree) -> None:
         """Handle the beginning of any element."""
         if element.name == "phase":
             if self._light is not None:
-                self._phases.append((element.positive("duration"), element.text("state")))
+                self._phases.append((element.positive("duration"), element.filled("state")))
             return
         self.finish()
         if element.name == "tlLogic":
             fixed = element.attributes.get("type", "static") == "static"
-            self._light = element.text("id"), element.number("offset", 0.0), fixed
+            self._light = element.filled("id"), element.number("offset", 0.0), fixed
 
     def finish(self) -> None:
         """Store the programme read last; to be called at the end of the file."""
@@ -229,7 +230,7 @@ def read_net(path: Path) -> SumoNet:
     edge: NetEdge | None = None
     junction: NetJunction | None = None
 
-    def begin(element: XmlElement) -> None:
+    def begin(element: Tree) -> None:
         nonlocal edge, junction
         lights.begin(element)
         match element.name:
@@ -237,7 +238,7 @@ def read_net(path: Path) -> SumoNet:
                 net.side = "left" if is_true(element.get("lefthand")) else "right"
             case "edge":
                 function, kind, start, end = map(element.get, ("function", "type", "from", "to"))
-                edge = NetEdge(element.text("id"), function, kind, start, end)
+                edge = NetEdge(element.filled("id"), function, kind, start, end)
                 net.edges[edge.id] = edge
             case "lane":
                 if edge is None:
@@ -251,7 +252,7 @@ def read_net(path: Path) -> SumoNet:
             case "junction":
                 edge = None
                 ways = tuple(element.get("intLanes").split())
-                junction = NetJunction(element.text("id"), element.get("type"), ways)
+                junction = NetJunction(element.filled("id"), element.get("type"), ways)
                 net.junctions[junction.id] = junction
             case "request" if junction is not None:
                 junction.first.append(element.get("response"))
@@ -268,9 +269,9 @@ def read_net(path: Path) -> SumoNet:
     return net
 
 
-def _lane(element: XmlElement, edge: NetEdge) -> NetLane:
+def _lane(element: Tree, edge: NetEdge) -> NetLane:
     places = []
-    for place in element.text("shape").split():
+    for place in element.filled("shape").split():
         numbers = [element.as_number("shape", part) for part in place.split(",")]
         if len(numbers) not in (2, 3):
             raise element.wrong("a place in the `shape` of a `lane` has no x and y")
@@ -281,7 +282,7 @@ def _lane(element: XmlElement, edge: NetEdge) -> NetLane:
     if width > WIDEST_M:
         raise element.wrong(f"a lane is {width:g} m wide", f"{WIDEST_M:g} m at most")
     return NetLane(
-        id=element.text("id"),
+        id=element.filled("id"),
         edge=edge,
         index=int(element.number("index")),
         shape=np.array(places, dtype=float),
@@ -301,10 +302,10 @@ def _forbids(changing: str | None) -> bool:
     return changing is not None and not {"all", "passenger"} & set(changing.split())
 
 
-def _connection(element: XmlElement) -> NetConnection:
+def _connection(element: Tree) -> NetConnection:
     return NetConnection(
-        start=f"{element.text('from')}_{element.text('fromLane')}",
-        end=f"{element.text('to')}_{element.text('toLane')}",
+        start=f"{element.filled('from')}_{element.filled('fromLane')}",
+        end=f"{element.filled('to')}_{element.filled('toLane')}",
         via=element.get("via"),
         state=element.get("state"),
         direction=element.get("dir"),

@@ -13,7 +13,7 @@ from numpy import float64, int64, intp
 from numpy.typing import NDArray
 
 from rulec.diagnostics import SourceLocation, first_of
-from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.mending.derived_motion import velocities_of
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import (

@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from rulec.recordings.encodings.file_format import XmlFormat
 from rulec.recordings.encodings.safe_xml import root_of, scan
-from rulec.recordings.encodings.xml_element import XmlElement
+from rulec.recordings.encodings.tree import Tree
 
 DEMAND = XmlFormat(
     "SUMO's vehicle types",
@@ -85,12 +85,12 @@ def read_vehicle_types(files: Iterable[Path]) -> dict[str, VehicleType]:
     """
     types: dict[str, VehicleType] = {}
 
-    def begin(element: XmlElement) -> None:
+    def begin(element: Tree) -> None:
         if element.name == "vType":
             usual = CLASSES.get(element.attributes.get("vClass", "passenger"), _UNKNOWN)
             shape = element.attributes.get("guiShape", "")
             articulated = shape in _ARTICULATED or shape.startswith(_RAIL_SHAPE)
-            types[element.text("id")] = VehicleType(
+            types[element.filled("id")] = VehicleType(
                 usual.kind,
                 element.positive("length", usual.length),
                 element.positive("width", usual.width),

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from rulec.recordings.encodings.file_values import number_in, short
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.encodings.table_columns import NamedColumns
-from rulec.recordings.encodings.xml_element import number_in, short
 from rulec.recordings.lanes.lanes_along import lanelet_along
 from rulec.recordings.recording import LONGEST_M, Lanelet
 from rulec.recordings.road_map import RoadMap

@@ -16,9 +16,9 @@ import numpy as np
 from numpy import int64
 
 from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.table_columns import ColumnKind, NamedColumns, Texts, named_columns
 from rulec.recordings.encodings.table_files import open_table
-from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.mending.derived_motion import along
 from rulec.recordings.recording import Recording
 from rulec.recordings.recording_format import RecordingSource

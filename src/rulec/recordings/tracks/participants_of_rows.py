@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Floats
 from rulec.diagnostics import RulecError, did_you_mean, first_of
-from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.mending import derived_motion as motion
 from rulec.recordings.mending.cut_tracks import cut_remark
 from rulec.recordings.mending.short_holes import HOLES_WHY, LONGEST_HOLE_S, most_steps

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rulec.array_types import Floats
+from rulec.recordings.encodings.file_values import LARGEST
 from rulec.recordings.encodings.table_columns import Columns, Texts
-from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Lamp
 from rulec.recordings.tracks.even_times import EvenTimes

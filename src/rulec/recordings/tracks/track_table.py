@@ -14,6 +14,7 @@ from rulec.recordings.doubts.motion_doubts import with_doubts
 from rulec.recordings.doubts.road_doubts import check_near
 from rulec.recordings.encodings.csv_head import is_number
 from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.speed_units import MPS_PER_KMH, MPS_PER_MPH
 from rulec.recordings.encodings.table_columns import (
     ColumnKind,
@@ -23,7 +24,6 @@ from rulec.recordings.encodings.table_columns import (
     unread_remark,
 )
 from rulec.recordings.encodings.table_files import open_table, table_of
-from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.lanes.lane_table import lane_map
 from rulec.recordings.map_files import read_map
 from rulec.recordings.recording import Lamp, Recording

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.file_format import BinaryFormat
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.tfrecord import TfRecord, tfrecords
 from rulec.recordings.encodings.wire_format import WireFile
-from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.lane_centres.body_tracks import BoxTrack, bridged, gaps_remark, participant
 from rulec.recordings.lane_centres.centre_lanelets import ALL_JUNCTIONS, centre_lanelets
 from rulec.recordings.lane_centres.even_steps import even_steps

@@ -8,8 +8,8 @@ from math import isfinite
 import numpy as np
 
 from rulec.diagnostics import RulecError
+from rulec.recordings.encodings.file_values import LARGEST
 from rulec.recordings.encodings.wire_format import Message, Value, WireField, WireFile
-from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.lane_centres.road_features import Places3d
 
 _NAN = float("nan")

@@ -24,8 +24,8 @@ from rulec.recordings.encodings.arrow.nested_columns import (
     nested_column,
 )
 from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.file_values import LARGEST, short
 from rulec.recordings.encodings.table_columns import Texts
-from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.trace.formats.arrow.parquet import without_arrow
 
 MOST_ROWS = 5_000_000

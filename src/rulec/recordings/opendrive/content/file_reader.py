@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from rulec.recordings.encodings.file_format import XmlFormat
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.tree import Tree
-from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.encodings.xml_tree import scan_trees
 from rulec.recordings.opendrive.content.elements import Connection, OpenDrive, RoadJunction
 from rulec.recordings.opendrive.content.road_reader import read_road

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from rulec.recordings.encodings.file_values import number_in
 from rulec.recordings.encodings.speed_units import SPEED_UNITS
 from rulec.recordings.encodings.tree import Tree
-from rulec.recordings.encodings.xml_element import number_in
 from rulec.recordings.opendrive.content.elements import (
     RoadObject,
     RoadSignal,

@@ -7,8 +7,8 @@ from dataclasses import replace
 from itertools import pairwise
 from math import pi
 
+from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.tree import Tree
-from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.opendrive.content.elements import (
     Access,
     Cubic,
