@@ -5,7 +5,7 @@ All mistakes are reported together, as one RulecError R0617.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import cast, get_args
 
 import numpy as np
@@ -23,6 +23,7 @@ from rulec.recordings.lanes.lanes_along import (
     USUAL_WIDTH_M,
     lanelet_along,
     linked,
+    unknown_references,
 )
 from rulec.recordings.mending import derived_motion as motion
 from rulec.recordings.polylines import wrapped
@@ -325,22 +326,10 @@ def _check_lanelet(lanelet: Lanelet, known: Mapping[str, Lanelet], to: BuildingC
     checks = BuildingChecks(f"lanelet `{lanelet.id:.40}`")
     for side in ("left", "right", "centre"):
         checks.points(side, getattr(lanelet, side))
-    for field, ids in _references(lanelet):
-        for name in ids:
-            if name not in known:
-                why = f"`{field}` has `{name!s:.40}`, which is no lanelet of the recording"
-                checks.wrong(why, help_text=did_you_mean(str(name), known))
+    for field, name in unknown_references(lanelet, known):
+        why = f"`{field}` has `{name!s:.40}`, which is no lanelet of the recording"
+        checks.wrong(why, help_text=did_you_mean(str(name), known))
     to.problems += checks.problems
-
-
-def _references(lanelet: Lanelet) -> Iterator[tuple[str, Iterable[str]]]:
-    yield "successors", lanelet.successors
-    yield "predecessors", lanelet.predecessors
-    yield "left_of", () if lanelet.left_of is None else (lanelet.left_of,)
-    yield "right_of", () if lanelet.right_of is None else (lanelet.right_of,)
-    yield "foes", sorted(lanelet.foes or ())
-    yield "first", sorted(lanelet.first or ())
-    yield "lights_to", lanelet.lights_to
 
 
 def _check_speeds(checks: BuildingChecks, body: Participant, step_s: float) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+
 from rulec.recordings.recording import Side
 
 LEFT_HAND = """
@@ -29,6 +31,9 @@ _CODES = {
     code: entry[:3] for entry in (LEFT_HAND + RIGHT_HAND).split() for code in entry.split("/")[1:]
 } | {"UK": "GBR", "GERMANY": "DEU"}
 
+PLACES: Mapping[str, str] = {"singapore": "SGP", "sg-": "SGP", "boston": "USA", "us-": "USA"}
+"""How data sets' names of places begin -> the country."""
+
 
 def country_of(code: str) -> str:
     """The alpha-3 code of a country by its alpha-2 or numeric code; empty if it is not listed."""
@@ -51,3 +56,9 @@ def side_in(country: str) -> Side | None:
     CommonRoad's ``ZAM`` is the fictitious country Zamunda, not Zambia.
     """
     return _SIDES.get(country)
+
+
+def country_at(names: Iterable[str], begins: Mapping[str, str] = PLACES) -> str:
+    """The country of the first name that begins in a known way; empty if none does."""
+    known = (begins[x] for name in names for x in begins if name.lower().startswith(x))
+    return next(known, "")

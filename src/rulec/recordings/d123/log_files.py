@@ -15,9 +15,9 @@ from typing import Any
 import msgspec
 
 from rulec.diagnostics import SourceLocation
+from rulec.recordings.commonroad.countries import PLACES, country_at
 from rulec.recordings.encodings.arrow.arrow_tables import LONGEST_TEXT, ArrowTable
 from rulec.recordings.encodings.file_format import FileFormat
-from rulec.recordings.recording import Side
 from rulec.recordings.recording_messages import NET_MISSING
 
 LOG = FileFormat(
@@ -32,13 +32,8 @@ LIGHTS, MAP = "traffic_light_detections.arrow", "map.arrow"
 WAYMO = "wod"
 """The prefix of the names of Waymo's data sets, whose maps have all stop signs."""
 
-_PLACES: tuple[tuple[str, Side, str], ...] = (
-    *((name, "right", "USA") for name in ("av2", WAYMO, "pandaset", "boston", "us-")),
-    ("kitti360", "right", "DEU"),
-    ("singapore", "left", "SGP"),
-    ("sg-", "left", "SGP"),
-)
-"""Prefixes of the names of data sets and places, with their side of traffic and country."""
+_COUNTRIES = {**dict.fromkeys(("av2", WAYMO, "pandaset"), "USA"), "kitti360": "DEU", **PLACES}
+"""How the names of data sets and places begin -> the country."""
 
 _DEEPEST = 16
 """Limit on the depth of nested values; the metadata read here have four levels."""
@@ -92,13 +87,9 @@ def word(metadata: Mapping[Any, Any], name: str) -> str:
     return text
 
 
-def side_and_country(data_set: str, place: str) -> tuple[Side | None, str]:
-    """The side of traffic and the country; None and empty if unknown."""
-    for name in (place.lower(), data_set.lower()):
-        for begin, side, country in _PLACES:
-            if name.startswith(begin):
-                return side, country
-    return None, ""
+def country_of(data_set: str, place: str) -> str:
+    """The country of a place, or of all places of a data set; empty if unknown."""
+    return country_at((place, data_set), _COUNTRIES)
 
 
 def map_of(path: Path, data_set: str, place: str) -> Path:

@@ -20,6 +20,7 @@ from rulec.recordings.adjacency import with_untold_neighbours
 from rulec.recordings.argoverse.city_frame import CityPoses, poses_in, rotations
 from rulec.recordings.argoverse.sweep_boxes import TrackBoxes, check_sizes, participant, with_riders
 from rulec.recordings.argoverse.sweep_grid import NANOSECONDS, on_grid
+from rulec.recordings.commonroad.countries import side_in
 from rulec.recordings.d123 import log_files as files
 from rulec.recordings.d123.log_files import LOG
 from rulec.recordings.d123.map_lanes import read_d123_map, with_lights
@@ -85,14 +86,14 @@ def read_d123(path: Path, map_path: Path | None = None) -> Recording:
         raise LOG.refused(boxes.path, f"somebody else is called `{own.id}`, as ego is")
     road = read_d123_map(map_path or files.map_of(path, data_set, place))
     lights = _lights(path.with_name(files.LIGHTS), sweeps)
-    side, country = files.side_and_country(data_set, place)
+    country = files.country_of(data_set, place)
     recording = Recording(
         name=files.word(about, "log_name") or path.resolve().parent.name,
         step_s=sweeps.step_s,
         lanelets=with_lights(road.lanelets, lights),
         participants=tuple(_participants([own, *others], sweeps)),
         form=_form(data_set),
-        side=road.side or side,
+        side=road.side or side_in(country),
         country=road.country or country,
         complete=road.complete,
         remarks=road.remarks,

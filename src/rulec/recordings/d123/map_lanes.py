@@ -19,6 +19,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
+from rulec.recordings.commonroad.countries import side_in
 from rulec.recordings.d123 import log_files as files
 from rulec.recordings.d123.log_files import OddPackError, unpacked
 from rulec.recordings.d123.stop_zones import SIGNS, StopZone, with_signs
@@ -85,7 +86,7 @@ def read_d123_map(path: Path) -> RoadMap:
     layers = _layers(path)
     about = files.said_in(layers.table)
     data_set = files.word(about, "dataset")
-    side, country = files.side_and_country(data_set, files.word(about, "location"))
+    country = files.country_of(data_set, files.word(about, "location"))
     lanelets = with_sound_links(_lanes(layers))
     if not lanelets:
         raise MAP.refused(path, "there is no lane in it")
@@ -96,7 +97,7 @@ def read_d123_map(path: Path) -> RoadMap:
     return RoadMap(
         form="123D map",
         lanelets=signed,
-        side=side,
+        side=side_in(country),
         country=country,
         complete=frozenset({"STOP"} if is_waymo and not left_out else ()),
         remarks=(why,) * bool(left_out),

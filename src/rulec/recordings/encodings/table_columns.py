@@ -108,9 +108,13 @@ class ColumnKind(NamedTuple):
 
 
 class NamedColumns(NamedTuple):
-    """Columns of a table under rulec's names and in rulec's units, and the unread names."""
+    """Columns of a table under rulec's names and in rulec's units, and the unread names.
+
+    ``given``: each column's name in the table, and the size of its unit in rulec's unit.
+    """
 
     columns: Columns
+    given: Mapping[str, tuple[str, float]]
     numbers: Mapping[str, Floats]
     texts: Mapping[str, Texts]
     unread: tuple[str, ...]
@@ -119,18 +123,11 @@ class NamedColumns(NamedTuple):
         """A number column, or None if the table lacks it."""
         return self.numbers.get(name)
 
-    def as_given(self, kind: ColumnKind) -> tuple[str, float]:
-        """A column's name in the table, and the size of its unit in rulec's unit."""
-        known = {kind.name: 1.0, **kind.also}
-        for name in self.columns.numbers:
-            if (ours := name.strip().casefold()) in known:
-                return name, known[ours]
-        return kind.name, 1.0
-
     def part(self, chosen: NDArray[np.intp]) -> NamedColumns:
         """The columns, reduced to the chosen rows."""
         return NamedColumns(
             self.columns.part(chosen),
+            self.given,
             {name: column[chosen] for name, column in self.numbers.items()},
             {name: Texts(text.codes[chosen], text.names) for name, text in self.texts.items()},
             self.unread,
@@ -144,36 +141,33 @@ def named_columns(table: ColumnTable, kinds: Sequence[ColumnKind]) -> NamedColum
     that occurs twice.
     """
     ours = {alias: kind for kind in kinds for alias in (kind.name, *kind.also)}
-    heading_of: dict[str, str] = {}
+    given: dict[str, tuple[str, float]] = {}
     unread = []
     for name in table.names:
-        kind = ours.get(name.strip().casefold())
+        alias = name.strip().casefold()
+        kind = ours.get(alias)
         if kind is None:
             unread.append(name)
-        elif kind.name in heading_of:
-            both = f"`{short(heading_of[kind.name])}` and `{short(name)}`"
+        elif kind.name in given:
+            both = f"`{short(given[kind.name][0])}` and `{short(name)}`"
             why = f"its columns {both} are both `{kind.name}`"
             raise table.refused(why, help_text="keep one of them, or rename the other")
         else:
-            heading_of[kind.name] = name
+            given[kind.name] = name, kind.also.get(alias, 1.0)
     for kind in kinds:
-        if kind.required and kind.name not in heading_of:
+        if kind.required and kind.name not in given:
             raise _missing(table, kind, unread, [k.name for k in kinds if k.required])
-    by_name = {kind.name: kind for kind in kinds}
-    texts = [name for ours_, name in heading_of.items() if by_name[ours_].is_text]
-    numbers = [name for ours_, name in heading_of.items() if not by_name[ours_].is_text]
-    columns = table.read(numbers, texts)
-    read: dict[str, Floats] = {}
-    for own, name in heading_of.items():
-        kind = by_name[own]
-        if not kind.is_text:
-            read[own] = columns.numbers[name] * kind.also.get(name.strip().casefold(), 1.0)
+    texts = {x.name: given[x.name][0] for x in kinds if x.is_text and x.name in given}
+    numbers = {own: name for own, (name, _) in given.items() if own not in texts}
+    columns = table.read([*numbers.values()], [*texts.values()])
+    for kind in kinds:
         if kind.required:
-            _check_full(columns, name, kind)
+            _check_full(columns, given[kind.name][0], kind)
     return NamedColumns(
         columns,
-        read,
-        {own: columns.texts[name] for own, name in heading_of.items() if by_name[own].is_text},
+        given,
+        {own: columns.numbers[name] * given[own][1] for own, name in numbers.items()},
+        {own: columns.texts[name] for own, name in texts.items()},
         tuple(unread),
     )
 

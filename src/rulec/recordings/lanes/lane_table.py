@@ -29,6 +29,7 @@ from rulec.recordings.lanes.lanes_along import (
     USUAL_WIDTH_M,
     lanelet_along,
     linked,
+    unknown_references,
     with_ends_that_meet,
 )
 from rulec.recordings.polylines import arc_lengths, line_length, without_repeats
@@ -109,8 +110,7 @@ class _LaneTable:
         bad = ~((values > low) & (values < high)) & ~np.isnan(values)
         if bad.any():
             row = int(np.argmax(bad))
-            (kind,) = (kind for kind in LANE_COLUMNS if kind.name == name)
-            given, unit = self.named.as_given(kind)
+            given, unit = self.named.given[name]
             why = f"its `{short(given)}` is {self.columns.numbers[given][row]:g}"
             expected = f"expected a number between {low / unit:g} and {high / unit:g}"
             metres = "widths are in metres" if name == "width" else ""
@@ -216,8 +216,7 @@ class _LaneTable:
             return None
         others = stated[limit[stated] != limit[stated[0]]]
         if len(others):
-            (kind,) = (kind for kind in LANE_COLUMNS if kind.name == "limit_mps")
-            given, _ = self.named.as_given(kind)
+            given, _ = self.named.given["limit_mps"]
             values = self.columns.numbers[given][[stated[0], others[0]]]
             raise self._two_values(int(others[0]), given, [f"{value:g}" for value in values])
         return float(limit[stated[0]])
@@ -241,32 +240,22 @@ class _LaneTable:
         if text and text not in known:
             texts = self.named.texts[name]
             row = int(own[np.argmax(texts.having(text)[own])])
-            raise self._unknown(row, f"its `{name}` is `{short(text)}`", text, known)
+            expected = f"expected {', '.join(f'`{word}`' for word in known)}, or nothing"
+            why = f"its `{name}` is `{short(text)}`"
+            raise self.columns.wrong(row, why, expected, did_you_mean(text, known))
         return text or None
-
-    def _unknown(self, row: int, why: str, text: str, known: Sequence[str]) -> RulecError:
-        expected = f"expected {', '.join(f'`{word}`' for word in known)}, or nothing"
-        return self.columns.wrong(row, why, expected, did_you_mean(text, known))
 
     def _check_references(self, lanelets: Mapping[str, Lanelet]) -> None:
         for lanelet in lanelets.values():
-            for column, names in (
-                ("successors", lanelet.successors),
-                ("predecessors", lanelet.predecessors),
-                ("left_lane", (lanelet.left_of,) if lanelet.left_of else ()),
-                ("right_lane", (lanelet.right_of,) if lanelet.right_of else ()),
-                ("foes", tuple(lanelet.foes or ())),
-                ("first", tuple(lanelet.first or ())),
-            ):
-                for name in names:
-                    if name not in lanelets:
-                        row = int(np.argmax(self.lane.having(lanelet.id)))
-                        why = (
-                            f"`{column}` of lane `{short(lanelet.id)}` has `{short(name)}`, "
-                            "which is no lane"
-                        )
-                        help_text = did_you_mean(name, lanelets)
-                        raise self.columns.wrong(row, why, "expected ids of lanes", help_text)
+            for field, name in unknown_references(lanelet, lanelets):
+                row = int(np.argmax(self.lane.having(lanelet.id)))
+                column = {"left_of": "left_lane", "right_of": "right_lane"}.get(field, field)
+                why = (
+                    f"`{column}` of lane `{short(lanelet.id)}` has `{short(name)}`, "
+                    "which is no lane"
+                )
+                help_text = did_you_mean(name, lanelets)
+                raise self.columns.wrong(row, why, "expected ids of lanes", help_text)
 
 
 def _with_known_priorities(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:

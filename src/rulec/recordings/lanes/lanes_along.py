@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -59,6 +59,20 @@ def lanelet_along(
     if stops_at_end:
         more["stop_line"] = np.stack((left[-1], right[-1]))
     return Lanelet(id=name, left=left, right=right, centre=centre, **more)
+
+
+def unknown_references(lanelet: Lanelet, known: Container[str]) -> Iterator[tuple[str, str]]:
+    """The fields of a lanelet, each with an id in it that is none of the known ones."""
+    for field, names in (
+        ("successors", lanelet.successors),
+        ("predecessors", lanelet.predecessors),
+        ("left_of", () if lanelet.left_of is None else (lanelet.left_of,)),
+        ("right_of", () if lanelet.right_of is None else (lanelet.right_of,)),
+        ("foes", sorted(lanelet.foes or ())),
+        ("first", sorted(lanelet.first or ())),
+        ("lights_to", lanelet.lights_to),
+    ):
+        yield from ((field, name) for name in names if name not in known)
 
 
 def linked(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:

@@ -10,8 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from rulec.recordings.recording import Side
-
 
 @dataclass(frozen=True, slots=True)
 class DataSet:
@@ -28,7 +26,6 @@ class DataSet:
     has_lights: bool = False
     has_crosswalks: bool = False
     ego_ahead_m: float = 0.0
-    side: Side | None = None
     country: str = ""
 
 
@@ -41,32 +38,17 @@ et al., "nuScenes" (CVPR 2020), supplement, shows the vehicle's frame.
 
 _DATA_SETS: Mapping[str, DataSet] = MappingProxyType(
     {
-        "waymo": DataSet("Waymo", True, True, True, side="right", country="USA"),
+        "waymo": DataSet("Waymo", True, True, True, country="USA"),
         "nuscenes": DataSet(ego_ahead_m=_ZOE_AHEAD_M),
         "nuplan": DataSet(has_lights=True),
-        "lyft": DataSet(has_lights=True, side="right", country="USA"),
-        "argoverse": DataSet(side="right", country="USA"),
-        "argoverse2": DataSet(has_crosswalks=True, side="right", country="USA"),
-        "av2": DataSet(has_crosswalks=True, side="right", country="USA"),
+        "lyft": DataSet(has_lights=True, country="USA"),
+        "argoverse": DataSet(country="USA"),
+        "argoverse2": DataSet(has_crosswalks=True, country="USA"),
+        "av2": DataSet(has_crosswalks=True, country="USA"),
     }
 )
-_PLACES: tuple[tuple[str, Side, str], ...] = (
-    ("singapore", "left", "SGP"),
-    ("sg-", "left", "SGP"),
-    ("boston", "right", "USA"),
-    ("us-", "right", "USA"),
-)
-"""Prefixes of map names, with their side of traffic and country."""
 
 
 def data_set(name: str) -> DataSet:
     """A data set by its name in the files; an unknown one has none of the properties."""
     return _DATA_SETS.get(name.lower(), DataSet())
-
-
-def place_of(map_name: str) -> tuple[Side | None, str]:
-    """The side of traffic and the country of a map; None and empty if unknown."""
-    for begin, side, country in _PLACES:
-        if map_name.lower().startswith(begin):
-            return side, country
-    return None, ""

@@ -11,12 +11,13 @@ from numpy import float64, int64
 from numpy.typing import NDArray
 
 from rulec.recordings.adjacency import with_untold_neighbours
+from rulec.recordings.commonroad.countries import country_at, side_in
 from rulec.recordings.encodings.file_format import BinaryFormat
 from rulec.recordings.lane_centres.body_tracks import BoxTrack, bridged, gaps_remark, participant
 from rulec.recordings.lane_centres.centre_lanelets import ALL_JUNCTIONS, centre_lanelets
 from rulec.recordings.lane_centres.even_steps import even_steps
 from rulec.recordings.recording import CROSSWALK, Participant, Recording
-from rulec.recordings.scenarionet.data_sets import DataSet, data_set, place_of
+from rulec.recordings.scenarionet.data_sets import DataSet, data_set
 from rulec.recordings.scenarionet.restricted_pickle import read_pickle
 from rulec.recordings.scenarionet.scenario_dictionary import KeyedValue
 from rulec.recordings.scenarionet.scenarionet_features import road_features
@@ -59,7 +60,7 @@ def read_scenarionet(path: Path) -> Recording:
     metadata = scenario.child("metadata")
     name = _text(metadata, "dataset")
     known = data_set(name)
-    side, country = place_of(_text(metadata, "map"))
+    country = country_at([_text(metadata, "map")]) or known.country
     if _text(metadata, "coordinate") == "left-handed":
         raise metadata.wrong("says that its coordinates are left-handed, which are not read")
     times = metadata.get("ts") or metadata.child("timestep")
@@ -82,9 +83,9 @@ def read_scenarionet(path: Path) -> Recording:
         lanelets=centre_lanelets(features, has_lights=known.has_lights or bool(features.lights)),
         participants=bodies,
         form=f"ScenarioNet scenario{title}",
-        side=side or known.side,
+        side=side_in(country),
         remarks=(*remarks.lines, *gaps_remark(remarks.bridged)),
-        country=country or known.country,
+        country=country,
         complete=ALL_JUNCTIONS | ({"STOP"} if known.whole_map else frozenset()),
         lacks=frozenset() if known.has_crosswalks else frozenset({CROSSWALK}),
         ego=ego if any(body.id == ego for body in bodies) else "",
