@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from operator import itemgetter
 from pathlib import Path
 from xml.etree import ElementTree
-from xml.parsers.expat import ExpatError, ParserCreate
 
 from rulec.recordings.encodings.file_format import FileFormat, XmlFormat
 from rulec.recordings.encodings.file_values import short
@@ -29,10 +28,13 @@ MOST_TAGS = 600_000
 
 DEEPEST = 20
 
-_HEAD_BYTES = 4096
-
 _ATTRIBUTE = "rulec-alike"
 _MARK = b"rulec-alike="
+_NOT_PLAIN = (b"\0", b"xmlns", b"<!DOCTYPE", _MARK)
+"""What namespaces, definitions of entities, and letters of several bytes cannot do without.
+
+No encoding that the parser takes has another byte for a letter of ASCII.
+"""
 _MOST_TAGS_ALIKE, _MOST_SHAPES = 60, 8
 _TAG = re.compile(rb"<(/?)([A-Za-z]+)>([^<]*)")
 
@@ -114,15 +116,12 @@ def whole_tree(path: Path, form: XmlFormat, alike: Sequence[Alike]) -> Tree | No
         data += block
         if len(data) > min(LARGEST_BYTES, form.largest_bytes):
             return None
-    is_plain = not any(sign in data for sign in (b"\0", b"xmlns", _MARK))
-    if not is_plain or data.count(b"<") > MOST_TAGS:
-        return None
-    if not _begins_well(bytes(data[:_HEAD_BYTES]), form):
+    if any(sign in data for sign in _NOT_PLAIN) or data.count(b"<") > MOST_TAGS:
         return None
     rest, runs = without_alike(bytes(data), alike)
     try:
-        # The prolog has been checked; entities cannot be defined anywhere else.
-        return _tree(ElementTree.fromstring(rest), path, form, runs)
+        root = ElementTree.fromstring(rest)
+        return _tree(root, path, form, runs) if root.tag == form.root else None
     except (ElementTree.ParseError, LookupError, ValueError):
         return None
 
@@ -225,24 +224,6 @@ def _shape(run: bytes, end_of_child: bytes, alike: Alike) -> _Shape | None:
     return _Shape(
         re.compile(b"".join(pattern)), len(tags), tuple(order.index(number) for number in wanted)
     )
-
-
-def _begins_well(head: bytes, form: XmlFormat) -> bool:
-    """Whether the root begins in the first bytes of a file, with no definitions before it."""
-    parser = ParserCreate()
-    seen: list[str] = []
-
-    def root(name: str, _: object) -> None:
-        seen.append(name)
-        parser.StartElementHandler = None
-
-    parser.StartElementHandler = root
-    parser.StartDoctypeDeclHandler = lambda *_: seen.append("")
-    try:
-        parser.Parse(head, False)
-    except (ExpatError, LookupError, ValueError):
-        return False
-    return seen[:1] == [form.root]
 
 
 def _tree(
