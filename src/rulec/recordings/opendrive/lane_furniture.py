@@ -48,9 +48,9 @@ _HAIR_M = 1e-6
 class LaneFurniture:
     """Signals along a lane; ``lit_to`` are the ways on that a light is for, if the file says so.
 
-    ``untold`` are the names of signs that may apply: there is one, but the file does not say for
-    whom, when, or with which number. ``stop_line`` is the lane in which the line lies, and its
-    ``s``.
+    These are in the file's order. ``untold`` are the names of signs that may apply: there is one,
+    but the file does not say for whom, when, or with which number. ``stop_line`` is the lane in
+    which the line lies, and its ``s``.
     """
 
     # Not frozen: signals are added one by one
@@ -59,7 +59,7 @@ class LaneFurniture:
     limit_mps: float | None = None
     minimum_mps: float | None = None
     lit: bool = False
-    lit_to: set[LaneKey] = field(default_factory=set)
+    lit_to: dict[LaneKey, None] = field(default_factory=dict)
     stop_line: tuple[LaneKey, float] | None = None
 
     def add(self, sign: Sign) -> None:
@@ -150,7 +150,7 @@ def _place_signal(
             if light:
                 own.lit = True
                 if way is not None:
-                    own.lit_to.add(way)
+                    own.lit_to[way] = None
             elif line:
                 own.stop_line = key, posted.s
             for sign in signs:

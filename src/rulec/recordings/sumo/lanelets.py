@@ -57,7 +57,8 @@ _CLOSEST_M = 0.01
 def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
     """Lane id -> lanelet, for all lanes of a length above 0."""
     shapes = {lane.id: without_repeats(lane.shape, _CLOSEST_M) for lane in net.lanes.values()}
-    there = {key for key, shape in shapes.items() if len(shape) > 1}
+    # In the order of the file, which decides that of predecessors
+    there = {key: shape for key, shape in shapes.items() if len(shape) > 1}.keys()
     after = _successors(net.connections, there, set(net.lanes))
     before: dict[str, list[str]] = defaultdict(list)
     for start, ends in after.items():
@@ -141,7 +142,7 @@ def _resampled(points: Points, count: int) -> Points:
 
 
 def _successors(
-    connections: list[NetConnection], there: set[str], known: set[str]
+    connections: list[NetConnection], there: Set[str], known: set[str]
 ) -> dict[str, list[str]]:
     """Lane -> next lanes, skipping those of length 0."""
     direct: dict[str, list[str]] = defaultdict(list)
@@ -160,7 +161,7 @@ def _successors(
     return defaultdict(list, {key: list(dict.fromkeys(reached(key))) for key in there})
 
 
-def _neighbour(lane: NetLane, step: int, there: set[str]) -> str | None:
+def _neighbour(lane: NetLane, step: int, there: Set[str]) -> str | None:
     if lane.edge.function in ("crossing", "walkingarea"):
         return None
     beside_it = f"{lane.edge.id}_{lane.index + step}"
