@@ -191,7 +191,7 @@ def _unrounded(limit_mps: float) -> float:
     return round(kmh) / KMH_PER_MPS if abs(kmh - round(kmh)) <= _ROUNDED_KMH else limit_mps
 
 
-def _mark(lane: NetLane, step: int, there: set[str], forbidden: bool) -> LaneMark | None:
+def _mark(lane: NetLane, step: int, there: Set[str], forbidden: bool) -> LaneMark | None:
     """The mark between two lanes of an edge: solid where changing across it is ``forbidden``."""
     if lane.edge.function or _neighbour(lane, step, there) is None:
         return None
