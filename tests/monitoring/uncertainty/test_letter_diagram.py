@@ -39,27 +39,3 @@ def test_the_classes_of_a_cube_are_those_of_its_letters(seed):
             if all(mask >> digit & 1 for mask, digit in zip(cube, own, strict=True))
         }
         assert diagram.nodes(cube) == sum(1 << letter + 1 for letter in met)
-
-
-@pytest.mark.parametrize("seed", range(40))
-def test_a_read_does_not_matter_where_no_class_changes_with_its_digit(seed):
-    random = Random(seed)
-    sizes = [random.choice([2, 2, 3]) for _ in range(random.randrange(1, 6))]
-    digits = [own[::-1] for own in product(*map(range, sizes[::-1]))]  # the first read is fastest
-    # Of some reads the letters tell nothing, of others they do only where another one is 1
-    told = [n for n in range(len(sizes)) if random.random() < 0.6]
-    table = {own: random.choice([-1, 0, 1]) for own in product(*[range(sizes[n]) for n in told])}
-    letters = tuple(table[tuple(own[n] for n in told)] for own in digits)
-    if seed % 2:
-        letters = tuple(max(letter, own[0]) for letter, own in zip(letters, digits, strict=True))
-    class_of = dict(zip(digits, letters, strict=True))
-    diagram = diagram_of(sizes, letters)
-    for _ in range(30):
-        cube = [random.randrange(1, 1 << size) for size in sizes]
-        for read in range(len(sizes)):
-            met = {}
-            for own, letter in class_of.items():
-                if all(mask >> digit & 1 for mask, digit in zip(cube, own, strict=True)):
-                    met.setdefault((*own[:read], *own[read + 1 :]), set()).add(letter)
-            does_not_matter = all(len(classes) == 1 for classes in met.values())
-            assert diagram.is_indifferent(cube, read) == does_not_matter

@@ -94,13 +94,6 @@ class RunPairs:
         """Whether each letter of a word is determined once the digits of some reads are fixed."""
         return all(self._open[number] <= fixed for number in set(word))
 
-    def are_indifferent(self, words: Sequence[Word], read: int) -> bool:
-        """Whether a read may have the same digits in all words and never matters in them."""
-        return all(
-            self._classes.are_indifferent([self._letters[number] for number in side_by_side], read)
-            for side_by_side in set(zip(*words, strict=True))
-        )
-
     def prospects(self, word: Word) -> list[bytes]:
         """For each letter of a word the possible outcomes from each state: see ``Prospects``."""
         prospects = self._along.get(word)

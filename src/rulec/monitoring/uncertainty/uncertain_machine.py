@@ -149,19 +149,14 @@ class UncertainMachine:
     ) -> frozenset[str]:
         """The names other than these on which it depends which of two outcomes words have.
 
-        They are those of ``reasons``, but found faster: a name without which all others do not
-        decide is in every deciding set.
+        They are among those of ``reasons``.
         """
         alternatives, unknown = _possible_alternatives(words, constants)
         doubtful = _doubtful(alternatives, unknown)
         others = doubtful - names
-        every = doubtful | {BEFORE} if len(self.machine.starts) > 1 else doubtful
+        if not others:
+            return others
         dependence = Dependence(self._runs, alternatives, unknown)
-        if not dependence.decides(every):
-            return others
-        others = frozenset([name for name in others if not dependence.is_idle(name)])
-        if all(dependence.needs(name, every) for name in others):
-            return others
         smallest = dependence.smallest(self._in_order(doubtful, order))
         return others if smallest is None else others.intersection(smallest)
 

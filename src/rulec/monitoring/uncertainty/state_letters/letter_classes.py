@@ -62,16 +62,6 @@ class LetterClasses:
         first, second = self.groups(left, fixed), self.groups(right, fixed)
         return frozenset([(first[part], second[part]) for part in first.keys() & second])
 
-    def are_indifferent(self, letters: Sequence[Letters], read: int) -> bool:
-        """Whether all these letters leave a read the same digits, which never matter for classes.
-
-        This is independent of the digits of all other reads.
-        """
-        cubes = {cube for own in letters for cube in own}
-        if len({cube[read] for cube in cubes}) > 1:
-            return False
-        return all(self.diagram.is_indifferent(cube, read) for cube in cubes)
-
     def groups(self, letters: Letters, fixed: tuple[int, ...]) -> Mapping[Cube, int]:
         """The classes of letters by the digits, as bits, of the ``fixed`` reads."""
         key = letters, fixed

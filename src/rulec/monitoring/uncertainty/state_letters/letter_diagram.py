@@ -93,27 +93,6 @@ class LetterDiagram:
             here = below
         return {node - 1: n_own for node, n_own in here.items()}
 
-    def is_indifferent(self, cube: Sequence[int], read: int) -> bool:
-        """Whether a read's digit makes no difference to the class of any letter of a cube.
-
-        This holds if the successors for one of the read's digits are also those for all of them.
-        """
-        here = self.start
-        for level in range(self._n_reads - 1, read, -1):
-            here = self.step(level, here, cube[level])
-        first, *others = bits_of(cube[read])
-        rows = [self._children[read][node] for node in bits_of(here)]
-        pairs = {(row[first], row[second]) for row in rows for second in others}
-        for level in range(read - 1, -1, -1):
-            children, digits = self._children[level], bits_of(cube[level])
-            pairs = {
-                (children[left][digit], children[second][digit])
-                for left, second in pairs
-                if left != second
-                for digit in digits
-            }
-        return all(left == second for left, second in pairs)
-
     def step(self, read: int, here: int, digits: int) -> int:
         """The nodes after some nodes and some digits of a read, all as bits."""
         key = read, here, digits
