@@ -1,7 +1,6 @@
 """A diagram of letters has the classes that the table of letters has, however long that is."""
 
 from collections import Counter
-from itertools import product
 from random import Random
 
 import pytest

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import product
 from math import prod
@@ -18,7 +18,6 @@ from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject, subjects_of_read
 from rulec.trace import Value
 from rulec.valuations.linear_arrangement import points_on_line
-from rulec.valuations.number_regions import comparisons_in
 from rulec.vocabulary import Declaration, Quantity, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValue
 from rulec.vocabulary.vocabulary_model import choices, values_of
@@ -105,7 +104,7 @@ def _values_of(
     if not isinstance(declaration, Quantity):
         return values_of(declaration)
     limits: set[Fraction] = set()
-    for own in (x for formula in formulas for x in comparisons_in(formula)):
+    for own in (x for formula in formulas for x in _comparisons_in(formula)):
         if any(isinstance(term, ltl.QuantityTerm) and term.name == name for _, term in own.terms):
             if len(own.terms) > 1:
                 return []
@@ -114,3 +113,13 @@ def _values_of(
     if isinstance(bounds, Interval):
         within = exact(bounds.low), exact(bounds.high)
     return points_on_line(limits, within)
+
+
+def _comparisons_in(formula: ltl.Formula) -> Iterator[ltl.Comparison]:
+    """The comparisons of a formula, including those within counts."""
+    for atom in ltl.atoms_of(formula):
+        if isinstance(atom, ltl.Comparison):
+            yield atom
+            for _, term in atom.terms:
+                if isinstance(term, ltl.Count):
+                    yield from _comparisons_in(term.body)

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from fractions import Fraction
 from functools import cached_property
 from typing import NamedTuple
 
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.automata.thresholds import exact
-from rulec.logic import formula as ltl
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions.completions import (
     Digits,
@@ -20,9 +17,8 @@ from rulec.monitoring.uncertainty.state_letters.joint_values import MOST_KNOWN, 
 from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
 from rulec.monitoring.uncertainty.state_letters.related_facts import FactInstance
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
-from rulec.valuations.number_regions import NumberRegions, number_regions
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValue
+from rulec.vocabulary.partial_values import UNKNOWN_TYPES, PartialValue
 
 
 class PartDigits(NamedTuple):
@@ -55,12 +51,6 @@ class PartTable:
         self.possible: list[PartDigits] = []
         self._numbers: dict[PartDigits, int] = {}
         self._known: dict[tuple[object, ...], int] = {}
-        self._alike: dict[tuple[object, ...], int] = {}
-        self._along: dict[tuple[object, ...], NumberRegions | None] = {}
-        alone = number_regions(tuple(reads), tuple([fact.formula for fact in facts]))
-        self._regions = [
-            (place, alone[name]) for place, (name, _) in enumerate(subjects) if name in alone
-        ]
 
     def number(self, values: tuple[PartialValue | None, ...]) -> int:
         """The place among ``possible`` of the digits for these values. Raises MissingValueError."""
@@ -68,61 +58,11 @@ class PartTable:
         if known is None:
             if len(self._known) >= MOST_KNOWN:
                 self._known.clear()
-                self._alike.clear()
-            known = self._known[values] = self._once_for_alike(values)
-        return known
-
-    def _once_for_alike(self, values: tuple[PartialValue | None, ...]) -> int:
-        """The number, computed once for numbers in the same regions between limits."""
-        alike: list[object] = list(values)
-        for place, regions in self._regions:
-            alike[place] = _region(values[place], regions)
-        places = [place for place, value in enumerate(alike) if isinstance(value, Interval)]
-        if len(places) == 1 and not self._facts:
-            (place,) = places
-            others = (*values[:place], None, *values[place + 1 :])
-            if others not in self._along:
-                self._along[others] = self._regions_along(self._subjects[place], others)
-            along = self._along[others]
-            if along is not None:
-                alike[place] = _region(values[place], along)
-        key = tuple(alike)
-        if key not in self._alike:
             possible = self._possible(values)
-            self._alike[key] = self._numbers.setdefault(possible, len(self.possible))
-            if self._alike[key] == len(self.possible):
+            known = self._known[values] = self._numbers.setdefault(possible, len(self.possible))
+            if known == len(self.possible):
                 self.possible.append(possible)
-        return self._alike[key]
-
-    def _regions_along(
-        self, along: Subject, others: Sequence[PartialValue | None]
-    ) -> NumberRegions | None:
-        """The regions in which reads distinguish a number, given the ``others``.
-
-        None if more is unknown.
-        """
-        known = {x: value for x, value in zip(self._subjects, others, strict=True) if x != along}
-        if None in known.values() or not UNKNOWN_TYPES.isdisjoint(map(type, known.values())):
-            return None
-        limits: set[Fraction] = set()
-        for read in self._reads:
-            if isinstance(read, Read):
-                continue
-            factor = rest = Fraction(0)
-            for own, term in read.terms:
-                if not isinstance(term, ltl.QuantityTerm):
-                    return None
-                subject = term.name, tuple([self._binding[item] for item in term.arguments])
-                value = known.get(subject)
-                if subject == along:
-                    factor += own
-                elif isinstance(value, int | float):
-                    rest += own * exact(value)
-                else:
-                    return None
-            if factor:
-                limits.update((threshold.limit - rest) / factor for threshold in read.thresholds)
-        return NumberRegions(tuple(sorted(limits)))
+        return known
 
     @cached_property
     def _joint_values(self) -> JointValues | None:
@@ -150,10 +90,3 @@ class PartTable:
     def _state(self, values: Sequence[PartialValue | None]) -> StateView:
         given = with_values({}, dict(zip(self._subjects, values, strict=True)))
         return StateView(given, self._objects, self._vocabulary)
-
-
-def _region(value: PartialValue | None, regions: NumberRegions) -> object:
-    """The region of a number, those of an interval's ends; anything else as it is."""
-    if isinstance(value, Interval):
-        return regions.region(exact(value.low)), regions.region(exact(value.high))
-    return regions.region(exact(value)) if isinstance(value, int | float) else value
