@@ -1,30 +1,23 @@
-"""Joint values of words and truth values, as bits of their combinations.
+"""The digits of reads by the joint values of words, from one truth table for all states.
 
-Each way to give the subjects values has a bit, as in a truth table: the value of a subject, the
-ways that an axiom allows, and the ways in which a read has a digit are sets of bits. So a few
-conjunctions show what a partly known state allows, even if it was never met before.
+So a few conjunctions show what a partly known state allows, even if it was never met before.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import reduce
 from itertools import chain
+from math import prod
 from operator import itemgetter, or_
-from typing import Any, TypeAlias
+from typing import Any
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
-from rulec.logic.fold import bit_sets, fold
-from rulec.monitoring.uncertainty.state_letters.completions.completion_search import digit_of_count
 from rulec.monitoring.uncertainty.state_letters.completions.completions import Digits
 from rulec.monitoring.uncertainty.state_letters.related_facts import FactInstance
-from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
-    PartialView,
-    Subject,
-    candidates,
-)
+from rulec.monitoring.uncertainty.state_letters.truth_table import Bits, TruthTable
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import PartialView, Subject
 from rulec.trace import Value
 from rulec.vocabulary import Quantity
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, OneOf, PartialValue
@@ -36,15 +29,12 @@ MOST_KNOWN = 1 << 14
 MOST_WAYS = 1 << 15
 """The most ways to give subjects values that fit into one set of bits (of 4 kB)."""
 
-Bits: TypeAlias = int
-"""A set of ways to give all subjects values."""
-
 
 class JointValues:
     """The digits of reads by the ways to give ``subjects`` values that ``facts`` about them allow.
 
-    Raises LookupError if there are too many ways, if something is a number that does not count, or
-    if a fact is about more than the subjects.
+    Raises LookupError if there are too many ways, if a number other than a count is compared, or if
+    a fact is about more than the subjects.
     """
 
     def __init__(
@@ -55,35 +45,27 @@ class JointValues:
         binding: Mapping[str, str],
         everybody: PartialView,
     ) -> None:
-        conditions = [list(_conditions(read, binding, everybody)) for read in reads]
-        formulas = [formula for formula, _ in chain(facts, *conditions)]
-        self._all = 1
-        self._ways: list[dict[Any, Bits]] = []
-        """For each subject the ways that have a value."""
-        for groups in _told_apart([name for name, _ in subjects], formulas, everybody):
-            before, size = self._all, self._all.bit_length()
-            if size * len(groups) > MOST_WAYS:
-                raise LookupError
-            # Each way so far is repeated for each group of values
-            self._all = (1 << size * len(groups)) - 1
-            self._ways = [
-                {value: _repeated(ways, size, len(groups)) for value, ways in own.items()}
-                for own in self._ways
-            ]
-            own: dict[Any, Bits] = {
-                value: before << n * size for n, group in enumerate(groups) for value in group
-            }
-            self._ways.append(own)
-        for own in self._ways:
-            own[UNKNOWN] = self._all
-        self._places = {subject: place for place, subject in enumerate(subjects)}
-        about = [[self._places[x] for x in fact.about(everybody)] for fact in facts]
-        self._facts = list(zip(about, map(self._truth, facts), strict=True))
-        self._allowed = reduce(int.__and__, [kept for _, kept in self._facts], self._all)
-        self._digits = [
-            self._digits_of(read, [self._truth(own) for own in deciding])
-            for read, deciding in zip(reads, conditions, strict=True)
+        formulas = [fact.formula for fact in facts]
+        formulas += [formula for read in reads for formula in _conditions(read)]
+        groups = list(_told_apart([name for name, _ in subjects], formulas, everybody))
+        if prod(map(len, groups)) > MOST_WAYS:
+            raise LookupError
+        table = TruthTable(dict(zip(subjects, groups, strict=True)), [{}], everybody)
+        self._all = table.all
+        self._ways: list[dict[Any, Bits]] = [
+            {**table.words[subject], UNKNOWN: table.all} for subject in subjects
         ]
+        """For each subject the ways that have a value."""
+        places = {subject: place for place, subject in enumerate(subjects)}
+        self._facts = [
+            (
+                [places[x] for x in fact.about(everybody)],
+                table.truth(fact.formula, fact.environment).sure,
+            )
+            for fact in facts
+        ]
+        self._allowed = reduce(int.__and__, [kept for _, kept in self._facts], self._all)
+        self._digits = [table.digits(read, binding) for read in reads]
 
     def digits(
         self, values: Sequence[PartialValue | None]
@@ -120,72 +102,22 @@ class JointValues:
         joint = frozenset([digits for digits, _ in partial_digits])
         return known if len(known) == len(alone) else None, joint
 
-    def _digits_of(self, read: Read | NumberRead, truths: Sequence[Bits]) -> Mapping[int, Bits]:
-        """Each digit of a read, and the ways that have it, given those of its conditions."""
-        if isinstance(read, Read):
-            some = reduce(or_, truths, 0)
-            ways = enumerate(
-                (*truths, self._all ^ some) if read.values else (some ^ self._all, some)
-            )
-            return {digit: own for digit, own in ways if own}
-        often = {0: self._all}
-        for truth in truths:
-            more: dict[int, Bits] = {}
-            for number, own in often.items():
-                for after, both in ((number, own & ~truth), (number + 1, own & truth)):
-                    more[after] = more.get(after, 0) | both
-            often = {number: own for number, own in more.items() if own}
-        ways_of: dict[int, Bits] = {}
-        for number, own in often.items():
-            digit = digit_of_count(read, number)
-            ways_of[digit] = ways_of.get(digit, 0) | own
-        return ways_of
 
-    def _truth(self, condition: tuple[ltl.Formula, Mapping[str, str]]) -> Bits:
-        """The ways in which a formula holds for the objects of an environment."""
-        formula, environment = condition
-
-        def ways(proposition: ltl.Proposition) -> Bits:
-            if not isinstance(proposition, ltl.Atom):
-                raise LookupError
-            items = tuple([environment[variable] for variable in proposition.arguments])
-            place = self._places.get((proposition.name, items))
-            # Of anything else the value decides nothing
-            return 0 if place is None else self._ways[place][proposition.value or True]
-
-        def are_same(pair: ltl.Same) -> Bits:
-            return self._all * (environment[pair.left] == environment[pair.right])
-
-        sets = replace(bit_sets({}, self._all), proposition=ways, identity=are_same)
-        return fold(formula, sets)
-
-
-def _repeated(ways: Bits, size: int, times: int) -> Bits:
-    """The ways of ``size`` bits, for each of several values of one more subject."""
-    return ways * (((1 << size * times) - 1) // ((1 << size) - 1))
-
-
-def _conditions(
-    read: Read | NumberRead, binding: Mapping[str, str], everybody: PartialView
-) -> Iterator[tuple[ltl.Formula, Mapping[str, str]]]:
-    """What decides a read: whether a word has each value, or whether each object counts."""
+def _conditions(read: Read | NumberRead) -> Iterator[ltl.Formula]:
+    """What decides a read: whether a word has each value, or what is counted."""
     if isinstance(read, Read):
-        for value in read.values or (None,):
-            yield ltl.Atom(read.name, read.variables, value), binding
-        return
-    match read.terms:
-        case ((_, ltl.Count() as count),):
-            for item in candidates(count, everybody):
-                yield count.body, {**binding, count.variable: item}
-        case _:
-            raise LookupError
+        yield from (ltl.Atom(read.name, read.variables, value) for value in read.values or (None,))
+    else:
+        yield from (term.body for _, term in read.terms if isinstance(term, ltl.Count))
 
 
 def _told_apart(
     names: Iterable[str], formulas: Iterable[ltl.Formula], everybody: PartialView
 ) -> Iterator[Sequence[Sequence[Value]]]:
     """The values of each word, in groups that no formula distinguishes."""
-    propositions = chain.from_iterable(map(ltl.atoms_of, formulas))
+    propositions = [*chain.from_iterable(map(ltl.atoms_of, formulas))]
+    if any(isinstance(x, ltl.Comparison) for x in propositions):
+        raise LookupError
     told = {(x.name, x.value) for x in propositions if isinstance(x, ltl.Atom)}
     for name in names:
         declaration = everybody.vocabulary.declarations[name]

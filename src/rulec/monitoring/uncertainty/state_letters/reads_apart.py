@@ -17,11 +17,11 @@ from typing import Any, NamedTuple, TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
 from rulec.logic import formula as ltl
-from rulec.monitoring.uncertainty.state_letters.completions.completion_search import (
+from rulec.monitoring.uncertainty.state_letters.completions.completions import (
+    Digits,
     added,
     digit_of_count,
 )
-from rulec.monitoring.uncertainty.state_letters.completions.completions import Digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import MOST_KNOWN, values_at
 from rulec.monitoring.uncertainty.state_letters.part_table import PartTable

@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from fractions import Fraction
 from typing import Protocol, TypeAlias
 
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
-from rulec.logic.kleene import PartialState, Unknown
-from rulec.trace import Value
-from rulec.vocabulary import Vocabulary
+from rulec.logic.kleene import PartialState
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, PartialValue
 
 Subject: TypeAlias = tuple[str, tuple[str, ...]]
@@ -32,39 +27,6 @@ class PartialView(PartialState, Protocol):
 
     def given(self, name: str, items: tuple[str, ...]) -> PartialValue | None:
         """The value in the state, possibly partial, or the declared default."""
-
-
-@dataclass(frozen=True, slots=True)
-class CompletedView:
-    """A state in which some values are supposed."""
-
-    view: PartialView
-    supposed: Mapping[Subject, Value | Fraction]
-
-    @property
-    def objects(self) -> Mapping[str, str]:
-        """The objects present, with their types."""
-        return self.view.objects
-
-    @property
-    def vocabulary(self) -> Vocabulary:
-        """The declarations."""
-        return self.view.vocabulary
-
-    def value(self, name: str, items: tuple[str, ...]) -> bool | float | str | Unknown:
-        """The value of a signal or an enumeration."""
-        supposed = self.supposed.get((name, items))
-        if supposed is None or isinstance(supposed, Fraction):
-            return self.view.value(name, items)
-        return supposed
-
-    def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
-        """The value of a quantity: exact."""
-        supposed = self.supposed.get((name, items))
-        if supposed is None:
-            return self.view.number(name, items)
-        assert not isinstance(supposed, str)
-        return exact(supposed)
 
 
 def unknown_in_read(

@@ -17,22 +17,10 @@ from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
-from rulec.logic.kleene import (
-    Between,
-    Unknown,
-    holds,
-    number_of,
-    weighted_sum,
-)
-from rulec.monitoring.uncertainty.state_letters.completions.completion_search import (
-    CompletionSearch,
-    Link,
-    Numbers,
-    added,
-    digit_of,
-    digit_of_count,
-)
+from rulec.logic.kleene import Between, Unknown, holds, number_of, weighted_sum
+from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
 from rulec.monitoring.uncertainty.state_letters.related_facts import FactInstance, instances_of
+from rulec.monitoring.uncertainty.state_letters.truth_table import TruthTable, united
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     PartialView,
     Subject,
@@ -43,10 +31,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
 )
 from rulec.trace import Value
 from rulec.valuations.connections import connected
-from rulec.valuations.linear_arrangement import (
-    LinearPlane,
-    sample_points,
-)
+from rulec.valuations.linear_arrangement import LinearPlane, sample_points
 from rulec.vocabulary import Quantity
 from rulec.vocabulary.partial_values import Interval, OneOf
 from rulec.vocabulary.vocabulary_model import values_of
@@ -54,8 +39,26 @@ from rulec.vocabulary.vocabulary_model import values_of
 Digits: TypeAlias = tuple[int, ...]
 """A digit for each read."""
 
+Numbers: TypeAlias = tuple[tuple[int, int], ...]
+"""Reads by their places, each with its digit or, if it is a count, how many more objects count."""
+
 MOST_COMPLETIONS = 1 << 12
 """Unknown values with more joint completions are taken to be independent."""
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """Something that depends on unknown subjects: a read, a counted object, or an axiom.
+
+    ``read`` is the number of the read, None for an axiom. ``counted``: it says whether an object
+    counts.
+    """
+
+    subjects: frozenset[Subject]
+    read: int | None
+    environment: Mapping[str, str]
+    formula: ltl.Formula | None = None
+    counted: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +83,9 @@ def joint_digits(
     links = list(_links_of_reads(reads, binding, view, counted))
     touched = {link.read: 0 for link in links} | counted
     surely = [
-        touched[number] if number in touched else digit_of(read, binding, view)
+        touched[number]
+        if number in touched
+        else read_digits(read).in_state(binding, view).bit_length() - 1
         for number, read in enumerate(reads)
     ]
     sums = {tuple(surely)}
@@ -178,14 +183,51 @@ def _completed(
     points = sample_points(bounds, planes)
     if points is None or n_discrete * len(points) > MOST_COMPLETIONS:
         return None
-    numbers: list[dict[Subject, Value | Fraction]] = []
-    for point in points:
-        supposed: dict[Subject, Value | Fraction] = {}
-        for term, value in point.items():
-            assert isinstance(term, ltl.QuantityTerm)
-            supposed[term.name, term.arguments] = value
-        numbers.append(supposed)
-    return CompletionSearch(cluster, reads, view, values, numbers).possible()
+    numbers = [
+        {(x.name, x.arguments): n for x, n in point.items() if isinstance(x, ltl.QuantityTerm)}
+        for point in points
+    ]
+    words = {subject: [[value] for value in among] for subject, among in values.items()}
+    return _results(cluster, reads, TruthTable(words, numbers, view))
+
+
+def _results(
+    cluster: Sequence[Link], reads: Sequence[Read | NumberRead], table: TruthTable
+) -> set[Numbers]:
+    """What the links come to in some way that the axioms allow. Raises MissingValueError."""
+    about = {link.read for link in cluster if link.read is not None}
+    places = {read: n for n, read in enumerate(sorted(about))}
+    found, kept = {(0,) * len(places): table.all}, table.all
+    for link in cluster:
+        if link.read is None:
+            assert link.formula is not None, "it is an axiom"
+            kept &= table.truth(link.formula, link.environment).possible
+            continue
+        if link.formula is None:
+            numbers = table.digits(reads[link.read], link.environment)
+        else:
+            numbers = table.counted(link.formula, link.environment)
+        place = places[link.read]
+        found = united(
+            ((*before[:place], before[place] + number, *before[place + 1 :]), ways & own)
+            for before, ways in found.items()
+            for number, own in numbers.items()
+        )
+    return {tuple(zip(places, numbers, strict=True)) for numbers, x in found.items() if x & kept}
+
+
+def added(before: tuple[int, ...], more: Iterable[tuple[int, int]]) -> tuple[int, ...]:
+    """The numbers of all reads, with some added."""
+    after = list(before)
+    for read, number in more:
+        after[read] += number
+    return tuple(after)
+
+
+def digit_of_count(read: Read | NumberRead, number: int) -> int:
+    """The digit of a read that is a count, if so many objects count."""
+    assert isinstance(read, NumberRead), "it counts"
+    return read.digit(read.terms[0][0] * number)
 
 
 def _independent(cluster: Sequence[Link], reads: Sequence[Read | NumberRead]) -> list[Numbers]:
