@@ -29,11 +29,9 @@ from rulec.witnesses.relevant_axioms import (
 )
 from rulec.witnesses.state_synthesis import (
     JointState,
-    NumberSolver,
     Subject,
     Value,
-    float_values,
-    values_of,
+    synthesize_state,
 )
 from rulec.witnesses.undecided import UndecidedError
 
@@ -287,9 +285,6 @@ def _first_of_each(
     ]
     seen = set()
     own = [*compress(reads, counted.are_about_it)]
-    numbers = [place for place, read in enumerate(own) if isinstance(read, NumberRead)]
-    sums = tuple([read for read in own if isinstance(read, NumberRead)])
-    solver = _solver(sums, Itself(vocabulary))
     allowed = reduce(and_, counted.allowed, -1)
     weights = [*accumulate((read.size for read in counted.reads), mul, initial=1)][:-1]
     for digits in product(*choices):
@@ -299,18 +294,11 @@ def _first_of_each(
         adds = tuple([letters >> letter & 1 for letters in counted.counted])
         if adds in seen:
             continue
-        own_digits = [*compress(digits, counted.are_about_it)]
-        solved = solver.solve([own_digits[place] for place in numbers])
-        if solved is not None:
+        own_digits = [*zip(own, compress(digits, counted.are_about_it), strict=True)]
+        state = synthesize_state(vocabulary, own_digits)
+        if state is not None:
             seen.add(adds)
-            values = values_of([*zip(own, own_digits, strict=True)], vocabulary)
-            yield CountedObject(counted.type, adds, values | float_values(solved))
-
-
-# Cached: most states have the same sums.
-@lru_cache(maxsize=256)
-def _solver(sums: tuple[NumberRead, ...], vocabulary: Itself[Vocabulary]) -> NumberSolver:
-    return NumberSolver(sums, vocabulary.item, {})
+            yield CountedObject(counted.type, adds, state.values)
 
 
 def _digit(read: Read | NumberRead, state: JointState, vocabulary: Vocabulary) -> int:

@@ -102,54 +102,27 @@ def solve_numbers(
     number_digits: NumberDigits, vocabulary: Vocabulary, least: Mapping[Count, int]
 ) -> dict[Term, Fraction] | None:
     """Numbers with these digits, preferably defaults, and counts at least ``least``."""
-    solver = NumberSolver([read for read, _ in number_digits], vocabulary, least)
-    return solver.solve([digit for _, digit in number_digits])
-
-
-class NumberSolver:
-    """Finds numbers for digits of some sums, preferably defaults, and counts at least ``least``.
-
-    What does not depend on the digits is computed once, because there are many digits.
-    """
-
-    def __init__(
-        self, reads: Sequence[NumberRead], vocabulary: Vocabulary, least: Mapping[Count, int]
-    ) -> None:
-        self._terms = _terms_of(reads)
-        given = {
-            term: least.get(term, 0) if isinstance(term, Count) else _default(term, vocabulary)
-            for term in self._terms
-        }
-        self._reads = reads
-        self._parts = [
-            (places, tuple([(term, given[term]) for term in _terms_of([reads[k] for k in places])]))
-            for places in apart(reads)
-        ]
-        self._solved: dict[tuple[int, bool, tuple[int, ...]], Mapping[Term, Fraction] | None] = {}
-
-    def solve(self, digits: Sequence[int]) -> dict[Term, Fraction] | None:
-        """Numbers with these digits, or None."""
-        for is_natural in (True, False):
-            numbers: dict[Term, Fraction] = {}
-            for number in range(len(self._parts)):
-                solution = self._part(number, digits, is_natural=is_natural)
-                if solution is None:
-                    break
-                numbers |= solution
-            else:
-                return {term: numbers[term] for term in reversed(self._terms)}
-        return None
-
-    def _part(
-        self, number: int, digits: Sequence[int], *, is_natural: bool
-    ) -> Mapping[Term, Fraction] | None:
-        places, given = self._parts[number]
-        own = tuple([digits[place] for place in places])
-        key = number, is_natural, own
-        if key not in self._solved:
-            pairs = tuple(zip([self._reads[place] for place in places], own, strict=True))
-            self._solved[key] = _part_solved(pairs, given, is_natural=is_natural)
-        return self._solved[key]
+    reads = [read for read, _ in number_digits]
+    terms = _terms_of(reads)
+    given = {
+        term: least.get(term, 0) if isinstance(term, Count) else _default(term, vocabulary)
+        for term in terms
+    }
+    for is_natural in (True, False):
+        numbers: dict[Term, Fraction] = {}
+        for places in apart(reads):
+            own = _terms_of([reads[place] for place in places])
+            solution = _part_solved(
+                tuple([number_digits[place] for place in places]),
+                tuple([(term, given[term]) for term in own]),
+                is_natural=is_natural,
+            )
+            if solution is None:
+                break
+            numbers |= solution
+        else:
+            return {term: numbers[term] for term in reversed(terms)}
+    return None
 
 
 def _terms_of(reads: Sequence[NumberRead]) -> list[Term]:

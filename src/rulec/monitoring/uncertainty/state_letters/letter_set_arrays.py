@@ -4,29 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import islice
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
-from rulec.trace.plain_arrays import distinct
 
 Numbers = NDArray[np.intp] | int
-
-MOST_CODES = 1 << 16
-"""Reads whose numbers have at most so many combinations are looked up together."""
-
-_FEW_CODES = 1 << 15
-"""With fewer letters than combinations, only so many combinations are looked up together."""
-
-_MOST_KEPT = 1 << 18
-"""How many combinations are kept before all are discarded."""
-
-_UNMET = -1
-
-_FEW_UNMET = 1 << 4
-"""Up to so many new letters are computed together."""
 
 
 class LetterSets:
@@ -46,9 +30,6 @@ class LetterSets:
         self._sets: list[int] = []
         self._several = [np.array([mask & (mask - 1) != 0 for mask in row]) for row in meanings]
         self._tables = [np.full((0, len(row)), -1, dtype=np.intp) for row in meanings]
-        # Numbers of letters for all combinations, by the numbers of the reads that have only one
-        self._together: dict[tuple[int | None, ...], NDArray[np.intp]] = {}
-        self._kept = 0
 
     @property
     def sets(self) -> list[int]:
@@ -83,70 +64,13 @@ class LetterSets:
 
         One for all if they are equal.
         """
-        numbers = list(columns)
-        given: list[Any] = list(numbers)
-        varying: list[tuple[int, NDArray[np.intp]]] = []
-        width, n_letters = 1, 1
-        for read, own in enumerate(numbers):
-            if isinstance(own, int):
-                continue
-            if own.ndim:
-                width *= self._widths[read]
-                n_letters = len(own)
-                varying.append((read, own))
-                given[read] = None
-            else:
-                # A single number for all letters may also be an array without axes
-                numbers[read] = given[read] = own.item()
-        if width > MOST_CODES or width > max(_FEW_CODES, n_letters):
-            return self._one_by_one(numbers)
-        codes: Numbers = 0
-        for read, column in varying:
-            if isinstance(codes, int):
-                codes = column.astype(np.uint16)
-            else:
-                codes *= self._widths[read]
-                np.add(codes, column, out=codes, casting="unsafe")
-        key: tuple[int | None, ...] = tuple(given)
-        table = self._together.get(key)
-        if table is None:
-            self._kept += width
-            if self._kept > _MOST_KEPT:
-                self._together.clear()
-                self._kept = width
-            table = self._together[key] = np.full(width, _UNMET, dtype=np.intp)
-        if isinstance(codes, int):
-            if table.item(codes) == _UNMET:
-                table[codes] = self._of_code(codes, key)
-            return table.item(codes)
-        found: NDArray[np.intp] = table.take(codes)
-        if found.min(initial=0) == _UNMET:
-            unmet = distinct(codes[found == _UNMET])
-            if len(unmet) < _FEW_UNMET:
-                for code in unmet.tolist():
-                    table[code] = self._of_code(code, key)
-            else:
-                table[unmet] = self._of_code(unmet.astype(np.intp), key)
-            found = table.take(codes)
-        return found
-
-    def _of_code(self, code: Numbers, key: Sequence[int | None]) -> Numbers:
-        """The number of each letter whose reads have these numbers, some given by a code."""
-        columns: list[Numbers] = []
-        for read in range(len(key) - 1, -1, -1):
-            own = key[read]
-            if own is None:
-                width = len(self._meanings[read])
-                code, rest = code // width, code % width
-                columns.append(rest)
-            else:
-                columns.append(own)
-        return self._one_by_one(columns[::-1])
-
-    def _one_by_one(self, columns: Sequence[Numbers]) -> Numbers:
         here: Numbers = 0
         for read in range(len(columns) - 1, -1, -1):
-            here = self._behind(read, here, columns[read])
+            column = columns[read]
+            # A single number for all letters may also be an array without axes
+            if not isinstance(column, int) and not column.ndim:
+                column = column.item()
+            here = self._behind(read, here, column)
         return here
 
     def _behind(self, read: int, here: Numbers, column: Numbers) -> Numbers:
