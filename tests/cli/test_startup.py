@@ -94,23 +94,20 @@ def test_a_recording_is_judged_with_what_has_been_compiled(tmp_path, monkeypatch
     assert runs[1][1] & (NOT_FOR_A_RECORDING | {"0", "True"}) == {"0", "True"}
 
 
-NOT_FOR_WHAT_IS_KNOWN = {
+NOT_FOR_TRACES = {
     "pyarrow",
     "shapely",
     "rulec.logic.sentences.english",
-    "rulec.monitoring.batch.stacked.stacked_run",
     "rulec.monitoring.explain.explanation",
-    "rulec.monitoring.uncertainty.uncertain_machine",
     "rulec.syntax",
 }
 
 
-@pytest.mark.parametrize(("value", "needed"), [("true", set()), ("null", {"uncertain_machine"})])
-def test_what_judges_the_unknown_is_imported_where_something_is(tmp_path, value, needed):
+def test_a_trace_is_judged_by_a_compiled_rulebook_with_what_that_needs(tmp_path):
     (tmp_path / "held.rules").write_text(
         "rulebook held_p\nsignal p\nhard rule held { require always p }\n"
     )
-    (tmp_path / "t.jsonl").write_text(f'{{"states": [{{"p": {value}}}, {{"p": true}}]}}')
+    (tmp_path / "t.jsonl").write_text('{"states": [{"p": true}, {"p": true}]}')
     program = (
         "import sys; from rulec.cli.main import main\n"
         "main('compile held.rules -o . --step 1'.split())"
@@ -125,9 +122,7 @@ def test_what_judges_the_unknown_is_imported_where_something_is(tmp_path, value,
         for one in (program, judge)
     ]
     assert b"1 trace: " in done[1].stdout
-    imported = NOT_FOR_WHAT_IS_KNOWN & set(done[1].stdout.decode().split())
-    assert {name.rpartition(".")[2] for name in imported} >= needed
-    assert imported == set() or needed
+    assert set() == NOT_FOR_TRACES & set(done[1].stdout.decode().split())
 
 
 BOOK = """\
@@ -271,7 +266,6 @@ def test_there_is_room_for_the_frames_of_all_that_the_program_calls():
 
 
 NOT_WHERE_ALL_IS_KNOWN = {
-    "rulec.monitoring.uncertainty.uncertain_machine",
     "rulec.planning.probability.rule_probability",
     "rulec.planning.trace_history",
 }

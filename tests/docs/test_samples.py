@@ -10,7 +10,7 @@ import pytest
 from rulec import compile_rulebook
 from rulec.automata.bundle.bundle_file import to_json
 from rulec.book_tests.example_runs import run_rulebook_examples
-from rulec.monitoring.verify import run
+from rulec.monitoring.uncertainty.known_words import run
 from rulec.rulebook.loader import parse_rulebook
 
 ROOT = Path(__file__).resolve().parents[2]

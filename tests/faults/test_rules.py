@@ -44,25 +44,10 @@ def test_on_arrays(monkeypatch, rule):
 
 def planted_in_runs(monkeypatch, book, rule):
     """Every engine for traces raises for a rule."""
-    machine = next(own.machine for own in book.rules if own.name == rule)
-    for module in ("rulec.monitoring.verify", "rulec.monitoring.batch.cell_verdicts"):
-        home = __import__(module, fromlist=["run"])
-        for name in ("run", "verify_cells"):
-            if not hasattr(home, name):
-                continue
-            run = getattr(home, name)
-
-            def broken(first, *others, run=run, **more):
-                if first is machine or not hasattr(first, "rejecting_sink"):
-                    raise RecursionError("planted")
-                return run(first, *others, **more)
-
-            monkeypatch.setattr(home, name, broken)
     monkeypatch.setattr(
         "rulec.monitoring.batch.batch_verify.verify_cells",
         lambda *_, **__: (_ for _ in ()).throw(RecursionError("planted")),
     )
-    # The engines for what is cut or partly unknown
     answer, outcomes = UncertainRun._answer, stacked_run.outcomes
 
     def broken_answer(self, own, *others):
@@ -141,6 +126,6 @@ def test_what_is_no_fault_stays_what_it_is(monkeypatch):
         def broken(*_, problem=problem):
             raise problem
 
-        monkeypatch.setattr("rulec.monitoring.verify.run", broken)
+        monkeypatch.setattr("rulec.monitoring.batch.verify_joined.judge_joined", broken)
         with pytest.raises(type(problem)):
             rulec.verify(trace, PAPER)

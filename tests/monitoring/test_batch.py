@@ -25,7 +25,7 @@ from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.trace_groups import group_traces
 from rulec.monitoring.limits import MonitoringLimits
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.monitoring.verify import verify, verify_or_reason
+from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
@@ -42,6 +42,7 @@ from support.builders.rulebooks import (
     no,
     rule,
 )
+from support.engines.by_states import by_states
 from support.generators.random_records import chunks, rulebooks, told
 from support.generators.timed_formulas import TIMED_VOCABULARY
 from support.oracles.bits.bit_verdicts import verify_on_bits
@@ -52,8 +53,8 @@ from support.oracles.bits.column_reading import NotGivenError
 @settings(max_examples=settings.default.max_examples // 2)
 def test_answers_are_those_of_the_traces_alone(rulebook, traces):
     compiled = compile_here(rulebook)
-    alone = [told(verify_or_reason(trace, compiled)) for trace in traces]
-    assert [told(one) for one in verify_chunk(traces, compiled, fewest=1)] == alone
+    alone = [told(by_states(trace, compiled)) for trace in traces]
+    assert [told(one) for one in verify_chunk(traces, compiled)] == alone
 
 
 @given(rulebooks(), chunks())
@@ -61,7 +62,7 @@ def test_answers_are_those_of_the_traces_alone(rulebook, traces):
 def test_cells_and_columns_say_the_same(rulebook, traces):
     """Whether states are told apart as a whole, or by what is read of them."""
     compiled = compile_here(rulebook)
-    sound = [one for one in traces if isinstance(verify_or_reason(one, compiled), Verdict)]
+    sound = [one for one in traces if isinstance(by_states(one, compiled), Verdict)]
     sound = [one for one in sound if one.objects == sound[0].objects]
     sound = [one for one in sound if one.present == sound[0].present]
     if not sound:
@@ -227,7 +228,7 @@ def test_a_value_that_one_state_lacks_is_missing_as_in_its_trace_alone():
 
 def assert_only_one_is_refused(traces, refused, rules):
     answers = list(verify_many(traces, rules))
-    assert list(map(told, answers)) == [told(verify_or_reason(trace, rules)) for trace in traces]
+    assert list(map(told, answers)) == [told(by_states(trace, rules)) for trace in traces]
     codes = [one.error.diagnostics[0].code for one in answers if isinstance(one, NotJudged)]
     assert codes == ["R0504"]
     assert isinstance(answers[refused], NotJudged)
@@ -253,7 +254,7 @@ def test_what_can_be_no_trace_is_not_judged():
     ]
     for one in bad:
         answers = verify_chunk([one] * 5, compiled)
-        assert [told(answer) for answer in answers] == [told(verify_or_reason(one, compiled))] * 5
+        assert [told(answer) for answer in answers] == [told(by_states(one, compiled))] * 5
         assert isinstance(answers[0], NotJudged)
 
 
@@ -374,7 +375,7 @@ def test_states_that_cannot_be(more, n_states, chance):
         Trace(str(n), 1.0, objects, tuple(chance.choices(pool, k=chance.randint(1, 3))))
         for n in range(20)
     ]
-    alone = [told(verify_or_reason(trace, queue(more))) for trace in traces]
+    alone = [told(by_states(trace, queue(more))) for trace in traces]
     assert [told(one) for one in verify_chunk(traces, queue(more))] == alone
 
 

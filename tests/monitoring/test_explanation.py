@@ -15,7 +15,8 @@ from rulec.monitoring.explain import explained_states
 from rulec.monitoring.explain.explained_states import states_to_explain
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.limits import LIMITS, MonitoringLimits
-from rulec.monitoring.verify import letter_reader_of, verify
+from rulec.monitoring.uncertainty.known_words import KnownLetters
+from rulec.monitoring.verify import verify
 from rulec.report.json_document import as_builtins
 from rulec.report.verdicts import violation_table as report
 from rulec.report.verdicts.verdict_json import explanation_data
@@ -79,7 +80,7 @@ def test_the_states_of_a_window_violate_the_rule_like_all(formula, word):
         patch.setattr(explained_states, "LIMITS", MonitoringLimits(states_explained=1))
         explained = explain(violations[0], trace, rules)
         machine, decisive = rules.rules[0].machine, explained.decisive
-        letters_of = letter_reader_of(trace, rules)
+        letters_of = KnownLetters(trace, rules)
         of = partial(letters_of.word, rules.rules[0], violations[0].binding)
         numbers = states_to_explain(machine, range(len(trace.states)), decisive, of)
     assert numbers[0] == 0

@@ -1,6 +1,5 @@
 """Running needs neither Spot, Lark, Shapely nor NetworkX."""
 
-import json
 import subprocess
 import sys
 
@@ -26,12 +25,12 @@ sys.exit(main(["verify", "traces.jsonl", "--rulebook", "book.json"]))
 """
 
 
-def run(program, folder):
+def run(program, folder, values=("true", "false")):
     rules = compile_rulebook(book(rule("A", always(implies(near("x"), Q)), "x: car")))
     (folder / "book.json").write_text(to_json(rules))
     lines = [
-        json.dumps({"objects": {"c": "car"}, "states": [{"place": {"c": "near"}, "q": q}]})
-        for q in (True, False)
+        f'{{"objects": {{"c": "car"}}, "states": [{{"place": {{"c": "near"}}, "q": {q}}}]}}'
+        for q in values
     ]
     (folder / "traces.jsonl").write_text("\n".join(lines))
     return subprocess.run(
@@ -58,3 +57,22 @@ def test_importing_rulec_imports_nothing_else():
         [sys.executable, "-c", program], capture_output=True, text=True, check=True
     )
     assert done.stdout == "[]\n"
+
+
+WITHOUT_NUMPY = """
+import sys
+sys.modules["numpy"] = None
+import rulec
+rules = rulec.compile_rulebook("book.json")
+for trace in rulec.read_traces("traces.jsonl"):
+    verdict = rulec.verify(trace, rules)
+    print(verdict.satisfied, *[own.step for own in verdict.violations], *verdict.open)
+"""
+
+
+def test_traces_known_or_not_are_judged_without_numpy_as_a_browser_does(tmp_path):
+    done = run(WITHOUT_NUMPY, tmp_path, ("true", "false", "null"))
+    assert done.stderr == ""
+    known, broken, unknown = done.stdout.splitlines()
+    assert (known, broken) == ("True", "False 0")
+    assert unknown.startswith("None OpenVerdict(")

@@ -22,11 +22,12 @@ from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.verdict import NotJudged
-from rulec.monitoring.verify import verify, verify_or_reason
+from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.rulebooks import compile_here
+from support.engines.by_states import by_states
 from support.generators.blurred_traces import blurred
 from support.generators.random_rulebooks import rulebook
 from support.generators.random_traces import traces
@@ -47,7 +48,7 @@ def judged(joined, given_traces, compiled):
 
 def same_as_alone(verdicts, given_traces, compiled):
     for number, verdict in verdicts.items():
-        assert verdict == verify_or_reason(given_traces[number], compiled)
+        assert verdict == by_states(given_traces[number], compiled)
 
 
 @given(seeds)
@@ -195,7 +196,7 @@ def test_values_of_three_objects(shape):
         said = {"between": {"a": {"b": {"a": UNKNOWN if number % 2 else number > 6}}}, "rain": True}
         states = (said,) * (1 + number % shape)
         own.append(Trace(f"t{number}", 0.5, cars, states, ends="cut"))
-    assert list(verify_many(own, compiled)) == [verify_or_reason(one, compiled) for one in own]
+    assert list(verify_many(own, compiled)) == [by_states(one, compiled) for one in own]
 
 
 @pytest.mark.parametrize("n_states", [63, 64, 200])
@@ -222,5 +223,5 @@ def test_traces_that_contradict_facts(most):
         own[number] = replace(own[number], states=(state, *own[number].states[1:]))
     with patch.object(stacked_run, "_MOST_EXAMINED", most):
         answers = list(verify_many(own, compiled))
-    assert answers == [verify_or_reason(one, compiled) for one in own]
+    assert answers == [by_states(one, compiled) for one in own]
     assert any(answer.violations for answer in answers if not isinstance(answer, NotJudged))

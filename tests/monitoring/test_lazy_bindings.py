@@ -93,7 +93,7 @@ def test_of_427_million_choices_none_is_made_that_cannot_violate_the_rule(six):
 
 def test_violations_of_many_choices_are_found(six):
     trace = crowd(30, ["o1", "o2", "o3"], stopped={"o4": True, "o5": True, "o6": True})
-    (answer,) = verify_chunk([trace], six, 1)
+    (answer,) = verify_chunk([trace], six)
     assert len(answer.violations) == 6 * 6
 
 

@@ -11,7 +11,7 @@ from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read, Thresho
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.logic.formula import Atom, Count, QuantityTerm
 from rulec.logic.semantics import holds
-from rulec.monitoring.verify import run
+from rulec.monitoring.uncertainty.known_words import run
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Example, Rulebook, Variable
 from rulec.vocabulary import Enumeration, ObjectType, Vocabulary

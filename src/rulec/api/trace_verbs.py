@@ -39,20 +39,6 @@ if TYPE_CHECKING:
     from rulec.trace.trace_columns import TraceCells, TraceColumns
 
 
-def _verdict(trace: Trace, compiled: CompiledRulebook) -> Verdict:
-    """The verdict on one trace. Raises RulecError."""
-    from rulec.monitoring.verdict import Verdict
-    from rulec.monitoring.verify import LONG, verify_contained
-
-    if isinstance(trace, Trace) and isinstance(trace.states, tuple) and len(trace.states) >= LONG:
-        from rulec.monitoring.batch.batch_verify import verify_chunk
-
-        (answer,) = verify_chunk([trace], compiled)
-        if isinstance(answer, Verdict):
-            return answer
-    return verify_contained(trace, compiled)
-
-
 class TraceVerbs(SessionSettings):
     """The verbs of a session that are about traces."""
 
@@ -123,6 +109,7 @@ class TraceVerbs(SessionSettings):
         """
         from rulec.monitoring.assumptions import check_assumed
         from rulec.monitoring.rulebook_edition import edition_of
+        from rulec.monitoring.verify import verify_contained
 
         compiled = self._compiled(rules)
         if not isinstance(drives, Trace):
@@ -131,7 +118,7 @@ class TraceVerbs(SessionSettings):
         if assumptions is not None:
             check_assumed(assumptions.values, compiled.vocabulary, "values")
             trace = assumptions.applied(trace)
-        return replace(_verdict(trace, compiled), law=edition_of(compiled))
+        return replace(verify_contained(trace, compiled), law=edition_of(compiled))
 
     def _judged(
         self,

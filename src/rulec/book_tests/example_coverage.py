@@ -25,7 +25,8 @@ from rulec.book_tests.proposed_examples import (
 from rulec.diagnostics import Diagnostic
 from rulec.logic.formula import Proposition, atoms_of
 from rulec.logic.kleene import holds
-from rulec.monitoring.verify import letter_reader_of
+from rulec.monitoring.implied_values import with_derived_values
+from rulec.monitoring.uncertainty.known_words import KnownLetters
 from rulec.rulebook.rulebook_model import Axiom, Rule
 from rulec.value_display import short_repr
 from rulec.vocabulary import Vocabulary
@@ -124,8 +125,8 @@ def _coverage(
     seen: set[tuple[Proposition, object]] = set()
     near: set[LimitSide] = set()
     for outcome in outcomes:
-        trace = example_trace(rule, outcome.example)
-        reader = letter_reader_of(trace, rulebook)
+        trace = with_derived_values(example_trace(rule, outcome.example), rulebook.vocabulary)
+        reader = KnownLetters(trace, rulebook)
         for number in range(len(trace.states)):
             state = reader.view(number)
             seen |= {(atom, holds(atom, own_names(rule), state)) for atom, _ in values}

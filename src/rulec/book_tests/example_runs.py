@@ -13,7 +13,8 @@ from rulec.diagnostics import Diagnostic, Label, RulecError
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import has_seconds
 from rulec.monitoring.axiom_violations import ImpossibleStateError, check_counting_axioms
-from rulec.monitoring.verify import letter_reader_of, run
+from rulec.monitoring.implied_values import with_derived_values
+from rulec.monitoring.uncertainty.known_words import KnownLetters, run
 from rulec.rulebook.files.edition_names import edition_names
 from rulec.rulebook.rulebook_model import Example, Rule, Rulebook
 from rulec.rulebook.rules.example_messages import CONTRADICTORY_STATE
@@ -153,9 +154,9 @@ def _is_wanted(names: Sequence[str], patterns: Sequence[str]) -> bool:
 def _outcome(
     rule: Rule, machine: CompiledRule, compiled: CompiledRulebook, example: Example, number: int
 ) -> ExampleOutcome:
-    trace = example_trace(rule, example)
     where = "this state".format
-    reader = letter_reader_of(trace, compiled, where)
+    trace = with_derived_values(example_trace(rule, example), compiled.vocabulary, where)
+    reader = KnownLetters(trace, compiled, where)
     last = len(trace.states) - 1
     try:
         check_counting_axioms(compiled, last + 1, reader.view, where, trace.place)

@@ -16,6 +16,7 @@ from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.findings import JudgedTrace
 from rulec.monitoring.batch.rounded_verify import judge_rounded
 from rulec.monitoring.batch.verify_arrays import answer_to
+from rulec.monitoring.fault_containment import without
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
 from rulec.monitoring.verdict import (
@@ -25,7 +26,6 @@ from rulec.monitoring.verdict import (
     agreed_by_type,
     with_law,
 )
-from rulec.monitoring.verify import without
 from rulec.recordings.recording import Recording
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import Rows, short_repr

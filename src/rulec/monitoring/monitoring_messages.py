@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.code import Code
 
 _GOOD = '{"objects": {"v1": "vehicle"}, "states": [{"position": {"v1": "b"}}]}\n'
@@ -95,3 +96,16 @@ rulec verify t.jsonl -r esterle2019 --step 0.1""",
 rulec verify t.jsonl -r esterle2019 --step 0.1""",
     kind="command",
 )
+
+
+def missing_value(
+    subject: tuple[str, tuple[str, ...]], where: str, rule: str, place: SourceLocation | None
+) -> RulecError:
+    """The error (R0504) about a state that lacks the value of a name for some objects."""
+    name, items = subject
+    of = f" of `{', '.join(map(str, items))}`" if items else ""  # a program may count its objects
+    return MISSING_VALUE.error(
+        place,
+        f"{where} does not say the `{name}`{of}, which rule `{rule}` needs",
+        help="say it in every state, `null` where it is not known, or declare a default for it",
+    )

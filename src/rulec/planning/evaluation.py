@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.monitoring.fault_containment import without_words
 from rulec.monitoring.verdict import CarriedState, RuleNotJudged
-from rulec.monitoring.verify import without_words
 from rulec.partition import NavigationGraph
 from rulec.planning.maneuvers import AS_WRITTEN, Maneuvers
 from rulec.planning.product.graph_instances import HARD

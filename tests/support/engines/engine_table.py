@@ -21,6 +21,7 @@ from support.engines.trace_engines import (
     one_by_one,
     repeated,
     stacked,
+    state_by_state,
     through,
     with_own_names,
     with_own_states,
@@ -44,6 +45,7 @@ ENGINES = {
         by_oracle, {FORM: "it only reads what fits", ANY_STEP: "it knows them all"}
     ),
     "one by one": Engine(one_by_one),
+    "state by state": Engine(state_by_state),
     "compiled file": Engine(compiled_file),
     "together, in cells": Engine(repeated(as_it_is)),
     "together, in columns": Engine(repeated(with_own_states)),

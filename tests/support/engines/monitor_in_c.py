@@ -20,8 +20,10 @@ from rulec.code_generation.monitor_layout import (
 )
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding, Cast
+from rulec.monitoring.implied_values import with_derived_values
+from rulec.monitoring.uncertainty.known_words import KnownLetters
 from rulec.monitoring.verdict import Verdict, Violation
-from rulec.monitoring.verify import letter_reader_of, rulebook_for_checked
+from rulec.monitoring.verify import check_fitting, rulebook_for_trace
 from rulec.trace import State, Trace
 from rulec.trace.trace_model import check_trace
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES
@@ -48,21 +50,21 @@ class CEngine:
         fits = len(self.rulebook.rounded_to(trace.step_s)) == 1
         if not fits or trace.ends != "complete" or trace.told is not None:
             return None
-        rulebook, is_partial = rulebook_for_checked(trace, self.rulebook)
+        rulebook = rulebook_for_trace(trace, self.rulebook)
+        is_partial = check_fitting(trace, rulebook)
         violations = None if is_partial else self._violations(trace, rulebook)
         return None if violations is None else Verdict(trace.id, tuple(violations))
 
     def _violations(self, trace: Trace, rulebook: CompiledRulebook) -> list[Violation] | None:
         """The violations of a trace; None if C does not determine them."""
-        reader = letter_reader_of(trace, rulebook)
-        check_counting_axioms(
-            rulebook, len(trace.states), reader.view, "state {}".format, trace.place
-        )
+        trace = with_derived_values(trace, rulebook.vocabulary)
+        view = KnownLetters(trace, rulebook).view
+        check_counting_axioms(rulebook, len(trace.states), view, "state {}".format, trace.place)
         cast = Cast(
             trace.objects, rulebook.vocabulary, len(trace.states), trace.present, trace.place
         )
         library = self._library(rulebook, cast)
-        run = _Run(library, reader.states, cast)
+        run = _Run(library, trace.states, cast)
         if not run.is_whole:
             return None
         violations: list[Violation] = []

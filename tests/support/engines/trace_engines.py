@@ -17,6 +17,7 @@ from rulec.monitoring.verify import verify_or_reason
 from rulec.trace.formats.trace_files import kinds_in, read_chunks, write_traces
 from rulec.vocabulary import Enumeration, Quantity, Signal
 from support.builders.array_traces import CannotSayError, in_arrays
+from support.engines.by_states import by_states
 from support.engines.engine import each, told
 from support.oracles.bits.bit_verdicts import verify_on_bits
 from support.oracles.presence import there
@@ -32,6 +33,10 @@ def by_oracle(rulebook, compiled, trace):
 
 def one_by_one(rulebook, compiled, traces):
     return [told(verify_or_reason(trace, compiled)) for trace in traces]
+
+
+def state_by_state(rulebook, compiled, traces):
+    return [told(by_states(trace, compiled)) for trace in traces]
 
 
 def compiled_file(rulebook, compiled, traces):
@@ -105,7 +110,7 @@ def stacked(rulebook, compiled, traces):
         with suppress(CannotSayError):
             arrays[place] = in_arrays(trace, rulebook.vocabulary)
         if place not in arrays:
-            answers[place] = verify_or_reason(trace, compiled)
+            answers[place] = by_states(trace, compiled)
     answers |= zip(arrays, verify_arrays(list(arrays.values()), compiled), strict=True)
     return [told(answers[place]) for place in range(len(traces))]
 

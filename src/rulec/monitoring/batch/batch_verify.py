@@ -1,17 +1,16 @@
 """Verification of many traces together, with the same verdicts as ``verify``.
 
-Any irregular trace, for instance one with an unknown name or a missing value, is left to
-``verify``.
+Any irregular trace, for instance one with an unknown name or a missing value, is judged by its
+states.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from itertools import islice
-from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
@@ -31,30 +30,29 @@ from rulec.monitoring.batch.columns.block_columns import groups_of
 from rulec.monitoring.batch.columns.column_states import shared_states
 from rulec.monitoring.batch.columns.columnize import UnencodableError
 from rulec.monitoring.batch.joined.joined_columns import joined_columns
-from rulec.monitoring.batch.joined.joined_states import joined_states
-from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind
+from rulec.monitoring.batch.joined.joined_traces import TraceKind
+from rulec.monitoring.batch.stacked.stacked_run import judge_joined
 from rulec.monitoring.batch.trace_groups import Placed
+from rulec.monitoring.batch.verify_joined import (
+    IRREGULAR,
+    derived_trace,
+    is_framed,
+    verdicts_together,
+)
 from rulec.monitoring.bindings import Cast, types_of
-from rulec.monitoring.implied_values import with_derived_values
+from rulec.monitoring.fault_containment import said
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import check_objects
-from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.monitoring.verify import LONG, rulebook_for_trace, said, verify_or_reason
+from rulec.monitoring.verify import rulebook_for_trace, verify_by_states, verify_or_reason
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import LineBlock
 from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
 from rulec.trace.trace_columns import TraceColumns
-from rulec.trace.trace_model import check_frame, check_presence
-from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN
-
-if TYPE_CHECKING:
-    from rulec.monitoring.batch.findings import JudgedTrace
 
 FEWEST = 4
-"""Fewer traces of one shape or kind are judged one by one, unless they are long."""
+"""Fewer traces of one shape are not searched for states that recur."""
 
 _MADE_TOGETHER = 1 << 12
 """How many reasons for refusing traces are built at once.
@@ -68,9 +66,6 @@ _FEWEST_ROWS = 200
 """If a shape in a block has fewer rows on average, its traces are read row by row."""
 
 Items = Sequence[Trace | RulecError]
-
-_IRREGULAR = UnencodableError, MissingValueError, RulecError
-"""What prevents traces from being judged as columns."""
 
 
 def verify_many(
@@ -97,104 +92,43 @@ def _n_states(item: Trace | RulecError) -> int:
     return len(states) if isinstance(states, Sequence) else 0
 
 
-def verify_chunk(
-    items: Sequence[Trace | RulecError], rulebook: CompiledRulebook, fewest: int = FEWEST
-) -> list[Answer]:
-    """Answers for some traces; at least ``fewest`` of one kind are judged together."""
+def verify_chunk(items: Sequence[Trace | RulecError], rulebook: CompiledRulebook) -> list[Answer]:
+    """Answers for some traces, judged together where they are alike."""
     try:
-        return _verify_chunk(items, rulebook, fewest)
+        return _verify_chunk(items, rulebook)
     except Exception as problem:
         return said([verify_or_reason(item, rulebook) for item in items], problem)
 
 
-def _verify_chunk(
-    items: Sequence[Trace | RulecError], rulebook: CompiledRulebook, fewest: int
-) -> list[Answer]:
+def _verify_chunk(items: Sequence[Trace | RulecError], rulebook: CompiledRulebook) -> list[Answer]:
     answers: list[Answer | None] = [None] * len(items)
     kinds: dict[TraceKind, list[Placed]] = {}
     shapes: dict[trace_groups.Shape, list[Placed]] = {}
     for place, item in enumerate(items):
-        if isinstance(item, Trace):
-            try:
-                if rulebook.vocabulary.constants or rulebook.vocabulary.implied:
-                    item = _with_derived_values(item, rulebook.vocabulary)
-                kind = TraceKind(item.step_s, item.ends, item.told)
-                kinds.setdefault(kind, []).append((place, item))
+        # What is no trace, or has a constant that changes, is judged alone.
+        if isinstance(item, Trace) and is_framed(item):
+            trace = derived_trace(item, rulebook.vocabulary)
+            if trace is not None:
+                kind = TraceKind(trace.step_s, trace.ends, trace.told)
+                kinds.setdefault(kind, []).append((place, trace))
                 if kind.is_whole:
-                    shapes.setdefault(trace_groups.shape_of(item), []).append((place, item))
-            except (TypeError, AttributeError, LookupError, RulecError):
-                continue  # it is no trace, or a constant changes, which ``verify`` will say
-    for alike in filter(partial(_are_many, fewest=fewest), shapes.values()):
-        framed = [own for own in alike if _is_framed(own[1])]
+                    shapes.setdefault(trace_groups.shape_of(trace), []).append((place, trace))
+    for alike in shapes.values():
         # What is irregular is judged with others, or alone.
-        with suppress(*_IRREGULAR):
-            if framed:
-                rules = rules_for(framed[0][1], rulebook)
-                _verify_alike(traces_placed(framed, rules.vocabulary), rules, answers)
-    for kind, placed in kinds.items():
+        if len(alike) >= FEWEST:
+            with suppress(*IRREGULAR):
+                rules = rules_for(alike[0][1], rulebook)
+                _verify_alike(traces_placed(alike, rules.vocabulary), rules, answers)
+    for placed in kinds.values():
         left = [own for own in placed if answers[own[0]] is None]
-        if _are_many(left, fewest):
-            # What judges partial states, 10 ms: only where there are some.
-            from rulec.monitoring.batch.stacked.stacked_run import check_judgeable, judge_joined
-
-            with suppress(*_IRREGULAR):
-                check_judgeable(kind, rulebook)
-                framed = [own for own in left if _is_framed(own[1])]
-                _verify_together(framed, rulebook, judge_joined, answers)
+        if left:
+            verdicts = verdicts_together([trace for _, trace in left], rulebook)
+            for (place, _), verdict in zip(left, verdicts, strict=True):
+                answers[place] = verdict
     return [
-        verify_or_reason(item, rulebook) if answer is None else answer
+        verify_or_reason(item, rulebook, verify_by_states) if answer is None else answer
         for item, answer in zip(items, answers, strict=True)
     ]
-
-
-def _are_many(placed: Sequence[Placed], fewest: int) -> bool:
-    return len(placed) >= fewest or sum(_n_states(trace) for _, trace in placed) >= LONG
-
-
-def _verify_together(
-    traces: Sequence[Placed],
-    rulebook: CompiledRulebook,
-    judge: Callable[[JoinedTraces, CompiledRulebook], Sequence[JudgedTrace | None]],
-    answers: list[Answer | None],
-) -> None:
-    """Judge traces of one kind, whatever their objects; an irregular one is left."""
-    if not traces:
-        return
-    try:
-        joined = joined_states([trace for _, trace in traces], rulebook.vocabulary)
-        judged = judge(joined, rulebook)
-    except _IRREGULAR:
-        middle = len(traces) // 2
-        for part in (traces[:middle], traces[middle:]) if middle else ():
-            _verify_together(part, rulebook, judge, answers)
-        return
-    for (place, trace), own in zip(traces, judged, strict=True):
-        if own is not None:
-            answers[place] = own.findings.verdict(own.number, trace.id, partial(_says, trace))
-
-
-def _says(trace: Trace, name: str) -> bool:
-    return any(name in state for state in trace.states)
-
-
-def _is_framed(trace: Trace) -> bool:
-    try:
-        check_frame(trace)
-        if trace.present:
-            check_presence(trace)
-    except (RulecError, TypeError):
-        return False
-    return True
-
-
-def _with_derived_values(trace: Trace, vocabulary: Vocabulary) -> Trace:
-    about = [x for x in vocabulary.constants if vocabulary.declarations[x].parameters]
-    if any(state.get(name) is UNKNOWN for name in about for state in trace.states):
-        # As above, only for partial states.
-        from rulec.monitoring.uncertainty.suppositions import spelled_out
-
-        trace = spelled_out(trace, vocabulary)
-    return with_derived_values(trace, vocabulary)
 
 
 def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
@@ -270,7 +204,7 @@ def _verify_lines(block: LineBlock, rulebook: CompiledRulebook) -> Sequence[Answ
     answers: list[Answer | None] = [None] * len(block)
     for lines in block.alike:
         # Irregularities are reported line by line.
-        with suppress(*_IRREGULAR):
+        with suppress(*IRREGULAR):
             example = lines.headings[0]
             rules = rules_for(Trace("", example.step_s, example.objects, ()), rulebook)
             _verify_alike(traces_of_lines(block, lines, rules.vocabulary), rules, answers)
@@ -284,7 +218,7 @@ def verify_columns(columns: TraceColumns, rulebook: CompiledRulebook) -> list[An
     """Answers for traces given as columns, in the layout's order."""
     alike = traces_of_columns(columns, rulebook.vocabulary)
     answers: list[Answer | None] = [None] * len(alike.places)
-    with suppress(*_IRREGULAR):
+    with suppress(*IRREGULAR):
         check_nothing_derived(columns, rulebook.vocabulary)
         rules = rules_for(Trace("", columns.step_s, columns.objects, ()), rulebook)
         _verify_alike(alike, rules, answers)
@@ -299,7 +233,7 @@ def _verify_alike(
     rules: CompiledRulebook,
     answers: list[Answer | None],
 ) -> None:
-    """Fill in the answers for traces whose values are all readable. Raises ``_IRREGULAR``."""
+    """Fill in the answers for traces whose values are all readable. Raises ``IRREGULAR``."""
     if any(counts(axiom.formula) for axiom in rules.axioms):
         raise UnencodableError
     cells = shared_states(alike.columns, rules.vocabulary) if alike.is_whole else None
@@ -310,9 +244,6 @@ def _verify_alike(
             own_names = trace_groups.under_own_names(violations, objects, names)
             answers[alike.places[number]] = Verdict(alike.ids(number), own_names)
         return
-    # As above.
-    from rulec.monitoring.batch.stacked.stacked_run import judge_joined
-
     judged = judge_joined(joined_columns(alike, rules.vocabulary), rules)
     for place, own in zip(alike.places, judged, strict=True):
         if own is not None:
@@ -353,6 +284,6 @@ def _verify_block(
             step_s = float(presence.step_s[group.traces[0]])
             rules = rules_for(Trace("", step_s, objects, ()), rulebook)
             _verify_alike(traces_of_group(group, rules.vocabulary), rules, answers)
-    except (OddTableError, *_IRREGULAR):
+    except (OddTableError, *IRREGULAR):
         return None
     return block, _with_others(answers, block, rulebook)

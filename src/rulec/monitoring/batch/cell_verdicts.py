@@ -15,7 +15,8 @@ from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.machines.joint_machine import join_machines
 from rulec.monitoring.batch.machines.table_run import first_lost, first_lost_of_one, run, run_alone
 from rulec.monitoring.bindings import Cast
-from rulec.monitoring.letter_reader import LetterReader
+from rulec.monitoring.uncertainty.known_words import KnownLetters
+from rulec.trace import Trace
 from rulec.trace.trace_columns import TraceCells, TraceColumns
 from rulec.value_display import short_repr
 
@@ -112,8 +113,8 @@ def _letters_by_cell(
     all_letters = [[0] * len(traces.states) for _ in bound_rules]
     for scene, cells in scenes.items():
         objects = dict(scene)
-        states = [traces.states[cell] for cell in cells]
-        reader = LetterReader(states, rulebook, str, objects=objects)
+        states = tuple([traces.states[cell] for cell in cells])
+        reader = KnownLetters(Trace("", traces.step_s, objects, states), rulebook)
         for binding, letters in zip(bound_rules, all_letters, strict=True):
             if objects.keys() >= set(binding.objects.values()):
                 word = _word(binding, reader, 0, len(cells) - 1)
@@ -122,7 +123,7 @@ def _letters_by_cell(
     return all_letters
 
 
-def _word(binding: RuleBinding, reader: LetterReader, first: int, last: int) -> list[int]:
+def _word(binding: RuleBinding, reader: KnownLetters, first: int, last: int) -> list[int]:
     try:
         return list(reader.word(binding.rule, binding.objects, first, last))
     except RulecError:

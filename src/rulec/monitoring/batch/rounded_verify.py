@@ -9,8 +9,8 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.garbage_collection import no_garbage_collection
 from rulec.monitoring.batch.findings import JudgedTrace
 from rulec.monitoring.batch.verify_arrays import answer_to, judge_arrays, verify_arrays
+from rulec.monitoring.fault_containment import judged_apart, without, without_words
 from rulec.monitoring.verdict import NotJudged, Verdict, agreed
-from rulec.monitoring.verify import judged_apart, without, without_words
 from rulec.trace.trace_arrays import TraceArrays
 
 _Judged: TypeAlias = JudgedTrace | Verdict | NotJudged

@@ -85,6 +85,6 @@ def _by_states(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> lis
 
 def _by_its_states(trace: TraceArrays, rulebook: CompiledRulebook) -> Answer:
     # As above: only for irregular traces.
-    from rulec.monitoring.verify import verify_or_reason
+    from rulec.monitoring.verify import verify_by_states, verify_or_reason
 
-    return verify_or_reason(trace.trace(), rulebook)
+    return verify_or_reason(trace.trace(), rulebook, verify_by_states)

@@ -32,13 +32,12 @@ from rulec.monitoring.explain.observed_states import ObservedStates
 from rulec.monitoring.explain.observed_word import ObservedWord
 from rulec.monitoring.explain.turning_margins import turning
 from rulec.monitoring.implied_values import with_derived_values
-from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import has_partial_values
 from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.known_words import KnownLetters
 from rulec.monitoring.uncertainty.one_completion import completed, favourable, with_all_defaults
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import Violation
-from rulec.monitoring.verify import letter_reader_of
 from rulec.trace import Trace, Value
 from rulec.value_display import short_repr
 from rulec.vocabulary import Vocabulary
@@ -151,7 +150,7 @@ def explain(
         trace = completed(trace, declared, supposed)
         rulebook = replace(rulebook, vocabulary=with_all_defaults(declared, supposed, untold))
     binding = binding_of(violation.binding, trace.present, len(trace.states))
-    reader = letter_reader_of(trace, rulebook)
+    reader = KnownLetters(with_derived_values(trace, rulebook.vocabulary), rulebook)
     stretch = range(binding.first, binding.last + 1)
     decisive = binding.last if violation.step is None else violation.step
     numbers = _looked_at(reader, rule, binding, decisive)
@@ -256,7 +255,7 @@ def _last_until(place: int, instants: Sequence[bool]) -> int:
 
 
 def _looked_at(
-    reader: LetterReader, rule: CompiledRule, binding: Binding, decisive: int
+    reader: KnownLetters, rule: CompiledRule, binding: Binding, decisive: int
 ) -> Sequence[int]:
     """The numbers of the states that are evaluated."""
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from rulec.automata.guards import Cube
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead
 from rulec.monitoring.limits import LIMITS
-from rulec.monitoring.verify import run
+from rulec.monitoring.uncertainty.known_words import run
 from rulec.witnesses.state_synthesis import are_consistent
 
 Letter = tuple[int, ...]

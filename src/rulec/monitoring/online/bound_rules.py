@@ -16,17 +16,16 @@ from rulec.diagnostics import SourceLocation, named
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Cast, in_usual_order
 from rulec.monitoring.implied_values import with_implied_signals
-from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.online.encoding.encoded_values import Encoded
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
 from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.online.group_letters import GroupLetters
-from rulec.monitoring.online.partial_states import PartialStateReader, RulesOfAll, rules_of_all
+from rulec.monitoring.online.partial_states import RulesOfAll, StateReader, rules_of_all
 from rulec.monitoring.online.prepared_rule import PreparedRule
 from rulec.monitoring.online.rule_group import GroupNode, RuleGroup, RuleGroups, RulesRead
 from rulec.monitoring.online.uncertain_steps import Edge
 from rulec.monitoring.state_validation import check_state, has_partial_values
-from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings, known_bits
+from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings
 from rulec.monitoring.uncertainty.state_letters.possible_letters import BoundLetters, bound_letters
 from rulec.resource_limits import CHOICES
 from rulec.rulebook.rules.axiom_instances import counts
@@ -128,18 +127,14 @@ class BoundRules:
         name, rulebook = f"state {number}", self._rulebook
         check_state(state, self.objects, rulebook.vocabulary, name, place)
         state = with_implied_signals(state, rulebook.vocabulary)
-        partial = None
-        if self.groups.is_partial or has_partial_values(state):
-            partial = self._partial_state(state, (name, place))
-        reader = LetterReader((state,), rulebook, name.format, place=place, objects=self.objects)
+        reader = self._state_reader(state, (name, place))
         cast = Cast(self.objects, rulebook.vocabulary, 1, {}, place)
         awake: dict[tuple[str, ...], dict[Items, None]] = {}
         for group in self.lazy:
             own = awake.setdefault(group.types, {})
             for prepared in group.rules:
-                rule = prepared.rule
-                bits = partial.bits_of(prepared) if partial else known_bits(reader, rule)
-                bound = doubtful_bindings(rule, cast, bits, prepared.idle)
+                bits = reader.bits_of(prepared)
+                bound = doubtful_bindings(prepared.rule, cast, bits, prepared.idle)
                 own.update((tuple(binding.objects.values()), None) for binding in bound)
         return awake
 
@@ -191,13 +186,11 @@ class BoundRules:
             self._readers[names] = GroupLetters(shape, self._bindings)
         return self._readers[names]
 
-    def _partial_state(
-        self, state: State, where: tuple[str, SourceLocation | None]
-    ) -> PartialStateReader:
+    def _state_reader(self, state: State, where: tuple[str, SourceLocation | None]) -> StateReader:
         if self._letters is None:
             rulebook = self._rulebook
             self._letters = bound_letters(rulebook, self.objects, rulebook.vocabulary)
-        return PartialStateReader(state, self._rulebook, self.objects, where, self._letters)
+        return StateReader(state, self._rulebook, self.objects, where, self._letters)
 
     def inexact(self, letters: Letters) -> frozenset[str]:
         """Rules whose possible letters are overestimated in a state with these letters."""
@@ -225,25 +218,20 @@ class BoundRules:
         name, rulebook = f"state {number}", self._rulebook
         check_state(state, self.objects, rulebook.vocabulary, name, place)
         state = with_implied_signals(state, rulebook.vocabulary)
-        reader = LetterReader((state,), rulebook, name.format, place=place, objects=self.objects)
+        reader = self._state_reader(state, (name, place))
         check_counting_axioms(rulebook, 1, reader.view, name.format, place)
-        is_partial = self.groups.is_partial or has_partial_values(state)
-        partial = self._partial_state(state, (name, place)) if is_partial else None
         by_place = self._known_letters(state, known)
         for bound_rule in self.rules:
             prepared = bound_rule.prepared
             for place_, items in enumerate(bound_rule.bindings, bound_rule.places.start):
                 own = by_place[place_]
                 if isinstance(own, list) and own[bound_rule.number] is None:
-                    own[bound_rule.number] = (
-                        (reader.word(prepared.rule, prepared.bound(items), 0, 0)[0], True)
-                        if partial is None
-                        else partial.letter_class(prepared, items)
-                    )
+                    own[bound_rule.number] = reader.letter_class(prepared, items)
         letters = [
             own if isinstance(own, int) else _letter(group, own)
             for (group, _), own in zip(self._at, by_place, strict=True)
         ]
+        is_partial = self.groups.is_partial or has_partial_values(state)
         return self._filled(letters, state, (number, place)), is_partial
 
     def _filled(
@@ -271,7 +259,7 @@ class BoundRules:
             classes = of_all.letter_class(prepared, items, state)
             if classes is None:
                 # Something is wrong.
-                reader = self._partial_state(state, (f"state {number}", where[1]))
+                reader = self._state_reader(state, (f"state {number}", where[1]))
                 classes = reader.letter_class(prepared, items)
             return classes
 

@@ -49,7 +49,7 @@ class RulesOfAll:
     def letter_class(
         self, prepared: PreparedRule, items: Items, state: State
     ) -> tuple[LetterClass, bool] | None:
-        """As in ``PartialStateReader``; None if that one has to report what is wrong."""
+        """As in ``StateReader``; None if that one has to report what is wrong."""
         key = prepared, items
         rule = self._rules.get(key)
         if rule is None:
@@ -159,7 +159,7 @@ class _RuleOfAll:
         return any(name in self._prepared.constants for name, _ in unknown)
 
 
-class PartialStateReader:
+class StateReader:
     """A checked state, read like ``verify`` does.
 
     ``where`` is what messages call the state, and where it was read. ``bound`` is kept from one
@@ -179,6 +179,10 @@ class PartialStateReader:
         self._reader = PossibleLetters(
             trace, rulebook, rulebook.vocabulary, lambda _: name, bound=bound
         )
+
+    def view(self, number: int) -> StateView:
+        """The state, which is the only one."""
+        return self._reader.view(number)
 
     def bits_of(self, prepared: PreparedRule) -> ReadBits:
         """A reader of the digits, as bits, of a rule's single reads."""

@@ -24,13 +24,12 @@ from rulec.monitoring.bindings import (
     types_of,
     usual_order,
 )
-from rulec.monitoring.letter_reader import Digits, LetterReader
 from rulec.monitoring.uncertainty.idle_letters import IdleLetters
 from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
 from rulec.resource_limits import CHOICES
 from rulec.vocabulary.vocabulary_model import choices, fitting_objects
 
-ReadBits: TypeAlias = Callable[[Read | NumberRead, Mapping[str, str], tuple[int, int]], Digits]
+ReadBits: TypeAlias = Callable[[Read | NumberRead, Mapping[str, str], tuple[int, int]], list[int]]
 """The digits, as bits, that a read may have for chosen objects in the states of a stretch.
 
 Raises RulecError R0504.
@@ -66,18 +65,6 @@ def doubtful_bindings(
             yield binding
 
 
-def known_bits(reader: LetterReader, rule: CompiledRule) -> ReadBits:
-    """The digits, as bits, in states in which everything is known."""
-
-    def read_bits(
-        read: Read | NumberRead, chosen: Mapping[str, str], stretch: tuple[int, int]
-    ) -> Digits:
-        digits = reader.digits(read, chosen, stretch, rule.name)
-        return 1 << digits if isinstance(digits, int) else [1 << digit for digit in digits]
-
-    return read_bits
-
-
 def _in_order(
     doubtful: Iterator[tuple[str, ...]], already_begun: Collection[tuple[str, ...]], cast: Cast
 ) -> Iterator[tuple[str, ...]]:
@@ -107,7 +94,7 @@ class _Search:
         ]
         """The reads that are known without any object, then those that each variable adds."""
         self._so_far = [tuple(chain(*self._known[: end + 1])) for end in range(len(self._known))]
-        self._columns: dict[tuple[int, tuple[str, ...]], tuple[Digits, int]] = {}
+        self._columns: dict[tuple[int, tuple[str, ...]], tuple[list[int], int]] = {}
         self._busy: dict[tuple[tuple[int, ...], tuple[int, ...]], bool] = {}
         self._most = CHOICES.value()
         self._tried = 0
@@ -195,7 +182,7 @@ class _Search:
         result = {}
         for state, cube in cubes.items():
             if state in own:
-                digits = *cube, *[_digit(column, state - first) for column, first in columns]
+                digits = *cube, *[column[state - first] for column, first in columns]
                 if self._is_busy(known, digits):
                     result[state] = digits
         return result
@@ -208,12 +195,10 @@ class _Search:
         return frozenset(
             state
             for state in range(own.first, own.last + 1)
-            if self._is_busy(
-                known, tuple([_digit(column, state - first) for column, first in columns])
-            )
+            if self._is_busy(known, tuple([column[state - first] for column, first in columns]))
         )
 
-    def _column(self, number: int, items: tuple[str, ...]) -> tuple[Digits, int]:
+    def _column(self, number: int, items: tuple[str, ...]) -> tuple[list[int], int]:
         """The digits of a read wherever its objects are present, and the first such state."""
         key = number, items
         if key not in self._columns:
@@ -235,10 +220,6 @@ class _Search:
                 cube[number] = own
             busy = self._busy[key] = not self._idle.of_cube(cube)
         return busy
-
-
-def _digit(column: Digits, place: int) -> int:
-    return column if isinstance(column, int) else column[place]
 
 
 def _variables_of(read: Read | NumberRead) -> tuple[str, ...]:

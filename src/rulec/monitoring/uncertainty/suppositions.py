@@ -19,13 +19,19 @@ from rulec.vocabulary.partial_values import UNKNOWN, PartialValue, UnknownValue
 class Suppositions:
     """The values that may be supposed for the constants of a trace.
 
-    ``vocabulary`` has the defaults of values missing in its states.
+    ``vocabulary`` has the defaults of values missing in its states, ``letters`` read them.
     """
 
-    def __init__(self, trace: Trace, rulebook: CompiledRulebook, vocabulary: Vocabulary) -> None:
+    def __init__(
+        self,
+        trace: Trace,
+        rulebook: CompiledRulebook,
+        vocabulary: Vocabulary,
+        letters: PossibleLetters,
+    ) -> None:
         self._trace = trace
         self._reader = ConstantsReader(rulebook, vocabulary, trace.objects)
-        self._letters = PossibleLetters(trace, rulebook, vocabulary)
+        self._letters = letters
 
     def of(self, rule: CompiledRule, binding: Binding) -> tuple[list[dict[Subject, Value]], bool]:
         """The joint values that unknown constants read by a rule or an axiom may have."""

@@ -8,12 +8,13 @@ cut traces see ``rulec.automata.prefix_machines``.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import KEPT, VIOLATED
 from rulec.monitoring.bindings import Binding, Cast, binding_of, types_of
+from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.uncertainty.lazy_bindings import ReadBits, doubtful_bindings
 from rulec.monitoring.uncertainty.state_letters.letter_classes import PossibleWord
@@ -54,10 +55,17 @@ def uncertain_verdict(
 
 
 class UncertainRun:
-    """The judgement of one checked trace that is ``spelled_out``, with what its rules share."""
+    """The judgement of one checked trace that is ``spelled_out``, with what its rules share.
+
+    ``where`` names a state in messages.
+    """
 
     def __init__(
-        self, trace: Trace, rulebook: CompiledRulebook, past: CarriedState = NO_PAST
+        self,
+        trace: Trace,
+        rulebook: CompiledRulebook,
+        past: CarriedState = NO_PAST,
+        where: Callable[[int], str] = "state {}".format,
     ) -> None:
         self.trace = trace
         self.rulebook = rulebook
@@ -65,8 +73,8 @@ class UncertainRun:
         self.judged = judged_rules(rulebook, trace.told, cut=trace.ends == "cut")
         self.vocabulary = self.judged.vocabulary
         self._known: dict[tuple[object, ...], Answer] = {}
-        self._suppositions = Suppositions(self.trace, rulebook, self.vocabulary)
-        self._letters = PossibleLetters(self.trace, rulebook, self.vocabulary)
+        self._letters = PossibleLetters(self.trace, rulebook, self.vocabulary, where)
+        self._suppositions = Suppositions(trace, rulebook, self.vocabulary, self._letters)
 
     def verdict(self) -> Verdict:
         """The verdict of all rules."""
@@ -85,6 +93,10 @@ class UncertainRun:
             self.judged.not_judged,
             presumed_in(self.trace, self.judged.presumed),
         )
+
+    def view(self, number: int) -> StateView:
+        """A state with the objects that are present."""
+        return self._letters.view(number)
 
     def outcomes(
         self, rule: CompiledRule, binding: Binding, starts: Iterable[int]

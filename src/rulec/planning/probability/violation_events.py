@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cache
 from itertools import product
 from math import prod
@@ -15,17 +14,11 @@ from rulec.logic.free_names import names_in, variables_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.bindings import Binding, Cast, types_of
 from rulec.monitoring.implied_values import with_implied_in_graph
-from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_view import StateView
-from rulec.monitoring.uncertainty.lazy_bindings import (
-    ReadBits,
-    doubtful_bindings,
-    known_bits,
-)
+from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
-from rulec.monitoring.verify import run
 from rulec.partition.prediction_worlds import PredictedPath
 from rulec.planning.maneuvers import Maneuvers
 from rulec.planning.probability.event_probability import Event
@@ -64,7 +57,7 @@ class ViolationEvents:
             maneuvers.graph, maneuvers.paths, maneuvers.rules, (*HARD, *SOFT), maneuvers.after
         )
         self.in_doubt = bool(maneuvers.unknown or self._past.doubtful_rules)
-        self._everybody = self._columns(self._words.objects)
+        self._everybody = self._run(self._words.objects)
 
     @property
     def hits(self) -> set[Event]:
@@ -110,14 +103,14 @@ class ViolationEvents:
                     return None
                 for chosen in product(*others.values()):
                     world = about | {of: group[0] for of, group in zip(others, chosen, strict=True)}
-                    columns = self._columns(
+                    run = self._run(
                         {
                             name: kind
                             for name, kind in self._words.objects.items()
                             if self._is_in(world, name)
                         }
                     )
-                    if not self._keeps(rule, binding, columns):
+                    if not self._keeps(rule, binding, run):
                         open_ones = [
                             [(of, number) for number in group]
                             for of, group in zip(others, chosen, strict=True)
@@ -148,21 +141,12 @@ class ViolationEvents:
     def _of(self, names: Iterable[str]) -> tuple[str, ...]:
         return tuple([self._path.predicted[name].of for name in names])
 
-    def _columns(self, objects: Mapping[str, str]) -> _Columns:
-        known = LetterReader(
-            self._states,
-            self._book,
-            "the maneuver's cell of layer {}".format,
-            objects=objects,
-            present=self._words.present,
-        )
-        if not self.in_doubt:
-            return _Columns(known)
+    def _run(self, objects: Mapping[str, str]) -> UncertainRun:
         words = self._words
         there = {name: span for name, span in words.present.items() if name in objects}
         trace = Trace("", words.step_s, objects, tuple(self._states), there, told=words.told)
         trace = spelled_out(trace, self._book.vocabulary)
-        return _Columns(known, UncertainRun(trace, self._book))
+        return UncertainRun(trace, self._book, where="the maneuver's cell of layer {}".format)
 
     def _is_in_doubt(self, rule: CompiledRule) -> bool:
         unknown = not self._unknown.isdisjoint(names_in(rule.formula))
@@ -178,7 +162,7 @@ class ViolationEvents:
         bindings = cast.bindings(rule)
         if cast.has_many(types_of(rule)) and self._is_told_by_states(rule):
             idle = uncertain_machine(rule, None).idle
-            bindings = doubtful_bindings(rule, cast, self._bits(rule), idle)
+            bindings = doubtful_bindings(rule, cast, self._everybody.bits_of(rule), idle)
         for binding in bindings:
             who = [self._path.predicted[name] for name in binding.objects.values()]
             chosen = {(predicted.of, predicted.number) for predicted in who}
@@ -190,13 +174,7 @@ class ViolationEvents:
         is_hit = any(self._concerns(rule, name) for name in self._path.hit)
         return not (is_hit or counts(rule.formula) or self._past.begun(rule.name))
 
-    def _bits(self, rule: CompiledRule) -> ReadBits:
-        columns = self._everybody
-        if columns.uncertain is not None and self._is_in_doubt(rule):
-            return columns.uncertain.bits_of(rule)
-        return known_bits(columns.known, rule)
-
-    def _keeps(self, rule: CompiledRule, binding: Binding, columns: _Columns) -> bool:
+    def _keeps(self, rule: CompiledRule, binding: Binding, run: UncertainRun) -> bool:
         names = binding.objects.values()
         about = (rule.name, self._of(names))
         goes_on = binding.first == 0
@@ -205,22 +183,10 @@ class ViolationEvents:
         if not self._path.hit.isdisjoint(names):
             return False
         starts = self._past.starts(about) if goes_on else frozenset({0})
-        if columns.uncertain is not None and self._is_in_doubt(rule):
-            if self._perhaps and goes_on and about in self._past.perhaps_settled:
-                return True
-            best, worst = columns.uncertain.outcomes(rule, binding, starts)
-            return (best if self._perhaps else worst) == KEPT
-        (start,) = starts
-        word = columns.known.word(rule, binding.objects, binding.first, binding.last)
-        return run(rule.machine, word, start)[0]
-
-
-@dataclass(frozen=True, slots=True)
-class _Columns:
-    """Readers of a path's states, about some objects; the second one is for unknown values."""
-
-    known: LetterReader
-    uncertain: UncertainRun | None = None
+        if self._perhaps and goes_on and about in self._past.perhaps_settled:
+            return True
+        best, worst = run.outcomes(rule, binding, starts)
+        return (best if self._perhaps else worst) == KEPT
 
 
 class PredictionClasses:

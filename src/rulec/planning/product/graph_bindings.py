@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.monitoring.bindings import Binding, Cast, binding_of, types_of
 from rulec.monitoring.uncertainty.lazy_bindings import ReadBits, doubtful_bindings
 from rulec.monitoring.verdict import CarriedState
@@ -37,20 +36,3 @@ def graph_bindings(
         rule, in_nodes, read, uncertain_machine(rule, None).idle, past.begun(rule.name)
     )
     return (binding_of(own.objects, graph.present, len(graph.states)) for own in bindings)
-
-
-def layer_by_layer(graph: TraceGraph, readers: Sequence[ReadBits]) -> ReadBits:
-    """A reader of a graph's ``NodesInTurn``, made from one reader for each layer's nodes."""
-    nodes = NodesInTurn(graph)
-
-    def read_bits(
-        read: Read | NumberRead, chosen: Mapping[str, str], stretch: tuple[int, int]
-    ) -> list[int]:
-        found: list[int] = []
-        for layer in range(nodes.layer_of(stretch[0]), nodes.layer_of(stretch[1]) + 1):
-            n_nodes = len(graph.states[layer])
-            digits = readers[layer](read, chosen, (0, n_nodes - 1)) if n_nodes else []
-            found += [digits] * n_nodes if isinstance(digits, int) else digits
-        return found
-
-    return read_bits

@@ -8,20 +8,15 @@ from fractions import Fraction
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
-from rulec.monitoring.axiom_violations import check_counting_axioms
-from rulec.monitoring.bindings import Binding
 from rulec.monitoring.implied_values import with_implied_in_graph
-from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import StateValidator, check_objects
-from rulec.monitoring.uncertainty.lazy_bindings import known_bits
+from rulec.monitoring.uncertainty.known_words import run
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import NO_PAST, CarriedState, Violation
-from rulec.monitoring.verify import run
-from rulec.planning.product.graph_bindings import graph_bindings, layer_by_layer
 from rulec.planning.product.graph_instance import GraphInstance
+from rulec.planning.product.possible_instances import PossibleNodes
 from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import TraceGraph
-from rulec.trace.trace_model import present_in
 
 HARD: tuple[Strength, ...] = ("hard",)
 SOFT: tuple[Strength, ...] = ("soft",)
@@ -53,48 +48,11 @@ def instances(
     check_objects(graph.objects, vocabulary)
     validator = StateValidator(vocabulary, graph.objects)
     places = [f"a cell of layer {layer}".format for layer in range(len(graph.states))]
-    partial = [validator.check(*layer) for layer in zip(graph.states, places, strict=True)]
-    graph = with_implied_in_graph(graph, vocabulary)
-    possible = None
-    doubtful = past.doubtful_rules
-    if any(partial) or graph.told is not None or doubtful:
-        # Imported late (15 ms): only if not everything is known.
-        from rulec.planning.product.possible_instances import PossibleNodes
-
-        possible = PossibleNodes(graph, rulebook, places)
-    columns = [
-        LetterReader(
-            states,
-            rulebook,
-            places[layer],
-            objects=present_in(layer, graph.objects, graph.present),
-        )
-        for layer, states in enumerate(graph.states)
-    ]
-    for states, column, where in zip(graph.states, columns, places, strict=True):
-        check_counting_axioms(rulebook, len(states), column.view, where, None)
-    result: list[GraphInstance] = []
-    for rule in rules:
-        if possible is not None and (rule.name in doubtful or possible.concern(rule)):
-            result += possible.instances(rule, past)
-            continue
-        alike: dict[tuple[int, int, tuple[tuple[int, ...], ...]], list[Binding]] = {}
-        read = layer_by_layer(graph, [known_bits(column, rule) for column in columns])
-        for binding in graph_bindings(rule, graph, vocabulary, read, past):
-            letters = tuple(
-                columns[layer].word(rule, binding.objects, 0, len(graph.states[layer]) - 1)
-                for layer in range(binding.first, binding.last + 1)
-            )
-            about = (rule.name, tuple(binding.objects.values()))
-            stays = binding.first == 0
-            if not (stays and about in past.settled):
-                start = past.states.get(about, 0) if stays else 0
-                alike.setdefault((binding.first, start, letters), []).append(binding)
-        result += [
-            GraphInstance(rule, tuple(bound), letters, start)
-            for (_, start, letters), bound in alike.items()
-        ]
-    return result
+    for states, where in zip(graph.states, places, strict=True):
+        validator.check(states, where)
+    possible = PossibleNodes(with_implied_in_graph(graph, vocabulary), rulebook, places)
+    possible.check_counting_axioms()
+    return [own for rule in rules for own in possible.instances(rule, past)]
 
 
 def violations(rules: Sequence[GraphInstance], nodes: Sequence[int]) -> tuple[Violation, ...]:

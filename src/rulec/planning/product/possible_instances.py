@@ -1,4 +1,4 @@
-"""Rules bound to a graph's objects, where the letters of some nodes are unknown.
+"""Rules bound to a graph's objects, with the letters that each node may have.
 
 Paths are judged like traces in ``rulec.monitoring.uncertainty``: a node has a set of letters, and
 the machine steps on sets of states, one set for each choice of the constants. These steps form a
@@ -13,9 +13,8 @@ from typing import TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import KEPT, VIOLATED, SetMonitor
-from rulec.logic.free_names import names_in
+from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding
-from rulec.monitoring.state_validation import partial_names
 from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleLetters
 from rulec.monitoring.uncertainty.suppositions import (
     Suppositions,
@@ -58,7 +57,7 @@ class _Alike:
 
 
 class PossibleNodes:
-    """The letters that the nodes of a checked graph with unknown values may have."""
+    """The letters that the nodes of a checked graph may have."""
 
     def __init__(
         self,
@@ -68,6 +67,7 @@ class PossibleNodes:
     ) -> None:
         self._graph = graph
         self._rulebook = rulebook
+        self._places = places
         self._untold = untold_names(rulebook.vocabulary, graph.told)
         self._untold_types = untold_types(rulebook.vocabulary, graph.told)
         self._vocabulary = with_untold(rulebook.vocabulary, self._untold)
@@ -76,23 +76,22 @@ class PossibleNodes:
             Trace("", graph.step_s, graph.objects, self._nodes.states, self._nodes.present),
             rulebook.vocabulary,
         )
-        self._partial = self._untold | partial_names(nodes.states)
+        self._letters = PossibleLetters(nodes, rulebook, self._vocabulary, self._where)
         some = tuple([layer[0] if layer else {} for layer in graph.states])
-        path = Trace("", graph.step_s, graph.objects, some, graph.present)
-        self._suppositions = Suppositions(
-            spelled_out(path, rulebook.vocabulary), rulebook, self._vocabulary
+        path = spelled_out(
+            Trace("", graph.step_s, graph.objects, some, graph.present), rulebook.vocabulary
         )
-
-        def where(number: int) -> str:
-            return places[self._nodes.layer_of(number)](number)
-
-        self._letters = PossibleLetters(nodes, rulebook, self._vocabulary, where)
+        constants = PossibleLetters(path, rulebook, self._vocabulary)
+        self._suppositions = Suppositions(path, rulebook, self._vocabulary, constants)
         self._machines: dict[object, tuple[Sequence[tuple[int, ...]], Readings]] = {}
 
-    def concern(self, rule: CompiledRule) -> bool:
-        """Whether a rule reads values that are not all known, or cannot be judged."""
-        reads_partial = not self._partial.isdisjoint(names_in(rule.formula))
-        return reads_partial or bool(self.untold(rule, NO_PAST))
+    def check_counting_axioms(self) -> None:
+        """Check the counting axioms in every node. Raises RulecError R0508."""
+        n_nodes = len(self._nodes.states)
+        check_counting_axioms(self._rulebook, n_nodes, self._letters.view, self._where, None)
+
+    def _where(self, number: int) -> str:
+        return self._places[self._nodes.layer_of(number)](number)
 
     def untold(self, rule: CompiledRule, past: CarriedState) -> tuple[str, ...]:
         """Missing names and types because of which no path can be known to violate a rule."""
@@ -116,12 +115,13 @@ class PossibleNodes:
         alike: dict[_Alike, list[Binding]] = {}
         for binding in graph_bindings(rule, graph, self._vocabulary, read, past):
             about = (rule.name, tuple(binding.objects.values()))
+            # What is settled is read, too, so that impossible nodes get noticed.
+            words, is_exact = self._words(rule, machine, binding)
             if binding.first == 0 and about in past.settled:
                 continue
             start = _Start()
             if binding.first == 0 and past != NO_PAST:
                 start = _Start(past.starts(about), about in past.perhaps_settled)
-            words, is_exact = self._words(rule, machine, binding)
             key = _Alike(binding.first, start, words, is_exact)
             alike.setdefault(key, []).append(binding)
         return [self._instance(rule, machine, key, tuple(bound)) for key, bound in alike.items()]

@@ -12,7 +12,7 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError
 from rulec.monitoring.axiom_violations import StatePlace, impossible_state
 from rulec.monitoring.bindings import Binding
-from rulec.monitoring.letter_reader import missing_value
+from rulec.monitoring.monitoring_messages import missing_value
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     MOST_COUNTED,

@@ -1,0 +1,102 @@
+"""Verification of traces given by their states, whatever their objects, laid end to end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from functools import partial
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics import RulecError
+from rulec.monitoring.batch.columns.columnize import UnencodableError
+from rulec.monitoring.batch.joined.joined_states import joined_states
+from rulec.monitoring.batch.joined.joined_traces import TraceKind
+from rulec.monitoring.batch.stacked.stacked_run import check_judgeable, judge_joined
+from rulec.monitoring.implied_values import with_derived_values
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
+from rulec.monitoring.uncertainty.suppositions import spelled_out
+from rulec.monitoring.verdict import Verdict
+from rulec.trace import Trace
+from rulec.trace.trace_model import check_frame, check_presence
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN
+
+IRREGULAR = UnencodableError, MissingValueError, RulecError
+"""What prevents traces from being judged in arrays."""
+
+
+def verdict_in_arrays(trace: Trace, rulebook: CompiledRulebook) -> Verdict | None:
+    """The verdict on a trace by a rulebook for its step; None if it must be judged by its states.
+
+    The trace has passed ``check_trace``.
+    """
+    derived = derived_trace(trace, rulebook.vocabulary)
+    if derived is None:
+        return None
+    (verdict,) = verdicts_together([derived], rulebook)
+    return verdict
+
+
+def derived_trace(trace: Trace, vocabulary: Vocabulary) -> Trace | None:
+    """The trace with what follows from its values; None if something is wrong with these."""
+    if not vocabulary.constants and not vocabulary.implied:
+        return trace
+    about = [x for x in vocabulary.constants if vocabulary.declarations[x].parameters]
+    try:
+        if any(state.get(name) is UNKNOWN for name in about for state in trace.states):
+            trace = spelled_out(trace, vocabulary)
+        return with_derived_values(trace, vocabulary)
+    except (TypeError, AttributeError, LookupError, RulecError):
+        return None
+
+
+def is_framed(trace: Trace) -> bool:
+    """Whether everything about a trace except its states is right."""
+    try:
+        check_frame(trace)
+        if trace.present:
+            check_presence(trace)
+    except (RulecError, TypeError):
+        return False
+    return True
+
+
+def verdicts_together(
+    traces: Sequence[Trace], rulebook: CompiledRulebook
+) -> Sequence[Verdict | None]:
+    """The verdicts on framed traces of one kind, which are derived.
+
+    None for those that must be judged by their states.
+    """
+    verdicts: list[Verdict | None] = [None] * len(traces)
+    example = traces[0]
+    with suppress(*IRREGULAR):
+        check_judgeable(TraceKind(example.step_s, example.ends, example.told), rulebook)
+        _judge_together(range(len(traces)), traces, rulebook, verdicts)
+    return verdicts
+
+
+def _judge_together(
+    places: Sequence[int],
+    traces: Sequence[Trace],
+    rulebook: CompiledRulebook,
+    verdicts: list[Verdict | None],
+) -> None:
+    """Judge some of the traces; irregular ones are left, and found by halving."""
+    try:
+        joined = joined_states([traces[place] for place in places], rulebook.vocabulary)
+        judged = judge_joined(joined, rulebook)
+    except IRREGULAR:
+        middle = len(places) // 2
+        for part in (places[:middle], places[middle:]) if middle else ():
+            _judge_together(part, traces, rulebook, verdicts)
+        return
+    for place, own in zip(places, judged, strict=True):
+        if own is not None:
+            trace = traces[place]
+            says = partial(_says, trace)
+            verdicts[place] = own.findings.verdict(own.number, trace.id, says)
+
+
+def _says(trace: Trace, name: str) -> bool:
+    return any(name in state for state in trace.states)

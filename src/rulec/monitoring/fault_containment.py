@@ -1,0 +1,123 @@
+"""What a fault of rulec costs: one rule, on the traces on which it happens."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Protocol, TypeAlias, TypeVar
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.diagnostics import RulecError
+from rulec.diagnostics.fault_messages import NOT_FAULTS, fault_of, is_fault
+from rulec.logic.free_names import names_of
+from rulec.monitoring.verdict import NotJudged, RuleNotJudged, Verdict
+
+Answer: TypeAlias = Verdict | NotJudged
+
+
+class _Judged(Protocol):
+    @property
+    def id(self) -> str: ...
+
+
+Item = TypeVar("Item", bound=_Judged)
+_Any = TypeVar("_Any")
+
+Judge: TypeAlias = Callable[[Sequence[Item], Sequence[CompiledRulebook]], Sequence[Answer]]
+"""Judges traces by a rulebook, rounded to their step in one way or two."""
+
+
+def judged_apart(
+    judge: Judge[Item], items: Sequence[Item], roundings: Sequence[CompiledRulebook]
+) -> Sequence[Answer]:
+    """The answers, if a fault comes by halves: it costs one rule on one trace."""
+    try:
+        return judge(items, roundings)
+    except NOT_FAULTS:
+        raise
+    except Exception as problem:
+        rules = roundings[0].rules
+        if len(rules) <= 1 and len(items) == 1:
+            fault = fault_of(problem, f"`{rules[0].name if rules else 'facts'}` in `{items[0].id}`")
+            lost = [rule_lost(rule, fault) for rule in rules]
+            verdict = without(Verdict(items[0].id, ()), lost, [fault])
+            return [verdict if lost else NotJudged(items[0].id, fault)]
+        failed = problem
+    if len(rules) > 1:
+        halves = [[_with_rules(book, own) for book in roundings] for own in _halves(rules)]
+        parts = [judged_apart(judge, items, books) for books in halves]
+        return said([_joined(*both) for both in zip(*parts, strict=True)], failed)
+    apart = [x for some in _halves(items) for x in judged_apart(judge, some, roundings)]
+    return said(apart, failed)
+
+
+def said(answers: Sequence[Answer], problem: Exception | None) -> list[Answer]:
+    """The answers; the first verdict says a fault that came where all were judged together.
+
+    It does not if one of the answers has a fault by itself.
+    """
+    found = list(answers)
+    verdicts = [x for x in found if isinstance(x, Verdict)]
+    by_itself = any(x.faults if isinstance(x, Verdict) else is_fault(x.error) for x in found)
+    if problem is not None and verdicts and not by_itself:
+        fault = fault_of(problem, "judged together")
+        found[found.index(verdicts[0])] = replace(verdicts[0], faults=(fault,))
+    return found
+
+
+def rule_lost(rule: CompiledRule, fault: RulecError) -> RuleNotJudged:
+    """A rule that a fault has cost."""
+    why = fault.diagnostics[0].message
+    return RuleNotJudged(rule.name, rule.strength, (), why, by_fault=True)
+
+
+def without_words(
+    book: CompiledRulebook, faults: Mapping[str, RulecError]
+) -> tuple[CompiledRulebook, list[RuleNotJudged]]:
+    """The rulebook without the rules that read lost words, and these rules.
+
+    What is known of a lost word by a fact is lost with it.
+    """
+    if not faults:
+        return book, []
+    read = {rule: faults.keys() & names_of(rule.formula) for rule in book.rules}
+    lost = [rule_lost(rule, faults[min(words)]) for rule, words in read.items() if words]
+    axioms = [x for x in book.axioms if faults.keys().isdisjoint(names_of(x.formula))]
+    kept = tuple([rule for rule in book.rules if not read[rule]])
+    return replace(book, rules=kept, axioms=tuple(axioms)), lost
+
+
+def without(verdict: Verdict, lost: Sequence[RuleNotJudged], faults: list[RulecError]) -> Verdict:
+    """The verdict, in which faults have cost some rules."""
+    names = {rule.rule for rule in lost}
+    return replace(
+        verdict,
+        violations=tuple([x for x in verdict.violations if x.rule not in names]),
+        open=tuple([x for x in verdict.open if x.rule not in names]),
+        not_judged=(*[x for x in verdict.not_judged if x.rule not in names], *lost),
+        faults=tuple(dict.fromkeys((*verdict.faults, *faults))),
+    )
+
+
+def _halves(items: Sequence[_Any]) -> tuple[Sequence[_Any], Sequence[_Any]]:
+    return items[: len(items) // 2], items[len(items) // 2 :]
+
+
+def _with_rules(book: CompiledRulebook, rules: Sequence[CompiledRule]) -> CompiledRulebook:
+    names = {rule.name for rule in rules}
+    return replace(book, rules=tuple([rule for rule in book.rules if rule.name in names]))
+
+
+def _joined(one: Answer, other: Answer) -> Answer:
+    """The answer by all rules, from those by each half of them."""
+    if not isinstance(one, Verdict) or not isinstance(other, Verdict):
+        return other if isinstance(one, Verdict) else one
+    not_judged = {rule.rule: rule for rule in (*one.not_judged, *other.not_judged)}
+    return replace(
+        one,
+        violations=(*one.violations, *other.violations),
+        open=(*one.open, *other.open),
+        not_judged=tuple(not_judged.values()),
+        presumed=tuple(dict.fromkeys((*one.presumed, *other.presumed))),
+        faults=(*one.faults, *other.faults),
+    )
