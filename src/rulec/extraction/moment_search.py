@@ -12,7 +12,7 @@ from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.logic.free_names import names_in
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.moments.formula_moments import Moment, moments
-from rulec.monitoring.state_validation import StateValidator, check_objects, check_told
+from rulec.monitoring.state_validation import check_objects, check_states, check_told
 from rulec.recordings.recording import Recording
 from rulec.rulebook.query_model import FormulaQuery
 from rulec.trace import Trace
@@ -112,8 +112,8 @@ def in_trace(trace: Trace, query: FormulaQuery, assumed: Assumptions, file: str)
     check_trace(trace)
     check_objects(trace.objects, query.vocabulary, trace.place)
     check_told(trace.told, query.vocabulary, trace.place)
-    validator = StateValidator(query.vocabulary, trace.objects)
-    validator.check(trace.states, "state {}".format, trace.place)
+    where = "state {}".format
+    check_states(trace.states, trace.objects, query.vocabulary, where, trace.place)
     return DriveMoments(
         file=file,
         recording="",

@@ -14,7 +14,7 @@ from rulec.diagnostics.diagnostic import as_answer, with_place
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.fault_containment import judged_apart
 from rulec.monitoring.implied_values import with_derived_values
-from rulec.monitoring.state_validation import StateValidator, check_objects, check_told
+from rulec.monitoring.state_validation import check_objects, check_states, check_told
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 from rulec.monitoring.verdict import NotJudged, Verdict, agreed
@@ -78,8 +78,8 @@ def check_fitting(trace: Trace, rulebook: CompiledRulebook) -> bool:
             check_step(rule, exact_step(trace.step_s), "the trace", trace.place)
     check_objects(trace.objects, rulebook.vocabulary, trace.place)
     check_told(trace.told, rulebook.vocabulary, trace.place)
-    validator = StateValidator(rulebook.vocabulary, trace.objects)
-    return validator.check(trace.states, "state {}".format, trace.place)
+    where = "state {}".format
+    return check_states(trace.states, trace.objects, rulebook.vocabulary, where, trace.place)
 
 
 def rulebook_for_trace(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import replace
 from fractions import Fraction
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.monitoring.implied_values import with_implied_in_graph
-from rulec.monitoring.state_validation import StateValidator, check_objects
+from rulec.monitoring.state_validation import check_objects, check_states
 from rulec.monitoring.uncertainty.known_words import run
-from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import NO_PAST, CarriedState, Violation
 from rulec.planning.product.graph_instance import GraphInstance
 from rulec.planning.product.possible_instances import PossibleNodes
@@ -38,18 +36,14 @@ def instances(
     R0505 if the graph does not supply what the rules read, R0507 if one of these rules was compiled
     for another step, R0508 if a state contradicts a fact.
     """
-    if graph.told is not None:
-        untold = untold_names(rulebook.vocabulary, graph.told)
-        rulebook = replace(rulebook, vocabulary=with_untold(rulebook.vocabulary, untold))
     vocabulary = rulebook.vocabulary
     rules = [rule for rule in rulebook.rules if rule.strength in strengths]
     for rule in rules:
         check_step(rule, exact_step(graph.step_s) if step_s is None else step_s, "the graph")
     check_objects(graph.objects, vocabulary)
-    validator = StateValidator(vocabulary, graph.objects)
     places = [f"a cell of layer {layer}".format for layer in range(len(graph.states))]
     for states, where in zip(graph.states, places, strict=True):
-        validator.check(states, where)
+        check_states(states, graph.objects, vocabulary, where)
     possible = PossibleNodes(with_implied_in_graph(graph, vocabulary), rulebook, places)
     possible.check_counting_axioms()
     return [own for rule in rules for own in possible.instances(rule, past)]
