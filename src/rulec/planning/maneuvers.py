@@ -202,11 +202,11 @@ class Maneuvers(Rows):
         if not any(instance.readings for instance in every):
             return Verdict(name, violations(every, maneuver.nodes), not_judged=self.not_judged)
         # Imported late (15 ms): only if not everything is known.
-        from rulec.monitoring.uncertainty.uncertain_verdict import uncertain_verdict
+        from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 
         trace = trace_of(self.paths, maneuver.nodes, name)
         past = past_for(self.graph, self.paths, self.rules, (*HARD, *SOFT), self.after)
-        return uncertain_verdict(trace, self.rules, past)
+        return UncertainRun(trace, self.rules, past).verdict()
 
     @checked_kinds
     def best(self, n: int = MOST_BEST) -> list[RankedManeuver]:

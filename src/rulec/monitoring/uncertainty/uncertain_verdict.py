@@ -42,22 +42,12 @@ from rulec.trace import State, Trace
 from rulec.vocabulary import Vocabulary
 
 
-def uncertain_verdict(
-    trace: Trace, rulebook: CompiledRulebook, past: CarriedState = NO_PAST
-) -> Verdict:
-    """The verdict on a checked trace that is ``spelled_out``, by a rulebook for its step.
-
-    A complete trace may continue a ``past``; what was settled there is not judged again. Raises
-    RulecError R0504 if a value without default is missing, R0508 if a state contradicts an axiom,
-    R0403 if the trace is cut and Spot, which builds its machines, is not installed.
-    """
-    return UncertainRun(trace, rulebook, past).verdict()
-
-
 class UncertainRun:
-    """The judgement of one checked trace that is ``spelled_out``, with what its rules share.
+    """The judgement of one checked trace that is ``spelled_out``, by a rulebook for its step.
 
-    ``where`` names a state in messages.
+    A complete trace may continue a ``past``; what was settled there is not judged again. ``where``
+    names a state in messages. Raises RulecError R0403 if the trace is cut and Spot, which builds
+    its machines, is not installed.
     """
 
     def __init__(
@@ -77,7 +67,11 @@ class UncertainRun:
         self._suppositions = Suppositions(trace, rulebook, self.vocabulary, self._letters)
 
     def verdict(self) -> Verdict:
-        """The verdict of all rules."""
+        """The verdict of all rules.
+
+        Raises RulecError R0504 if a value without default is missing, R0508 if a state contradicts
+        an axiom.
+        """
         violations: list[Violation] = []
         doubtful: list[OpenVerdict] = []
         for rule, machine in self.judged.machines:
@@ -131,12 +125,6 @@ class UncertainRun:
         """The violation or open verdict of a rule for these objects; None if it is kept."""
         own = binding_of(objects, self.trace.present, len(self.trace.states))
         return self._answer(*self._machine(rule_name), own)
-
-    def reasons(self, rule_name: str, objects: Mapping[str, str]) -> OpenReasons:
-        """Why the verdict on a rule and these objects is open."""
-        answer = self.answer(rule_name, objects)
-        assert isinstance(answer, OpenVerdict)
-        return OpenReasons(answer.because, answer.depends_on, answer.outcomes, answer.exact)
 
     def _machine(self, rule_name: str) -> tuple[CompiledRule, UncertainMachine]:
         return next(own for own in self.judged.machines if own[0].name == rule_name)
