@@ -22,8 +22,8 @@ from rulec.automata.second_compiler import with_automata
 from rulec.monitoring.batch.batch_verify import verify_columns
 from rulec.monitoring.batch.cell_verdicts import verify_cells
 from rulec.monitoring.batch.columns.column_states import shared_states
-from rulec.monitoring.batch.columns.columnize import columnize
 from rulec.monitoring.verify import verify
+from support.builders.trace_columns import columnize
 from support.oracles.bits.bit_verdicts import verify_on_bits
 from support.oracles.bits.trace_planes import Across
 

@@ -21,8 +21,7 @@ from rulec.monitoring.batch.cell_verdicts import verify_cells
 from rulec.monitoring.batch.columns import column_states
 from rulec.monitoring.batch.columns.column_numbers import digits_of
 from rulec.monitoring.batch.columns.column_states import shared_states
-from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
-from rulec.monitoring.batch.trace_groups import group_traces
+from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.limits import MonitoringLimits
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify
@@ -42,6 +41,7 @@ from support.builders.rulebooks import (
     no,
     rule,
 )
+from support.builders.trace_columns import columnize, group_traces
 from support.engines.by_states import by_states
 from support.generators.random_records import chunks, rulebooks, told
 from support.generators.timed_formulas import TIMED_VOCABULARY

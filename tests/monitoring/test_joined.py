@@ -11,9 +11,9 @@ from hypothesis import Phase, given, settings
 import rulec
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
-from rulec.monitoring.batch.alike_traces import traces_placed
+from rulec.monitoring.batch.alike_traces import AlikeTraces
 from rulec.monitoring.batch.batch_verify import verify_many
-from rulec.monitoring.batch.columns.columnize import UnencodableError
+from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.joined.joined_columns import joined_columns
 from rulec.monitoring.batch.joined.joined_states import joined_states
 from rulec.monitoring.batch.stacked import instances, stacked_rule, stacked_run
@@ -27,7 +27,9 @@ from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.rulebooks import compile_here
+from support.builders.trace_columns import columnize, group_traces
 from support.engines.by_states import by_states
+from support.engines.trace_engines import renamed
 from support.generators.blurred_traces import blurred
 from support.generators.random_rulebooks import rulebook
 from support.generators.random_traces import traces
@@ -162,6 +164,13 @@ def only_from_the_first(trace):
     return replace(trace, states=tuple(states))
 
 
+def in_the_names_of(first, trace):
+    names = dict(zip(trace.objects, first.objects, strict=True))
+    states = tuple(renamed(state, names) for state in trace.states)
+    present = renamed(trace.present, names)
+    return replace(trace, objects=first.objects, states=states, present=present)
+
+
 @pytest.mark.parametrize("change", [lambda trace: trace, only_from_the_first])
 @pytest.mark.parametrize("ends", ["cut", "complete"])
 def test_columns_of_one_shape(ends, change):
@@ -169,9 +178,18 @@ def test_columns_of_one_shape(ends, change):
     many = [drive(chance, number, ends == "cut") for number in range(400)]
     own = [change(x) for x in many if (len(x.objects), len(x.states)) == (3, 5)]
     assert len(own) > 10
-    alike = traces_placed(list(enumerate(own)), compiled.vocabulary)
+    group = group_traces([in_the_names_of(own[0], trace) for trace in own])
+    ordered = [own[place] for place in group.order]
+    alike = AlikeTraces(
+        places=group.order,
+        columns=columnize(group.cells, compiled.vocabulary),
+        ids=lambda number: ordered[number].id,
+        names=lambda number: tuple(ordered[number].objects),
+        says=lambda number, name: any(name in state for state in ordered[number].states),
+        traces=ordered.__getitem__,
+        ends=ends,
+    )
     joined = joined_columns(alike, compiled.vocabulary)
-    ordered = [own[place] for place in alike.places]
     verdicts = judged(joined, ordered, compiled)
     assert len(verdicts) == len(own)
     same_as_alone(verdicts, ordered, compiled)

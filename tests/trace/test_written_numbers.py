@@ -15,7 +15,7 @@ from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.diagnostics import RulecError
 from rulec.monitoring.batch import batch_verify
 from rulec.monitoring.batch.batch_verify import verify_items
-from rulec.monitoring.moments.name_tables import tables_of_trace
+from rulec.monitoring.moments.name_tables import tables_of
 from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
@@ -135,7 +135,7 @@ def test_what_is_too_long_is_refused(text):
 
 def test_moments_know_between_what_it_lies(rules):
     state = json.loads('{"v": 48.280320000000001}', parse_float=number_written)
-    number = tables_of_trace(Trace("t", 1.0, {}, (state,)), rules.vocabulary).world("v")
+    number = tables_of(Trace("t", 1.0, {}, (state,)), rules.vocabulary).world("v")
     low, high = number.low[0, 0].item(), number.high[0, 0].item()
     assert Fraction(repr(low)) < Fraction("48.280320000000001") < Fraction(repr(high))
 

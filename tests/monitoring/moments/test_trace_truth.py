@@ -10,7 +10,8 @@ from rulec.logic.formula import atoms_of
 from rulec.logic.kleene import holds
 from rulec.logic.semantics import truth_values
 from rulec.monitoring.moments import trace_truth
-from rulec.monitoring.moments.trace_truth import ReadyFormula, TraceTruth, tables_of
+from rulec.monitoring.moments.name_tables import tables_of
+from rulec.monitoring.moments.trace_truth import ReadyFormula, TraceTruth
 from rulec.monitoring.state_view import StateView
 from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace

@@ -10,13 +10,12 @@ from pathlib import Path
 from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.cli.main import main
 from rulec.monitoring.batch.batch_verify import verify_many
-from rulec.monitoring.batch.columns.columnize import columnize
-from rulec.monitoring.batch.trace_groups import group_traces
 from rulec.monitoring.batch.verify_arrays import verify_arrays
 from rulec.monitoring.verify import verify_or_reason
 from rulec.trace.formats.trace_files import kinds_in, read_chunks, write_traces
 from rulec.vocabulary import Enumeration, Quantity, Signal
 from support.builders.array_traces import CannotSayError, in_arrays
+from support.builders.trace_columns import columnize, group_traces
 from support.engines.by_states import by_states
 from support.engines.engine import each, told
 from support.oracles.bits.bit_verdicts import verify_on_bits

@@ -2,29 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch.columns.block_columns import BlockGroup, columnize_block, groups_of
+from rulec.monitoring.batch.columns.block_columns import BlockGroup, columnize_block
 from rulec.monitoring.batch.columns.column_states import trace_at
-from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
+from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.columns.line_columns import columnize_lines
 from rulec.monitoring.batch.trace_groups import (
     Names,
-    Placed,
-    Shape,
-    group_traces,
-    shape_of,
 )
-from rulec.monitoring.implied_values import with_derived_values
-from rulec.monitoring.uncertainty.suppositions import spelled_out
-from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import AlikeLines, LineBlock
-from rulec.trace.formats.table_blocks import Block
 from rulec.trace.trace_columns import Array, Key, Layout, TraceColumns
 from rulec.trace.trace_model import Ending
 from rulec.vocabulary import Enumeration, Vocabulary
@@ -46,40 +36,12 @@ class AlikeTraces:
     says: Callable[[int, str], bool]
     traces: Callable[[int], Trace]
     ends: Ending
-    told: frozenset[str] | None = None
 
     @property
     def is_whole(self) -> bool:
         """Whether nothing is unknown: before, after and in the traces."""
         known = not self.columns.unknown and not self.columns.upper
-        return known and self.ends == "complete" and self.told is None
-
-
-def alike_traces(
-    items: Sequence[Trace | RulecError], wanted: Sequence[int], vocabulary: Vocabulary
-) -> Iterator[AlikeTraces]:
-    """The ``wanted`` items, already judged, as far as they can be given as columns.
-
-    The groups may contain further traces of the same shape.
-    """
-    makers: list[Callable[[], AlikeTraces]] = []
-    if isinstance(items, Block) and items.outline is not None:
-        groups = groups_of(items, items.outline)
-        makers += [partial(traces_of_group, group, vocabulary) for group in groups]
-        wanted = [place for place in wanted if place in items.partial]
-    elif isinstance(items, LineBlock):
-        makers += [partial(traces_of_lines, items, lines, vocabulary) for lines in items.alike]
-        wanted = [place for place in wanted if items.items[place] is not None]
-    shapes: dict[Shape, list[Placed]] = {}
-    for place in wanted:
-        trace = _trace(items[place])
-        if vocabulary.constants or vocabulary.implied:
-            trace = with_derived_values(spelled_out(trace, vocabulary), vocabulary)
-        shapes.setdefault((*shape_of(trace), trace.ends, trace.told), []).append((place, trace))
-    makers += [partial(traces_placed, placed, vocabulary) for placed in shapes.values()]
-    for made in makers:
-        with suppress(UnencodableError):
-            yield made()
+        return known and self.ends == "complete"
 
 
 def traces_of_group(group: BlockGroup, vocabulary: Vocabulary) -> AlikeTraces:
@@ -161,26 +123,6 @@ def _check_array(columns: TraceColumns, key: Key, vocabulary: Vocabulary) -> Non
 def _trace(item: Trace | RulecError) -> Trace:
     assert isinstance(item, Trace), "it has been read"
     return item
-
-
-def traces_placed(placed: Sequence[Placed], vocabulary: Vocabulary) -> AlikeTraces:
-    """Traces of one shape. Raises UnencodableError."""
-    group = group_traces([trace for _, trace in placed])
-    example = placed[0][1]
-    untold = untold_names(vocabulary, example.told)
-    if untold:
-        vocabulary = with_untold(vocabulary, untold)
-    ordered = [placed[place][1] for place in group.order]
-    return AlikeTraces(
-        places=[placed[place][0] for place in group.order],
-        columns=columnize(group.cells, vocabulary, group.names),
-        ids=lambda number: ordered[number].id,
-        names=lambda number: tuple(ordered[number].objects),
-        says=lambda number, name: any(name in state for state in ordered[number].states),
-        traces=ordered.__getitem__,
-        ends=example.ends,
-        told=example.told,
-    )
 
 
 def check_nothing_derived(columns: TraceColumns, vocabulary: Vocabulary) -> None:

@@ -16,23 +16,21 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
 from rulec.garbage_collection import no_garbage_collection
-from rulec.monitoring.batch import trace_groups
 from rulec.monitoring.batch.alike_traces import (
     AlikeTraces,
     check_nothing_derived,
     traces_of_columns,
     traces_of_group,
     traces_of_lines,
-    traces_placed,
 )
 from rulec.monitoring.batch.cell_verdicts import VerdictColumns, verify_cells
 from rulec.monitoring.batch.columns.block_columns import groups_of
 from rulec.monitoring.batch.columns.column_states import shared_states
-from rulec.monitoring.batch.columns.columnize import UnencodableError
+from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.joined.joined_columns import joined_columns
 from rulec.monitoring.batch.joined.joined_traces import TraceKind
 from rulec.monitoring.batch.stacked.stacked_run import judge_joined
-from rulec.monitoring.batch.trace_groups import Placed
+from rulec.monitoring.batch.trace_groups import under_own_names
 from rulec.monitoring.batch.verify_joined import (
     IRREGULAR,
     derived_trace,
@@ -50,9 +48,6 @@ from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import LineBlock
 from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
 from rulec.trace.trace_columns import TraceColumns
-
-FEWEST = 4
-"""Fewer traces of one shape are not searched for states that recur."""
 
 _MADE_TOGETHER = 1 << 12
 """How many reasons for refusing traces are built at once.
@@ -92,6 +87,7 @@ def _n_states(item: Trace | RulecError) -> int:
     return len(states) if isinstance(states, Sequence) else 0
 
 
+@no_garbage_collection()
 def verify_chunk(items: Sequence[Trace | RulecError], rulebook: CompiledRulebook) -> list[Answer]:
     """Answers for some traces, judged together where they are alike."""
     try:
@@ -102,8 +98,7 @@ def verify_chunk(items: Sequence[Trace | RulecError], rulebook: CompiledRulebook
 
 def _verify_chunk(items: Sequence[Trace | RulecError], rulebook: CompiledRulebook) -> list[Answer]:
     answers: list[Answer | None] = [None] * len(items)
-    kinds: dict[TraceKind, list[Placed]] = {}
-    shapes: dict[trace_groups.Shape, list[Placed]] = {}
+    kinds: dict[TraceKind, list[tuple[int, Trace]]] = {}
     for place, item in enumerate(items):
         # What is no trace, or has a constant that changes, is judged alone.
         if isinstance(item, Trace) and is_framed(item):
@@ -111,20 +106,10 @@ def _verify_chunk(items: Sequence[Trace | RulecError], rulebook: CompiledRuleboo
             if trace is not None:
                 kind = TraceKind(trace.step_s, trace.ends, trace.told)
                 kinds.setdefault(kind, []).append((place, trace))
-                if kind.is_whole:
-                    shapes.setdefault(trace_groups.shape_of(trace), []).append((place, trace))
-    for alike in shapes.values():
-        # What is irregular is judged with others, or alone.
-        if len(alike) >= FEWEST:
-            with suppress(*IRREGULAR):
-                rules = rules_for(alike[0][1], rulebook)
-                _verify_alike(traces_placed(alike, rules.vocabulary), rules, answers)
     for placed in kinds.values():
-        left = [own for own in placed if answers[own[0]] is None]
-        if left:
-            verdicts = verdicts_together([trace for _, trace in left], rulebook)
-            for (place, _), verdict in zip(left, verdicts, strict=True):
-                answers[place] = verdict
+        verdicts = verdicts_together([trace for _, trace in placed], rulebook)
+        for (place, _), verdict in zip(placed, verdicts, strict=True):
+            answers[place] = verdict
     return [
         verify_or_reason(item, rulebook, verify_by_states) if answer is None else answer
         for item, answer in zip(items, answers, strict=True)
@@ -241,7 +226,7 @@ def _verify_alike(
         objects, verdicts = tuple(alike.columns.objects), verify_cells(cells, rules)
         for number, violations in violations_in(verdicts, len(alike.places)):
             names = alike.names(number) if violations else ()
-            own_names = trace_groups.under_own_names(violations, objects, names)
+            own_names = under_own_names(violations, objects, names)
             answers[alike.places[number]] = Verdict(alike.ids(number), own_names)
         return
     judged = judge_joined(joined_columns(alike, rules.vocabulary), rules)

@@ -1,20 +1,18 @@
 """Verification of traces in arrays, with the same verdicts as ``verify`` on their states.
 
-Any irregular trace, or rule for some objects, is left to ``verify``, as are rules that cannot be
-evaluated on arrays.
+Any irregular trace is judged by its states.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch.columns.columnize import UnencodableError
-from rulec.monitoring.batch.findings import (
-    JudgedTrace,
-)
+from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
+from rulec.monitoring.batch.findings import JudgedTrace
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind, side_by_side
 from rulec.monitoring.batch.stacked.stacked_run import judge_joined
 from rulec.monitoring.verdict import NotJudged, Verdict
@@ -51,18 +49,12 @@ def judge_arrays(
         key = TraceKind(trace.step_s, trace.ends, trace.told), names
         groups.setdefault(key, []).append(place)
     for places in groups.values():
-        together = [traces[place] for place in places]
-        judged: Sequence[JudgedTrace | Answer]
-        try:
-            found = judge_joined(JoinedTraces.of_arrays(together, rulebook.vocabulary), rulebook)
-            judged = [
-                _by_its_states(trace, rulebook) if own is None else own
-                for trace, own in zip(together, found, strict=True)
-            ]
-        except (UnencodableError, RulecError):
-            judged = _by_states(together, rulebook)
-        for place, own in zip(places, judged, strict=True):
-            answers[place] = own
+        found: Sequence[JudgedTrace | None] = [None] * len(places)
+        with suppress(UnencodableError, RulecError):
+            together = JoinedTraces.of_arrays([traces[x] for x in places], rulebook.vocabulary)
+            found = judge_joined(together, rulebook)
+        for place, own in zip(places, found, strict=True):
+            answers[place] = own or _by_states(traces[place], rulebook)
     return [answer for answer in answers if answer is not None]
 
 
@@ -76,15 +68,8 @@ def _names(columns: Mapping[str, Array], known: dict[int, frozenset[str]]) -> fr
     return known[key]
 
 
-def _by_states(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Answer]:
-    # The engines for states load slowly, and few recordings need them.
-    from rulec.monitoring.batch.batch_verify import verify_chunk
-
-    return list(verify_chunk([trace.trace() for trace in traces], rulebook))
-
-
-def _by_its_states(trace: TraceArrays, rulebook: CompiledRulebook) -> Answer:
-    # As above: only for irregular traces.
+def _by_states(trace: TraceArrays, rulebook: CompiledRulebook) -> Answer:
+    # The engine for states loads slowly, and few recordings need it.
     from rulec.monitoring.verify import verify_by_states, verify_or_reason
 
     return verify_or_reason(trace.trace(), rulebook, verify_by_states)

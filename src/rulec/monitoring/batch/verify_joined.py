@@ -8,7 +8,7 @@ from functools import partial
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch.columns.columnize import UnencodableError
+from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.joined.joined_states import joined_states
 from rulec.monitoring.batch.joined.joined_traces import TraceKind
 from rulec.monitoring.batch.stacked.stacked_run import check_judgeable, judge_joined

@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch.alike_traces import alike_traces
-from rulec.monitoring.batch.trace_groups import Names
+from rulec.monitoring.batch.alike_traces import AlikeTraces, traces_of_group, traces_of_lines
+from rulec.monitoring.batch.columns.block_columns import groups_of
+from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
+from rulec.monitoring.batch.joined.joined_columns import joined_columns
+from rulec.monitoring.batch.joined.joined_states import joined_states
+from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
+from rulec.monitoring.batch.trace_groups import Names, shape_of
+from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.moments.exposure import Exposure, alike_exposures
-from rulec.monitoring.moments.name_tables import ColumnTables
+from rulec.monitoring.moments.name_tables import NameTables, tables_of
 from rulec.monitoring.moments.road_class import road_classes
-from rulec.monitoring.moments.trace_truth import TraceTruth, tables_of
+from rulec.monitoring.moments.trace_truth import TraceTruth
+from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.trace import Trace
+from rulec.trace.formats.alike_lines import LineBlock
+from rulec.trace.formats.table_blocks import Block
 from rulec.trace.trace_arrays import TraceArrays
+from rulec.vocabulary import Vocabulary
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,18 +71,53 @@ def facts_of_many(
     """
     judged = {place: verdict for place, verdict in enumerate(verdicts) if verdict is not None}
     facts_at: dict[int, DriveFacts] = {}
-    for alike in alike_traces(items, [*judged], rulebook.vocabulary):
-        own = [judged.get(place, _NOT_WANTED) for place in alike.places]
-        names = [alike.names(number) for number in range(len(own))]
-        tables = ColumnTables(alike.columns, rulebook.vocabulary, alike.told)
-        truth = TraceTruth(tables, rulebook.semantics, alike.ends)
-        facts = _facts(truth, alike.columns.step_s, rulebook, own, names)
-        facts_at |= zip(alike.places, facts, strict=True)
+    for places, alike in _alike_traces(items, [*judged], rulebook.vocabulary):
+        own = [judged.get(place, _NOT_WANTED) for place in places]
+        kind, of_each = alike.kind, alike.n_objects[0]
+        names = [tuple(alike.names[n * of_each :][:of_each]) for n in range(len(own))]
+        tables = NameTables(alike, rulebook.vocabulary)
+        truth = TraceTruth(tables, rulebook.semantics, kind.ends)
+        facts = _facts(truth, kind.step_s, rulebook, own, names)
+        facts_at |= zip(places, facts, strict=True)
     for place in judged.keys() - facts_at.keys():
         trace = items[place]
         assert isinstance(trace, Trace), "it has been judged"
         facts_at[place] = facts_of(trace, rulebook, judged[place])
     return [facts_at[place] for place in judged]
+
+
+def _alike_traces(
+    items: Sequence[Trace | RulecError], wanted: Sequence[int], vocabulary: Vocabulary
+) -> Iterator[tuple[Sequence[int], JoinedTraces]]:
+    """The ``wanted`` items of one shape with their places, as far as arrays can tell of them.
+
+    There may be further traces of the same shape among them.
+    """
+    makers: list[Callable[[], AlikeTraces]] = []
+    if isinstance(items, Block) and items.outline is not None:
+        groups = groups_of(items, items.outline)
+        makers += [partial(traces_of_group, group, vocabulary) for group in groups]
+        wanted = [place for place in wanted if place in items.partial]
+    elif isinstance(items, LineBlock):
+        makers += [partial(traces_of_lines, items, lines, vocabulary) for lines in items.alike]
+        wanted = [place for place in wanted if items.items[place] is not None]
+    for made in makers:
+        with suppress(UnencodableError):
+            alike = made()
+            yield alike.places, joined_columns(alike, vocabulary)
+    shapes: dict[object, tuple[list[int], list[Trace]]] = {}
+    for place in wanted:
+        trace = items[place]
+        assert isinstance(trace, Trace), "it has been judged"
+        if vocabulary.constants or vocabulary.implied:
+            trace = with_derived_values(spelled_out(trace, vocabulary), vocabulary)
+        key = shape_of(trace), trace.ends, trace.told
+        places, traces = shapes.setdefault(key, ([], []))
+        places.append(place)
+        traces.append(trace)
+    for places, traces in shapes.values():
+        with suppress(UnencodableError):
+            yield places, joined_states(traces, vocabulary)
 
 
 _NOT_WANTED = Verdict("", ())

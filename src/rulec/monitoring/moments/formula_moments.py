@@ -13,11 +13,11 @@ from rulec.array_types import Flags
 from rulec.automata.thresholds import exact_step
 from rulec.logic.bounds import NotAMultipleError, in_steps
 from rulec.logic.formula import Formula
+from rulec.monitoring.moments.name_tables import tables_of
 from rulec.monitoring.moments.stretches import stretches_of
 from rulec.monitoring.moments.trace_truth import (
     ReadyFormula,
     TraceTruth,
-    tables_of,
 )
 from rulec.rulebook.query_model import FormulaQuery
 from rulec.trace import Trace

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -12,10 +11,12 @@ import numpy as np
 
 from rulec.array_types import Flags, Indices
 from rulec.automata.thresholds import EXACT_IN_FLOATS
-from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
-from rulec.monitoring.batch.trace_groups import group_traces
+from rulec.monitoring.batch.columns.encoded_columns import UnencodableError, encode_partly_known
+from rulec.monitoring.batch.joined.joined_states import joined_states
+from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
+from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.implied_values import with_derived_values
-from rulec.monitoring.state_view import value_in, with_values
+from rulec.monitoring.state_view import value_in
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.trace import Trace
@@ -25,9 +26,10 @@ from rulec.trace.partly_known.partly_known_values import (
     Number,
     Truth,
 )
-from rulec.trace.trace_columns import Array, TraceColumns
+from rulec.trace.trace_arrays import TraceArrays
+from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from rulec.vocabulary.vocabulary_model import least_value
 from rulec.vocabulary.written_numbers import WrittenNumber
 
@@ -67,143 +69,133 @@ def partly_known(
     return truth if unknown is None else truth.unknown_at(unknown)
 
 
-class NameTables(ABC):
+class NameTables:
     """Tables of checked traces of one shape, each built on demand.
 
-    ``objects`` are those of the first trace with their types, in its order; all traces have equally
-    many, of the same types. The rows are the objects of the first trace, then those of the second,
-    and so on; the columns of a trace shorter than ``n_states`` end in arbitrary values. ``last`` is
-    the last state of each trace, ``spans`` (objects x 2) the first and last state in which each
-    object is present. ``vocabulary`` has unknown defaults for names that the source cannot provide.
+    ``objects`` are those of the first trace with their ``types``, in its order; all traces have
+    equally many, of the same types. The rows are the objects of the first trace, then those of the
+    second, and so on; the columns of a trace shorter than ``n_states`` end in arbitrary values.
+    ``last`` is the last state of each trace, ``spans`` (objects x 2) the first and last state in
+    which each object is present. ``vocabulary`` has unknown defaults for names that the source
+    cannot provide.
     """
 
-    def __init__(
-        self,
-        told: frozenset[str] | None,
-        objects: Mapping[str, str],
-        last: Indices,
-        vocabulary: Vocabulary,
-    ) -> None:
-        untold = untold_names(vocabulary, told)
+    def __init__(self, traces: JoinedTraces, vocabulary: Vocabulary) -> None:
+        untold = untold_names(vocabulary, traces.kind.told)
         self.vocabulary = with_untold(vocabulary, untold) if untold else vocabulary
-        self.objects = tuple(objects)
-        self.types = tuple(objects.values())
-        self.last = last
-        self.n_states = int(last.max()) + 1
+        declared = self.vocabulary.declarations.items()
+        dark = {name: UNKNOWN for name, item in declared if item.default is None}
+        self._traces, self._stack = traces, Stack(traces, self.vocabulary, dark)
+        self._n_objects = traces.n_objects[0]
+        self.objects = tuple(traces.names[: self._n_objects])
+        self.types = tuple(traces.types[: self._n_objects])
+        self.n_traces = len(traces.lengths)
+        self.last: Indices = traces.lengths - 1
+        self.spans = traces.spans
+        self.n_states = int(traces.lengths.max())
+        self._states = np.arange(self.n_states)
         self._known: dict[str, NameValues] = {}
-
-    @property
-    def n_traces(self) -> int:
-        """The number of traces."""
-        return len(self.last)
-
-    @property
-    @abstractmethod
-    def spans(self) -> Indices:
-        """The first and last state of each object."""
 
     def world(self, name: str) -> NameValues:
         """The rows of a name that is about no object, one for each trace."""
         if name not in self._known:
-            self._known[name] = self._world(name)
+            spans = np.stack([np.zeros_like(self.last), self.last], axis=1)
+            self._known[name] = self._rows(name, self._stack.begins[:-1], spans)
         return self._known[name]
 
     def about(self, name: str) -> NameValues:
         """The rows of a name that is about one object, one for each object of the traces."""
         if name not in self._known:
-            self._known[name] = self._about(name)
+            self._known[name] = self._rows(name, self._stack.starts[:-1], self.spans)
         return self._known[name]
 
-    @abstractmethod
     def about_several(self, name: str, rows: Indices) -> NameValues:
         """The rows of a name for these objects (rows x parameters), given by their numbers."""
+        if rows.shape[1] > 2:
+            return self._by_states(name, rows)
+        stack = self._stack
+        since, until = stack.firsts[rows].max(axis=1), stack.lasts[rows].min(axis=1)
+        states = stack.begins[stack.trace_of[rows[:, 0]]][:, None] + self._states
+        states = np.minimum(np.maximum(states, since[:, None]), until[:, None])
+        first, second = (own.repeat(self.n_states) for own in rows.T)
+        return self._at(
+            name, stack.pairs.places(first, second, states.ravel()).reshape(states.shape)
+        )
 
-    @abstractmethod
-    def _world(self, name: str) -> NameValues:
-        """The rows of a name about no object."""
+    def _rows(self, name: str, begins: Indices, spans: Indices) -> NameValues:
+        """Rows of values that begin at these places, for states from the first to the last."""
+        first, last = spans[:, :1], spans[:, 1:]
+        within = np.minimum(np.maximum(self._states, first), last)
+        rows = self._at(name, begins[:, None] + within - first)
+        if not self.vocabulary.declarations[name].constant:
+            return rows
+        return _constant(rows, within == self._states)
 
-    @abstractmethod
-    def _about(self, name: str) -> NameValues:
-        """The rows of a name about one object."""
-
-
-class ColumnTables(NameTables):
-    """Tables of traces that are given as columns, which contain everything that axioms imply."""
-
-    def __init__(
-        self, columns: TraceColumns, vocabulary: Vocabulary, told: frozenset[str] | None = None
-    ) -> None:
-        layout = columns.layout
-        last = (layout.lengths - 1).astype(np.intp)
-        super().__init__(told, columns.objects, last, vocabulary)
-        self._columns = columns
-        step = np.minimum(np.arange(layout.n_steps), last[:, None])
-        self._cells = layout.starts[step] + np.arange(layout.n_traces)[:, None]
-
-    @property
-    def spans(self) -> Indices:
-        """The first and last state of each object."""
-        spans = np.zeros((self.n_traces, len(self.objects), 2), dtype=np.intp)
-        spans[:, :, 1] = self.last[:, None]
-        for place, item in enumerate(self.objects):
-            if item in self._columns.present:
-                spans[:, place] = self._columns.present[item]
-        return spans.reshape(-1, 2)
-
-    def about_several(self, name: str, rows: Indices) -> NameValues:
-        """The rows of a name for these objects (rows x parameters), given by their numbers."""
-        n_objects = len(self.objects)
-        trace, places = rows[:, 0] // n_objects, rows % n_objects
-        codes = places @ n_objects ** np.arange(rows.shape[1])
-        _, first, which = np.unique(codes, return_index=True, return_inverse=True)
-        chosen = [tuple([self.objects[place] for place in row]) for row in places[first].tolist()]
-        stacked = self._stacked(name, chosen)
-        return at_places(stacked, trace * len(chosen) + which, None)
-
-    def _world(self, name: str) -> NameValues:
-        return self._stacked(name, [()])
-
-    def _about(self, name: str) -> NameValues:
-        return self._stacked(name, [(item,) for item in self.objects])
-
-    def _stacked(self, name: str, about: Sequence[tuple[str, ...]]) -> NameValues:
-        """The rows of a name for these objects of the first trace, then of the second, etc."""
-        columns, cells = self._columns, self._cells
-        declaration = self.vocabulary.declarations[name]
-        default, is_known = default_of(declaration)
-        shape = (self.n_traces, len(about), self.n_states)
-        values = np.empty(shape, dtype=type(default))
-        unknown, upper = np.zeros(shape, dtype=bool), values
-        if any((name, items) in columns.upper for items in about):
-            upper = np.empty(shape, dtype=type(default))
-        for row, items in enumerate(about):
-            key = name, items
-            column = columns.values.get(key)
-            if column is None:
-                values[:, row] = upper[:, row] = default
-                unknown[:, row] = not is_known
-                continue
-            values[:, row] = column[cells]
-            if upper is not values:
-                upper[:, row] = np.maximum(columns.upper.get(key, column), column)[cells]
-            if key in columns.unknown:
-                unknown[:, row] = columns.unknown[key][cells]
+    def _at(self, name: str, places: Indices) -> NameValues:
+        """The values at these places of a name's column; its default if it has none."""
+        declaration, column = self.vocabulary.declarations[name], self._stack.column(name)
+        if column is None:
+            default, is_known = _default_of(declaration)
+            values: Array = np.full(places.shape, default, dtype=type(default))
+            unknown = None if is_known else np.ones(places.shape, dtype=bool)
+            return partly_known(declaration, values, values, unknown)
+        values = column.values[places]
         # One array for both ends says that they are equal
-        flat = values.reshape(-1, self.n_states)
-        highest = flat if upper is values else upper.reshape(flat.shape)
-        return partly_known(declaration, flat, highest, unknown.reshape(flat.shape))
+        upper = values if column.upper is None else column.upper[places]
+        unknown = None if column.unknown is None else column.unknown[places]
+        return partly_known(declaration, values, upper, unknown)
+
+    def _by_states(self, name: str, rows: Indices) -> NameValues:
+        """The rows of a name about more than two objects."""
+        declaration, values = self.vocabulary.declarations[name], list[Any]()
+        for row in rows.tolist():
+            items = [self._traces.names[item] for item in row]
+            states = self._traces.trace(row[0] // self._n_objects).states
+            own = [value_in(state, name, items, declaration) for state in states]
+            values += [*own, *own[-1:] * (self.n_states - len(own))]
+        shape = len(rows), self.n_states
+        column = encode_partly_known([UNKNOWN if x is None else x for x in values], declaration)
+        low, high, dark = (None if own is None else own.reshape(shape) for own in column)
+        assert low is not None, "it has values"
+        return partly_known(declaration, low, low if high is None else high, dark)
 
 
-def tables_of_trace(trace: Trace, vocabulary: Vocabulary) -> NameTables:
-    """Tables of a trace with states."""
+def tables_of(trace: Trace | TraceArrays, vocabulary: Vocabulary) -> NameTables:
+    """The name tables of a checked trace."""
+    if isinstance(trace, TraceArrays):
+        return NameTables(JoinedTraces.of_arrays([trace], vocabulary), vocabulary)
     if vocabulary.constants or vocabulary.implied:
         trace = with_derived_values(spelled_out(trace, vocabulary), vocabulary)
-    untold = untold_names(vocabulary, trace.told)
-    columns = _columns_of(trace, with_untold(vocabulary, untold) if untold else vocabulary)
-    return ColumnTables(columns, vocabulary, trace.told)
+    try:
+        joined = joined_states([trace], vocabulary)
+    except UnencodableError:
+        plain = replace(
+            trace, states=tuple([_plain(state, trace, vocabulary) for state in trace.states])
+        )
+        joined = replace(joined_states([plain], vocabulary), trace=[trace].__getitem__)
+    return NameTables(joined, vocabulary)
 
 
-def default_of(declaration: Declaration | None) -> tuple[bool | float | int, bool]:
+def _plain(state: Mapping[str, Any], trace: Trace, vocabulary: Vocabulary) -> dict[str, Any]:
+    """A state with names about at most two of the objects, and with numbers that are floats."""
+    objects, is_subtype = trace.objects, vocabulary.is_subtype
+
+    def plain(value: Any, kinds: Sequence[str]) -> Any:
+        if kinds and isinstance(value, Mapping):
+            own = {x: inner for x, inner in value.items() if x in objects}
+            own = {x: inner for x, inner in own.items() if is_subtype(objects[x], kinds[0])}
+            return {item: plain(inner, kinds[1:]) for item, inner in own.items()}
+        if type(value) is int and abs(value) > EXACT_IN_FLOATS:
+            value = WrittenNumber(Fraction(value))
+        # What no float represents exactly lies between two of them.
+        return Interval(*value.neighbours) if isinstance(value, WrittenNumber) else value
+
+    about = {name: own.parameters for name, own in vocabulary.declarations.items()}
+    few = (name for name in state if name in about and len(about[name]) <= 2)
+    return {name: plain(state[name], about[name]) for name in few}
+
+
+def _default_of(declaration: Declaration | None) -> tuple[bool | float | int, bool]:
     """A name's default, encoded as in columns, and whether it has one.
 
     If not, an arbitrary value.
@@ -218,37 +210,14 @@ def default_of(declaration: Declaration | None) -> tuple[bool | float | int, boo
     return value if isinstance(value, bool) else float(value), is_known
 
 
-def _columns_of(trace: Trace, vocabulary: Vocabulary) -> TraceColumns:
-    cells = group_traces([trace]).cells
-    try:
-        return columnize(cells, vocabulary)
-    except UnencodableError:
-        # Some states lack a value, which is unknown there, or numbers are no floats.
-        plain = replace(trace, states=tuple([_spelled(s, trace, vocabulary) for s in trace.states]))
-        return columnize(group_traces([plain]).cells, vocabulary)
-
-
-def _between_floats(value: Any) -> PartialValue:
-    """A number that no float represents exactly, as the interval between two floats."""
-    if type(value) is int and abs(value) > EXACT_IN_FLOATS:
-        value = WrittenNumber(Fraction(value))
-    plain: PartialValue = value
-    return Interval(*value.neighbours) if isinstance(value, WrittenNumber) else plain
-
-
-def _spelled(state: Mapping[str, Any], trace: Trace, vocabulary: Vocabulary) -> dict[str, Any]:
-    """A state that mentions everything that some state mentions, if only as unknown."""
-    values: dict[tuple[str, tuple[str, ...]], Any] = {}
-    names = set().union(*trace.states) & vocabulary.declarations.keys()
-    for name in names:
-        declaration = vocabulary.declarations[name]
-        rows: list[tuple[str, ...]] = [()]
-        for kind in declaration.parameters:
-            own = [
-                item for item, type_ in trace.objects.items() if vocabulary.is_subtype(type_, kind)
-            ]
-            rows = [(*row, item) for row in rows for item in own]
-        for row in rows:
-            value = value_in(state, name, row, declaration)
-            values[name, row] = UNKNOWN if value is None else _between_floats(value)
-    return dict(with_values({}, values))
+def _constant(rows: NameValues, there: Flags) -> NameValues:
+    """Rows of a constant, whose value in some state holds in all."""
+    is_stated = there & ~rows.unknown
+    any_stated = is_stated.any(axis=1, keepdims=True)
+    if isinstance(rows, Number) and (is_stated & (rows.low != rows.high)).any():
+        # The intersection of several intervals.
+        low = np.where(is_stated, rows.low, -np.inf).max(axis=1, keepdims=True)
+        high = np.where(is_stated, rows.high, np.inf).min(axis=1, keepdims=True)
+        return Number(np.where(any_stated, low, rows.low), np.where(any_stated, high, rows.high))
+    first = is_stated.argmax(axis=1)[:, None]
+    return rows.each(lambda half: np.where(any_stated, np.take_along_axis(half, first, 1), half))

@@ -15,18 +15,14 @@ from rulec.logic.free_names import variables_of
 from rulec.logic.opportunities import conjuncts, looks_elsewhere
 from rulec.logic.semantics import Semantics, steps_to_settle
 from rulec.monitoring.batch.columns.column_numbers import ComparisonSides
-from rulec.monitoring.moments.array_tables import ArrayTables
-from rulec.monitoring.moments.name_tables import NameTables, tables_of_trace
+from rulec.monitoring.moments.name_tables import NameTables
 from rulec.monitoring.moments.row_evaluation import RowEvaluation
 from rulec.resource_limits import LOOKBACK
 from rulec.rulebook.rulebook_model import Variable
-from rulec.trace import Trace
 from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.partly_known.row_stretches import RowStretches
 from rulec.trace.partly_known.temporal_operators import Beyond
-from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_model import Ending
-from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import choices
 
 MOST_ENTRIES = 1 << 22
@@ -69,13 +65,6 @@ class FormulaTruth:
     def in_trace(self) -> Truth:
         """The truth, only in states of the trace."""
         return self.truth & Truth.known(np.arange(self.truth.sure.shape[1]) <= self.last[:, None])
-
-
-def tables_of(trace: Trace | TraceArrays, vocabulary: Vocabulary) -> NameTables:
-    """The name tables of a checked trace."""
-    if isinstance(trace, Trace):
-        return tables_of_trace(trace, vocabulary)
-    return ArrayTables(trace, vocabulary)
 
 
 class ReadyFormula:

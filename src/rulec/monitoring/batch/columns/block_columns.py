@@ -8,7 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.monitoring.batch.columns.columnize import UnencodableError, column_dtype, encode_values
+from rulec.monitoring.batch.columns.encoded_columns import (
+    UnencodableError,
+    column_dtype,
+    encode_values,
+)
 from rulec.monitoring.batch.trace_groups import Names
 from rulec.trace.formats.table_blocks import NOBODY, Block, BlockPresence, Coded, Column
 from rulec.trace.trace_columns import Array, Key, Layout, TraceColumns, layout_of

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.monitoring.batch.columns.block_columns import encode_column
-from rulec.monitoring.batch.columns.columnize import UnencodableError
+from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.trace.formats.alike_lines import AlikeLines
 from rulec.trace.trace_columns import Array, Key, TraceColumns, layout_of
 from rulec.vocabulary import Vocabulary

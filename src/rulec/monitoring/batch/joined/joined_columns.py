@@ -10,7 +10,7 @@ import numpy as np
 
 from rulec.array_types import Flags, Indices
 from rulec.monitoring.batch.alike_traces import AlikeTraces
-from rulec.monitoring.batch.columns.columnize import PartlyKnown, UnencodableError
+from rulec.monitoring.batch.columns.encoded_columns import PartlyKnown, UnencodableError
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind
 from rulec.monitoring.batch.joined.piece_columns import PieceColumns
 from rulec.trace.trace_arrays import starts_of
@@ -62,7 +62,7 @@ def joined_columns(alike: AlikeTraces, vocabulary: Vocabulary) -> JoinedTraces:
     met = [(numbers[first], numbers[second]) for first, second in of_pairs]
     chosen = np.array(met, dtype=np.intp).reshape(1, -1, 2) + begins
     return JoinedTraces(
-        kind=TraceKind(own.step_s, alike.ends, alike.told),
+        kind=TraceKind(own.step_s, alike.ends, None),
         lengths=layout.lengths.astype(np.intp),
         n_objects=[len(objects)] * n_traces,
         spans=places_by_arity[1].spans,

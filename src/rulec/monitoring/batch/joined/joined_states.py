@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import chain
+from itertools import accumulate, chain, pairwise, repeat
+from operator import itemgetter
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from rulec.array_types import Flags, Indices
-from rulec.monitoring.batch.columns.columnize import UnencodableError
+from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind
 from rulec.monitoring.batch.joined.piece_columns import NOT_GIVEN, PieceColumns
 from rulec.trace import Trace
@@ -22,6 +23,8 @@ from rulec.vocabulary.vocabulary_model import least_value
 _ByObject: TypeAlias = Mapping[str, Any]
 
 _NOBODY: _ByObject = {}
+
+_DICTS = {dict}
 
 
 def joined_states(traces: Sequence[Trace], vocabulary: Vocabulary) -> JoinedTraces:
@@ -34,6 +37,7 @@ def joined_states(traces: Sequence[Trace], vocabulary: Vocabulary) -> JoinedTrac
     if set(map(type, states)) != {dict}:
         raise UnencodableError
     casts = [_TraceObjects(trace, vocabulary) for trace in traces]
+    bounds = list(accumulate([len(trace.states) for trace in traces], initial=0))
     columns = PieceColumns()
     pairs: list[tuple[int, int]] = []
     of_pairs: list[tuple[Declaration, Sequence[Sequence[_ByObject]]]] = []
@@ -41,15 +45,14 @@ def joined_states(traces: Sequence[Trace], vocabulary: Vocabulary) -> JoinedTrac
         declaration = vocabulary.declarations.get(name)
         if declaration is None or len(declaration.parameters) > 2:
             raise UnencodableError
-        given = [state.get(name, NOT_GIVEN) for state in states]
+        given = _of_each(states, name)
         kinds = declaration.parameters
         if not kinds:
             columns.add(given, declaration)
             continue
-        values = iter(given)
         maps = [
-            [_by_object(next(values), cast.fitting(kinds[0])) for _ in cast.trace.states]
-            for cast in casts
+            _by_objects(given[begin:end], cast.fitting(kinds[0]))
+            for cast, (begin, end) in zip(casts, pairwise(bounds), strict=True)
         ]
         if len(kinds) == 1:
             columns.add(*_about_objects(maps, declaration, casts))
@@ -114,6 +117,21 @@ def _by_object(value: Any, fitting: frozenset[str]) -> _ByObject:
     raise UnencodableError
 
 
+def _of_each(maps: Sequence[Mapping[str, Any]], key: str) -> list[Any]:
+    """What each of these has under a key."""
+    try:
+        return list(map(itemgetter(key), maps))
+    except KeyError:
+        return [own.get(key, NOT_GIVEN) for own in maps]
+
+
+def _by_objects(values: Sequence[Any], fitting: frozenset[str]) -> Sequence[_ByObject]:
+    """What each state says of each object."""
+    if set(map(type, values)) == _DICTS and all(map(fitting.issuperset, values)):
+        return values
+    return list(map(_by_object, values, repeat(fitting)))
+
+
 def _about_objects(
     maps: Sequence[Sequence[_ByObject]], declaration: Declaration, casts: Sequence[_TraceObjects]
 ) -> tuple[list[Any], Declaration, Flags]:
@@ -124,10 +142,7 @@ def _about_objects(
         fitting = cast.fitting(declaration.parameters[0])
         for item, (first, last) in zip(cast.trace.objects, cast.spans, strict=True):
             suits.append(item in fitting)
-            if item in fitting:
-                values += [about.get(item, NOT_GIVEN) for about in of_trace[first : last + 1]]
-            else:
-                values += [NOT_GIVEN] * (last - first + 1)
+            values += _of_each(of_trace[first : last + 1], item)
     return values, declaration, np.array(suits, dtype=bool)
 
 

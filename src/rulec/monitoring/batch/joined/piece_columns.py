@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rulec.array_types import Flags, Indices
-from rulec.monitoring.batch.columns.columnize import PartlyKnown, encode_partly_known
+from rulec.monitoring.batch.columns.encoded_columns import PartlyKnown, encode_partly_known
 from rulec.monitoring.batch.joined.joined_traces import JoinedPiece
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Declaration, Enumeration

@@ -15,7 +15,7 @@ import numpy as np
 
 from rulec.array_types import Flags, Indices
 from rulec.automata.thresholds import EXACT_IN_FLOATS
-from rulec.monitoring.batch.columns.columnize import (
+from rulec.monitoring.batch.columns.encoded_columns import (
     UnencodableError,
     column_dtype,
     encode_values,
@@ -83,6 +83,7 @@ class Stack:
         piece = traces.pieces[0]
         parts = piece.world, piece.about, piece.between
         self.arity = {name: n for n, part in enumerate(parts) for name in part}
+        self._columns: dict[str, StackColumn] = {}
         self._ends: dict[str, tuple[float, float]] = {}
         self._of_type: dict[str, Flags] = {}
         self._whole_types: dict[str, bool] = {}
@@ -197,12 +198,18 @@ class Stack:
 
     def column(self, name: str) -> StackColumn | None:
         """The column of a name; None if no state contains it. Raises UnencodableError."""
-        return self.columns.get(name)
+        if name not in self.arity:
+            return None
+        if name not in self._columns:
+            self._columns[name] = self._column(name)
+        return self._columns[name]
 
     @cached_property
     def columns(self) -> Mapping[str, StackColumn]:
         """The columns of all names in the traces. Raises UnencodableError."""
-        return {name: self._column(name) for name in self.arity}
+        for name in self.arity:
+            self.column(name)
+        return self._columns
 
     def ends(self, name: str) -> tuple[float, float] | None:
         """The least and greatest number of a quantity; None if some are unknown or none is given.

@@ -14,7 +14,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_of
-from rulec.monitoring.batch.columns.columnize import UnencodableError
+from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.findings import (
     Findings,
     JudgedTrace,

@@ -1,0 +1,103 @@
+"""Encoded values of names, unless one is irregular."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence, Set
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.automata.thresholds import EXACT_IN_FLOATS
+from rulec.monitoring.state_validation import NUMBERS, TRUTHS
+from rulec.trace.trace_columns import Array, smallest_unsigned
+from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, UnknownValue
+from rulec.vocabulary.vocabulary_model import least_value, values_of
+
+
+class UnencodableError(Exception):
+    """A state has an invalid, missing or unusual value."""
+
+
+def column_dtype(declaration: Declaration) -> np.dtype[Any]:
+    """The data type of a name's column: see ``TraceColumns``."""
+    if isinstance(declaration, Enumeration):
+        return smallest_unsigned(len(declaration.values))
+    return np.dtype(bool if isinstance(declaration, Signal) else np.float64)
+
+
+class PartlyKnown(NamedTuple):
+    """A column of values, or of the least ones where ``upper`` has the greatest.
+
+    They mean nothing where they are ``unknown``; None means nowhere.
+    """
+
+    values: Array
+    upper: Array | None
+    unknown: NDArray[np.bool_] | None
+
+
+def encode_partly_known(values: Sequence[Any], declaration: Declaration) -> PartlyKnown:
+    """Encode values, of which some may be unknown or intervals. Raises UnencodableError."""
+    kinds = set(map(type, values))
+    unknown = upper = None
+    if UnknownValue in kinds:
+        if Interval not in kinds:
+            column, unknown = _with_unknown(values, kinds, declaration)
+            return PartlyKnown(column, None, unknown)
+        unknown = np.array([value is UNKNOWN for value in values])
+        anything = least_value(declaration)
+        values = [anything if value is UNKNOWN else value for value in values]
+    if Interval in kinds:
+        highest = [value.high if type(value) is Interval else value for value in values]
+        upper = encode_values(highest, declaration)
+        values = [value.low if type(value) is Interval else value for value in values]
+    return PartlyKnown(encode_values(values, declaration), upper, unknown)
+
+
+def _with_unknown(
+    values: Sequence[Any], kinds: Set[type], declaration: Declaration
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Encoded values, and the mask of unknown ones. Raises UnencodableError."""
+    if isinstance(declaration, Quantity):
+        unknown = np.array([value is UNKNOWN for value in values])
+        known = [0.0 if value is UNKNOWN else value for value in values]
+        return encode_values(known, declaration), unknown
+    own = values_of(declaration)
+    if not kinds <= {type(own[0]), UnknownValue}:
+        raise UnencodableError
+    places: dict[Any, int] = {value: place for place, value in enumerate(own)}
+    places[UNKNOWN] = len(own)
+    try:
+        numbers = np.fromiter(
+            map(places.__getitem__, values), smallest_unsigned(len(places)), len(values)
+        )
+    except KeyError:
+        raise UnencodableError from None
+    unknown = numbers == len(own)
+    numbers[unknown] = 0
+    return numbers.astype(column_dtype(declaration)), unknown
+
+
+def encode_values(values: Sequence[Any], declaration: Declaration) -> Array:
+    """Encode values. Raises UnencodableError for invalid values and unusual types."""
+    kinds = set(map(type, values))
+    if isinstance(declaration, Enumeration):
+        places = {value: place for place, value in enumerate(declaration.values)}
+        if kinds != {str} or not places.keys() >= set(values):
+            raise UnencodableError
+        return np.fromiter(map(places.__getitem__, values), column_dtype(declaration), len(values))
+    if isinstance(declaration, Signal):
+        if kinds != TRUTHS:
+            raise UnencodableError
+        return np.array(values, dtype=bool)
+    if not kinds <= NUMBERS:
+        raise UnencodableError
+    whole = [value for value in values if type(value) is int] if int in kinds else []
+    if any(abs(value) > EXACT_IN_FLOATS for value in whole):
+        raise UnencodableError
+    numbers = np.array(values, dtype=np.float64)
+    if not np.isfinite(numbers).all():
+        raise UnencodableError
+    return numbers
