@@ -52,7 +52,9 @@ def _verified(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     try:
         # Loads NumPy, 100 ms, which a browser does not have.
         from rulec.monitoring.batch.verify_joined import verdict_in_arrays
-    except ModuleNotFoundError:
+    except ModuleNotFoundError as missing:
+        if missing.name != "numpy":
+            raise
         return _verified_by_states(trace, rulebook)
     return verdict_in_arrays(trace, rulebook) or _verified_by_states(trace, rulebook)
 

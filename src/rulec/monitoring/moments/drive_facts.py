@@ -74,7 +74,7 @@ def facts_of_many(
     for places, alike in _alike_traces(items, [*judged], rulebook.vocabulary):
         own = [judged.get(place, _NOT_WANTED) for place in places]
         kind, of_each = alike.kind, alike.n_objects[0]
-        names = [tuple(alike.names[n * of_each :][:of_each]) for n in range(len(own))]
+        names = [tuple(alike.names[n * of_each : (n + 1) * of_each]) for n in range(len(own))]
         tables = NameTables(alike, rulebook.vocabulary)
         truth = TraceTruth(tables, rulebook.semantics, kind.ends)
         facts = _facts(truth, kind.step_s, rulebook, own, names)

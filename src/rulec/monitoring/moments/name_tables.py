@@ -118,9 +118,8 @@ class NameTables:
         states = stack.begins[stack.trace_of[rows[:, 0]]][:, None] + self._states
         states = np.minimum(np.maximum(states, since[:, None]), until[:, None])
         first, second = (own.repeat(self.n_states) for own in rows.T)
-        return self._at(
-            name, stack.pairs.places(first, second, states.ravel()).reshape(states.shape)
-        )
+        places = stack.pairs.places(first, second, states.ravel())
+        return self._at(name, places.reshape(states.shape))
 
     def _rows(self, name: str, begins: Indices, spans: Indices) -> NameValues:
         """Rows of values that begin at these places, for states from the first to the last."""
@@ -169,9 +168,8 @@ def tables_of(trace: Trace | TraceArrays, vocabulary: Vocabulary) -> NameTables:
     try:
         joined = joined_states([trace], vocabulary)
     except UnencodableError:
-        plain = replace(
-            trace, states=tuple([_plain(state, trace, vocabulary) for state in trace.states])
-        )
+        states = tuple([_plain(state, trace, vocabulary) for state in trace.states])
+        plain = replace(trace, states=states)
         joined = replace(joined_states([plain], vocabulary), trace=[trace].__getitem__)
     return NameTables(joined, vocabulary)
 
