@@ -15,7 +15,7 @@ from rulec import compile_rulebook, find_maneuvers
 from rulec.book_tests.example_coverage import uncovered_verdicts
 from rulec.cli.main import main
 from rulec.diagnostics import RulecError
-from rulec.monitoring.verify import verify_or_reason
+from rulec.monitoring.batch.by_states import verify_or_reason
 from rulec.partition import navigation_graph
 from rulec.report.findings.code_registry import STAGES, all_codes, codes_of_stage
 from rulec.rulebook.loader import diagnose, parse_rulebook

@@ -17,6 +17,7 @@ from rulec.diagnostics import Diagnostic, RulecError
 from rulec.logic.formula import Comparison, Count, QuantityTerm, Same
 from rulec.monitoring.batch import batch_verify
 from rulec.monitoring.batch.batch_verify import verify_chunk, verify_columns, verify_many
+from rulec.monitoring.batch.by_states import verify_or_reason
 from rulec.monitoring.batch.cell_verdicts import verify_cells
 from rulec.monitoring.batch.columns import column_states
 from rulec.monitoring.batch.columns.column_numbers import digits_of
@@ -42,7 +43,6 @@ from support.builders.rulebooks import (
     rule,
 )
 from support.builders.trace_columns import columnize, group_traces
-from support.engines.by_states import by_states
 from support.generators.random_records import chunks, rulebooks, told
 from support.generators.timed_formulas import TIMED_VOCABULARY
 from support.oracles.bits.bit_verdicts import verify_on_bits
@@ -53,7 +53,7 @@ from support.oracles.bits.column_reading import NotGivenError
 @settings(max_examples=settings.default.max_examples // 2)
 def test_answers_are_those_of_the_traces_alone(rulebook, traces):
     compiled = compile_here(rulebook)
-    alone = [told(by_states(trace, compiled)) for trace in traces]
+    alone = [told(verify_or_reason(trace, compiled)) for trace in traces]
     assert [told(one) for one in verify_chunk(traces, compiled)] == alone
 
 
@@ -62,7 +62,7 @@ def test_answers_are_those_of_the_traces_alone(rulebook, traces):
 def test_cells_and_columns_say_the_same(rulebook, traces):
     """Whether states are told apart as a whole, or by what is read of them."""
     compiled = compile_here(rulebook)
-    sound = [one for one in traces if isinstance(by_states(one, compiled), Verdict)]
+    sound = [one for one in traces if isinstance(verify_or_reason(one, compiled), Verdict)]
     sound = [one for one in sound if one.objects == sound[0].objects]
     sound = [one for one in sound if one.present == sound[0].present]
     if not sound:
@@ -228,7 +228,7 @@ def test_a_value_that_one_state_lacks_is_missing_as_in_its_trace_alone():
 
 def assert_only_one_is_refused(traces, refused, rules):
     answers = list(verify_many(traces, rules))
-    assert list(map(told, answers)) == [told(by_states(trace, rules)) for trace in traces]
+    assert list(map(told, answers)) == [told(verify_or_reason(trace, rules)) for trace in traces]
     codes = [one.error.diagnostics[0].code for one in answers if isinstance(one, NotJudged)]
     assert codes == ["R0504"]
     assert isinstance(answers[refused], NotJudged)
@@ -254,7 +254,7 @@ def test_what_can_be_no_trace_is_not_judged():
     ]
     for one in bad:
         answers = verify_chunk([one] * 5, compiled)
-        assert [told(answer) for answer in answers] == [told(by_states(one, compiled))] * 5
+        assert [told(answer) for answer in answers] == [told(verify_or_reason(one, compiled))] * 5
         assert isinstance(answers[0], NotJudged)
 
 
@@ -375,7 +375,7 @@ def test_states_that_cannot_be(more, n_states, chance):
         Trace(str(n), 1.0, objects, tuple(chance.choices(pool, k=chance.randint(1, 3))))
         for n in range(20)
     ]
-    alone = [told(by_states(trace, queue(more))) for trace in traces]
+    alone = [told(verify_or_reason(trace, queue(more))) for trace in traces]
     assert [told(one) for one in verify_chunk(traces, queue(more))] == alone
 
 

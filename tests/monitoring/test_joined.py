@@ -13,6 +13,7 @@ from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.alike_traces import AlikeTraces
 from rulec.monitoring.batch.batch_verify import verify_many
+from rulec.monitoring.batch.by_states import verify_or_reason
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.joined.joined_columns import joined_columns
 from rulec.monitoring.batch.joined.joined_states import joined_states
@@ -28,7 +29,6 @@ from rulec.trace import Trace
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.rulebooks import compile_here
 from support.builders.trace_columns import columnize, group_traces
-from support.engines.by_states import by_states
 from support.engines.trace_engines import renamed
 from support.generators.blurred_traces import blurred
 from support.generators.random_rulebooks import rulebook
@@ -50,7 +50,7 @@ def judged(joined, given_traces, compiled):
 
 def same_as_alone(verdicts, given_traces, compiled):
     for number, verdict in verdicts.items():
-        assert verdict == by_states(given_traces[number], compiled)
+        assert verdict == verify_or_reason(given_traces[number], compiled)
 
 
 @given(seeds)
@@ -214,7 +214,7 @@ def test_values_of_three_objects(shape):
         said = {"between": {"a": {"b": {"a": UNKNOWN if number % 2 else number > 6}}}, "rain": True}
         states = (said,) * (1 + number % shape)
         own.append(Trace(f"t{number}", 0.5, cars, states, ends="cut"))
-    assert list(verify_many(own, compiled)) == [by_states(one, compiled) for one in own]
+    assert list(verify_many(own, compiled)) == [verify_or_reason(one, compiled) for one in own]
 
 
 @pytest.mark.parametrize("n_states", [63, 64, 200])
@@ -241,5 +241,5 @@ def test_traces_that_contradict_facts(most):
         own[number] = replace(own[number], states=(state, *own[number].states[1:]))
     with patch.object(stacked_run, "_MOST_EXAMINED", most):
         answers = list(verify_many(own, compiled))
-    assert answers == [by_states(one, compiled) for one in own]
+    assert answers == [verify_or_reason(one, compiled) for one in own]
     assert any(answer.violations for answer in answers if not isinstance(answer, NotJudged))

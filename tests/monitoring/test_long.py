@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 
 from rulec.monitoring.batch import batch_verify
 from rulec.monitoring.batch.batch_verify import verify_chunk
+from rulec.monitoring.batch.by_states import verify_or_reason
 from rulec.monitoring.batch.machines import table_run
 from rulec.monitoring.batch.machines.table_run import visited
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
 from support.builders.rulebooks import Q, always, compile_here, eventually, far, implies, near, rule
-from support.engines.by_states import by_states
 from support.generators.random_records import chunks, rulebooks, told
 from support.generators.timed_formulas import TIMED_VOCABULARY
 
@@ -44,7 +44,7 @@ def test_states_are_those_that_are_passed_one_by_one(n_states, n_letters, length
 def test_answers_are_those_of_the_traces_alone(rulebook, traces):
     """As if any trace were long."""
     compiled = compile_here(rulebook)
-    alone = [told(by_states(trace, compiled)) for trace in traces]
+    alone = [told(verify_or_reason(trace, compiled)) for trace in traces]
     with mock.patch.object(table_run, "FEWEST_STEPS", 1):
         assert [told(one) for one in verify_chunk(traces, compiled)] == alone
 
@@ -61,7 +61,7 @@ def test_one_long_trace(semantics, lost, monkeypatch):
     if lost is not None:
         states[lost] = {**states[lost], "place": {"a": "near", "b": "gone"}}
     trace = Trace("t", 1.0, {"a": "car", "b": "car"}, tuple(states))
-    expected = by_states(trace, compiled)
+    expected = verify_or_reason(trace, compiled)
     found = [(one.rule, one.binding, one.step) for one in expected.violations]
     late = [("in time", {"v": "a"}, None)]
     early = [] if lost is None else [("apart", {"v": "a", "w": "b"}, lost)]

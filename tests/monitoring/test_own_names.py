@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from rulec.monitoring.batch import batch_verify
 from rulec.monitoring.batch.batch_verify import verify_chunk
+from rulec.monitoring.batch.by_states import verify_or_reason
 from rulec.monitoring.verdict import NotJudged
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from support.builders.rulebooks import compile_here
-from support.engines.by_states import by_states
 from support.generators.random_records import chunks, rulebooks, told
 
 
@@ -37,7 +37,7 @@ def test_answers_are_those_of_the_traces_alone(rulebook, traces, data):
     traces = [
         with_names(trace, dict(zip("abc", data.draw(orders)[:3], strict=True))) for trace in traces
     ]
-    alone = [told(by_states(trace, compiled)) for trace in traces]
+    alone = [told(verify_or_reason(trace, compiled)) for trace in traces]
     assert [told(one) for one in verify_chunk(traces, compiled)] == alone
 
 
@@ -76,7 +76,7 @@ def drive(chance, number, n_states=3):
 def test_they_are_judged_together(monkeypatch):
     chance = Random(7)
     traces = [drive(chance, number) for number in range(100)]
-    alone = [by_states(trace, pairs()) for trace in traces]
+    alone = [verify_or_reason(trace, pairs()) for trace in traces]
     bound = {item for one in alone for each in one.violations for item in each.binding.values()}
     assert len(bound) > 100
     monkeypatch.setattr(
@@ -91,5 +91,7 @@ def test_a_trace_that_speaks_of_another_ones_objects_is_refused():
     traces[5] = with_names(traces[5], {})
     traces[5].states[1]["slow"]["3.0"] = True
     answers = verify_chunk(traces, pairs())
-    assert [told(one) for one in answers] == [told(by_states(one, pairs())) for one in traces]
+    assert [told(one) for one in answers] == [
+        told(verify_or_reason(one, pairs())) for one in traces
+    ]
     assert [isinstance(one, NotJudged) for one in answers] == [n == 5 for n in range(8)]

@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from rulec.api.named_monitor import Monitor
 from rulec.diagnostics import RulecError
 from rulec.logic.semantics import holds
+from rulec.monitoring.batch.by_states import verify_or_reason
 from rulec.monitoring.uncertainty.known_words import KnownLetters
 from rulec.monitoring.verdict import NotJudged
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
 from support.builders.rulebooks import compile_here, rule
 from support.builders.state_traces import as_trace
-from support.engines.by_states import by_states
 from support.generators.random_formulas import VOCABULARY, formulas, letters, words
 from support.generators.random_records import OBJECTS, rulebooks, states
 
@@ -135,7 +135,7 @@ def test_at_the_end_it_says_what_verify_says(rulebook, journey):
     rules = compile_here(rulebook)
     monitor = Monitor(rules)
     for number, (state, objects) in enumerate(journey, 1):
-        expected = by_states(as_trace(journey[:number]), rules)
+        expected = verify_or_reason(as_trace(journey[:number]), rules)
         if isinstance(expected, NotJudged):
             with pytest.raises(RulecError) as refused:
                 monitor.step(state, objects)
@@ -176,7 +176,7 @@ def test_what_is_refused_and_why_is_what_verify_says(rulebook, journey):
     for state, there in journey:
         if there != objects:
             continue
-        answer = by_states(Trace("t", 1.0, objects, (*taken, state)), rules)
+        answer = verify_or_reason(Trace("t", 1.0, objects, (*taken, state)), rules)
         if isinstance(answer, NotJudged):
             with pytest.raises(RulecError) as refused:
                 monitor.step(state, objects)

@@ -14,6 +14,7 @@ from hypothesis import Phase, given, settings
 import rulec
 from rulec.extraction.recording_verdicts import some_rules
 from rulec.logic.free_names import names_in
+from rulec.monitoring.batch.by_states import verify_or_reason
 from rulec.monitoring.batch.stacked import instances, stacked_rule
 from rulec.monitoring.batch.stacked import stacked_run as judging
 from rulec.monitoring.batch.stacked.stack import Stack
@@ -24,7 +25,6 @@ from rulec.trace.trace_arrays import TraceArrays, said_by
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.array_traces import CannotSayError, in_arrays
 from support.builders.rulebooks import compile_here
-from support.engines.by_states import by_states
 from support.generators.blurred_traces import blurred
 from support.generators.constant_values import steady, with_some_constant, with_unknown_constants
 from support.generators.random_rulebooks import rulebook
@@ -68,7 +68,7 @@ def test_together_they_get_the_verdicts_of_each(chance):
             arrays.append(in_arrays(own, book.vocabulary))
         except CannotSayError:
             continue
-    expected = [in_plain_words(by_states(own.trace(), compiled)) for own in arrays]
+    expected = [in_plain_words(verify_or_reason(own.trace(), compiled)) for own in arrays]
     answers = verify_arrays(arrays, compiled)
     # As if they were long, and their words many
     with patch.object(instances, "FEW", -1), patch.object(stacked_rule, "FEW_WORDS", -1):
@@ -116,7 +116,7 @@ def test_a_rule_that_reads_nothing_may_be_open(count):
     )
     trace = Trace("t", 0.5, {}, ({},) * count, ends="cut")
     (verdict,) = verify_arrays([in_arrays(trace, book.vocabulary)], book)
-    assert verdict == by_states(trace, book)
+    assert verdict == verify_or_reason(trace, book)
     assert [one.because for one in verdict.open] == [("not over",)] * (count == 1)
 
 
@@ -306,7 +306,7 @@ def test_of_a_crowd_of_whom_the_same_is_said_all_is_known(near, violated, undeci
     (together,) = verify_arrays([in_arrays(trace, compiled.vocabulary)], compiled)
     assert found(together) == (violated, undecided)
     assert all(one.exact for one in together.open)
-    assert together == by_states(trace, compiled)
+    assert together == verify_or_reason(trace, compiled)
 
 
 @pytest.mark.parametrize(
@@ -325,7 +325,7 @@ def test_a_fact_says_of_each_of_a_crowd_whether_it_may_count(awake, undecided):
     trace = Trace("crowd", 1.0, crowd, ({}, state, {}))
     (together,) = verify_arrays([in_arrays(trace, compiled.vocabulary)], compiled)
     assert found(together) == ([], undecided)
-    assert together == by_states(trace, compiled)
+    assert together == verify_or_reason(trace, compiled)
 
 
 @pytest.mark.parametrize("near", [{"a1": True}, {"b2": True, "b3": UNKNOWN}])
@@ -339,7 +339,7 @@ def test_a_state_that_contradicts_a_fact_is_refused_as_by_itself(near):
     assert found(calm) == ([], [])
     assert isinstance(refused, NotJudged)
     assert "state 1 cannot be: `near(" in str(refused.error)
-    assert str(refused.error) == str(by_states(traces[1], compiled).error)
+    assert str(refused.error) == str(verify_or_reason(traces[1], compiled).error)
 
 
 WEATHER = """\
@@ -363,6 +363,6 @@ def test_whatever_was_asked_before_facts_are_contradicted_by_what_is_said_everyw
         last = first | {"light": "icy_road"} if changes else first
         trace = Trace("rain", 1.0, {}, (first, last), told=frozenset(first | last))
         (own,) = verify_arrays([in_arrays(trace, compiled.vocabulary)], compiled)
-        assert in_plain_words(own) == in_plain_words(by_states(trace, compiled))
+        assert in_plain_words(own) == in_plain_words(verify_or_reason(trace, compiled))
         refused += isinstance(own, NotJudged)
     assert refused

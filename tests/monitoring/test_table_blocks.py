@@ -20,6 +20,7 @@ from hypothesis import strategies as st
 from rulec.automata.bundle.bundle_file import to_json
 from rulec.monitoring.batch import batch_verify
 from rulec.monitoring.batch.batch_verify import rulebook_for, verify_items
+from rulec.monitoring.batch.by_states import verify_or_reason
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.trace.formats import csv_table, table_reader
@@ -29,7 +30,6 @@ from rulec.trace.formats.table_blocks import Block
 from rulec.trace.formats.trace_files import is_partial, kinds_in, read_chunks, write_traces
 from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.rulebooks import compile_here
-from support.engines.by_states import by_states
 from support.generators.random_records import chunks, rulebooks, told
 
 pyarrow = pytest.importorskip("pyarrow")
@@ -59,7 +59,7 @@ def by_columns(data, form, rules, block_bytes=1 << 22):
 
 def row_by_row(data, form, rules):
     read = [one for items in read_chunks(io.BytesIO(data), "t", form) for one in items]
-    return [told(by_states(one, rules)) for one in read]
+    return [told(verify_or_reason(one, rules)) for one in read]
 
 
 def as_csv(rows):
@@ -218,7 +218,7 @@ def drives():
 @pytest.mark.parametrize("block_bytes", [20_000, 1 << 22])
 def test_plain_tables_make_no_traces(form, block_bytes, monkeypatch):
     data = written(drives(), form)
-    alone = [by_states(trace, traffic()) for trace in drives()]
+    alone = [verify_or_reason(trace, traffic()) for trace in drives()]
     bound = {item for one in alone for lost in one.violations for item in lost.binding.values()}
     assert len(bound) > 100
     assert any(one.violations == () for one in alone)
@@ -235,7 +235,7 @@ def test_only_traces_of_which_something_is_not_known_are_read(form, monkeypatch)
         traces[place] = replace(traces[place], states=states)
     traces[70] = replace(traces[70], told=frozenset(["rain", "speed"]))
     traces[71] = replace(traces[71], ends="cut")
-    alone = [by_states(trace, traffic()) for trace in traces]
+    alone = [verify_or_reason(trace, traffic()) for trace in traces]
     data, read = written(traces, form), []
     for module in (table_reader, arrow_blocks):
         monkeypatch.setattr(module, "traces_in", noted(module.traces_in, read))
@@ -267,7 +267,7 @@ def test_csv_that_is_plain_too(change, monkeypatch):
     data = change(written(drives()[:60], "csv"))
     for module in (table_reader, arrow_blocks):
         monkeypatch.setattr(module, "traces_in", lambda *_: pytest.fail("a row was read"))
-    expected = [by_states(trace, traffic()) for trace in drives()[:60]]
+    expected = [verify_or_reason(trace, traffic()) for trace in drives()[:60]]
     assert by_columns(data, "csv", traffic(), 3_000) == expected
 
 
@@ -277,8 +277,8 @@ def test_what_is_wrong_with_a_row_is_said_of_its_trace(form, first):
     place = next(n for n, row in enumerate(rows) if row[:2] == ["t60", "1"])
     rows[place][1] = "7"
     found = by_columns(FORMS[form](rows), form, traffic(), 5_000)
-    assert found[:60] == [by_states(trace, traffic()) for trace in drives()[:60]]
-    assert found[61:] == [by_states(trace, traffic()) for trace in drives()[61:100]]
+    assert found[:60] == [verify_or_reason(trace, traffic()) for trace in drives()[:60]]
+    assert found[61:] == [verify_or_reason(trace, traffic()) for trace in drives()[61:100]]
     trace, (problem,) = found[60]
     assert trace is None
     assert problem.message == "the step is `7`; it must be 0 or 1 here"
@@ -339,7 +339,7 @@ def test_a_column_of_truth_values_in_which_late_there_is_something_else(odd, mon
     rows[place][rain] = odd
     data, read = as_csv(rows), []
     expected = row_by_row(data, "csv", traffic())
-    assert expected[:90] == [by_states(trace, traffic()) for trace in drives()[:90]]
+    assert expected[:90] == [verify_or_reason(trace, traffic()) for trace in drives()[:90]]
     for module in (table_reader, arrow_blocks):
         monkeypatch.setattr(module, "traces_in", noted(module.traces_in, read))
     assert by_columns(data, "csv", traffic(), 6_000) == expected
@@ -379,14 +379,14 @@ def test_the_rulebook_of_a_trace_is_the_one_for_its_step():
     assert found.outline is not None
     assert list(found) == list(items)
     assert [found[place] for place in range(39)] == list(items)
-    assert [*answered][3] == by_states(drives()[3], traffic())
+    assert [*answered][3] == verify_or_reason(drives()[3], traffic())
     assert items[3] == drives()[3]
 
 
 def test_large_csv_without_arrow(monkeypatch):
     monkeypatch.setattr(csv_table, "find_spec", lambda _: None)
     data = written(drives()[:40], "csv")
-    expected = [by_states(trace, traffic()) for trace in drives()[:40]]
+    expected = [verify_or_reason(trace, traffic()) for trace in drives()[:40]]
     assert by_columns(data, "csv", traffic()) == expected
 
 

@@ -108,8 +108,9 @@ class TraceVerbs(SessionSettings):
                 file or recording what ``read_traces`` and ``verify_recording`` raise.
         """
         from rulec.monitoring.assumptions import check_assumed
+        from rulec.monitoring.batch.by_states import verify_contained
         from rulec.monitoring.rulebook_edition import edition_of
-        from rulec.monitoring.verify import verify_contained
+        from rulec.monitoring.verify import verify
 
         compiled = self._compiled(rules)
         if not isinstance(drives, Trace):
@@ -118,7 +119,7 @@ class TraceVerbs(SessionSettings):
         if assumptions is not None:
             check_assumed(assumptions.values, compiled.vocabulary, "values")
             trace = assumptions.applied(trace)
-        return replace(verify_contained(trace, compiled), law=edition_of(compiled))
+        return replace(verify_contained(trace, compiled, verify), law=edition_of(compiled))
 
     def _judged(
         self,

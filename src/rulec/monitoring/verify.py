@@ -2,28 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import replace
-from functools import partial
-
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
-from rulec.automata.thresholds import exact_step
-from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
-from rulec.diagnostics.diagnostic import as_answer, with_place
-from rulec.monitoring.axiom_violations import check_counting_axioms
-from rulec.monitoring.fault_containment import judged_apart
-from rulec.monitoring.implied_values import with_derived_values
-from rulec.monitoring.state_validation import check_objects, check_states, check_told
-from rulec.monitoring.uncertainty.suppositions import spelled_out
-from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
-from rulec.monitoring.verdict import NotJudged, Verdict, agreed
-from rulec.resource_limits import BudgetSpentError
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.monitoring.batch.by_states import by_each_rounding, verified_by_states
+from rulec.monitoring.verdict import Verdict
 from rulec.trace import Trace
-from rulec.trace.trace_model import check_frame, check_trace
-
-Judge = Callable[[Trace, CompiledRulebook], Verdict]
-"""Judges a checked trace by a rulebook; it is ``verify`` or ``verify_by_states``."""
 
 
 def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
@@ -33,19 +15,7 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     R0507 if a rule was compiled for traces with another step, R0508 if a state contradicts an axiom
     on which a rule depends; errors have the trace's own place.
     """
-    return _by_each_rounding(trace, rulebook, _verified)
-
-
-def verify_by_states(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
-    """``verify``, state by state: for what arrays do not tell, and for every error."""
-    return _by_each_rounding(trace, rulebook, _verified_by_states)
-
-
-def _by_each_rounding(trace: Trace, rulebook: CompiledRulebook, judge: Judge) -> Verdict:
-    check_trace(trace)
-    with _errors_at(trace.place):
-        roundings = rulebook.rounded_to(trace.step_s)
-    return agreed([judge(trace, rounded) for rounded in roundings])
+    return by_each_rounding(trace, rulebook, _verified)
 
 
 def _verified(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
@@ -55,93 +25,5 @@ def _verified(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     except ModuleNotFoundError as missing:
         if missing.name != "numpy":
             raise
-        return _verified_by_states(trace, rulebook)
-    return verdict_in_arrays(trace, rulebook) or _verified_by_states(trace, rulebook)
-
-
-def _verified_by_states(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
-    is_partial = check_fitting(trace, rulebook)
-    # A name that is unknown for all objects is unknown for each object without a value.
-    trace = with_derived_values(spelled_out(trace, rulebook.vocabulary), rulebook.vocabulary)
-    run = UncertainRun(trace, rulebook)
-    if is_partial or trace.ends == "cut" or trace.told is not None:
-        return run.verdict()
-    check_counting_axioms(rulebook, len(trace.states), run.view, "state {}".format, trace.place)
-    return Verdict(trace.id, run.verdict().violations)
-
-
-def check_fitting(trace: Trace, rulebook: CompiledRulebook) -> bool:
-    """Check a trace by a rulebook for its step, and say whether some of its values are unknown.
-
-    Raises RulecError as ``verify`` does if the trace does not fit.
-    """
-    for rule in rulebook.rules:
-        if rule.step_s is not None:
-            check_step(rule, exact_step(trace.step_s), "the trace", trace.place)
-    check_objects(trace.objects, rulebook.vocabulary, trace.place)
-    check_told(trace.told, rulebook.vocabulary, trace.place)
-    where = "state {}".format
-    return check_states(trace.states, trace.objects, rulebook.vocabulary, where, trace.place)
-
-
-def rulebook_for_trace(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
-    """The rulebook with the machines for a trace's step.
-
-    Raises RulecError; errors name the trace's place.
-    """
-    with _errors_at(trace.place):
-        return rulebook.fitted_to(trace.step_s)
-
-
-@contextmanager
-def _errors_at(place: SourceLocation | None) -> Iterator[None]:
-    try:
-        yield
-    except RulecError as error:
-        # The error is about this trace, so the place of the rule is only a note.
-        raise type(error)([_at(place, diagnostic) for diagnostic in error.diagnostics]) from None
-
-
-def _at(place: SourceLocation | None, problem: Diagnostic) -> Diagnostic:
-    if place is None:
-        return problem
-    here = () if problem.place is None else (Label(problem.place, "asked for here"),)
-    return replace(problem, place=place, labels=(*here, *problem.labels))
-
-
-def verify_contained(trace: Trace, rulebook: CompiledRulebook, judge: Judge = verify) -> Verdict:
-    """``verify``; a fault of rulec costs only the rules that it is in."""
-    try:
-        return judge(trace, rulebook)
-    except Exception as problem:
-        if isinstance(problem, RulecError) or not isinstance(trace, Trace):
-            raise
-        check_frame(trace)  # a trace of wrong kinds is the caller's fault, and is said again
-        each = partial(_each_verified, judge)
-        (answer,) = judged_apart(each, [trace], rulebook.rounded_to(trace.step_s))
-    if isinstance(answer, NotJudged):
-        raise answer.error
-    return answer
-
-
-def _each_verified(
-    judge: Judge, traces: Sequence[Trace], roundings: Sequence[CompiledRulebook]
-) -> list[Verdict]:
-    return [agreed([judge(trace, rounded) for rounded in roundings]) for trace in traces]
-
-
-def verify_or_reason(
-    item: Trace | RulecError, rulebook: CompiledRulebook, judge: Judge = verify
-) -> Verdict | NotJudged:
-    """Verify one trace of many, and return an error instead of raising it.
-
-    In place of a trace, ``item`` may be the error that prevented reading one.
-    """
-    if isinstance(item, RulecError):
-        return NotJudged(None, item)
-    try:
-        return verify_contained(item, rulebook, judge)
-    except BudgetSpentError:
-        raise
-    except RulecError as error:
-        return NotJudged(item.id, as_answer(with_place(error, item.place)))
+        return verified_by_states(trace, rulebook)
+    return verdict_in_arrays(trace, rulebook) or verified_by_states(trace, rulebook)

@@ -11,11 +11,11 @@ import rulec
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.batch_verify import verify_many
+from rulec.monitoring.batch.by_states import verify_or_reason
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.trace import Trace
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.rulebooks import compile_here
-from support.engines.by_states import by_states
 from support.engines.trace_engines import first_part, with_own_names
 from support.generators.blurred_traces import blurred
 from support.generators.constant_values import steady, with_some_constant, with_unknown_constants
@@ -67,7 +67,7 @@ def test_together_they_get_the_verdicts_of_each(chance):
         many = [copied(trace, number) for number in range(COPIES) for trace in every]
         answers = list(map(in_common_names, verify_many(many, compiled)))
         for trace, answer in zip(many, answers, strict=True):
-            assert answer == in_common_names(by_states(trace, compiled)), trace
+            assert answer == in_common_names(verify_or_reason(trace, compiled)), trace
 
 
 BOOK = """\
@@ -167,4 +167,4 @@ def test_what_is_alike_is_found_again_in_later_traces(chance):
             for n in range(COPIES)
         ]
         for trace, answer in zip(several, verify_many(several, compiled), strict=True):
-            assert answer == by_states(trace, compiled), trace
+            assert answer == verify_or_reason(trace, compiled), trace

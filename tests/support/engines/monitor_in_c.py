@@ -19,11 +19,11 @@ from rulec.code_generation.monitor_layout import (
     monitor_layout,
 )
 from rulec.monitoring.axiom_violations import check_counting_axioms
+from rulec.monitoring.batch.by_states import check_fitting, rulebook_for_trace
 from rulec.monitoring.bindings import Binding, Cast
 from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.uncertainty.known_words import KnownLetters
 from rulec.monitoring.verdict import Verdict, Violation
-from rulec.monitoring.verify import check_fitting, rulebook_for_trace
 from rulec.trace import State, Trace
 from rulec.trace.trace_model import check_trace
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES

@@ -10,13 +10,13 @@ from pathlib import Path
 from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.cli.main import main
 from rulec.monitoring.batch.batch_verify import verify_many
+from rulec.monitoring.batch.by_states import verify_or_reason
 from rulec.monitoring.batch.verify_arrays import verify_arrays
-from rulec.monitoring.verify import verify_or_reason
+from rulec.monitoring.verify import verify
 from rulec.trace.formats.trace_files import kinds_in, read_chunks, write_traces
 from rulec.vocabulary import Enumeration, Quantity, Signal
 from support.builders.array_traces import CannotSayError, in_arrays
 from support.builders.trace_columns import columnize, group_traces
-from support.engines.by_states import by_states
 from support.engines.engine import each, told
 from support.oracles.bits.bit_verdicts import verify_on_bits
 from support.oracles.presence import there
@@ -31,11 +31,11 @@ def by_oracle(rulebook, compiled, trace):
 
 
 def one_by_one(rulebook, compiled, traces):
-    return [told(verify_or_reason(trace, compiled)) for trace in traces]
+    return [told(verify_or_reason(trace, compiled, verify)) for trace in traces]
 
 
 def state_by_state(rulebook, compiled, traces):
-    return [told(by_states(trace, compiled)) for trace in traces]
+    return [told(verify_or_reason(trace, compiled)) for trace in traces]
 
 
 def compiled_file(rulebook, compiled, traces):
@@ -109,7 +109,7 @@ def stacked(rulebook, compiled, traces):
         with suppress(CannotSayError):
             arrays[place] = in_arrays(trace, rulebook.vocabulary)
         if place not in arrays:
-            answers[place] = by_states(trace, compiled)
+            answers[place] = verify_or_reason(trace, compiled)
     answers |= zip(arrays, verify_arrays(list(arrays.values()), compiled), strict=True)
     return [told(answers[place]) for place in range(len(traces))]
 

@@ -23,6 +23,7 @@ from rulec.monitoring.batch.alike_traces import (
     traces_of_group,
     traces_of_lines,
 )
+from rulec.monitoring.batch.by_states import rulebook_for_trace, verify_or_reason
 from rulec.monitoring.batch.cell_verdicts import VerdictColumns, verify_cells
 from rulec.monitoring.batch.columns.block_columns import groups_of
 from rulec.monitoring.batch.columns.column_states import shared_states
@@ -42,7 +43,6 @@ from rulec.monitoring.fault_containment import said
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import check_objects
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.monitoring.verify import rulebook_for_trace, verify_by_states, verify_or_reason
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import LineBlock
@@ -111,7 +111,7 @@ def _verify_chunk(items: Sequence[Trace | RulecError], rulebook: CompiledRuleboo
         for (place, _), verdict in zip(placed, verdicts, strict=True):
             answers[place] = verdict
     return [
-        verify_or_reason(item, rulebook, verify_by_states) if answer is None else answer
+        verify_or_reason(item, rulebook) if answer is None else answer
         for item, answer in zip(items, answers, strict=True)
     ]
 

@@ -70,6 +70,6 @@ def _names(columns: Mapping[str, Array], known: dict[int, frozenset[str]]) -> fr
 
 def _by_states(trace: TraceArrays, rulebook: CompiledRulebook) -> Answer:
     # The engine for states loads slowly, and few recordings need it.
-    from rulec.monitoring.verify import verify_by_states, verify_or_reason
+    from rulec.monitoring.batch.by_states import verify_or_reason
 
-    return verify_or_reason(trace.trace(), rulebook, verify_by_states)
+    return verify_or_reason(trace.trace(), rulebook)

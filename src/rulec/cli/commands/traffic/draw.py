@@ -127,7 +127,7 @@ def trace(
     """
     # Late import, not for --help: verdicts and pictures (150 ms).
     from rulec.api.pictures import trace_drawing
-    from rulec.monitoring.verify import rulebook_for_trace
+    from rulec.monitoring.batch.by_states import rulebook_for_trace
 
     rules = read_machines(rulebook, at)
     drawn = _trace(file, trace_id, input_format)
