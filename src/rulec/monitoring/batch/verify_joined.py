@@ -12,14 +12,17 @@ from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.joined.joined_states import joined_states
 from rulec.monitoring.batch.joined.joined_traces import TraceKind
 from rulec.monitoring.batch.stacked.stacked_run import check_judgeable, judge_joined
+from rulec.monitoring.bindings import types_of
 from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.verdict import Verdict
+from rulec.resource_limits import CHOICES
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_frame, check_presence
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
+from rulec.vocabulary.vocabulary_model import number_of_choices
 
 IRREGULAR = UnencodableError, MissingValueError, RulecError
 """What prevents traces from being judged in arrays."""
@@ -72,8 +75,20 @@ def verdicts_together(
     example = traces[0]
     with suppress(*IRREGULAR):
         check_judgeable(TraceKind(example.step_s, example.ends, example.told), rulebook)
-        _judge_together(range(len(traces)), traces, rulebook, verdicts)
+        places = [n for n, trace in enumerate(traces) if _has_few_choices(trace, rulebook)]
+        if places:
+            _judge_together(places, traces, rulebook, verdicts)
     return verdicts
+
+
+def _has_few_choices(trace: Trace, rulebook: CompiledRulebook) -> bool:
+    """Whether no rule has more choices of objects than the limit `choices`, which states report."""
+    n_objects, most = len(trace.objects), CHOICES.value()
+    return n_objects**2 <= most or all(
+        number_of_choices(types, trace.objects, rulebook.vocabulary) <= most
+        for types in dict.fromkeys(map(types_of, rulebook.rules))
+        if len(types) == 2
+    )
 
 
 def _judge_together(
