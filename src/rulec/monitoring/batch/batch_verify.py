@@ -35,7 +35,6 @@ from rulec.monitoring.batch.trace_groups import under_own_names
 from rulec.monitoring.batch.verify_joined import (
     IRREGULAR,
     derived_trace,
-    is_framed,
     verdicts_together,
 )
 from rulec.monitoring.bindings import Cast, types_of
@@ -101,7 +100,7 @@ def _verify_chunk(items: Sequence[Trace | RulecError], rulebook: CompiledRuleboo
     kinds: dict[TraceKind, list[tuple[int, Trace]]] = {}
     for place, item in enumerate(items):
         # What is no trace, or has a constant that changes, is judged alone.
-        if isinstance(item, Trace) and is_framed(item):
+        if isinstance(item, Trace):
             trace = derived_trace(item, rulebook.vocabulary)
             if trace is not None:
                 kind = TraceKind(trace.step_s, trace.ends, trace.told)

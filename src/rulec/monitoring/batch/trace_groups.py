@@ -8,13 +8,11 @@ from typing import TypeAlias
 from rulec.monitoring.verdict import Violation
 from rulec.trace import Trace
 
-Shape: TypeAlias = tuple[object, ...]
-
 Names: TypeAlias = tuple[str, ...]
 """The objects of a trace, in their order."""
 
 
-def shape_of(trace: Trace) -> Shape:
+def shape_of(trace: Trace) -> tuple[object, ...]:
     """The shape of a trace: step, object types in order, and presence, without names."""
     places = {name: place for place, name in enumerate(trace.objects)}
     stretches = [(places[name], stretch) for name, stretch in trace.present.items()]

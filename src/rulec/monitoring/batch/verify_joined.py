@@ -29,23 +29,19 @@ IRREGULAR = UnencodableError, MissingValueError, RulecError
 
 
 def verdict_in_arrays(trace: Trace, rulebook: CompiledRulebook) -> Verdict | None:
-    """The verdict on a trace by a rulebook for its step; None if it must be judged by its states.
-
-    The trace has passed ``check_trace``.
-    """
+    """The verdict on a trace by a rulebook for its step; None if it must be judged by its states."""
     derived = derived_trace(trace, rulebook.vocabulary)
-    if derived is None:
-        return None
-    (verdict,) = verdicts_together([derived], rulebook)
-    return verdict
+    return None if derived is None else verdicts_together([derived], rulebook)[0]
 
 
 def derived_trace(trace: Trace, vocabulary: Vocabulary) -> Trace | None:
-    """The trace with what follows from its values; None if something is wrong with these."""
-    if not vocabulary.constants and not vocabulary.implied:
-        return trace
+    """The trace with what follows from its values; None if something is wrong with it."""
     about = [x for x in vocabulary.constants if vocabulary.declarations[x].parameters]
     try:
+        check_frame(trace)
+        check_presence(trace)
+        if not vocabulary.constants and not vocabulary.implied:
+            return trace
         if any(state.get(name) is UNKNOWN for name in about for state in trace.states):
             trace = spelled_out(trace, vocabulary)
         return with_derived_values(trace, vocabulary)
@@ -53,21 +49,10 @@ def derived_trace(trace: Trace, vocabulary: Vocabulary) -> Trace | None:
         return None
 
 
-def is_framed(trace: Trace) -> bool:
-    """Whether everything about a trace except its states is right."""
-    try:
-        check_frame(trace)
-        if trace.present:
-            check_presence(trace)
-    except (RulecError, TypeError):
-        return False
-    return True
-
-
 def verdicts_together(
     traces: Sequence[Trace], rulebook: CompiledRulebook
 ) -> Sequence[Verdict | None]:
-    """The verdicts on framed traces of one kind, which are derived.
+    """The verdicts on traces of one kind, which are derived.
 
     None for those that must be judged by their states.
     """
