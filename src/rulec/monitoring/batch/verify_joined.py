@@ -29,7 +29,7 @@ IRREGULAR = UnencodableError, MissingValueError, RulecError
 
 
 def verdict_in_arrays(trace: Trace, rulebook: CompiledRulebook) -> Verdict | None:
-    """The verdict on a trace by a rulebook for its step; None if it must be judged by its states."""
+    """The verdict on a trace by a rulebook for its step; None if its states have to tell."""
     derived = derived_trace(trace, rulebook.vocabulary)
     return None if derived is None else verdicts_together([derived], rulebook)[0]
 
