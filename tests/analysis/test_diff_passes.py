@@ -9,7 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rulec.analysis.counterexample import Contest, counterexample, said_as_usual
-from rulec.analysis.diff.comparison_matrix import CONVERSE, comparison_matrix, pairs, steps
+from rulec.analysis.diff.comparison_matrix import (
+    CONVERSE,
+    comparison_matrix,
+    growing_matrices,
+    pairs,
+)
 from rulec.analysis.diff.rule_comparison import (
     common_types,
     compare,
@@ -230,12 +235,32 @@ class TestComparisonMatrix:
             for one, other in product(shared.laws, repeat=2):
                 assert shared.relation(other, one) == CONVERSE[shared.relation(one, other)]
 
-    def test_progress(self):
-        told = []
-        comparison_matrix(BOOKS, tell=told.append)
-        assert told == [1, 2, 3, 4, 5, 6]
-        assert steps(BOOKS) == 6
-        assert steps(BOOKS, ["r"]) == 4
+    def test_each_book_is_compared_before_the_next_is_read(self):
+        read = []
+
+        def reading():
+            for one in BOOKS:
+                read.append(one.name)
+                yield one
+
+        for number, matrix in enumerate(growing_matrices(reading()), 1):
+            assert read == [one.name for one in matrix.books] == ["a", "b", "c"][:number]
+            (shared, *_) = matrix.rules
+            assert [*shared.laws] == read
+        assert shared.relation("a", "b") == "equal"
+
+    def test_steps_of_rules_may_differ(self):
+        timed = []
+        for name, bound, step_s in (
+            ("a", 2, 1),
+            ("b", 1, Fraction(1, 2)),
+            ("c", 2, Fraction(1, 4)),
+        ):
+            one = book(name, ("r", f"eventually[<= {bound} s] p"))
+            timed.append(replace(one, rules=(replace(one.rules[0], step_s=Fraction(step_s)),)))
+        (shared,) = comparison_matrix(timed).rules
+        assert [shared.letter(name) for name in "abc"] == ["A", "B", "A"]
+        assert shared.relation("b", "c") == "stricter"
 
     def test_more_pairs_than_the_limit_are_refused_at_a_rule_that_most_have(self, monkeypatch):
         monkeypatch.setenv("RULEC_LIMITS", "comparisons=4")

@@ -47,8 +47,8 @@ def answered(monkeypatch):
     monkeypatch.setattr(Session, "analyze", counting(Session.analyze))
     monkeypatch.setattr(show, "_shown", counting(show._shown))
     monkeypatch.setattr(book_lineage, "read_with_lineage", counting(book_lineage.read_with_lineage))
-    matrix = comparison_matrix.comparison_matrix
-    monkeypatch.setattr(comparison_matrix, "comparison_matrix", counting(matrix))
+    matrices = comparison_matrix.growing_matrices
+    monkeypatch.setattr(comparison_matrix, "growing_matrices", counting(matrices))
     return times
 
 

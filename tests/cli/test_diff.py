@@ -7,6 +7,7 @@ from html.parser import HTMLParser
 import pytest
 
 from rulec.cli.main import main
+from rulec.rulebook import loader
 
 OLD = """\
 rulebook old
@@ -356,7 +357,12 @@ def test_all(tmp_path, capsys):
     )
     assert main(["diff", "--all", "./new.rules", "./old.rules", "./third.rules"]) == 1
     lines = capsys.readouterr().out.splitlines()
-    rules = dict(line.split(maxsplit=1) for line in lines[4:9])
+    assert [line.split() for line in lines[3:6]] == [
+        ["old", "new", "1=", "1+", "1-"],
+        ["old", "third", "2=", "1+"],
+        ["new", "third", "1+", "1-"],
+    ]
+    rules = dict(line.split(maxsplit=1) for line in lines[11:16])
     assert rules == {
         "old": "new  third",
         "leave_room": "A    B    C",
@@ -364,15 +370,25 @@ def test_all(tmp_path, capsys):
         "no_horn": "a    /    a",
         "no_crowd": "a    a    /",
     }
-    pairs = [line.split() for line in lines[14:17]]
-    assert pairs == [
-        ["old", "1=", "1+", "1-", "2=", "1+"],
-        ["new", "1=", "1+", "1-", "1+", "1-"],
-        ["third", "2=", "1-", "1+", "1-"],
-    ]
     assert (
         lines[-1] == "3 rulebooks, 4 rules that two or more of them have, 2 of them the same in all"
     )
+
+
+def test_all_is_written_pair_by_pair(tmp_path, monkeypatch, capsys):
+    """What the first two rulebooks share is written before the last one is read."""
+    (tmp_path / "third.rules").write_text("rulebook third\nextends old\n")
+    written = []
+    own = loader.read_rulebook
+
+    def read(reference, *more):
+        written.append(("third" in reference, capsys.readouterr().out))
+        return own(reference, *more)
+
+    monkeypatch.setattr(loader, "read_rulebook", read)
+    assert main(["diff", "--all", "./new.rules", "./old.rules", "./third.rules"]) == 1
+    assert [is_third for is_third, _ in written] == [False, False, True]
+    assert written[-1][1].splitlines()[-1].split() == ["old", "new", "1=", "1+", "1-"]
 
 
 def test_all_as_data(capsys):

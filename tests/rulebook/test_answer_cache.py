@@ -22,7 +22,7 @@ def asked(tmp_path, monkeypatch, capsys):
     computed = []
     for module, name in (
         (rulebook_findings, "rulebook_findings"),
-        (comparison_matrix, "comparison_matrix"),
+        (comparison_matrix, "growing_matrices"),
     ):
         own = getattr(module, name)
         monkeypatch.setattr(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
@@ -36,42 +36,43 @@ class AnalyzedRule:
         return verify(trace, alone).violations
 
 
-def compile_shared(
-    rulebooks: Sequence[Rulebook],
-    rules: Sequence[Mapping[str, Rule]],
-    tell: Callable[[float], object] = lambda _: None,
-) -> list[dict[str, AnalyzedRule]]:
-    """For each rulebook its chosen rules by name, at their own steps; each law is compiled once.
+@dataclass(slots=True)
+class SharedCompiler:
+    """Compiles rules of several rulebooks at their own steps, each law once."""
 
-    ``tell`` is called with the number of rulebooks compiled so far. Raises RulecError if a rule
-    cannot be compiled.
-    """
-    machines: dict[object, CompiledRule] = {}
-    laws: dict[object, int] = {}
-    compiled_rules = []
-    for number, (book, written) in enumerate(zip(rulebooks, rules, strict=True), 1):
+    _machines: dict[object, CompiledRule] = field(default_factory=dict)
+    _laws: dict[object, int] = field(default_factory=dict)
+
+    def compiled(self, book: Rulebook, written: Mapping[str, Rule]) -> dict[str, AnalyzedRule]:
+        """Rules of a rulebook by name. Raises RulecError if one cannot be compiled."""
         chosen = {name: _shorter(rule, book.vocabulary) for name, rule in written.items()}
         keys = {name: _key(rule, book) for name, rule in chosen.items()}
-        missing = {key: chosen[name] for name, key in keys.items() if key not in machines}
+        missing = {key: chosen[name] for name, key in keys.items() if key not in self._machines}
         lacking = replace(book, rules=tuple(missing.values()))
         header = build_all(lacking, lower(lacking))
-        machines.update(zip(missing, header.rules, strict=True))
-        tell(number)
-        compiled_rules.append(
-            {
-                name: AnalyzedRule(
-                    replace(header, rules=()),
-                    book.axioms,
-                    replace(
-                        machines[key],
-                        **{field: getattr(chosen[name], field) for field in _NOT_COMPILED},
-                    ),
-                    laws.setdefault((key, book.axioms), len(laws)),
-                )
-                for name, key in keys.items()
-            }
-        )
-    return compiled_rules
+        self._machines.update(zip(missing, header.rules, strict=True))
+        return {
+            name: AnalyzedRule(
+                replace(header, rules=()),
+                book.axioms,
+                replace(
+                    self._machines[key],
+                    **{own: getattr(chosen[name], own) for own in _NOT_COMPILED},
+                ),
+                self._laws.setdefault((key, book.axioms), len(self._laws)),
+            )
+            for name, key in keys.items()
+        }
+
+
+def compile_shared(
+    rulebooks: Sequence[Rulebook], rules: Sequence[Mapping[str, Rule]]
+) -> list[dict[str, AnalyzedRule]]:
+    """For each rulebook its chosen rules by name. Raises RulecError if one cannot be compiled."""
+    compiler = SharedCompiler()
+    return [
+        compiler.compiled(book, written) for book, written in zip(rulebooks, rules, strict=True)
+    ]
 
 
 def _shorter(rule: Rule, vocabulary: Vocabulary) -> Rule:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import permutations
 from pathlib import Path
@@ -13,7 +13,7 @@ from string import ascii_uppercase
 from rulec.analysis.diff.distinct_names import with_distinct_names
 from rulec.analysis.diff.rule_comparison import RuleRelation, rule_relation
 from rulec.analysis.diff.rulebook_comparison import rules_matching
-from rulec.analysis.shared_compilation import AnalyzedRule, at_one_step, compile_shared
+from rulec.analysis.shared_compilation import AnalyzedRule, SharedCompiler, at_one_step
 from rulec.diagnostics import SourceLocation
 from rulec.diagnostics.diagnostic import at
 from rulec.resource_limits import COMPARISONS
@@ -70,7 +70,7 @@ class ComparisonMatrix:
     @property
     def shared(self) -> tuple[SharedRule, ...]:
         """The rules that at least two of the rulebooks have."""
-        return tuple(rule for rule in self.rules if len(rule.laws) > 1)
+        return tuple(rule for rule in self.rules if len(rule.rules) > 1)
 
     def counts(self, first: str, second: str) -> Counter[str]:
         """The number of the first rulebook's rules by their relation to the second's.
@@ -88,6 +88,12 @@ class ComparisonMatrix:
                 numbers["silent"] += second in rule.remarks
         return numbers
 
+    def without(self, names: Container[str]) -> ComparisonMatrix:
+        """The matrix without rulebooks that share no rule with the others."""
+        books = tuple(book for book in self.books if book.name not in names)
+        rules = tuple(rule for rule in self.rules if any(name not in names for name in rule.laws))
+        return ComparisonMatrix(books, rules)
+
     @property
     def is_complete(self) -> bool:
         """Whether every question has been answered."""
@@ -100,103 +106,145 @@ class ComparisonMatrix:
 
 
 def comparison_matrix(
-    books: Sequence[Rulebook],
-    patterns: Sequence[str] = (),
-    step_s: Fraction | None = None,
-    tell: Callable[[float], object] = lambda _: None,
+    books: Sequence[Rulebook], patterns: Sequence[str] = (), step_s: Fraction | None = None
 ) -> ComparisonMatrix:
-    """Compare each pair of the rulebooks, rule by rule.
+    """Compare each pair of the rulebooks, rule by rule: the last of ``growing_matrices``."""
+    *_, last = growing_matrices(with_distinct_names(books), patterns, step_s)
+    return last
 
-    The arguments are as for ``diff_rulebooks``; ``tell`` is called with the progress out of
-    ``steps``. Raises RulecError, R0718 beyond the limit `comparisons`.
+
+def growing_matrices(
+    books: Iterable[Rulebook], patterns: Sequence[str] = (), step_s: Fraction | None = None
+) -> Iterator[ComparisonMatrix]:
+    """The matrix of the first rulebook, of the first two, and so on, as each of them is read.
+
+    Their names have to be distinct; the other arguments are as for ``diff_rulebooks``. A rule is
+    compared at a step that suits it and the laws that are known by then. Raises RulecError, R0718
+    beyond the limit `comparisons`.
     """
-    books = with_distinct_names(books)
-    ours = [rules_matching(book, patterns) for book in books]
-    having: dict[str, list[int]] = {}
-    for number, rules in enumerate(ours):
-        for name in rules:
-            having.setdefault(name, []).append(number)
-    _refuse_too_many(ours, having)
-    stepped: list[dict[str, Rule]] = [{} for _ in books]
-    for name, numbers in having.items():
-        if len(numbers) > 1:
-            same_step = at_one_step([ours[number][name] for number in numbers], step_s)
-            for number, rule in zip(numbers, same_step, strict=True):
-                stepped[number][name] = rule
-    sides = compile_shared(books, stepped, tell)
-    shared_rules = []
-    for name, numbers in having.items():
-        laws, relations = _classified(
-            {books[number].name: sides[number][name] for number in numbers if len(numbers) > 1}
+    laws = _LawsSoFar(step_s)
+    matrix = ComparisonMatrix((), ())
+    for book in books:
+        matrix = _with_book(matrix, book, rules_matching(book, patterns))
+        _refuse_too_many(matrix)
+        matrix = laws.classified(matrix)
+        yield matrix
+
+
+def _with_book(
+    matrix: ComparisonMatrix, book: Rulebook, own: Mapping[str, Rule]
+) -> ComparisonMatrix:
+    """The matrix with one more rulebook, and its rules, whose laws are not known yet."""
+    books = (*matrix.books, book)
+    remarks: dict[str, dict[str, Remark]] = {}
+    for each in books:
+        for remark in each.remarks:
+            if remark.kind != "softened":
+                remarks.setdefault(remark.name, {})[each.name] = remark
+    known = {rule.name: rule for rule in matrix.rules}
+    first = SharedRule("", {}, {}, {}, {})
+    rules = []
+    for name in dict.fromkeys((*known, *own)):
+        before = known.get(name, first)
+        versions = {**before.rules, book.name: own[name]} if name in own else before.rules
+        rules.append(
+            replace(before, name=name, rules=versions, remarks=remarks.get(name, before.remarks))
         )
-        remarks = {
-            book.name: remark
-            for book in books
-            for remark in book.remarks
-            if remark.name == name and remark.kind != "softened"
-        }
-        versions = {books[number].name: ours[number][name] for number in numbers}
-        # A rule that only one rulebook has forms its own law.
-        laws = laws or dict.fromkeys(versions, 0)
-        shared_rules.append(SharedRule(name, laws, versions, relations, remarks))
-        tell(len(books) + len(shared_rules))
-    return ComparisonMatrix(tuple(books), tuple(shared_rules))
+    return ComparisonMatrix(books, tuple(rules))
 
 
-def _refuse_too_many(
-    ours: Sequence[Mapping[str, Rule]], having: Mapping[str, Sequence[int]]
-) -> None:
+@dataclass(slots=True)
+class _LawsSoFar:
+    """Compiled rules, by rulebook, name and step, and the relations between their laws."""
+
+    step_s: Fraction | None
+    compiler: SharedCompiler = field(default_factory=SharedCompiler)
+    sides: dict[tuple[str, str, Fraction], AnalyzedRule] = field(default_factory=dict)
+    relations: dict[tuple[int, int], RuleRelation] = field(default_factory=dict)
+
+    def classified(self, matrix: ComparisonMatrix) -> ComparisonMatrix:
+        """The matrix with the laws of the last rulebook's rules."""
+        book = matrix.books[-1].name
+        new = {rule.name: self._to_compare(rule, book) for rule in matrix.rules}
+        self._compile(matrix.books, {name: rules for name, rules in new.items() if len(rules) > 1})
+        rules = [
+            self._with_law(rule, book, new[rule.name]) if book in rule.rules else rule
+            for rule in matrix.rules
+        ]
+        return replace(matrix, rules=tuple(rules))
+
+    def _to_compare(self, rule: SharedRule, book: str) -> dict[str, Rule]:
+        """The first rule of each law and that of a rulebook, by rulebook, at one step."""
+        if book not in rule.rules:
+            return {}
+        firsts: dict[int, str] = {}
+        for name, law in rule.laws.items():
+            firsts.setdefault(law, name)
+        names = [*firsts.values(), book]
+        same_step = at_one_step([rule.rules[name] for name in names], self.step_s)
+        return dict(zip(names, same_step, strict=True))
+
+    def _compile(
+        self, books: Sequence[Rulebook], stepped: Mapping[str, Mapping[str, Rule]]
+    ) -> None:
+        for book in books:
+            versions = {
+                name: rules[book.name] for name, rules in stepped.items() if book.name in rules
+            }
+            missing = {
+                name: rule
+                for name, rule in versions.items()
+                if (book.name, name, rule.step_s) not in self.sides
+            }
+            for name, side in self.compiler.compiled(book, missing).items() if missing else ():
+                self.sides[book.name, name, missing[name].step_s] = side
+
+    def _with_law(self, rule: SharedRule, book: str, versions: Mapping[str, Rule]) -> SharedRule:
+        """The rule with the law of a rulebook, which is compared with the first of each law."""
+        *earlier, _ = versions
+        compared: list[RuleRelation] = []
+        for name in earlier:
+            step_s = versions[name].step_s
+            ours, theirs = (self.sides[each, rule.name, step_s] for each in (book, name))
+            relation = self._relation(ours, theirs)
+            if relation == "equal":
+                return replace(rule, laws={**rule.laws, book: len(compared)})
+            compared.append(relation)
+        own = len(compared)
+        relations: dict[tuple[int, int], RuleRelation] = {**rule.relations, (own, own): "equal"}
+        for number, relation in enumerate(compared):
+            relations[own, number] = relation
+            relations[number, own] = CONVERSE[relation]
+        return replace(rule, laws={**rule.laws, book: own}, relations=relations)
+
+    def _relation(self, first: AnalyzedRule, second: AnalyzedRule) -> RuleRelation:
+        laws = first.law, second.law
+        if laws not in self.relations:
+            self.relations[laws] = rule_relation(first, second)
+        return self.relations[laws]
+
+
+def _refuse_too_many(matrix: ComparisonMatrix) -> None:
     """Raise RulecError R0718 if there are too many pairs.
 
     It is at the rule that most rulebooks have, in the first of them that does not ship with rulec,
     since its author can do something about it.
     """
-    amount = sum(len(numbers) * (len(numbers) - 1) // 2 for numbers in having.values())
+    amount = sum(len(rule.rules) * (len(rule.rules) - 1) // 2 for rule in matrix.rules)
     if amount <= COMPARISONS.value():
         return
     places = {
-        name: [at(ours[number][name].span) for number in numbers]
-        for name, numbers in having.items()
-        if len(numbers) > 1
+        rule.name: [at(version.span) for version in rule.rules.values()] for rule in matrix.shared
     }
     own = {name: written for name in places if (written := [*filter(_is_own, places[name])])}
     name = max(own or places, key=lambda name: len(places[name]))
-    whose = f"{len(ours)} rulebooks, {len(places[name])} of which have `{name}`"
+    whose = f"{len(matrix.books)} rulebooks, {len(places[name])} of which have `{name}`"
     COMPARISONS.within(amount, (own or places)[name][0], whose)
 
 
 def _is_own(place: SourceLocation | None) -> bool:
     """Whether a place is in a file that does not ship with rulec."""
     return place is not None and rulebooks_folder() not in Path(place.file).parents
-
-
-def steps(books: Sequence[Rulebook], patterns: Sequence[str] = ()) -> int:
-    """The greatest number of progress steps."""
-    return len(books) + len({name for book in books for name in rules_matching(book, patterns)})
-
-
-def _classified(
-    sides: Mapping[str, AnalyzedRule],
-) -> tuple[dict[str, int], dict[tuple[int, int], RuleRelation]]:
-    known: dict[int, int] = {}
-    representatives: list[AnalyzedRule] = []
-    relations: dict[tuple[int, int], RuleRelation] = {}
-    for side in sides.values():
-        if side.law in known:
-            continue
-        compared: list[RuleRelation] = []
-        while "equal" not in compared and len(compared) < len(representatives):
-            compared.append(rule_relation(side, representatives[len(compared)]))
-        if "equal" in compared:
-            known[side.law] = len(compared) - 1
-            continue
-        own = known[side.law] = len(representatives)
-        representatives.append(side)
-        relations[own, own] = "equal"
-        for number, relation in enumerate(compared):
-            relations[own, number] = relation
-            relations[number, own] = CONVERSE[relation]
-    return {book: known[side.law] for book, side in sides.items()}, relations
 
 
 def pairs(books: Sequence[Rulebook]) -> list[tuple[str, str]]:

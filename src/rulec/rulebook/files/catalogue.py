@@ -11,6 +11,8 @@ from pathlib import Path
 
 from rulec.diagnostics import RulecError
 from rulec.rulebook.files import search_path as search
+from rulec.rulebook.files.edition_names import edition_names
+from rulec.rulebook.files.referenced_files import MOST_BASES
 from rulec.syntax import decode, parse_head, tree
 from rulec.syntax.caching.tree_cache import parsed
 
@@ -37,6 +39,35 @@ def rulebook_heads(search_path: Sequence[Path] = ()) -> list[tree.File]:
     """The header lines of all readable rulebooks, by name, in alphabetical order."""
     files = map(_head, _rulebooks(search_path))
     return [file for file in files if file is not None and file.name is not None]
+
+
+def named_by_heads(references: Sequence[str], search_path: Sequence[Path] = ()) -> dict[str, str]:
+    """References to rulebooks with distinct names; those that extend the fewest come first.
+
+    Only the header lines are read; where they cannot be, the reference is the name.
+    """
+    chains = {reference: _chain(reference, search_path) for reference in references}
+    names = [
+        chain[0].name.text if chain and chain[0].name else reference
+        for reference, chain in chains.items()
+    ]
+    files = [chain[0].span.source.name if chain else name for name, chain in chains.items()]
+    named = dict(zip(chains, edition_names(names, files), strict=True))
+    return {name: named[name] for name in sorted(named, key=lambda name: len(chains[name]))}
+
+
+def _chain(reference: str, search_path: Sequence[Path]) -> list[tree.File]:
+    """The head of a rulebook and those of the ones that it extends, as far as they can be read."""
+    heads: list[tree.File] = []
+    with suppress(RulecError):
+        path = search.find_rulebook(reference, search_path)
+        while (head := _head(path)) is not None and len(heads) <= MOST_BASES:
+            heads.append(head)
+            if head.extends is None:
+                break
+            base = head.extends.name
+            path = search.find_base(base.text, base.span, path, search_path)
+    return heads
 
 
 def rulebooks_with_rule(name: str, search_path: Sequence[Path] = ()) -> list[str]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
@@ -18,9 +19,11 @@ from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.rule_choice import refuse_unmatched, rules_on_topic
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import (
+    answer_lines,
     books_and_rule,
     errors_told,
     output_stream,
+    print_written,
     put_answer,
     sources_of_rulebooks,
     width_of,
@@ -247,53 +250,77 @@ def _compared(rulebooks: Sequence[str], pairs: AllPairs, to: Output, *, recalls:
     question = AnswerQuestion(("diff", every, *map(str, pairs), "", *names), folders)
     known = question.recall() if recalls else None
     if known is None:
-        text, alone, is_complete, is_uniform, paths = _matrix(names, pairs, is_all=not rulebooks)
+        with answer_lines(to) as write:
+            text, alone, is_complete, is_uniform, paths = _matrix(
+                names, pairs, write, is_all=not rulebooks
+            )
         known = text, alone, is_complete, is_uniform
         if is_complete:
             question.remember(known, paths)
+        print_written(to.path, to)
+    else:
+        put_answer(known[0], to)
     text, alone, is_complete, is_uniform = known
     if alone:
         print_remark(f"left out, because they share no rule with others: {', '.join(alone)}")
-    if text is None:
+    if not text:
         print_remark("there are no two rulebooks to compare")
         return ExitStatus.NOT_ANSWERED
-    put_answer(text, to)
     return ExitStatus.after(answered=is_complete, failed=not is_uniform)
 
 
 def _matrix(
-    names: Sequence[str], pairs: AllPairs, *, is_all: bool
-) -> tuple[str | None, list[str], bool, bool, list[str]]:
+    names: Sequence[str], pairs: AllPairs, write: Callable[[str], object], *, is_all: bool
+) -> tuple[str, list[str], bool, bool, list[str]]:
     """The overview, the rulebooks left out, whether it is complete and uniform, and the files read.
 
-    The overview is None for fewer than two rulebooks.
+    It is written as it is made; for fewer than two rulebooks it is empty.
     """
     # Late import, not for cached results: rulebooks and their automata (140 ms).
-    from rulec.analysis.diff.comparison_matrix import comparison_matrix, steps
+    from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, growing_matrices
     from rulec.report.rulebooks.comparison import matrix_report
+    from rulec.rulebook.files.catalogue import named_by_heads
     from rulec.rulebook.loader import read_rulebook
 
-    read = []
-    for name in names:
-        with errors_told():
-            read.append(read_rulebook(name, search_path(), pairs.at))
-    books = [loaded.rulebook for loaded in read]
-    refuse_unmatched(pairs.patterns, books)
-    # Treaties before the rulebooks that extend them, so that the treaty is law A.
-    books.sort(key=lambda book: len(book.extends))
-    alone = []
-    if is_all:
-        uses = Counter(rule.name for book in books for rule in book.rules)
-        alone = [book.name for book in books if all(uses[rule.name] == 1 for rule in book.rules)]
-        books = [book for book in books if book.name not in alone]
-    if len(books) < 2:
-        return None, [], False, False, []
-    with progress("comparing", steps(books, pairs.patterns)) as tell:
-        matrix = comparison_matrix(books, pairs.patterns, pairs.step_s, tell)
-    is_complete = len(read) == len(names) and matrix.is_complete
-    paths = [path for loaded in read for path in loaded.paths]
-    text = matrix_report.render(matrix, pairs.form, pairs.width)
-    return text, alone, is_complete, matrix.is_uniform, paths
+    paths: list[str] = []
+    parts: list[str] = []
+
+    def books() -> Iterator[Rulebook]:
+        # Treaties before the rulebooks that extend them, so that the treaty is law A.
+        for reference, name in named_by_heads(names, search_path()).items():
+            loaded = None
+            with errors_told():
+                loaded = read_rulebook(reference, search_path(), pairs.at)
+            if loaded is not None:
+                paths.extend(loaded.paths)
+                yield replace(loaded.rulebook, name=name)
+
+    def put(text: str) -> None:
+        if text:
+            parts.append(text)
+            write(text)
+
+    matrix = ComparisonMatrix((), ())
+    with progress("comparing", len(names)) as tell:
+        for matrix in growing_matrices(books(), pairs.patterns, pairs.step_s):
+            tell(len(matrix.books))
+            lines = matrix_report.last_pairs(matrix, pairs.form, pairs.width)
+            if lines and not parts:
+                put(matrix_report.opening(pairs.form, pairs.width))
+            put("\n".join(lines))
+    refuse_unmatched(pairs.patterns, matrix.books)
+    is_read = len(matrix.books) == len(names)
+    uses = Counter(rule.name for book in matrix.books for rule in book.rules)
+    alone = [
+        book.name
+        for book in matrix.books
+        if is_all and all(uses[rule.name] == 1 for rule in book.rules)
+    ]
+    matrix = matrix.without(alone)
+    if len(matrix.books) > 1:
+        put(matrix_report.render(matrix, pairs.form, pairs.width))
+    is_complete = is_read and matrix.is_complete
+    return "\n".join(parts), alone, is_complete, matrix.is_uniform, paths
 
 
 def _pairs(texts: Sequence[str], books: Sequence[Rulebook]) -> dict[str, str]:

@@ -1,4 +1,8 @@
-"""Many rulebooks side by side, as text, Markdown, page, JSON or CSV."""
+"""Many rulebooks side by side, as text, Markdown, page, JSON or CSV.
+
+Text and CSV begin with a part on the pairs of each rulebook with those before it, so that one can
+read while the next is compared; the other formats are written at the end.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +29,7 @@ RULES = (
 )
 
 PAIRS = (
-    "pairs: how many rules of the rulebook on the left are the same as those of the one above (=), "
+    "pairs: how many rules of the first rulebook are the same as those of the second (=), "
     "stricter (+), laxer (-), neither (~), or undecided (?)"
 )
 
@@ -70,13 +74,34 @@ class MatrixDocument(JsonDocument, frozen=True, kw_only=True):
     pairs: Sequence[BookPairData]
 
 
-def render(matrix: ComparisonMatrix, output_format: str, width: int) -> str:
-    """The matrix in the requested format; text has a width in characters."""
-    match output_format:
+def opening(form: str, width: int) -> str:
+    """What stands above the pairs in a format; text has a width in characters."""
+    if form == "csv":
+        return csv_text([_HEAD], "\n").rstrip("\n")
+    return "\n".join([*broken(PAIRS, width), ""]) if form == "text" else ""
+
+
+def last_pairs(matrix: ComparisonMatrix, form: str, width: int) -> list[str]:
+    """The lines on the last rulebook and each one before it, of those that share a rule."""
+    *before, last = (book.name for book in matrix.books)
+    lines: list[str] = []
+    for name in before:
+        if form == "csv" and (rows := _relations(matrix, name, last)):
+            lines.append(csv_text(rows, "\n").rstrip("\n"))
+        elif form == "text" and (cells := _signs(matrix, name, last)):
+            names = "  ".join(f"{visible(own):<9}" for own in (name, last))
+            numbers = "".join(f"{cell:>5}" for cell in cells)
+            lines += broken(f"{names}  {numbers}".rstrip(), width, later="    ", at_hyphens=False)
+    return lines
+
+
+def render(matrix: ComparisonMatrix, form: str, width: int) -> str:
+    """What stands below the pairs in a format; text has a width in characters."""
+    match form:
         case "json":
             return _as_json(matrix)
         case "csv":
-            return _as_csv(matrix)
+            return ""
         case "markdown":
             return _as_markdown(matrix)
         case "html":
@@ -93,11 +118,9 @@ def _as_text(matrix: ComparisonMatrix, width: int) -> str:
     blocks = [
         broken(RULES, width),
         _columns([head, *_by_rule(matrix)], width),
-        broken(PAIRS, width),
-        _columns([head, *_by_pair(matrix)], width),
         broken(_summary(matrix), width),
     ]
-    return "\n\n".join("\n".join(block) for block in blocks)
+    return "\n" + "\n\n".join("\n".join(block) for block in blocks)
 
 
 def _columns(rows: Sequence[Sequence[str]], width: int) -> list[str]:
@@ -126,9 +149,14 @@ def _letter(rule: SharedRule, book: str) -> str:
 def _cell(matrix: ComparisonMatrix, left: str, right: str) -> str:
     if left == right:
         return ""
+    return " ".join(filter(None, _signs(matrix, left, right))) or ABSENT
+
+
+def _signs(matrix: ComparisonMatrix, left: str, right: str) -> list[str]:
+    """The number of rules in each relation, with its sign; nothing where two share no rule."""
     counted = matrix.counts(left, right)
-    parts = [f"{counted[kind]}{sign}" for kind, sign in SIGNS.items() if counted[kind]]
-    return " ".join(parts) or ABSENT
+    parts = [f"{counted[kind]}{sign}" * bool(counted[kind]) for kind, sign in SIGNS.items()]
+    return parts if any(parts) else []
 
 
 def _summary(matrix: ComparisonMatrix) -> str:
@@ -200,15 +228,17 @@ def _cell_class(text: str) -> str:
     return f"law law{ascii_uppercase.index(text[0].upper()) % _COLOURS}"
 
 
-def _as_csv(matrix: ComparisonMatrix) -> str:
-    rows = [
-        (rule.name, first, second, relation)
+_HEAD = ("rule", "first", "second", "relation")
+
+
+def _relations(matrix: ComparisonMatrix, first: str, second: str) -> list[tuple[str, ...]]:
+    """Each rule's relation between two rulebooks, in both directions."""
+    return [
+        (rule.name, left, right, relation)
         for rule in matrix.shared
-        for first, second in pairs(matrix.books)
-        if (relation := rule.relation(first, second)) is not None
+        for left, right in ((first, second), (second, first))
+        if (relation := rule.relation(left, right)) is not None
     ]
-    head = ("rule", "first", "second", "relation")
-    return csv_text([head, *rows], "\n").rstrip("\n")
 
 
 def _as_json(matrix: ComparisonMatrix) -> str:
