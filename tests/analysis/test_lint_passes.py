@@ -19,6 +19,7 @@ from rulec.analysis.lint.redundancy import (
     small_premises,
 )
 from rulec.analysis.lint.related_rules import RelatedRules
+from rulec.analysis.shared_compilation import compile_shared
 from rulec.analysis.trace_display import trace_note
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Constant, Unary, UnaryOperator
@@ -228,6 +229,19 @@ def test_a_search_that_takes_too_long_leaves_its_question_open():
     assert "more than 6 steps of search" in str(problem)
     assert "`rulec --limit search=NUMBER`" in str(problem)
     assert next(answers_to(rules, Question("kept", ("s",)))) is True
+
+
+def test_conflicts_are_at_speeds_of_vehicles():
+    """At the usual distance, only at 1,801 km/h would the two ask for p and for its opposite."""
+    book = parse_rulebook(
+        "rulebook r quantity gap in m default 1000 quantity speed in km/h default 0 signal p\n"
+        "hard rule a { require always (gap < speed * 2 s implies next p) }\n"
+        "hard rule b { require always (gap < speed * 2 s implies next not p) }\n"
+    )
+    (both,) = compile_shared([book], [{rule.name: rule for rule in book.rules}])
+    (state,) = conflict([*both.values()]).trace.states
+    assert 1 <= state["gap"] < state["speed"] / 3.6 * 2
+    assert state["speed"] <= 250
 
 
 def test_conflicts_are_about_all_bindings():

@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import pytest
 
+from rulec.analysis.rule_traces import rule_traces
+from rulec.analysis.shared_compilation import compile_shared
 from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.automata.compiler import compile_rulebook
 from rulec.book_tests.example_coverage import coverage
@@ -13,7 +15,6 @@ from rulec.monitoring.verify import verify
 from rulec.planning.product.graph_instances import instances
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace, TraceGraph
-from rulec.witnesses.shortest_traces import shortest_traces
 
 QUEUE = parse_rulebook(
     """rulebook queue
@@ -216,11 +217,12 @@ def test_what_a_check_leaves_open_the_compiler_finds():
 
 def test_suggested_examples_and_shortest_traces_keep_to_the_facts():
     """Without facts, the shortest rejected trace of `calm` would be loud at 101 km/h or more."""
-    calm = COMPILED.rules[1]
-    rejected = shortest_traces(calm, COMPILED.vocabulary).rejected
-    assert [state["speed", ("v",)] <= 120 for state in rejected.states] == [True]
-    never = COMPILED.rules[2]
-    assert shortest_traces(never, COMPILED.vocabulary).rejected is None
+    _, calm, never = compile_shared([QUEUE], [{rule.name: rule for rule in QUEUE.rules}])[
+        0
+    ].values()
+    (state,) = rule_traces(calm).rejected.states
+    assert state["speed"]["v"] <= 120
+    assert rule_traces(never).rejected is None
     book = parse_rulebook(
         "rulebook a signal p, q default false fact not (p and q)\n"
         "hard rule r { require always (p iff not q) accept { p; q } reject { not p } }"

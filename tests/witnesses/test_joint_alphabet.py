@@ -12,7 +12,7 @@ from rulec.witnesses.diagrams.decision_diagrams import DecisionDiagrams
 from rulec.witnesses.joint_alphabet import JointAlphabet
 from rulec.witnesses.joint_reads import joint_reads, normal
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.shortest_traces import shortest_word
+from rulec.witnesses.shortest_words import shortest_word
 from support.generators.random_reads import (
     ALL_STATES,
     GRID,

@@ -253,12 +253,6 @@ def test_letters_are_those_that_some_state_has(described):
             assert letter not in met
         else:
             assert letter_of(reads, state.values) == letter
-    for letter in met:
-        others = [letter_class for letter_class in range(n_letters) if letter_class != letter]
-        nearest = witnesses.nearest(letter)
-        assert [near for _, near in nearest] == [
-            other for other in others if witnesses.state(other) is not None
-        ]
 
 
 def letter_of(reads, values):
@@ -286,7 +280,6 @@ def test_the_plainest_letter_has_the_defaults():
     rule = CompiledRule("r", "hard", (V,), "", "", Constant(True), monitor, "")
     witnesses = LetterWitnesses(rule, VOCABULARY)
     assert (witnesses.plainest(0), witnesses.plainest(1)) == (0, 4)
-    assert witnesses.nearest(7) == [(2, 1)]
 
 
 def test_what_decides_nothing_has_its_default():

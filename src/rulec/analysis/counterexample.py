@@ -38,7 +38,7 @@ from rulec.vocabulary import (
 from rulec.witnesses.joint_alphabet import JointAlphabet, JointLetter
 from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import Itself, ObjectUniverse
-from rulec.witnesses.shortest_traces import shortest_word
+from rulec.witnesses.shortest_words import shortest_word
 from rulec.witnesses.trace_synthesis import synthesize_trace
 from rulec.witnesses.undecided import ChangingConstantsError, UndecidedError
 
@@ -137,31 +137,10 @@ class Contest:
         return self._trace(alphabet, universe, (*self._given, *axioms))
 
     def plausible(self, traces: Iterable[Trace]) -> Contest | None:
-        """The same contest without numbers that no rule or default suggests; None if none has any.
-
-        These are negative numbers, except of quantities with a negative default or that a rule
-        compares with zero or less, distances below 1 m, and speeds beyond ``MOST_KMH``, unless that
-        is a default.
-        """
+        """The same contest with what makes numbers ``plausible``; None if it holds in all."""
         rules = [analyzed.rule for analyzed in (self.forbidding, *self._allowing)]
-        declared = self._universe.vocabulary.declarations
-        names = sorted({name for rule in rules for name in declarations_read(rule)})
-        signed = _compared_with_no_more_than_zero(rules)
-        quantities = {name: item for name in names if isinstance(item := declared[name], Quantity)}
-        axioms = [
-            said_within(name, Itself(item), ">=", int(item.unit == "m" and bool(item.default)))
-            for name, item in quantities.items()
-            if name not in signed and (item.default or 0) >= 0
-        ]
-        # A limit that is beyond all speeds by default, where no sign shows one, is one on a sign.
-        axioms += [
-            said_within(name, Itself(item), "<=", MOST_KMH)
-            if (item.default or 0) <= MOST_KMH
-            else said_within(name, Itself(item), ">=", LEAST_SIGN_KMH)
-            for name, item in quantities.items()
-            if item.unit == "km/h"
-        ]
-        within = replace(self._universe, axioms=tuple(axioms))
+        axioms = plausible(rules, self._universe.vocabulary)
+        within = replace(self._universe, axioms=axioms)
         if all(is_possible(trace, within) for trace in traces):
             return None
         return self._given_also(axioms)
@@ -173,7 +152,7 @@ class Contest:
         """
         rules = [analyzed.rule for analyzed in (self.forbidding, *self._allowing)]
         declared = self._universe.vocabulary.declarations
-        for name, limits in sorted(_limits_of(rules).items()):
+        for name, limits in sorted(limits_of(rules).items()):
             item = declared[name]
             if not isinstance(item, Quantity) or item.default is None:
                 continue
@@ -248,6 +227,33 @@ class Contest:
         return word
 
 
+def plausible(rules: Sequence[CompiledRule], vocabulary: Vocabulary) -> tuple[Axiom, ...]:
+    """That there are no numbers that no rule or default suggests.
+
+    These are negative numbers, except of quantities with a negative default or that a rule compares
+    with zero or less, distances below 1 m, and speeds beyond ``MOST_KMH``, unless that is a
+    default.
+    """
+    names = sorted({name for rule in rules for name in declarations_read(rule)})
+    signed = _compared_with_no_more_than_zero(rules)
+    declared = vocabulary.declarations
+    quantities = {name: item for name in names if isinstance(item := declared[name], Quantity)}
+    axioms = [
+        said_within(name, Itself(item), ">=", int(item.unit == "m" and bool(item.default)))
+        for name, item in quantities.items()
+        if name not in signed and (item.default or 0) >= 0
+    ]
+    # A limit that is beyond all speeds by default, where no sign shows one, is one on a sign.
+    axioms += [
+        said_within(name, Itself(item), "<=", MOST_KMH)
+        if (item.default or 0) <= MOST_KMH
+        else said_within(name, Itself(item), ">=", LEAST_SIGN_KMH)
+        for name, item in quantities.items()
+        if item.unit == "km/h"
+    ]
+    return tuple(axioms)
+
+
 def _said_of_constant(read: Read, vocabulary: Vocabulary) -> list[Axiom]:
     """Axioms that a constant has one value, for each distinguished value; the default first."""
     each: list[ltl.Formula] = [ltl.Atom(read.name, read.variables, value) for value in read.values]
@@ -290,7 +296,7 @@ def _bounded(name: str, declaration: Declaration, relation: ltl.Relation, limit:
     return Axiom(variables, ltl.Comparison(((Fraction(1), term),), relation, limit))
 
 
-def _limits_of(rules: Iterable[CompiledRule]) -> dict[str, set[Fraction]]:
+def limits_of(rules: Iterable[CompiledRule]) -> dict[str, set[Fraction]]:
     """The limits with which rules compare quantities on their own, by name."""
     limits: dict[str, set[Fraction]] = {}
     for read in chain.from_iterable(rule.machine.reads for rule in rules):

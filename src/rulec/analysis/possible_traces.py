@@ -39,7 +39,7 @@ def steadied(trace: Trace, vocabulary: Vocabulary, is_right: Callable[[Trace], b
         values = [value_in(state, *subject, declaration) for state in trace.states]
         for calmer in _calmer(values):
             states = [
-                _said(state, subject, value)
+                said(state, subject, value)
                 for state, value in zip(trace.states, calmer, strict=True)
             ]
             changed = replace(trace, states=tuple(states))
@@ -66,7 +66,7 @@ def _changes(values: Sequence[object]) -> int:
     return sum(before != after for before, after in pairwise(values))
 
 
-def _said(state: State, subject: Subject, value: object) -> State:
+def said(state: State, subject: Subject, value: object) -> State:
     """The state with another value of a subject."""
     name, items = subject
     said: dict[str, Any] = dict(state)

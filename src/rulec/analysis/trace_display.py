@@ -76,7 +76,7 @@ def trace_note(title: str, trace: Trace, rules: Sequence[AnalyzedRule]) -> tuple
     """
     names = frozenset(name for analyzed in rules for name in declarations_read(analyzed.rule))
     vocabulary = rules[0].rulebook.vocabulary
-    states = "; ".join(_state(state, trace, names, vocabulary) for state in trace.states)
+    states = "; ".join(state_literals(trace, names, vocabulary))
     own = special_types(trace, [analyzed.rule for analyzed in rules])
     special = [f"{name}: {kind}" for name, kind in own.items()]
     variables = {variable.name for each in rules for variable in each.rule.variables}
@@ -95,7 +95,12 @@ def special_types(trace: Trace, rules: Iterable[CompiledRule]) -> dict[str, str]
     }
 
 
-def _state(state: State, trace: Trace, names: frozenset[str], vocabulary: Vocabulary) -> str:
+def state_literals(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> list[str]:
+    """Each state of a trace as in an example; omitted words have their defaults."""
+    return [_state(state, trace, names, vocabulary) for state in trace.states]
+
+
+def _state(state: State, trace: Trace, names: Set[str], vocabulary: Vocabulary) -> str:
     literals = []
     for (name, items), declaration in subjects_of(vocabulary, trace.objects, names):
         value = value_in(state, name, items, declaration)

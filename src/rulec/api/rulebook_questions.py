@@ -230,7 +230,7 @@ class RulebookQuestions(RulebookVerbs):
         if chosen is None:
             raise KeyError(f"{book.name} has no rule {rule}")
         compiled = self.compile_rulebook(replace(book, rules=(chosen,)))
-        page = rule_page.page_of(chosen, compiled.rules[0], compiled.vocabulary)
+        page = rule_page.page_of(chosen, compiled)
         return rule_page.as_text(page, book, width)
 
     def doc(

@@ -78,32 +78,9 @@ class LetterWitnesses:
         """The digits of what is constant in a trace; all letters of one trace share them."""
         return tuple(compress(self._digits[letter], self._constant))
 
-    def all_constants(self) -> list[Digits]:
-        """All possible digits of the constants in a trace, those with most defaults first."""
-        letters = (letter for members in self._members for letter in members)
-        plain = tuple(compress(self._plain, self._constant))
-        return sorted(
-            set(map(self.constants, letters)), key=lambda digits: (_distance(digits, plain), digits)
-        )
-
     def plainest(self, letter_class: int, constants: Digits | None = None) -> int | None:
         """A class's possible letter with most defaults (with these ``constants``), or None."""
         return self._nearest_of(letter_class, self._plain, constants)
-
-    def nearest(self, letter: int, constants: Digits | None = None) -> list[tuple[int, int]]:
-        """The nearest possible letter in every other class, with its Hamming distance.
-
-        With ``constants`` only letters that have them.
-        """
-        own, digits = self._monitor.letters[letter], self._digits[letter]
-        nearest = [
-            self._nearest_of(letter_class, digits, constants)
-            for letter_class in range(len(self._members))
-            if letter_class != own
-        ]
-        return [
-            (_distance(self._digits[near], digits), near) for near in nearest if near is not None
-        ]
 
     def state(self, letter: int) -> state_synthesis.JointState | None:
         """A state that has this letter; None if there is none."""

@@ -89,12 +89,12 @@ def _compare(first: AnalyzedRule, second: AnalyzedRule, most: int) -> RuleCompar
         return RuleComparison("undecided", undecided=str(problem))
     return RuleComparison(
         relation_of(stricter, laxer),
-        () if stricter is None else _witnesses(*stricter, most),
-        () if laxer is None else _witnesses(*laxer, most),
+        () if stricter is None else plain_witnesses(*stricter, most),
+        () if laxer is None else plain_witnesses(*laxer, most),
     )
 
 
-def _witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace, ...]:
+def plain_witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace, ...]:
     """Diverse witnesses, with implausible numbers only if no trace as short does without them."""
     traces = diverse_witnesses(contest, first, most)
     with suppress(UndecidedError):

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 
-from rulec.analysis.counterexample import common_step
+from rulec.analysis.counterexample import common_step, plausible
 from rulec.analysis.lint.harmless_states import have_harmless_state
 from rulec.analysis.object_typings import answers_for_types
 from rulec.analysis.possible_traces import is_possible
@@ -18,7 +19,7 @@ from rulec.vocabulary import Vocabulary
 from rulec.witnesses.joint_alphabet import JointAlphabet, JointLetter
 from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.shortest_traces import MOST_STATES, MOST_STEPS, ProductState
+from rulec.witnesses.shortest_words import MOST_STATES, MOST_STEPS, ProductState
 from rulec.witnesses.trace_synthesis import synthesize_trace
 from rulec.witnesses.undecided import UndecidedError
 
@@ -48,7 +49,14 @@ def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
     objects = common_objects([rule.rule.variables for rule in analyzed_rules], vocabulary)
 
     def search(own: Mapping[str, str]) -> Conflict | None:
-        return _conflict(analyzed_rules, ObjectUniverse(own, vocabulary, axioms))
+        found = _conflict(analyzed_rules, ObjectUniverse(own, vocabulary, axioms))
+        if found is not None and found.trace is not None:
+            within = (*axioms, *plausible([each.rule for each in analyzed_rules], vocabulary))
+            with suppress(UndecidedError):
+                plain = _conflict(analyzed_rules, ObjectUniverse(own, vocabulary, within))
+                if plain and plain.trace and len(plain.trace.states) == len(found.trace.states):
+                    return plain
+        return found
 
     axioms = analyzed_rules[0].axioms
     problem: UndecidedError | None = None

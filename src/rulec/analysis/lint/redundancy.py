@@ -14,7 +14,7 @@ from rulec.trace import Trace
 from rulec.witnesses.joint_alphabet import JointAlphabet
 from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.shortest_traces import shortest_word
+from rulec.witnesses.shortest_words import shortest_word
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_PREMISES = 6

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule
+from rulec.analysis.counterexample import declarations_read
+from rulec.analysis.rule_traces import rule_traces
+from rulec.analysis.shared_compilation import AnalyzedRule
+from rulec.analysis.trace_display import special_types, state_literals
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.diagnostics.diagnostic import at
 from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.logic.free_names import names_in
 from rulec.logic.printing import formula_text
-from rulec.logic.sentences.english import plural
 from rulec.logic.sentences.sentence import Phrase
 from rulec.logic.sentences.sentence_layout import lines
 from rulec.logic.sentences.wording import amount, number_text, spoken
@@ -19,12 +22,10 @@ from rulec.report.automata import automaton_text
 from rulec.report.automata.automaton_model import Automaton, automaton_of
 from rulec.report.rulebooks.spoken_rules import sentences_of
 from rulec.report.text.formula_lines import formula_lines
-from rulec.report.text.guard_text import GuardWording
 from rulec.report.text.terminal_text import broken, fact_lines, styled, visible
-from rulec.rulebook.rulebook_model import Rule, Rulebook, Variable
+from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, Variable
+from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
-from rulec.witnesses.letter_witness import WitnessTrace
-from rulec.witnesses.shortest_traces import shortest_traces
 
 INDENT = "  "
 
@@ -49,6 +50,7 @@ class RulePage:
     """A rule with its automaton, and an accepted and a rejected trace if there are any.
 
     The automaton is for traces with steps of ``step_s``; None if it is the same for all steps.
+    ``undecided`` says why no traces are shown, if that is so.
     """
 
     rule: Rule
@@ -56,37 +58,36 @@ class RulePage:
     accepted: ShortestTrace | None
     rejected: ShortestTrace | None
     step_s: Fraction | None
+    undecided: str
 
 
-def page_of(rule: Rule, compiled: CompiledRule, vocabulary: Vocabulary) -> RulePage:
-    """The page of a compiled rule."""
-    traces = shortest_traces(compiled, vocabulary)
-    wording = GuardWording(compiled, vocabulary)
+def page_of(rule: Rule, compiled: CompiledRulebook) -> RulePage:
+    """The page of a rule in a compiled rulebook."""
+    machine = next(own for own in compiled.rules if own.name == rule.name)
+    axioms = tuple(Axiom(axiom.variables, axiom.formula) for axiom in compiled.axioms)
+    traces = rule_traces(AnalyzedRule(replace(compiled, rules=()), axioms, machine, 0))
     return RulePage(
         rule,
-        automaton_of(compiled, vocabulary, at(rule.span)),
-        _shown(traces.accepted, wording),
-        _shown(traces.rejected, wording),
-        compiled.step_s,
+        automaton_of(machine, compiled.vocabulary, at(rule.span)),
+        _shown(traces.accepted, machine, compiled.vocabulary),
+        _shown(traces.rejected, machine, compiled.vocabulary),
+        machine.step_s,
+        traces.undecided,
     )
 
 
-def _shown(trace: WitnessTrace | None, wording: GuardWording) -> ShortestTrace | None:
+def _shown(
+    trace: Trace | None, machine: CompiledRule, vocabulary: Vocabulary
+) -> ShortestTrace | None:
     if trace is None:
         return None
-    states = tuple(map(wording.state, trace.states))
-    return ShortestTrace(trace.objects, states, tuple(_remarks(trace)))
-
-
-def _remarks(trace: WitnessTrace) -> Iterator[str]:
-    """The numbers of counted objects needed in each state, including named ones."""
-    for number, required in enumerate(trace.required):
-        for count, size in required.items():
-            noun = spoken(count.type) if size == 1 else plural(spoken(count.type))
-            yield (
-                f"in state {number} there {'is' if size == 1 else 'are'} {size:,} {noun} "
-                f"{count.variable} for which {formula_text(count.body)}"
-            )
+    own = {variable.name for variable in machine.variables}
+    further = [Variable(name, kind) for name, kind in trace.objects.items() if name not in own]
+    states = map(visible, state_literals(trace, declarations_read(machine), vocabulary))
+    types = special_types(trace, [machine]).items()
+    return ShortestTrace(
+        tuple(further), tuple(states), tuple(f"{name} is a {spoken(kind)}" for name, kind in types)
+    )
 
 
 def _sentences(rule: Rule, rulebook: Rulebook, width: int) -> str:
@@ -195,7 +196,7 @@ def _examples(page: RulePage, width: int) -> Iterator[str]:
         ("reject", page.rejected, "no trace is rejected: nothing can violate this rule"),
     ):
         if trace is None:
-            yield f"{INDENT}{never}"
+            yield f"{INDENT}{f'{word} not decided: {page.undecided}' if page.undecided else never}"
             continue
         objects = ", ".join(f"{object_.name}: {object_.type}" for object_ in trace.objects)
         example = f"{word}{f' ({objects})' if objects else ''} {{ {'; '.join(trace.states)} }}"

@@ -12,8 +12,6 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics.phrases import any_of
 from rulec.logic.formula import Atom, Comparison, Count, QuantityTerm, Relation, atoms_of
 from rulec.logic.sentences.wording import comparison_text, number_text, terms_text
-from rulec.report.text.terminal_text import visible
-from rulec.rulebook.rulebook_model import ExampleState
 from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 
@@ -122,22 +120,6 @@ class GuardWording:
                 declaration = self._vocabulary.declarations[name]
                 return f" {declaration.unit}" if isinstance(declaration, DeclaredQuantity) else ""
         return ""
-
-    def state(self, state: ExampleState) -> str:
-        """A state as written in an example, without defaults."""
-        axioms = []
-        for (name, variables), value in state.items():
-            declaration = self._vocabulary.declarations[name]
-            if value == declaration.default:
-                continue
-            if isinstance(value, str):
-                axioms.append(str(Atom(name, variables, value)))
-            elif isinstance(declaration, DeclaredQuantity):
-                number = number_text(Fraction(repr(float(value))))
-                axioms.append(f"{Atom(name, variables)} = {number} {declaration.unit}")
-            else:
-                axioms.append(f"{'' if value else 'not '}{Atom(name, variables)}")
-        return visible(" and ".join(axioms)) or "true"
 
 
 def _alike(comparison: Comparison) -> Iterator[tuple[Relation, Fraction]]:

@@ -193,8 +193,7 @@ def _page(book: Rulebook, compiled: CompiledRulebook | None, chosen: Rule) -> Ru
 
     if compiled is None:
         compiled = rulec.compile_rulebook(replace(book, rules=(chosen,)))
-    machine = next(rule for rule in compiled.rules if rule.name == chosen.name)
-    return page_of(chosen, machine, compiled.vocabulary)
+    return page_of(chosen, compiled)
 
 
 def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None, Sequence[str]]:
