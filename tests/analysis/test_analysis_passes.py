@@ -90,11 +90,6 @@ class TestSharedCompilation:
         (ours, theirs) = compile_shared(books, [{"r": own}, {"r": own}])
         assert ours["r"].law != theirs["r"].law
 
-    def test_progress_is_told_by_rulebook(self):
-        told = []
-        compile_shared([book("a"), book("b")], [{}, {}], told.append)
-        assert told == [1, 2]
-
     @given(st.lists(st.fractions("1/20", 4, max_denominator=20), min_size=1, max_size=4))
     def test_one_step_divides_those_of_all_rules_with_seconds(self, steps):
         timed = Unary(UnaryOperator.ALWAYS, P, Bound(Fraction(0), Fraction(2), "s"))

@@ -63,8 +63,7 @@ def test_numbers_are_near_their_limits():
         "rulebook a quantity speed in km/h default 0 signal p default false\n"
         "hard rule a { require always (p implies speed <= 50 km/h and speed >= 30 km/h) }"
     )
-    traces = rule_traces(one)
-    assert traces.rejected.states == ({"p": True},)
+    assert rule_traces(one).rejected.states == ({"speed": 20.0, "p": True},)
     fast = side_of(
         "rulebook a quantity speed in km/h default 100\n"
         "hard rule a { require always speed <= 50 km/h }"
@@ -81,6 +80,28 @@ def test_speeds_are_those_of_vehicles():
     ).rejected.states
     assert 0 < state["speed"] <= MOST_KMH
     assert 1 <= state["gap"] < state["speed"] / 3.6 * 2
+
+
+ON_THE_ROAD = "rulebook r use road hard rule r (v: vehicle) {{ require never ({}) }}"
+
+
+@pytest.mark.parametrize(
+    ("forbidden", "shown"),
+    [
+        # It drives too fast to stop at once, and it is as near as can be to where it is.
+        ("beside(v) and not can_stop_at_once and speed < 90 km/h", {"speed": 25.0}),
+        (
+            "crossing and distance_to_crossing <= 900 m",
+            {"surface": "crossing", "distance_to_crossing": 1.0},
+        ),
+        # Only one who stands is forbidden to, and only beside the road is there a lane to be in.
+        ("speed < 1 km/h", {"speed": 0.0}),
+        ("on_shoulder(v) and same_lane(v)", {"lateral": {"v": "same_lane"}}),
+    ],
+)
+def test_states_are_believed_where_they_can_be(forbidden, shown):
+    (state,) = rule_traces(side_of(ON_THE_ROAD.format(forbidden))).rejected.states
+    assert shown.items() <= ({"speed": 0.0} | state).items()
 
 
 @pytest.mark.parametrize(

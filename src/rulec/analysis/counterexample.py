@@ -16,6 +16,7 @@ from fractions import Fraction
 from functools import lru_cache, partial
 from itertools import chain, product
 
+from rulec.analysis.believable_states import believable
 from rulec.analysis.object_typings import answers_for_types
 from rulec.analysis.possible_traces import is_possible, steadied
 from rulec.analysis.shared_compilation import AnalyzedRule
@@ -136,14 +137,16 @@ class Contest:
             return self._given_also(axioms).trace()
         return self._trace(alphabet, universe, (*self._given, *axioms))
 
-    def plausible(self, traces: Iterable[Trace]) -> Contest | None:
-        """The same contest with what makes numbers ``plausible``; None if it holds in all."""
+    def plausible(self, traces: Iterable[Trace]) -> Iterator[Contest]:
+        """The same contest with what makes states ``plausible``, or at least numbers.
+
+        There is none if that holds in the traces anyway.
+        """
         rules = [analyzed.rule for analyzed in (self.forbidding, *self._allowing)]
-        axioms = plausible(rules, self._universe.vocabulary)
-        within = replace(self._universe, axioms=axioms)
-        if all(is_possible(trace, within) for trace in traces):
-            return None
-        return self._given_also(axioms)
+        for axioms in plausible(rules, self._universe.vocabulary):
+            within = replace(self._universe, axioms=axioms)
+            if not all(is_possible(trace, within) for trace in traces):
+                yield self._given_also(axioms)
 
     def within_limits(self, trace: Trace) -> Iterator[Contest]:
         """The same contest without what is beyond a limit in a trace, for each number in turn.
@@ -227,7 +230,19 @@ class Contest:
         return word
 
 
-def plausible(rules: Sequence[CompiledRule], vocabulary: Vocabulary) -> tuple[Axiom, ...]:
+def plausible(rules: Sequence[CompiledRule], vocabulary: Vocabulary) -> Iterator[tuple[Axiom, ...]]:
+    """What makes states plausible in the words that rules read, the most first.
+
+    Ego drives, states are believable, and numbers are plausible; then all but the first; then only
+    numbers.
+    """
+    names = frozenset[str]().union(*map(declarations_read, rules))
+    states = believable(names, vocabulary)
+    numbers = _plausible_numbers(rules, vocabulary)
+    return ((*part, *numbers) for part in dict.fromkeys((states, states[:-1], ())))
+
+
+def _plausible_numbers(rules: Sequence[CompiledRule], vocabulary: Vocabulary) -> tuple[Axiom, ...]:
     """That there are no numbers that no rule or default suggests.
 
     These are negative numbers, except of quantities with a negative default or that a rule compares

@@ -97,11 +97,12 @@ def _compare(first: AnalyzedRule, second: AnalyzedRule, most: int) -> RuleCompar
 def plain_witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace, ...]:
     """Diverse witnesses, with implausible numbers only if no trace as short does without them."""
     traces = diverse_witnesses(contest, first, most)
-    with suppress(UndecidedError):
-        within = contest.plausible(traces)
-        plain = within and within.trace()
-        if within and plain and len(plain.states) == len(first.states):
-            contest, traces = within, diverse_witnesses(within, plain, most)
+    for within in contest.plausible(traces):
+        with suppress(UndecidedError):
+            plain = within.trace()
+            if plain and len(plain.states) == len(first.states):
+                contest, traces = within, diverse_witnesses(within, plain, most)
+                break
     further = _further_witnesses(contest, traces, most - len(traces))
     return tuple(map(contest.steadied, (*traces, *further)))
 

@@ -51,7 +51,8 @@ def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
     def search(own: Mapping[str, str]) -> Conflict | None:
         found = _conflict(analyzed_rules, ObjectUniverse(own, vocabulary, axioms))
         if found is not None and found.trace is not None:
-            within = (*axioms, *plausible([each.rule for each in analyzed_rules], vocabulary))
+            most, *_ = plausible([each.rule for each in analyzed_rules], vocabulary)
+            within = (*axioms, *most)
             with suppress(UndecidedError):
                 plain = _conflict(analyzed_rules, ObjectUniverse(own, vocabulary, within))
                 if plain and plain.trace and len(plain.trace.states) == len(found.trace.states):

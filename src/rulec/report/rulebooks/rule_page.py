@@ -45,7 +45,7 @@ class ShortestTrace:
     remarks: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RulePage:
     """A rule with its automaton, and an accepted and a rejected trace if there are any.
 
@@ -67,12 +67,12 @@ def page_of(rule: Rule, compiled: CompiledRulebook) -> RulePage:
     axioms = tuple(Axiom(axiom.variables, axiom.formula) for axiom in compiled.axioms)
     traces = rule_traces(AnalyzedRule(replace(compiled, rules=()), axioms, machine, 0))
     return RulePage(
-        rule,
-        automaton_of(machine, compiled.vocabulary, at(rule.span)),
-        _shown(traces.accepted, machine, compiled.vocabulary),
-        _shown(traces.rejected, machine, compiled.vocabulary),
-        machine.step_s,
-        traces.undecided,
+        rule=rule,
+        automaton=automaton_of(machine, compiled.vocabulary, at(rule.span)),
+        accepted=_shown(traces.accepted, machine, compiled.vocabulary),
+        rejected=_shown(traces.rejected, machine, compiled.vocabulary),
+        step_s=machine.step_s,
+        undecided=traces.undecided,
     )
 
 
