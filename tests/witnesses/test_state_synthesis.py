@@ -10,13 +10,13 @@ from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
 from rulec.logic.formula import Atom, Count, QuantityTerm
 from rulec.vocabulary.vocabulary_model import default_value
 from rulec.witnesses.state_synthesis import (
+    JointState,
     are_consistent,
     default_digit,
+    float_values,
     numbers_near_thresholds,
-    required_counts,
     solve_numbers,
     subjects_of,
-    synthesize_state,
     value_of,
 )
 from support.generators.random_reads import (
@@ -38,12 +38,13 @@ described = st.lists(
 def test_numbers_have_the_digits_and_none_are_missed(pairs):
     digits = [(read, min(number, read.size - 1)) for read, number in pairs]
     met = any(all(digit(read, state) == wanted for read, wanted in digits) for state in NUMBERS)
-    state = synthesize_state(VOCABULARY, digits)
-    assert (state is not None) >= met
-    assert are_consistent(digits) is (state is not None)
+    numbers = solve_numbers(digits, VOCABULARY, {})
+    assert (numbers is not None) >= met
+    assert are_consistent(digits) is (numbers is not None)
     near = numbers_near_thresholds(digits, VOCABULARY)
     assert (near is not None) >= met
-    if state is not None:
+    if numbers is not None:
+        state = JointState(float_values(numbers))
         assert all(digit(read, exact_values(state)) == wanted for read, wanted in digits)
     if near is not None:
         values = {(term.name, term.arguments): Fraction(str(near[term])) for term in near}
@@ -89,21 +90,19 @@ def test_what_no_float_is_cannot_be_near():
 
 def test_defaults_are_taken_where_they_fit():
     read = NumberRead(((Fraction(1), SPEED),), passing(1))
-    assert synthesize_state(VOCABULARY, [(read, 1)]).values == {("speed", ()): 1.0}
-    assert synthesize_state(VOCABULARY, [(read, 0)]).values == {("speed", ()): 0.0}
+    assert solve_numbers([(read, 1)], VOCABULARY, {}) == {SPEED: 1}
+    assert solve_numbers([(read, 0)], VOCABULARY, {}) == {SPEED: 0}
     below = NumberRead(((Fraction(1), SPEED),), passing(-3))
-    assert synthesize_state(VOCABULARY, [(below, 0)]).values == {("speed", ()): -4.0}
+    assert solve_numbers([(below, 0)], VOCABULARY, {}) == {SPEED: -4}
 
 
 def test_counts_are_whole_and_as_many_as_count_already():
     count = Count("o", "thing", Atom("place", ("o",), "near"))
     read = NumberRead(((Fraction(1), count),), passing(2, 4))
-    state = synthesize_state(VOCABULARY, [(read, 1)], ((count, 3),))
-    assert required_counts(state, VOCABULARY) == {count: 3}
-    assert synthesize_state(VOCABULARY, [(read, 0)], ((count, 3),)) is None
-    assert state.values == {}
+    assert solve_numbers([(read, 1)], VOCABULARY, {count: 3}) == {count: 3}
+    assert solve_numbers([(read, 0)], VOCABULARY, {count: 3}) is None
     halves = NumberRead(((Fraction(2), count),), passing(1, 2))
-    assert synthesize_state(VOCABULARY, [(halves, 1)], ((count, 0),)) is None
+    assert solve_numbers([(halves, 1)], VOCABULARY, {count: 0}) is None
     assert not are_consistent([(halves, 1)])
     low = NumberRead(((Fraction(1), count),), passing(0))
     assert not are_consistent([(low, 0)])

@@ -17,6 +17,7 @@ from rulec.rulebook.rulebook_model import Axiom, Example, ExampleState, Rule, Va
 from rulec.rulebook.rules.axiom_instances import axiom_instances
 from rulec.rulebook.rules.axioms import contradicted
 from rulec.vocabulary import Quantity, Vocabulary
+from rulec.witnesses.class_witness import ClassWitnesses
 from rulec.witnesses.coverage_witness import (
     CoverageWitness,
     asked_whether_told,
@@ -26,7 +27,7 @@ from rulec.witnesses.coverage_witness import (
     possible_letters,
 )
 from rulec.witnesses.letter_functions import Digits, constant_reads, digits_of
-from rulec.witnesses.letter_witness import LetterWitnesses
+from rulec.witnesses.undecided import UndecidedError
 
 _MOST_TRIED = 16
 """Number of letters tried to find a state close to a limit."""
@@ -120,7 +121,6 @@ class ProposedExamples:
         self._ways = ways_of(machine, vocabulary)
         self._constant = constant_reads(machine.reads, vocabulary)
         self._witnesses: dict[int, CoverageWitness] = {}
-        self._plain: dict[tuple[int, Digits], int | None] = {}
         self._whole_states: dict[tuple[int, Digits], CoverageWitness | None] = {}
         sinks = (machine.rejecting_sink, machine.accepting_sink)
         # The states in which the verdict is not final yet.
@@ -194,13 +194,17 @@ class ProposedExamples:
         others = [self._whole_witness(symbol, constants) for symbol in word]
         if None not in others:
             return replace(edge, states=tuple(other for other in others if other is not None))
-        letters = [self._plainest(symbol, constants) for symbol in word]
-        if None in letters:
+        classes = [self._classes.get((symbol, constants)) for symbol in word]
+        try:
+            example = self._counting.example([own for own in classes if own is not None])
+        except UndecidedError:
             return edge
-        trace = self._counting.trace([letter for letter in letters if letter is not None])
-        states = tuple(map(CoverageWitness, trace.states))
-        whole = replace(edge, states=states, objects=trace.objects)
-        return whole if self._word(states, trace.objects) == word else edge
+        if None in classes or example is None:
+            return edge
+        objects, says = example
+        states = tuple(map(CoverageWitness, says))
+        whole = replace(edge, states=states, objects=objects)
+        return whole if self._word(states, objects) == word else edge
 
     def _whole_witness(self, symbol: int, constants: Digits) -> CoverageWitness | None:
         """A state in a class of letters with these constants that need not be completed."""
@@ -228,15 +232,20 @@ class ProposedExamples:
     def _fit(self) -> Callable[[Digits], bool]:
         return go_together(self._machine)
 
-    def _plainest(self, symbol: int, constants: Digits) -> int | None:
-        key = symbol, constants
-        if key not in self._plain:
-            self._plain[key] = self._counting.plainest(symbol, constants)
-        return self._plain[key]
+    @cached_property
+    def _classes(self) -> Mapping[tuple[int, Digits], int]:
+        """A number for each class of letters with the same constants."""
+        kinds = dict.fromkeys(self._kind(letter) for letter in range(len(self._machine.letters)))
+        return {kind: number for number, kind in enumerate(kinds)}
+
+    def _kind(self, letter: int) -> tuple[int, Digits]:
+        return self._machine.letters[letter], self._fixed(letter)
 
     @cached_property
-    def _counting(self) -> LetterWitnesses:
-        return LetterWitnesses(self._compiled, self._vocabulary)
+    def _counting(self) -> ClassWitnesses:
+        letters = range(len(self._machine.letters))
+        classes = [self._classes[self._kind(letter)] for letter in letters]
+        return ClassWitnesses(self._compiled, self._vocabulary, self._facts, classes)
 
     def _word(
         self, states: Iterable[CoverageWitness], objects: tuple[Variable, ...] = ()

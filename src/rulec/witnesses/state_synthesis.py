@@ -68,18 +68,6 @@ class JointState:
         return total
 
 
-def synthesize_state(
-    vocabulary: Vocabulary, digits: Digits, counted: tuple[tuple[Count, int], ...] = ()
-) -> JointState | None:
-    """Synthesise a state with a given digit for each read, or None."""
-    number_digits = [(read, digit) for read, digit in digits if isinstance(read, NumberRead)]
-    numbers = solve_numbers(number_digits, vocabulary, dict(counted)) if number_digits else {}
-    if numbers is None:
-        return None
-    values = values_of(digits, vocabulary) | float_values(numbers)
-    return JointState(values, number_digits, counted)
-
-
 def float_values(numbers: Mapping[Term, Fraction]) -> dict[Subject, Value]:
     """The numbers of quantities as values."""
     return {
@@ -243,12 +231,6 @@ def _is_float(number: Fraction) -> bool:
         return exact(float(number)) == number
     except OverflowError:
         return False
-
-
-def required_counts(state: JointState, vocabulary: Vocabulary) -> dict[Count, int]:
-    """Values of the counts that a synthesised state requires."""
-    numbers = solve_numbers(state.number_digits, vocabulary, dict(state.counted)) or {}
-    return {term: int(number) for term, number in numbers.items() if isinstance(term, Count)}
 
 
 def are_consistent(number_digits: NumberDigits) -> bool:

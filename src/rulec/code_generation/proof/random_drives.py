@@ -15,7 +15,8 @@ from rulec.monitoring.online.four_valued import FourValued, four_valued
 from rulec.trace import State
 from rulec.vocabulary import Declaration
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES
-from rulec.witnesses.letter_witness import LetterWitnesses
+from rulec.witnesses.class_witness import ClassWitnesses
+from rulec.witnesses.undecided import UndecidedError
 
 Drive: TypeAlias = list[tuple[State, Mapping[str, str]]]
 """States, and the objects that are present in each."""
@@ -137,20 +138,20 @@ def table_drives(layout: MonitorLayout, chance: Random, n_states: int) -> Iterat
     vocabulary = layout.rulebook.vocabulary
     for own in layout.rules:
         rule, machine = own.rule, own.rule.machine
-        witnesses = LetterWitnesses(rule, vocabulary)
-        plainest = [witnesses.plainest(by) for by in range(len(machine.successors[0]))]
-        letters = [letter for letter in plainest if letter is not None]
-        trace = witnesses.trace(letters)
-        if trace.required:
-            continue  # the counted objects cannot be determined
-        objects = {item.name: item.type for item in (*rule.variables, *trace.objects)}
+        try:
+            witnesses = ClassWitnesses(rule, vocabulary)
+            classes = [*filter(witnesses.is_read, range(len(machine.successors[0])))]
+            example = witnesses.example(classes)
+        except UndecidedError:
+            continue
+        if example is None:
+            continue
+        objects = {item.name: item.type for item in (*rule.variables, *example[0])}
         if len(_seated(layout, objects)) < len(objects):
             continue
         states = [
-            _with(values, _state(layout, chance, objects, (0.0, 1.0), {}))
-            for values in trace.states
+            _with(values, _state(layout, chance, objects, (0.0, 1.0), {})) for values in example[1]
         ]
-        classes = [machine.letters[letter] for letter in letters]
         left = max(len(states), n_states // len(layout.rules))
         while left > 0:
             drive: Drive = []

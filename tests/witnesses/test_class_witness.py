@@ -3,6 +3,7 @@
 from fractions import Fraction
 from itertools import product
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -23,8 +24,9 @@ from rulec.logic.formula import UnaryOperator as Operator
 from rulec.rulebook.rulebook_model import Variable
 from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
+from rulec.witnesses.class_witness import ClassWitnesses
 from rulec.witnesses.counted_objects import MOST_COUNTED_OBJECTS
-from rulec.witnesses.letter_witness import LetterWitnesses
+from rulec.witnesses.undecided import UndecidedError
 
 TYPES = {
     "road_user": ObjectType("road_user"),
@@ -109,7 +111,7 @@ def witnesses_of(reads, variables):
         tuple(reads), tuple(range(n_letters)), ((0,) * n_letters,), ((True,) * n_letters,), None, 0
     )
     rule = CompiledRule("r", "hard", tuple(variables), "", "", Constant(True), monitor, "")
-    return LetterWitnesses(rule, VOCABULARY)
+    return ClassWitnesses(rule, VOCABULARY)
 
 
 def at_least(*limits):
@@ -148,17 +150,21 @@ def test_the_counts_come_out(body, variables, sizes):
     witnesses = witnesses_of(how_many(Count("x", "road_user", body)), variables)
     possible = possible_sizes(body, variables, 5)
     for size in sizes:
-        assert (witnesses.state(size) is not None) is (size in possible)
-    trace = witnesses.trace([size for size in sizes if size in possible])
-    if trace.required:
+        assert witnesses.is_read(size) is (size in possible)
+    try:
+        objects, states = witnesses.example([size for size in sizes if size in possible])
+    except UndecidedError:
         return
-    everyone = [*variables, *trace.objects]
+    everyone = [*variables, *objects]
     assert len({one.name for one in everyone}) == len(everyone)
-    for facts, size in zip(trace.states, [size for size in sizes if size in possible], strict=True):
+    for facts, size in zip(states, [size for size in sizes if size in possible], strict=True):
+        # What is not said is arbitrary.
+        said = {("station", (one.name,)): "beside" for one in everyone}
+        said |= {("near", (one.name, "v")): False for one in everyone} | facts
         counted = [
             one.name
             for one in everyone
-            if one.type != "stone" and is_counted(body, one.name, facts)
+            if one.type != "stone" and is_counted(body, one.name, said)
         ]
         assert len(counted) == size
 
@@ -169,9 +175,9 @@ def test_objects_are_as_few_as_can_be(sizes):
         BinaryOperator.AND, Atom("station", ("x",), "behind"), Unary(Operator.NOT, Same("x", "v"))
     )
     reads = how_many(Count("x", "bus", body), limits=range(1, MOST_COUNTED_OBJECTS + 2))
-    trace = witnesses_of(reads, [V]).trace(sizes)
-    assert [one.name for one in trace.objects] == [f"x{n + 1}" for n in range(max(sizes))]
-    assert {one.type for one in trace.objects} <= {"bus"}
+    objects, _ = witnesses_of(reads, [V]).example(sizes)
+    assert [one.name for one in objects] == [f"x{n + 1}" for n in range(max(sizes))]
+    assert {one.type for one in objects} <= {"bus"}
 
 
 def test_several_counts_come_out_together():
@@ -179,9 +185,8 @@ def test_several_counts_come_out_together():
     loud = Count("y", "bus", Atom("horn", ("y",)))
     witnesses = witnesses_of(how_many(behind, loud, limits=(1, 2)), [])
     for n_behind, n_loud in product(range(3), repeat=2):
-        trace = witnesses.trace([n_behind + 3 * n_loud])
-        (facts,) = trace.states
-        names = {one.name: one.type for one in trace.objects}
+        objects, (facts,) = witnesses.example([n_behind + 3 * n_loud])
+        names = {one.name: one.type for one in objects}
         assert sum(facts["station", (name,)] == "behind" for name in names) == n_behind
         assert sum(facts.get(("horn", (name,))) is True for name in names) == n_loud
         assert all(names[name] == "bus" for name in names if facts.get(("horn", (name,))) is True)
@@ -191,33 +196,28 @@ def test_several_counts_come_out_together():
 def test_what_counts_read_of_own_objects_is_said():
     only = Count("x", "bus", Binary(BinaryOperator.AND, Same("x", "v"), Atom("horn", ("x",))))
     witnesses = witnesses_of(how_many(only, limits=(1, 2)), [V])
-    assert witnesses.state(0).values == {("horn", ("v",)): False}
-    assert witnesses.state(1).values == {("horn", ("v",)): True}
-    assert witnesses.state(2) is None
+    assert witnesses.example([0, 1]) == ((), ({("horn", ("v",)): False}, {("horn", ("v",)): True}))
+    assert not witnesses.is_read(2)
+    assert witnesses.example([0, 2]) is None
 
 
 def test_numbers_of_counted_objects():
     near = Comparison(((Fraction(1), QuantityTerm("gap", ("x",))),), "<", Fraction(5))
-    trace = witnesses_of(how_many(Count("x", "road_user", near), limits=(1,)), []).trace([1])
-    (facts,), (one,) = trace.states, trace.objects
+    near_by = how_many(Count("x", "road_user", near), limits=(1,))
+    (one,), (facts,) = witnesses_of(near_by, []).example([1])
     assert facts["gap", (one.name,)] < 5
 
 
-def test_what_is_too_much_is_said_as_a_number():
+def test_what_is_too_much_is_undecided():
     count = Count("x", "road_user", Atom("station", ("x",), "behind"))
     reads = how_many(count, limits=(MOST_COUNTED_OBJECTS + 2,))
-    trace = witnesses_of(reads, [V]).trace([1])
-    assert trace.objects == ()
-    assert trace.required == ({count: MOST_COUNTED_OBJECTS + 2},)
-    inner = Comparison(((Fraction(1), count),), ">=", Fraction(1))
-    nested = Count("y", "road_user", inner)
-    trace = witnesses_of(how_many(nested, limits=(2,)), [V]).trace([0, 1])
-    assert trace.required == ({nested: 0}, {nested: 2})
+    with pytest.raises(UndecidedError):
+        witnesses_of(reads, [V]).example([1])
 
 
 def test_nothing_is_counted():
     witnesses = witnesses_of([Read("rain", ())], [V])
-    assert witnesses.trace([1]).states == ({("rain", ()): True},)
+    assert witnesses.example([1]) == ((), ({("rain", ()): True},))
 
 
 SPEED, GAP = QuantityTerm("speed"), QuantityTerm("gap", ("v",))
@@ -248,11 +248,11 @@ def test_letters_are_those_that_some_state_has(described):
     for read in reads[1:]:
         n_letters *= read.size
     for letter in range(n_letters):
-        state = witnesses.state(letter)
-        if state is None:
+        if not witnesses.is_read(letter):
             assert letter not in met
         else:
-            assert letter_of(reads, state.values) == letter
+            _, (values,) = witnesses.example([letter])
+            assert letter_of(reads, values) == letter
 
 
 def letter_of(reads, values):
@@ -272,19 +272,29 @@ def letter_of(reads, values):
     return letter
 
 
-def test_the_plainest_letter_has_the_defaults():
+def test_the_plainest_state_has_the_defaults():
     reads = [Read("rain", ()), Read("horn", ("v",)), Read("station", ("v",), ("behind",), True)]
     monitor = MealyMonitor(
         tuple(reads), (0, 0, 0, 1, 1, 1, 1, 1), ((0, 0),), ((True, True),), None, 0
     )
     rule = CompiledRule("r", "hard", (V,), "", "", Constant(True), monitor, "")
-    witnesses = LetterWitnesses(rule, VOCABULARY)
-    assert (witnesses.plainest(0), witnesses.plainest(1)) == (0, 4)
+    _, states = ClassWitnesses(rule, VOCABULARY).example([0, 1])
+    assert [letter_of(reads, with_defaults(reads, state)) for state in states] == [0, 4]
+    # Of finer classes each has one.
+    finer = ClassWitnesses(rule, VOCABULARY, (), range(8))
+    _, states = finer.example([2, 7])
+    assert [letter_of(reads, with_defaults(reads, state)) for state in states] == [2, 7]
+
+
+def with_defaults(reads, state):
+    return {
+        (read.name, read.variables): VOCABULARY.declarations[read.name].default for read in reads
+    } | state
 
 
 def test_what_decides_nothing_has_its_default():
     horn = Atom("horn", ("x",))
     either = Binary(BinaryOperator.OR, horn, Unary(Operator.NOT, horn))
     count = Count("x", "bus", Binary(BinaryOperator.AND, Same("x", "v"), either))
-    state = witnesses_of(how_many(count, limits=(1,)), [V]).state(1)
-    assert state.values == {("horn", ("v",)): False}
+    _, (state,) = witnesses_of(how_many(count, limits=(1,)), [V]).example([1])
+    assert state.get(("horn", ("v",)), False) is False
