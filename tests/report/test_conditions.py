@@ -168,11 +168,3 @@ def test_a_count_that_holds_a_comparison_is_denied_as_a_whole():
         rule_with(machine, Comparison(terms, ">=", Fraction(8), text)), VOCABULARY
     )
     assert wording.condition([(frozenset({0}),)]) == f"not ({text})"
-
-
-def test_the_state_of_an_example():
-    machine = MealyMonitor(READS, (0,) * 48, ((0,),), ((True,),), None, 0)
-    wording = GuardWording(rule_with(machine), VOCABULARY)
-    axioms = {("p", ()): True, ("q", ()): False, ("place", ("x",)): "far", ("speed", ()): 0.1}
-    assert wording.state(axioms) == "p and not q and far(x) and speed = 0.1 km/h"
-    assert wording.state({}) == "true"

@@ -162,9 +162,7 @@ def test_the_counts_come_out(body, variables, sizes):
         said = {("station", (one.name,)): "beside" for one in everyone}
         said |= {("near", (one.name, "v")): False for one in everyone} | facts
         counted = [
-            one.name
-            for one in everyone
-            if one.type != "stone" and is_counted(body, one.name, said)
+            one.name for one in everyone if one.type != "stone" and is_counted(body, one.name, said)
         ]
         assert len(counted) == size
 

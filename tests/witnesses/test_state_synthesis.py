@@ -17,6 +17,7 @@ from rulec.witnesses.state_synthesis import (
     numbers_near_thresholds,
     solve_numbers,
     subjects_of,
+    value_literal,
     value_of,
 )
 from support.generators.random_reads import (
@@ -157,3 +158,13 @@ def test_sums_that_share_no_term_are_solved_as_if_alone(pairs, others):
     assert (found is None) == (alone is None or rest is None)
     if found is not None and min(found.values(), default=0) >= 0:
         assert found == alone | rest
+
+
+def test_values_as_an_example_says_them():
+    said = {("p", ()): True, ("follows", ("x", "y")): False, ("place", ("x",)): "far"}
+    said |= {("speed", ()): 0.1}
+    declared = VOCABULARY.declarations
+    literals = [
+        value_literal(subject, value, declared[subject[0]]) for subject, value in said.items()
+    ]
+    assert literals == ["p", "not follows(x, y)", "far(x)", f"speed = 0.1 {declared['speed'].unit}"]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
 
 from rulec.analysis.counterexample import declarations_read
@@ -12,11 +11,10 @@ from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.diagnostics import named
 from rulec.logic.formula import Atom
-from rulec.logic.printing import number_in_words
 from rulec.monitoring.state_view import value_in
 from rulec.trace import State, Trace, Value
-from rulec.vocabulary import Enumeration, Quantity, Vocabulary
-from rulec.witnesses.state_synthesis import subjects_of
+from rulec.vocabulary import Quantity, Vocabulary
+from rulec.witnesses.state_synthesis import subjects_of, value_literal
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,11 +106,5 @@ def _state(state: State, trace: Trace, names: Set[str], vocabulary: Vocabulary) 
             continue
         if len(set(items)) < len(items):
             continue
-        if isinstance(declaration, Enumeration):
-            literals.append(str(Atom(name, items, str(value))))
-        elif isinstance(declaration, Quantity):
-            number = number_in_words(Fraction(str(value)))
-            literals.append(f"{Atom(name, items)} = {number} {declaration.unit}")
-        else:
-            literals.append(f"{'' if value else 'not '}{Atom(name, items)}")
+        literals.append(value_literal((name, items), value, declaration))
     return " and ".join(literals) or "true"

@@ -14,10 +14,11 @@ from itertools import product
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
-from rulec.logic.formula import Count, QuantityTerm, Term
+from rulec.logic.formula import Atom, Count, QuantityTerm, Term
+from rulec.logic.printing import number_in_words
 from rulec.valuations.connections import connected
 from rulec.valuations.fourier_motzkin import LinearBound, solve
-from rulec.vocabulary import Declaration, Enumeration, Vocabulary
+from rulec.vocabulary import Declaration, Enumeration, Quantity, Vocabulary
 from rulec.vocabulary.vocabulary_model import default_value
 
 Subject = tuple[str, tuple[str, ...]]
@@ -304,3 +305,14 @@ def subjects_of(
         ]
         for items in product(*candidates):
             yield (name, items), declaration
+
+
+def value_literal(subject: Subject, value: object, declaration: Declaration) -> str:
+    """A value as a fact of an example, such as ``gap(v) = 5 m`` and ``not fog``."""
+    name, items = subject
+    if isinstance(declaration, Enumeration):
+        return str(Atom(name, items, str(value)))
+    if isinstance(declaration, Quantity):
+        number = number_in_words(Fraction(str(value)))
+        return f"{Atom(name, items)} = {number} {declaration.unit}"
+    return f"{'' if value else 'not '}{Atom(name, items)}"

@@ -6,7 +6,6 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from rulec.automata.thresholds import exact
 from rulec.book_tests.example_coverage import RuleCoverage, asked_of, percent
 from rulec.book_tests.example_runs import (
     ExampleOutcome,
@@ -17,8 +16,8 @@ from rulec.book_tests.example_runs import (
 from rulec.book_tests.proposed_examples import UncoveredEdge, stated
 from rulec.diagnostics import Diagnostic
 from rulec.logic.fold import fold_constants
-from rulec.logic.formula import Atom, Constant
-from rulec.logic.printing import formula_text, number_in_words
+from rulec.logic.formula import Constant
+from rulec.logic.printing import formula_text
 from rulec.report.findings.diagnostics_text import message_width, render_diagnostics
 from rulec.report.text.terminal_text import (
     broken,
@@ -28,8 +27,8 @@ from rulec.report.text.terminal_text import (
     visible,
     wants_color,
 )
-from rulec.rulebook.rulebook_model import ExampleState
-from rulec.vocabulary import Quantity, Vocabulary
+from rulec.vocabulary import Vocabulary
+from rulec.witnesses.state_synthesis import value_literal
 
 MOST_MISSING = 5
 """Number of a rule's missing edges shown as text; JSON has all of them."""
@@ -256,7 +255,12 @@ def missing_example(edge: UncoveredEdge, vocabulary: Vocabulary) -> str:
     said in words; the whole is a comment then, since without that it has perhaps another verdict.
     """
     states = "; ".join(
-        " and ".join(_facts(state.says, vocabulary)) or "true" for state in edge.states
+        " and ".join(
+            value_literal(subject, value, vocabulary.declarations[subject[0]])
+            for subject, value in stated(state.says, vocabulary).items()
+        )
+        or "true"
+        for state in edge.states
     )
     besides = "; ".join(
         f"in state {number} {' and '.join(state.besides)}"
@@ -267,15 +271,3 @@ def missing_example(edge: UncoveredEdge, vocabulary: Vocabulary) -> str:
     head = f"{'accept' if edge.accepted else 'reject'}{f' ({objects})' if objects else ''}"
     example = f"{head} {{ {states} }}"
     return f"# {example} where {besides}" if besides else example
-
-
-def _facts(state: ExampleState, vocabulary: Vocabulary) -> Iterator[str]:
-    for (name, variables), value in stated(state, vocabulary).items():
-        declaration = vocabulary.declarations[name]
-        if isinstance(declaration, Quantity):
-            number = number_in_words(exact(float(value)))
-            yield f"{Atom(name, variables)} = {number} {declaration.unit}"
-        elif isinstance(value, str):
-            yield str(Atom(name, variables, value))
-        else:
-            yield f"{'' if value else 'not '}{Atom(name, variables)}"

@@ -7,6 +7,7 @@ read while the next is compared; the other formats are written at the end.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import combinations
 from string import ascii_uppercase, digits
 
 from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule, pairs
@@ -134,22 +135,11 @@ def _by_rule(matrix: ComparisonMatrix) -> list[list[str]]:
     ]
 
 
-def _by_pair(matrix: ComparisonMatrix) -> list[list[str]]:
-    names = [book.name for book in matrix.books]
-    return [[name, *(_cell(matrix, name, other) for other in names)] for name in names]
-
-
 def _letter(rule: SharedRule, book: str) -> str:
     if book not in rule.laws:
         return SILENT if book in rule.remarks else ABSENT
     letter = rule.letter(book)
     return letter if rule.rules[book].strength == "hard" else letter.lower()
-
-
-def _cell(matrix: ComparisonMatrix, left: str, right: str) -> str:
-    if left == right:
-        return ""
-    return " ".join(filter(None, _signs(matrix, left, right))) or ABSENT
 
 
 def _signs(matrix: ComparisonMatrix, left: str, right: str) -> list[str]:
@@ -179,7 +169,11 @@ def _as_markdown(matrix: ComparisonMatrix) -> str:
         [f"[{code(name)}](#{place})", *map(escaped, cells)]
         for place, (name, *cells) in zip(places, _by_rule(matrix), strict=True)
     ]
-    by_pair = [[code(name), *map(escaped, cells)] for name, *cells in _by_pair(matrix)]
+    by_pair = [
+        [code(first), code(second), *map(escaped, cells)]
+        for first, second in combinations([book.name for book in matrix.books], 2)
+        if (cells := _signs(matrix, first, second))
+    ]
     return "\n\n".join(
         [
             f"# {TITLE}",
@@ -189,7 +183,7 @@ def _as_markdown(matrix: ComparisonMatrix) -> str:
             markdown_table(head, by_rule),
             "## Pair by pair",
             f"{escaped(PAIRS.partition(': ')[2].capitalize())}.",
-            markdown_table(head, by_pair),
+            markdown_table(["first", "second", *SIGNS], by_pair),
             "## What each law says",
             *(block for rule in matrix.shared for block in _laws(rule)),
         ]
