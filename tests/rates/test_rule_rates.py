@@ -7,6 +7,7 @@ from scipy import stats
 
 from rulec.diagnostics import RulecError
 from rulec.rates.rates_of_findings import rates_of_findings
+from rulec.report.rates.rates_table import as_text
 from rulec.trace.formats.arrow.parquet import write_parquet
 
 BY = {"rulebook": "de", "rulebook_hash": "abcdefgh1", "rulec": "1.0", "thresholds": ""}
@@ -206,3 +207,15 @@ def test_a_file_of_something_else_is_refused(tmp_path, text):
 def test_a_folder_without_tables_is_refused(tmp_path):
     with pytest.raises(RulecError):
         rates_of_findings([str(tmp_path)])
+
+
+@pytest.mark.parametrize("width", [60, 80, 120])
+def test_rates_fit_a_width(write, width):
+    name = "a_rule_with_a_name_that_takes_more_than_half_of_a_line_of_eighty"
+    path = write(
+        *[drive(f"v{n}", (name, 10, taken), ("stop", 9, 1)) for n, taken in enumerate([4, 3])]
+    )
+    text = as_text(rates_of_findings([path], ()), width)
+    assert max(map(len, text.splitlines())) <= width
+    for column in ("opportunities", "violated", "per hour", "per 1000 km", "per opportunity"):
+        assert column in text

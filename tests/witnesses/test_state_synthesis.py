@@ -162,9 +162,9 @@ def test_sums_that_share_no_term_are_solved_as_if_alone(pairs, others):
 
 def test_values_as_an_example_says_them():
     said = {("p", ()): True, ("follows", ("x", "y")): False, ("place", ("x",)): "far"}
-    said |= {("speed", ()): 0.1}
+    said |= {("gap", ("x",)): 0.1}
     declared = VOCABULARY.declarations
     literals = [
         value_literal(subject, value, declared[subject[0]]) for subject, value in said.items()
     ]
-    assert literals == ["p", "not follows(x, y)", "far(x)", f"speed = 0.1 {declared['speed'].unit}"]
+    assert literals == ["p", "not follows(x, y)", "far(x)", "gap(x) = 0.1 m"]

@@ -9,25 +9,31 @@ from rulec.rates.exact_intervals import Interval
 from rulec.rates.rule_rates import Rate, RuleRates, ViolationRates
 from rulec.report.text import markdown
 from rulec.report.text.csv_text import csv_text
-from rulec.report.text.terminal_text import broken, counted, table_lines, visible
+from rulec.report.text.terminal_text import broken, counted, cut, stacked_tables, visible
 
-_WIDTH = 100
 _HEAD = ("rule", "opportunities", "violated", "per hour", "per 1000 km", "per opportunity")
 
 
-def as_text(rates: ViolationRates) -> str:
-    """A table for each group; the interval over drives is in braces below each rate."""
-    lines = [row for line in _about(rates) for row in broken(visible(line), _WIDTH)]
+def as_text(rates: ViolationRates, width: int) -> str:
+    """Two tables for each group; the interval over drives is in braces below each rate.
+
+    Columns of rates that a width in characters has no room for go on below.
+    """
+    lines = [row for line in _about(rates) for row in broken(visible(line), width)]
     for group, rules in _groups(rates):
         tested = [rule for rule in rules if _is_tested(rule)]
         lines += ["", *([f"{group}: {_size(rules)}"] if group else [_size(rules)])]
-        rows: list[tuple[str, ...]] = [_HEAD]
+        counts: list[Sequence[str]] = [_HEAD[:3]]
+        shares: list[Sequence[str]] = [(_HEAD[0], *_HEAD[3:])]
         for rule in tested:
-            rows += [tuple(_cells(rule)), *(("", "", "", *more) for more in _below(rule))]
-        if tested:
-            lines += table_lines(rows, indent="  ", right=(1, 2))
+            title, most, violated, *rated = _cells(rule)
+            title = cut(visible(title), width // 2)
+            counts.append((title, most, violated))
+            shares += [(title, *rated), *(("", *more) for more in _below(rule))]
+        for rows in (counts, shares) if tested else ():
+            lines += ["", *stacked_tables(rows, width, indent="  ", is_of_numbers=True)]
         for line in _others(rules):
-            lines += broken(visible(line), _WIDTH, "  ", "    ")
+            lines += broken(visible(line), width, "  ", "    ")
     return "\n".join(visible(line.rstrip()) for line in lines)
 
 

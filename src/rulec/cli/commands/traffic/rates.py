@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import click
@@ -10,7 +11,7 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.standard_input import not_standard_input
 from rulec.cli.options.verb_class import Verb
-from rulec.cli.output import output_stream, print_written, put_answer
+from rulec.cli.output import output_stream, print_written, put_answer, width_of
 from rulec.diagnostics.fault_messages import contained
 
 if TYPE_CHECKING:
@@ -97,6 +98,6 @@ def command(
         "json": rates_json.as_json,
         "csv": rates_table.as_csv,
         "markdown": rates_table.as_markdown,
-        "text": rates_table.as_text,
     }
-    put_answer(renderers[to.form](rates), to)
+    render = renderers.get(to.form, partial(rates_table.as_text, width=width_of(to)))
+    put_answer(render(rates), to)
