@@ -336,6 +336,11 @@ def test_what_options_rule_out_is_not_told(capsys, tmp_path, monkeypatch):
         "  It does not count if, throughout the time that the rule is about, “q” holds.\n"
     ) in out
     assert "  It never counts, for its condition is false as options are set.\n" in out
+    assert main(["show", "./a.rules", "A"]) == 0
+    formula = capsys.readouterr().out.partition("formula\n")[2].partition("automaton")[0]
+    assert formula.startswith("  never p\n")
+    assert "true" not in formula
+    assert "false" not in formula
 
 
 def test_rules_are_chosen_by_pattern_as_in_other_verbs(two, capsys):

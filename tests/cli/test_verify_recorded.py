@@ -4,6 +4,7 @@ import gzip
 import json
 import shlex
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
@@ -238,6 +239,16 @@ def test_strictly_what_is_open_counts_as_violated(verify, tmp_path):
         out.split()
     )
     assert verify("--strict", files=(str(traces),))[0] == 1
+    for options, failures, kind in (
+        ((), 0, ("open", "none")),
+        (("--strict",), 1, ("fail", "error")),
+    ):
+        verify(*options, "-o", str(tmp_path / "f.xml"), files=(str(traces),))
+        (suite,) = ElementTree.parse(tmp_path / "f.xml").getroot()
+        assert int(suite.get("failures")) == failures
+        verify(*options, "-o", str(tmp_path / "f.sarif"), files=(str(traces),))
+        (run,) = json.loads((tmp_path / "f.sarif").read_text())["runs"]
+        assert [(one["kind"], one["level"]) for one in run["results"]] == [kind]
 
 
 UNTOLD = """\

@@ -77,11 +77,12 @@ class VerdictOutputs:
 
 @contextmanager
 def verdict_outputs(
-    to: Sequence[Output], rules: CompiledRulebook, *, with_rows: bool = False
+    to: Sequence[Output], rules: CompiledRulebook, *, with_rows: bool = False, strict: bool = False
 ) -> Iterator[VerdictOutputs]:
     """Outputs that are written completely when the block succeeds, and otherwise not at all.
 
-    ``with_rows``: whether tables of findings also have rows of drives and rules.
+    ``with_rows``: whether tables of findings also have rows of drives and rules. ``strict``:
+    whether hard rules that are open count as violated.
 
     Raises RulecError R0702 if a file cannot be written, R0706.
     """
@@ -105,9 +106,8 @@ def verdict_outputs(
                 from rulec.report.findings.verdict_finding import FindingContext
 
                 stream, name = files.enter_context(output_stream(output))
-                writer = finding_writer(
-                    output.form, stream, FindingContext(rules, columns=columns), name
-                )
+                about = FindingContext(rules, columns=columns, strict=strict)
+                writer = finding_writer(output.form, stream, about, name)
                 outputs._writers.append((writer, name))
         if len(written) == len(to) and not outputs._text:
             outputs._text.append(print_result)

@@ -88,9 +88,10 @@ def suite_text(suite: JUnitSuite) -> str:
 class JUnitWriter:
     """A suite for each recording, with a case for each rule and each drive that was judged.
 
-    A case fails if a hard rule is violated, like the exit status; a violated soft rule is its
-    output. It is skipped, with the reason, if the rule is open or not judged for the drive: a case
-    passes only if the rule is known to be kept. A rule that was judged for no drive has one case.
+    A case fails if a hard rule is violated, or open where that counts as violated, like the exit
+    status; a violated soft rule is its output. It is skipped, with the reason, if the rule is open
+    or not judged for the drive: a case passes only if the rule is known to be kept. A rule that was
+    judged for no drive has one case.
     """
 
     def __init__(self, stream: IO[bytes], about: FindingContext) -> None:
@@ -103,7 +104,7 @@ class JUnitWriter:
         book, by_rule = self._about.rulebook.name, recording.by_rule
         lost = [f"{x.vehicle}: not judged: {x.because}" for x in by_rule.get("", ())]
         cases = [
-            case for rule in self._about.rules for case in _cases(book, rule, by_rule, recording)
+            case for rule in self._about.rules for case in self._cases(rule, by_rule, recording)
         ]
         if recording.failure:
             about: dict[str, Any] = {"kind": "not judged", "message": recording.failure}
@@ -117,38 +118,32 @@ class JUnitWriter:
         """Write the end of the document."""
         self._stream.write(f"{TAIL}\n".encode())
 
+    def _cases(
+        self, rule: str, by_rule: Mapping[str, Sequence[VerdictFinding]], of: RecordingFindings
+    ) -> Iterator[JUnitCase]:
+        """The cases of a rule: one if it was judged for no drive, else one a drive."""
+        book = self._about.rulebook.name
+        by_drive: dict[str, list[VerdictFinding]] = {}
+        for finding in by_rule.get(rule, ()):
+            by_drive.setdefault(finding.vehicle, []).append(finding)
+        if nowhere := by_drive.get(""):
+            yield JUnitCase(group=book, name=rule, file=of.file, **self._result(nowhere))
+            return
+        for drive in of.drives:
+            result = self._result(by_drive.get(drive, []))
+            yield JUnitCase(group=f"{book}.{rule}", name=drive, file=of.file, **result)
 
-def _cases(
-    book: str,
-    rule: str,
-    by_rule: Mapping[str, Sequence[VerdictFinding]],
-    recording: RecordingFindings,
-) -> Iterator[JUnitCase]:
-    """The cases of a rule: one if it was judged for no drive, else one a drive."""
-    by_drive: dict[str, list[VerdictFinding]] = {}
-    for finding in by_rule.get(rule, ()):
-        by_drive.setdefault(finding.vehicle, []).append(finding)
-    if nowhere := by_drive.get(""):
-        yield JUnitCase(group=book, name=rule, file=recording.file, **_result(nowhere))
-        return
-    for drive in recording.drives:
-        found = by_drive.get(drive, [])
-        yield JUnitCase(group=f"{book}.{rule}", name=drive, file=recording.file, **_result(found))
-
-
-def _result(findings: Sequence[VerdictFinding]) -> dict[str, Any]:
-    """The result of a case with these findings of a rule in a drive."""
-    text = "\n".join(finding.says for finding in findings)
-    violated = [finding for finding in findings if finding.outcome == "violated"]
-    if violated and violated[0].strength == "hard":
-        return {"result": "failure", "kind": "hard rule", "message": findings[0].says, "text": text}
-    if violated:
-        return {"result": "system-out", "text": text}
-    if not findings:
-        return {}
-    first = findings[0]
-    why = first.because or f"not told: {', '.join(first.open_on)}"
-    return {"result": "skipped", "message": first.says if first.outcome == "open" else why}
+    def _result(self, findings: Sequence[VerdictFinding]) -> dict[str, Any]:
+        """The result of a case with these findings of a rule in a drive."""
+        if not findings:
+            return {}
+        first, text = findings[0], "\n".join(finding.says for finding in findings)
+        if any(map(self._about.is_failure, findings)):
+            return {"result": "failure", "kind": "hard rule", "message": first.says, "text": text}
+        if any(finding.outcome == "violated" for finding in findings):
+            return {"result": "system-out", "text": text}
+        why = first.because or f"not told: {', '.join(first.open_on)}"
+        return {"result": "skipped", "message": first.says if first.outcome == "open" else why}
 
 
 def _element(

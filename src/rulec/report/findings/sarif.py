@@ -90,6 +90,7 @@ class SarifWriter:
     def __init__(self, stream: IO[bytes], about: FindingContext) -> None:
         rules = {name: _rule(rule, about.rulebook.name) for name, rule in about.rules.items()}
         self._run = SarifRun(stream, rules, about.version, properties=about.edition)
+        self._about = about
         self._notes: list[dict[str, Any]] = []
         self._complete = True
 
@@ -100,7 +101,8 @@ class SarifWriter:
             if finding.outcome == "not_judged":
                 self._notes.append(_notification(finding))
             else:
-                self._run.add(finding.rule, _verdict(finding))
+                fails = finding.outcome == "violated" or self._about.is_failure(finding)
+                self._run.add(finding.rule, _verdict(finding, fails=fails))
 
     def close(self) -> None:
         """Write the notifications and the end of the document."""
@@ -149,14 +151,13 @@ def _fix(fix: Fix, title: str) -> dict[str, Any]:
     return {"description": {"text": title}, "artifactChanges": changes}
 
 
-def _verdict(finding: VerdictFinding) -> dict[str, Any]:
-    is_open = finding.outcome == "open"
+def _verdict(finding: VerdictFinding, *, fails: bool) -> dict[str, Any]:
     key = (finding.file, finding.recording, finding.rule, finding.vehicle, *finding.other)
     fingerprint = sha256("\0".join(key).encode("utf-8", "surrogatepass")).hexdigest()
     evidence = {name: value for name, value in finding.row().items() if name not in _BESIDES}
     return {
-        "kind": "open" if is_open else "fail",
-        "level": "none" if is_open else _LEVELS[finding.strength],
+        "kind": "fail" if fails else "open",
+        "level": _LEVELS[finding.strength] if fails else "none",
         "message": {"text": finding.says},
         "locations": [_moment(finding)],
         "partialFingerprints": {"rulec/v1": fingerprint},

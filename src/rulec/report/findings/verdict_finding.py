@@ -235,12 +235,19 @@ class RecordingFindings:
 class FindingContext:
     """What all findings share: the rulebook and the version of rulec.
 
-    With ``columns``, tables have rows of drives, rules and findings with these columns.
+    With ``columns``, tables have rows of drives, rules and findings with these columns. If
+    ``strict``, hard rules that are open count as violated.
     """
 
     rulebook: CompiledRulebook
     version: str = __version__
     columns: Mapping[str, type] | None = None
+    strict: bool = False
+
+    def is_failure(self, finding: VerdictFinding) -> bool:
+        """Whether a finding fails a run of continuous integration, like the exit status."""
+        fails = finding.outcome == "violated" or (self.strict and finding.outcome == "open")
+        return fails and finding.strength == "hard"
 
     @property
     def rules(self) -> Mapping[str, CompiledRule]:

@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from rulec.logic.printing import formula_text
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
+from rulec.report.text.formula_lines import plain_text
 from rulec.report.text.terminal_text import broken, column_lines, counted, styled, visible
 from rulec.rulebook.rulebook_model import Rule, Rulebook, Strength, cited_law
 from rulec.rulebook.rules.rule_topics import OTHER, by_group
@@ -99,7 +99,7 @@ def law_of(book: Rulebook | Audit) -> str:
 def _row(name: str, books: Sequence[Rulebook]) -> tuple[str, str, str]:
     having = rules_named(name, books)
     first = next(iter(having.values()))
-    says = visible(first.says or formula_text(first.required or first.formula))
+    says = visible(first.says or plain_text(first.required or first.formula))
     if len(books) == 1:
         soft = "(soft) " if first.strength == "soft" else ""
         return visible(name), visible(first_provision(first)), f"{soft}{says}"

@@ -14,14 +14,13 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.diagnostics.diagnostic import at
 from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.logic.free_names import names_in
-from rulec.logic.printing import formula_text
 from rulec.logic.sentences.sentence import Phrase
 from rulec.logic.sentences.sentence_layout import lines
 from rulec.logic.sentences.wording import amount, number_text, spoken
 from rulec.report.automata import automaton_text
 from rulec.report.automata.automaton_model import Automaton, automaton_of
 from rulec.report.rulebooks.spoken_rules import sentences_of
-from rulec.report.text.formula_lines import formula_lines
+from rulec.report.text.formula_lines import formula_lines, plain_clauses, plain_text
 from rulec.report.text.terminal_text import broken, fact_lines, styled, visible
 from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, Variable
 from rulec.trace import Trace
@@ -95,15 +94,11 @@ def _sentences(rule: Rule, rulebook: Rulebook, width: int) -> str:
 
 
 def _formula(rule: Rule, width: int) -> list[str]:
-    whole = formula_lines(visible(formula_text(rule.formula)), width)
+    whole = formula_lines(visible(plain_text(rule.formula)), width)
     if rule.required is None:
         return whole
-    parts = [formula_text(rule.required)]
-    parts += [f"when {formula_text(rule.condition)}"] if rule.condition is not None else []
-    parts += [
-        f"unless {formula_text(exemption_.formula)} {exemption_.scope}"
-        for exemption_ in rule.exemptions
-    ]
+    clauses = sorted(plain_clauses(rule), key=lambda clause: clause[0] != "require")
+    parts = [text if word == "require" else f"{word} {text}" for word, text in clauses]
     written = [line for part in parts for line in formula_lines(visible(part), width)]
     return [*written, "that is", *whole]
 

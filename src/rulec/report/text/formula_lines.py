@@ -5,6 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from rulec.logic.fold import fold_constants
+from rulec.logic.formula import Formula
+from rulec.logic.printing import formula_text
+from rulec.rulebook.rulebook_model import Rule
+
 INDENT = "  "
 
 _BOUND = r"(\[[^]]*\])?"
@@ -22,6 +27,19 @@ _OPERATORS = [
         f"(weak until|strong release|until|release|since){_BOUND}",
     )
 ]
+
+
+def plain_text(formula: Formula) -> str:
+    """A formula as source text, without the constants that the options of a rulebook become."""
+    return formula_text(fold_constants(formula))
+
+
+def plain_clauses(rule: Rule) -> list[tuple[str, str]]:
+    """The words and texts of a rule's clauses, without exceptions that never hold as set."""
+    clauses = [] if rule.condition is None else [("when", plain_text(rule.condition))]
+    clauses.append(("require", plain_text(rule.required or rule.formula)))
+    exempt = ((plain_text(exemption.formula), exemption.scope) for exemption in rule.exemptions)
+    return clauses + [("unless", f"{text} {scope}") for text, scope in exempt if text != "false"]
 
 
 def formula_lines(text: str, width: int) -> list[str]:

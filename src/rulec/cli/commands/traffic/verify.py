@@ -175,7 +175,7 @@ def command(
         raise click.UsageError("--exposure is for tables: -o FILE.jsonl, FILE.csv, FILE.parquet.")
     if exposure and patterns:
         raise click.UsageError("--exposure is for all rules of a rulebook: leave out --rule.")
-    with verdict_outputs(to, books[0], with_rows=exposure) as outputs:
+    with verdict_outputs(to, books[0], with_rows=exposure, strict=asked.strict) as outputs:
         complaints = Complaints()
         results = []
         for rules, rows_of, reference in zip(books, own, references, strict=True):

@@ -9,7 +9,6 @@ from typing import TypeAlias
 
 from rulec.analysis.lineage.rule_lineage import BookLineage, RuleHistory
 from rulec.logic.bounds import has_seconds
-from rulec.logic.printing import formula_text
 from rulec.logic.sentences.language import Language
 from rulec.logic.sentences.sentence import Phrase
 from rulec.logic.sentences.sentence_layout import lines
@@ -17,7 +16,7 @@ from rulec.logic.sentences.wording import amount, listed, number_text, spoken
 from rulec.report.rulebooks.document_language import IN_ENGLISH, DocumentLanguage
 from rulec.report.rulebooks.rule_provenance import provenance
 from rulec.report.rulebooks.spoken_rules import sentences_of
-from rulec.report.text.formula_lines import formula_lines
+from rulec.report.text.formula_lines import formula_lines, plain_clauses
 from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, linked, table
 from rulec.rulebook.rulebook_model import Example, Rule, Rulebook
 from rulec.syntax import tree
@@ -150,12 +149,7 @@ def _sentence(phrase: Phrase, language: Language) -> str:
 def _formula(rule: Rule, written: tree.RuleItem | None, words: DocumentLanguage) -> Iterator[str]:
     clauses = [] if written is None else clauses_of(written)
     original = [(word, text) for word, text in clauses if word in _FORMULAS]
-    expanded = [] if rule.condition is None else [("when", formula_text(rule.condition))]
-    expanded.append(("require", formula_text(rule.required or rule.formula)))
-    expanded += [
-        ("unless", f"{formula_text(exemption.formula)} {exemption.scope}")
-        for exemption in rule.exemptions
-    ]
+    expanded = plain_clauses(rule)
     yield _fenced(original)
     if original != expanded:
         yield words.say("With definitions, options and parameters put in:")
