@@ -174,7 +174,7 @@ def test_objects_are_as_few_as_can_be(sizes):
     )
     reads = how_many(Count("x", "bus", body), limits=range(1, MOST_COUNTED_OBJECTS + 2))
     objects, _ = witnesses_of(reads, [V]).example(sizes)
-    assert [one.name for one in objects] == [f"x{n + 1}" for n in range(max(sizes))]
+    assert [one.name for one in objects] == [f"bus{n + 1}" for n in range(max(sizes))]
     assert {one.type for one in objects} <= {"bus"}
 
 

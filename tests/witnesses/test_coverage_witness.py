@@ -101,7 +101,7 @@ def test_objects_are_added_where_they_count():
     crowd = number("count x: car (near(x)) >= 2", ">=", 2, (1, others_near("v")))
     assert proposed(always(implies(P, no(crowd)))) == [
         "accept { true }",
-        "reject (x1: car, x2: car) { p and near(x1) and near(x2) }",
+        "reject (car1: car, car2: car) { p and near(car1) and near(car2) }",
     ]
 
 

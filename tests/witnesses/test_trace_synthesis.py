@@ -110,7 +110,7 @@ def test_axioms_hold_for_further_objects():
 
 def test_objects_are_the_same_in_all_states():
     states = [state((LOUD, 2)), state((LOUD, 0)), state((LOUD, 1))]
-    objects, values = place_objects(states, UNIVERSE, lambda kind: "x")
+    objects, values = place_objects(states, UNIVERSE)
     # The rule's own object has that name already.
     assert objects == {"x1": "thing", "x2": "thing"}
     loud = [[one["loud", (name,)] for name in objects].count(True) for one in values]
@@ -120,7 +120,7 @@ def test_objects_are_the_same_in_all_states():
 def test_objects_of_one_state_may_be_in_the_way_in_another():
     every = Count("o", "thing", Binary(BinaryOperator.OR, LOUD.body, Same("o", "o")))
     with pytest.raises(UndecidedError, match="contradict another state"):
-        place_objects([state((every, 2)), state((every, 0))], UNIVERSE, str)
+        place_objects([state((every, 2)), state((every, 0))], UNIVERSE)
 
 
 def test_states_say_what_has_another_value_than_its_default():

@@ -10,7 +10,7 @@ from rulec.rulebook.rulebook_model import Axiom, ExampleState, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import default_value
 from rulec.witnesses.joint_alphabet import JointAlphabet
-from rulec.witnesses.letter_functions import counts_read, monitor_function
+from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.relevant_axioms import subjects_read
 from rulec.witnesses.trace_synthesis import place_objects
@@ -31,7 +31,6 @@ class ClassWitnesses:
     ) -> None:
         objects = {variable.name: variable.type for variable in rule.variables}
         own = monitor_function(rule.machine, {name: name for name in objects})
-        self._counts = counts_read(rule.machine.reads)
         declared = vocabulary.declarations
         # What is read and has no default has to be said, although it is arbitrary.
         self._without_default = {
@@ -55,11 +54,6 @@ class ClassWitnesses:
         if not all(map(self.is_read, word)):
             return None
         states = self._alphabet.states_of((letter_class,) for letter_class in word)
-        objects, values = place_objects(states, self._universe, self._stem)
+        objects, values = place_objects(states, self._universe)
         further = tuple(Variable(name, kind) for name, kind in objects.items())
         return further, tuple({**self._without_default, **state} for state in values)
-
-    def _stem(self, kind: str) -> str:
-        """The variable with which the rule counts objects of a type."""
-        is_subtype = self._universe.vocabulary.is_subtype
-        return next(count.variable for count in self._counts if is_subtype(kind, count.type))

@@ -29,10 +29,6 @@ class JointReads:
     reads: Reads
     views: tuple[tuple[JointDigits, ...], ...]
 
-    def own_digits(self, index: int, joint_digits: Sequence[int]) -> tuple[int, ...]:
-        """The digits of one function's reads, given the joint digits."""
-        return tuple(view.digits[joint_digits[view.joint]] for view in self.views[index])
-
 
 def joint_reads(functions: Sequence[LetterFunction], vocabulary: Vocabulary) -> JointReads:
     """Merge the reads of letter functions.

@@ -134,10 +134,6 @@ class CountFunction:
     function: LetterFunction
     counted: tuple[int, ...]
 
-    def counted_in(self, digits: Sequence[int]) -> int:
-        """The number of counted objects in the letter with these digits."""
-        return self.counted[self.function.value(digits)]
-
 
 def count_function(count: ltl.Count, universe: ObjectUniverse) -> CountFunction:
     """A count as a function of its universe.

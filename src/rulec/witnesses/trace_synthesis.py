@@ -23,13 +23,12 @@ from rulec.witnesses.undecided import ChangingConstantsError, UndecidedError
 
 
 def place_objects(
-    states: Sequence[JointState], universe: ObjectUniverse, stem: Callable[[str], str]
+    states: Sequence[JointState], universe: ObjectUniverse
 ) -> tuple[dict[str, str], list[dict[Subject, Value]]]:
-    """Name the objects that the counts of all states need besides the universe's.
+    """Name the objects that the counts of all states need besides the universe's, by their types.
 
-    ``stem`` gives the beginning of the names of such objects by type. Returns their types by name,
-    and the values of each state. Raises UndecidedError if objects that one state needs contradict
-    another.
+    Returns their types by name, and the values of each state. Raises UndecidedError if objects that
+    one state needs contradict another.
     """
     # Each type as often as the state that needs most of it.
     most: Counter[str] = Counter()
@@ -40,7 +39,7 @@ def place_objects(
     types = sorted(most.elements())
     names: list[str] = []
     for kind in types:
-        numbered = (f"{stem(kind)}{number}" for number in count(1))
+        numbered = (f"{kind}{number}" for number in count(1))
         names.append(next(name for name in numbered if name not in {*universe.objects, *names}))
     placed: list[dict[Subject, Value]] = []
     for state in states:
@@ -70,7 +69,7 @@ def synthesize_trace(
     Raises UndecidedError if objects needed for counts prevent that, or if a constant would have to
     change.
     """
-    objects, placed = place_objects(states, universe, str)
+    objects, placed = place_objects(states, universe)
     all_objects = {**universe.objects, **objects}
     types = list(objects.values())
     changing = _changing_constants(placed, universe)

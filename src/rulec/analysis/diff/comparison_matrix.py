@@ -6,11 +6,9 @@ from collections import Counter
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from itertools import permutations
 from pathlib import Path
 from string import ascii_uppercase
 
-from rulec.analysis.diff.distinct_names import with_distinct_names
 from rulec.analysis.diff.rule_comparison import RuleRelation, rule_relation
 from rulec.analysis.diff.rulebook_comparison import rules_matching
 from rulec.analysis.shared_compilation import AnalyzedRule, SharedCompiler, at_one_step
@@ -103,14 +101,6 @@ class ComparisonMatrix:
     def is_uniform(self) -> bool:
         """Whether every rule is equal in all rulebooks that have it."""
         return all(len(set(rule.laws.values())) == 1 for rule in self.rules)
-
-
-def comparison_matrix(
-    books: Sequence[Rulebook], patterns: Sequence[str] = (), step_s: Fraction | None = None
-) -> ComparisonMatrix:
-    """Compare each pair of the rulebooks, rule by rule: the last of ``growing_matrices``."""
-    *_, last = growing_matrices(with_distinct_names(books), patterns, step_s)
-    return last
 
 
 def growing_matrices(
@@ -245,8 +235,3 @@ def _refuse_too_many(matrix: ComparisonMatrix) -> None:
 def _is_own(place: SourceLocation | None) -> bool:
     """Whether a place is in a file that does not ship with rulec."""
     return place is not None and rulebooks_folder() not in Path(place.file).parents
-
-
-def pairs(books: Sequence[Rulebook]) -> list[tuple[str, str]]:
-    """All pairs of rulebooks, in both orders."""
-    return [(first.name, second.name) for first, second in permutations(books, 2)]

@@ -7,10 +7,10 @@ read while the next is compared; the other formats are written at the end.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import combinations
+from itertools import combinations, permutations
 from string import ascii_uppercase, digits
 
-from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule, pairs
+from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 from rulec.report.rulebooks.comparison.diff_json import BookData
 from rulec.report.text.csv_text import csv_text
@@ -115,18 +115,14 @@ def render(matrix: ComparisonMatrix, form: str, width: int) -> str:
 
 
 def _as_text(matrix: ComparisonMatrix, width: int) -> str:
-    head = ["", *(book.name for book in matrix.books)]
+    rows = [["", *(visible(book.name) for book in matrix.books)], *_by_rule(matrix)]
+    head, *lines = stacked_tables(rows, width)
     blocks = [
         broken(RULES, width),
-        _columns([head, *_by_rule(matrix)], width),
+        [styled(head, "bold"), *lines],
         broken(_summary(matrix), width),
     ]
     return "\n" + "\n\n".join("\n".join(block) for block in blocks)
-
-
-def _columns(rows: Sequence[Sequence[str]], width: int) -> list[str]:
-    head, *lines = stacked_tables([[visible(cell) for cell in row] for row in rows], width)
-    return [styled(head, "bold"), *lines]
 
 
 def _by_rule(matrix: ComparisonMatrix) -> list[list[str]]:
@@ -240,7 +236,10 @@ def _as_json(matrix: ComparisonMatrix) -> str:
         MatrixDocument(
             books=[filled(BookData, book) for book in matrix.books],
             rules=[_shared_rule(rule, matrix) for rule in matrix.rules],
-            pairs=[_book_pair(matrix, *names) for names in pairs(matrix.books)],
+            pairs=[
+                _book_pair(matrix, *names)
+                for names in permutations((book.name for book in matrix.books), 2)
+            ],
         )
     )
 
