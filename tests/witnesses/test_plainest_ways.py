@@ -7,7 +7,7 @@ import pytest
 
 from rulec.automata.mealy_monitor import Read
 from rulec.witnesses.diagrams.decision_diagrams import DecisionDiagrams
-from rulec.witnesses.diagrams.plainest_ways import Choices, KnownWays, WaySearch, digits_chosen
+from rulec.witnesses.diagrams.plainest_ways import Choices, WaySearch, digits_chosen
 from rulec.witnesses.joint_reads import JointDigits
 from rulec.witnesses.letter_functions import LetterFunction
 
@@ -59,24 +59,16 @@ def test_ways_are_the_plainest_ones_in_their_order(seed):
         for levels, function in keys + axioms
     ]
     open_axioms = diagrams.open_axioms(roots[len(keys) :])
-    known = KnownWays()
-    every = [range(size) for size in SIZES]
-    # The second search may use what the first one found, and has one digit at a level.
-    for usual in (0, 1 << random.choice([0, 1, 3, 4, 5])):
-        digits = [
-            (DEFAULTS[level],) if usual >> level & 1 else every[level]
-            for level in range(len(SIZES))
-        ]
-        expected = by_trial(keys, axioms, digits)
-        if open_axioms is None:
-            assert not expected
-            continue
-        search = WaySearch(diagrams, Choices(SIZES, digits, DEFAULTS, usual), id, known)
-        ways = search.ways(tuple(roots[: len(keys)]), open_axioms)
-        # What nothing reads is not chosen, and costs nothing where it is as by default.
-        assert list(ways) == list(expected)
-        for classes, (cost, chosen) in ways.items():
-            least, first = expected[classes]
-            assert cost == least
-            for level, digit in digits_chosen(chosen):
-                assert first[level] == digit
+    expected = by_trial(keys, axioms, [range(size) for size in SIZES])
+    if open_axioms is None:
+        assert not expected
+        return
+    search = WaySearch(diagrams, Choices(SIZES, DEFAULTS), id)
+    ways = search.ways(tuple(roots[: len(keys)]), open_axioms)
+    # What nothing reads is not chosen, and costs nothing where it is as by default.
+    assert list(ways) == list(expected)
+    for classes, (cost, chosen) in ways.items():
+        least, first = expected[classes]
+        assert cost == least
+        for level, digit in digits_chosen(chosen):
+            assert first[level] == digit

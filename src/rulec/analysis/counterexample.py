@@ -123,19 +123,32 @@ class Contest:
 
     def trace(self) -> Trace | None:
         """A shortest trace that only the first rule forbids, or None. Raises UndecidedError."""
-        return self._trace(self._alphabet, self._universe, self._given)
+        alphabet, universe = self._alphabet, self._universe
+        word = self._word()
+        if word is None:
+            return None
+
+        step = common_step((self.forbidding, *self._allowing))
+        possible = partial(is_possible, universe=universe)
+        try:
+            return synthesize_trace(alphabet.states_of(word), universe, step, self._shows, possible)
+        except ChangingConstantsError as changing:
+            reads = [alphabet.read_of(subject) for subject in changing.subjects]
+            axioms = [_said_of_constant(read, universe.vocabulary) for read in reads if read]
+            # A constant that already has one value and still changes would recur for ever.
+            if None in reads or not set(self._given).isdisjoint(chain.from_iterable(axioms)):
+                raise
+        # A trace has one value for each constant: take the shortest trace for any values.
+        every = product(*axioms)
+        traces = (self._given_also(x).trace() for x in every)
+        counterexamples = [trace for trace in traces if trace is not None]
+        return min(counterexamples, key=lambda trace: len(trace.states), default=None)
 
     def trace_as_usual(self, names: Set[str]) -> Trace | None:
         """Such a trace in which these declarations have their defaults. Raises UndecidedError."""
         declared = self.forbidding.rulebook.vocabulary.declarations
         axioms = [said_as_usual(name, Itself(declared[name])) for name in sorted(names)]
-        universe = replace(self._universe, axioms=(*self._universe.axioms, *axioms))
-        alphabet = self._alphabet.as_usual(axioms)
-        if self._word(alphabet) is None:
-            return None
-        if not alphabet.is_exact:
-            return self._given_also(axioms).trace()
-        return self._trace(alphabet, universe, (*self._given, *axioms))
+        return self._given_also(axioms).trace()
 
     def plausible(self, traces: Iterable[Trace]) -> Iterator[Contest]:
         """The same contest with what makes states ``plausible``, or at least numbers.
@@ -181,30 +194,6 @@ class Contest:
         own = replace(universe, objects=self._universe.objects)
         return Contest(self.forbidding, self._allowing, given, own)
 
-    def _trace(
-        self, alphabet: JointAlphabet, universe: ObjectUniverse, given: tuple[Axiom, ...]
-    ) -> Trace | None:
-        word = self._word(alphabet)
-        if word is None:
-            return None
-
-        step = common_step((self.forbidding, *self._allowing))
-        possible = partial(is_possible, universe=universe)
-        try:
-            return synthesize_trace(alphabet.states_of(word), universe, step, self._shows, possible)
-        except ChangingConstantsError as changing:
-            reads = [alphabet.read_of(subject) for subject in changing.subjects]
-            axioms = [_said_of_constant(read, universe.vocabulary) for read in reads if read]
-            # A constant that already has one value and still changes would recur for ever.
-            if None in reads or not set(given).isdisjoint(chain.from_iterable(axioms)):
-                raise
-        # A trace has one value for each constant: take the shortest trace for any values.
-        every = product(*axioms)
-        before = len(self._given)
-        traces = (self._given_also((*given[before:], *x)).trace() for x in every)
-        counterexamples = [trace for trace in traces if trace is not None]
-        return min(counterexamples, key=lambda trace: len(trace.states), default=None)
-
     def steadied(self, trace: Trace) -> Trace:
         """A trace of the contest with fewer changes of value from state to state."""
         possible = partial(is_possible, universe=self._universe)
@@ -217,8 +206,8 @@ class Contest:
             allowed.violations(trace, words) for allowed in self._allowing
         )
 
-    def _word(self, alphabet: JointAlphabet) -> tuple[JointLetter, ...] | None:
-        letters = alphabet.candidates
+    def _word(self) -> tuple[JointLetter, ...] | None:
+        alphabet, letters = self._alphabet, self._alphabet.candidates
         if alphabet.is_counting:
             # Usually no word is left even if all letters were possible.
             with suppress(UndecidedError):

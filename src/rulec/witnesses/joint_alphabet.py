@@ -7,27 +7,23 @@ because these depend on each other.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from copy import copy
-from dataclasses import replace
 from heapq import heappop, heappush
 from itertools import count
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.resource_limits import SEARCH
-from rulec.rulebook.rulebook_model import Axiom
 from rulec.witnesses import letter_functions, state_synthesis
 from rulec.witnesses.counted_objects import CountedObjectKinds, fewest_counted_objects
 from rulec.witnesses.counted_types import facts_beside
 from rulec.witnesses.diagrams.decision_diagrams import DecisionDiagrams
 from rulec.witnesses.diagrams.plainest_ways import (
     Choices,
-    KnownWays,
     Nodes,
     WaySearch,
     chosen_digit,
     digits_chosen,
 )
-from rulec.witnesses.joint_reads import joint_reads, merged, subject_of
+from rulec.witnesses.joint_reads import joint_reads
 from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.relevant_axioms import ground_axioms, relevant_axioms, subjects_read
 from rulec.witnesses.undecided import UndecidedError
@@ -84,10 +80,6 @@ class JointAlphabet:
             state_synthesis.default_digit(read, vocabulary) for read in self._joint.reads
         ]
         self._sizes = [read.size for read in self._joint.reads]
-        self._digits: list[Sequence[int]] = list(map(range, self._sizes))
-        self._usual = 0
-        self.is_exact = True
-        self._plain = KnownWays()
         self._subjects = subjects_read(self._joint.reads)
         self._object_kinds = CountedObjectKinds(universe, self._subjects)
         self._numbers: dict[
@@ -96,50 +88,14 @@ class JointAlphabet:
         self._fitting: dict[tuple[tuple[int, int], ...], bool] = {}
         self._search()
 
-    def as_usual(self, axioms: Sequence[Axiom]) -> JointAlphabet:
-        """The alphabet of the states in which further axioms hold, which require default values.
-
-        Each axiom says that one declaration has its default. The result shares the data of this
-        alphabet. ``is_exact``: whether every letter comes from such a state, as far as
-        ``candidates`` generally do; otherwise all such letters are included, and maybe others.
-        """
-        usual = copy(self)
-        usual._universe = replace(self._universe, axioms=(*self._universe.axioms, *axioms))
-        usual._object_kinds = CountedObjectKinds(usual._universe, self._subjects)
-        usual._defaults, usual._digits = [*self._defaults], [*self._digits]
-        reads = list(self._joint.reads)
-        levels = {subject_of(read): level for level, read in enumerate(reads)}
-        for instance in ground_axioms(replace(self._universe, axioms=tuple(axioms))):
-            (own,) = instance.function.reads
-            level = levels.get(subject_of(own))
-            default = None if level is None else self._defaults[level]
-            if level is None or default is None or not instance.holds_by_default:
-                # What nothing reads has its default; what only sums read may not.
-                usual.is_exact &= instance.holds_by_default and instance.subjects.isdisjoint(
-                    self._subjects
-                )
-                continue
-            usual._digits[level] = (default,)
-            usual._usual |= 1 << level
-            if isinstance(own, NumberRead):
-                # Add thresholds around the default; existing ways stay valid.
-                reads[level] = merged([reads[level], own], self._universe.vocabulary)
-                usual._defaults[level] = state_synthesis.default_digit(
-                    reads[level], self._universe.vocabulary
-                )
-                usual._numbers, usual._fitting = {}, {}
-        usual._joint = replace(self._joint, reads=tuple(reads))
-        usual._search()
-        return usual
-
     def _search(self) -> None:
         """Find the candidates, and the ways to them."""
         self._steps_left = self._most_steps = SEARCH.value()
         self._states: dict[JointLetter, state_synthesis.JointState | None] = {}
         self._may_miss_some = False
         ways_to = self._ways_to = dict[JointLetter, list[Way]]()
-        choices = Choices(self._sizes, self._digits, self._defaults, self._usual)
-        search = WaySearch(self._diagrams, choices, self._take, self._plain)
+        choices = Choices(self._sizes, self._defaults)
+        search = WaySearch(self._diagrams, choices, self._take)
         numbers = count()
         for number_digits, nodes in self._numbered(self._root, ()) if self._root else ():
             cost = sum(self._cost(level, digit) for level, digit in number_digits)
@@ -213,7 +169,7 @@ class JointAlphabet:
     def _after(self, nodes: Nodes, level: int) -> Iterator[tuple[int, Nodes]]:
         """The digits of a joint read that violate no axiom, and the nodes after each."""
         rows = self._diagrams.restricted(nodes, level, self._sizes[level])
-        for digit in self._digits[level]:
+        for digit in range(self._sizes[level]):
             axioms = self._diagrams.open_axioms(rows[digit][self._n_keys :])
             if axioms is not None:
                 yield digit, rows[digit][: self._n_keys] + axioms
@@ -222,18 +178,12 @@ class JointAlphabet:
         self, nodes: Nodes, number_digits: tuple[tuple[int, int], ...]
     ) -> Iterator[tuple[tuple[tuple[int, int], ...], Nodes]]:
         """Possible digits of the sums, and the nodes after each combination."""
-        # Fix a usual number to its default even where only sums chosen later depend on it.
-        decided = number_digits[-1][0] + 1 if number_digits else 0
-        usual = self._usual >> decided << decided
         level = self._level(nodes)
-        if usual:
-            level = min(level, (usual & -usual).bit_length() - 1)
         if level >= self._n_numbers:
             yield number_digits, nodes
             return
         for digit, following in self._after(nodes, level):
-            default = self._defaults[level] if usual >> level & 1 else None
-            chosen = (*number_digits, (level, digit if default is None else default))
+            chosen = (*number_digits, (level, digit))
             if self._fits(chosen):
                 yield from self._numbered(following, chosen)
 

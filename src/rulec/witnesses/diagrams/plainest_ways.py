@@ -7,7 +7,7 @@ Nodes of settled classes are dropped, so that a search is the same whatever has 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import count
 from operator import itemgetter
 
@@ -46,15 +46,10 @@ def digits_chosen(chosen: int) -> list[tuple[int, int]]:
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """For each level the number of digits, those that may be chosen, and the default one.
-
-    At the ``usual`` levels (a bit set) the only choice is the default.
-    """
+    """For each level the number of digits, and the default one."""
 
     sizes: Sequence[int]
-    digits: Sequence[Sequence[int]]
     defaults: Sequence[int | None]
-    usual: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,37 +68,25 @@ class _Parts:
     whole: Callable[[tuple[int, ...]], tuple[int, ...]] | None
 
 
-@dataclass(frozen=True, slots=True)
-class KnownWays:
-    """Results of searches in the same diagrams."""
-
-    walked: dict[object, Ways] = field(default_factory=dict)
-    parts: dict[tuple[Nodes, Nodes], _Parts] = field(default_factory=dict)
-
-
 class WaySearch:
     """A search for the plainest ways, which reports its steps to ``take``.
 
-    ``known`` are results of other searches in the same diagrams. Raises UndecidedError if there are
-    too many ways.
+    Raises UndecidedError if there are too many ways.
     """
 
     def __init__(
-        self,
-        diagrams: DecisionDiagrams,
-        choices: Choices,
-        take: Callable[[int], None],
-        known: KnownWays,
+        self, diagrams: DecisionDiagrams, choices: Choices, take: Callable[[int], None]
     ) -> None:
-        self._diagrams, self._choices = diagrams, choices
-        self._take, self._known = take, known
+        self._diagrams, self._choices, self._take = diagrams, choices, take
+        self._known: dict[tuple[Nodes, Nodes], Ways] = {}
+        self._divided: dict[tuple[Nodes, Nodes], _Parts] = {}
         self._n_nodes = 0
 
     def ways(self, keys: Nodes, axioms: Nodes) -> Ways:
         """The plainest way to each tuple of classes of the keys such that no axiom is violated."""
-        parts = self._known.parts.get((keys, axioms))
+        parts = self._divided.get((keys, axioms))
         if parts is None:
-            parts = self._known.parts[keys, axioms] = self._parts(keys, axioms)
+            parts = self._divided[keys, axioms] = self._parts(keys, axioms)
         cost = chosen = 0
         for group in parts.apart:
             alone = self._walked((), group).get(())
@@ -157,9 +140,7 @@ class WaySearch:
         """The ways for distinct open keys and the axioms connected with them."""
         choices, diagrams = self._choices, self._diagrams
         nodes = keys + axioms
-        # Usual levels matter only to nodes that read them; other results are shared by searches.
-        key = keys, axioms, choices.usual and choices.usual & diagrams.support(nodes)
-        known = self._known.walked.get(key)
+        known = self._known.get((keys, axioms))
         if known is not None:
             return known
         self._n_nodes += 1
@@ -169,7 +150,7 @@ class WaySearch:
         default = choices.defaults[level]
         ways: dict[tuple[int, ...], tuple[int, int]] = {}
         rows = diagrams.restricted(nodes, level, choices.sizes[level])
-        for digit in choices.digits[level]:
+        for digit in range(choices.sizes[level]):
             left = diagrams.open_axioms(rows[digit][len(keys) :])
             if left is None:
                 continue
@@ -178,6 +159,6 @@ class WaySearch:
                 fewest = ways.get(classes)
                 if fewest is None or own + cost < fewest[0]:
                     ways[classes] = own + cost, chosen + step
-        self._known.walked[key] = ways
+        self._known[keys, axioms] = ways
         self._take(len(ways))
         return ways
