@@ -31,13 +31,18 @@ from support.generators.random_reads import (
 groups = st.lists(letter_functions(), min_size=1, max_size=3)
 
 
+def own_digits(joint, index, joint_digits):
+    """The digits of one function's reads."""
+    return tuple(view.digits[joint_digits[view.joint]] for view in joint.views[index])
+
+
 @given(groups)
 def test_joint_reads_determine_those_of_each_function(functions):
     joint = joint_reads(functions, VOCABULARY)
     for state in ALL_STATES[::41]:
         joint_digits = [digit(read, state) for read in joint.reads]
         for index, function in enumerate(functions):
-            own = joint.own_digits(index, joint_digits)
+            own = own_digits(joint, index, joint_digits)
             assert own == tuple(digit(read, state) for read in function.reads)
             assert function.value(own) == value(function, state)
 
@@ -71,7 +76,7 @@ def test_diagrams_are_the_functions(functions):
                 size = joint.reads[level].size
                 (node,) = diagrams.restricted([node], level, size)[joint_digit]
             assert diagrams.level([node]) == float("inf")
-            assert diagrams.value(node) == function.value(joint.own_digits(index, joint_digits))
+            assert diagrams.value(node) == function.value(own_digits(joint, index, joint_digits))
             table.append(diagrams.value(node))
         tables.append(table)
     # Canonical: equal functions are the same node, and no others are.

@@ -122,7 +122,7 @@ def test_counts_of_own_objects(body):
         expected = sum(truth(body, values, {"o": name}) for name in TWO)
         assert function.counted[value(function.function, values)] == expected
         own = [read.digit(values[read.name, read.variables]) for read in function.function.reads]
-        assert function.counted_in(own) == expected
+        assert function.counted[function.function.value(own)] == expected
 
 
 def test_a_count_inside_another_one_is_left_undecided():

@@ -112,7 +112,7 @@ def test_objects_are_the_same_in_all_states():
     states = [state((LOUD, 2)), state((LOUD, 0)), state((LOUD, 1))]
     objects, values = place_objects(states, UNIVERSE)
     # The rule's own object has that name already.
-    assert objects == {"x1": "thing", "x2": "thing"}
+    assert objects == {"thing1": "thing", "thing2": "thing"}
     loud = [[one["loud", (name,)] for name in objects].count(True) for one in values]
     assert loud == [2, 0, 1]
 
