@@ -59,8 +59,13 @@ class RuleComparison:
 
 
 def rule_relation(first: AnalyzedRule, second: AnalyzedRule) -> RuleRelation:
-    """The relation between two rules only: ``compare`` without further questions."""
-    return "equal" if first.law == second.law else _compare(first, second, 1).relation
+    """The relation between two rules only: ``compare`` without traces to show."""
+    if first.law == second.law:
+        return "equal"
+    try:
+        return relation_of(shortest_contest(first, [second]), shortest_contest(second, [first]))
+    except UndecidedError:
+        return "undecided"
 
 
 def compare(first: AnalyzedRule, second: AnalyzedRule, most: int = 1) -> RuleComparison:
