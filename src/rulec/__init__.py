@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from rulec.api.judged_drives import JudgedTraces as JudgedTraces
     from rulec.api.named_monitor import Monitor as Monitor
     from rulec.api.session import Session as Session
-    from rulec.api.verbs import *  # noqa: F403 - every verb; each name is in the table below
+    from rulec.api.verbs import *  # noqa: F403 - every verb
     from rulec.automata.bundle.compiled_rulebook import CompiledRule as CompiledRule
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook as CompiledRulebook
     from rulec.automata.mealy_monitor import MealyMonitor as MealyMonitor
@@ -136,99 +136,23 @@ if TYPE_CHECKING:
     from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN
     from rulec.vocabulary.partial_values import Interval as Interval
 
-_HOME = {
-    "rulec.analysis.audit.provision_coverage": "ListedProvision",
-    "rulec.analysis.audit.rulebook_audit": "Audit AuditCounts AuditFinding CitedArticle",
-    "rulec.analysis.audit.source_audit": "RuleBasis SourceAudit",
-    "rulec.analysis.diff.rule_comparison": "RuleComparison",
-    "rulec.analysis.diff.rulebook_comparison": "OneSided RulePair RulebookDiff SettingPair",
-    "rulec.analysis.lineage.rule_lineage": "BookLineage RuleHistory",
-    "rulec.api.judged_drives": "FindingRows JudgedDrives JudgedTraces",
-    "rulec.api.named_monitor": "Monitor",
-    "rulec.api.session": "Session",
-    "rulec.api.verbs": "alternative_counts analyze audit audit_source check compile "
-    "compile_rulebook coverage diff doc draw draw_drive envelope envelopes explain "
-    "find find_maneuvers format formats judge_recording lineage list load_rulebook load_scenario "
-    "load_vocabulary navigation_graph new_rulebook parse_rulebook rates_of_findings "
-    "read_recording read_traces rule_probabilities score score_trajectories show test traces tree "
-    "verify verify_cells verify_columns verify_compiled verify_many verify_recording "
-    "write_compiled write_ltl write_monitor write_traces",
-    "rulec.automata.bundle.compiled_rulebook": "CompiledRule CompiledRulebook",
-    "rulec.automata.mealy_monitor": "MealyMonitor",
-    "rulec.book_tests.example_coverage": "RuleCoverage",
-    "rulec.book_tests.example_runs": "ExampleOutcome ExampleRun",
-    "rulec.book_tests.proposed_examples": "UncoveredEdge UntouchedLimit",
-    "rulec.diagnostics": "Diagnostic Fix Label Offer RulecError SourceLocation",
-    "rulec.diagnostics.code": "Code",
-    "rulec.extraction.moment_search": "DriveMoments",
-    "rulec.extraction.recording_verdicts": "DriveVerdict RecordingVerdicts",
-    "rulec.extraction.selection": "RequestedDrives",
-    "rulec.extraction.traces.recorded_drive": "Drive NoDrive",
-    "rulec.extraction.traffic_thresholds": "Thresholds",
-    "rulec.monitoring.assumptions": "Assumptions",
-    "rulec.monitoring.batch.cell_verdicts": "VerdictColumns",
-    "rulec.monitoring.explain.explanation": "Explanation",
-    "rulec.monitoring.moments.formula_moments": "Moment",
-    "rulec.monitoring.online.four_valued": "VerdictRange",
-    "rulec.monitoring.online.monitor_state": "SoFar VerdictChange",
-    "rulec.monitoring.verdict": (
-        "ConditionalOutcome NotJudged OpenVerdict RuleNotJudged Verdict Violation"
-    ),
-    "rulec.partition": "Cell Envelope Layer NavigationGraph",
-    "rulec.planning": "Maneuvers RankedManeuver RulePruning",
-    "rulec.planning.probability.rule_probability": (
-        "AlternativeCounts RuleProbabilities RuleProbability"
-    ),
-    "rulec.planning.ranking.cheapest": "Maneuver",
-    "rulec.planning.ranking.homotopy": "HomotopyClasses Variant",
-    "rulec.planning.ranking.penalties": "PenaltyRank",
-    "rulec.rates.finding_rows": "FindingRow",
-    "rulec.rates.rule_rates": "Rate RuleRates ViolationRates",
-    "rulec.report.recordings.format_listing": "ListedFormat",
-    "rulec.report.text.listing": "Listed",
-    "rulec.report.findings.verdict_finding": "VerdictFinding",
-    "rulec.rulebook.batch.batch_check": "Checked",
-    "rulec.rulebook.rulebook_model": "Example Rule Rulebook Variable",
-    "rulec.scenario": "Choice Scenario",
-    "rulec.recordings.building": "build_lanelet build_participant build_recording",
-    "rulec.recordings.map_files": "read_map",
-    "rulec.recordings.recording": (
-        "Lanelet Light ObservedLight Participant PlanningProblem Recording TrackState Weather"
-    ),
-    "rulec.recordings.recording_format": "RecordingSource",
-    "rulec.recordings.road_map": "RoadMap",
-    "rulec.recordings.tracks.track_table": "recording_from_columns",
-    "rulec.scoring.candidate_score": "CandidateScore",
-    "rulec.scoring.score_margins": "RuleMargin",
-    "rulec.scoring.scores": "Scores",
-    "rulec.scoring.traffic_world": "TrafficWorld",
-    "rulec.trace": "Trace TraceGraph",
-    "rulec.trace.trace_columns": "TraceCells TraceColumns layout_of",
-    "rulec.validation.file_proof": "RuleProof",
-    "rulec.vocabulary": "Vocabulary",
-    "rulec.vocabulary.partial_values": "UNKNOWN Interval",
-}
-"""Maps each module to the public names that it defines."""
-
-_MODULES = {name: module for module, names in _HOME.items() for name in names.split()}
-
-__all__ = ["__version__", *_MODULES]
-
 
 def __getattr__(name: str) -> Any:
-    module = "rulec.version" if name == "__version__" else _MODULES.get(name)
-    if module is None and name != "fleet":
-        raise AttributeError(f"module 'rulec' has no attribute {name!r}")
-    # Imported late, see the comment at the top.
+    # Here, so that importing the package imports nothing.
     from importlib import import_module
 
-    if module is None:
+    if name == "fleet":
         return import_module("rulec.fleet")  # also public
-
+    lazy = import_module("rulec.lazy_loading")
+    public = [own for own, (home, _) in lazy.homes(__name__).items() if home.startswith("rulec.")]
+    if name == "__all__":
+        return public
+    if name not in public:
+        raise AttributeError(f"module 'rulec' has no attribute {name!r}")
     # Stored, so that it is found without this function from now on.
-    public = globals()[name] = getattr(import_module(module), name)
-    return public
+    found = globals()[name] = lazy.lazy_names(__name__)(name)
+    return found
 
 
 def __dir__() -> Sequence[str]:
-    return sorted(__all__)
+    return sorted(__getattr__("__all__"))

@@ -13,6 +13,13 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
+try:
+    import resource
+except ImportError:
+    _IN_BROWSER = True
+else:
+    _IN_BROWSER = False
+
 from rulec.diagnostics import RulecError
 from rulec.resource_limits import MEMORY, SECONDS, is_set, variable_set
 
@@ -38,9 +45,7 @@ class TimeSpentError(BaseException):
 @contextmanager
 def enforced() -> Iterator[None]:
     """Enforce the limits in force while the block runs, here and in processes started meanwhile."""
-    try:
-        import resource  # a browser has none
-    except ImportError:
+    if _IN_BROWSER:
         yield
         return
     if is_set(MEMORY):
@@ -71,8 +76,6 @@ def allow_for(file: str, n_bytes: int) -> None:
     """Allow the memory for so many bytes of a file, after decompression."""
     more = n_bytes - _allowed.get(file, 0)
     if more > 0 and os.environ.get(_GROWS):
-        import resource  # as above
-
         _allowed[file] = n_bytes
         soft, _ = resource.getrlimit(resource.RLIMIT_DATA)
         if soft != resource.RLIM_INFINITY:
@@ -93,8 +96,6 @@ def limit_error(problem: BaseException) -> RulecError | None:
 
 
 def _allow(n_bytes: int) -> None:
-    import resource  # as above
-
     _, hard = resource.getrlimit(resource.RLIMIT_DATA)
     soft = n_bytes if hard == resource.RLIM_INFINITY else min(n_bytes, hard)
     resource.setrlimit(resource.RLIMIT_DATA, (soft, hard))

@@ -32,6 +32,7 @@ KEPT = {
 """At most ten of them stay, with their reasons."""
 
 REPEATED_MODULES = {
+    "lazy_imports": "the doors of cli and of api",
     "maneuvers": "cli/commands has a file for each command",
     "tree": "likewise",
     "verify": "likewise",

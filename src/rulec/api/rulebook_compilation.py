@@ -1,7 +1,5 @@
 """Compiling rules, given as a name, a path, a rulebook or already compiled."""
 
-# Imports within functions: all that they need takes 330 ms, this module alone 20 ms.
-
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
@@ -10,8 +8,10 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+from rulec.api import lazy_imports as lazy
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.bundle.required_signature import refuse_source
+from rulec.automata.bundle.stored_steps import for_steps
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.argument_kinds import finite
@@ -61,27 +61,22 @@ def _of_source(
     refuse_source(reference)
     question = None
     if recalls:
-        from rulec.automata.compiled_cache import question_of, recalled
-
-        question = question_of(reference, search_path, at)
+        question = lazy.question_of(reference, search_path, at)
         any_first = any_step or step is not None
-        known = None if question is None else recalled(question, any_step=any_first)
+        known = (
+            None if question is None else lazy.compiled_cache.recalled(question, any_step=any_first)
+        )
         if known is not None:
             warn(known[1])
             return known[0] if step is None else replace(known[0].at_step(step), recompile=None)
-    # The parser takes 60 ms to import: only where the cache has no answer
-    from rulec.pipeline import compile_source
-
-    return compile_source(
+    return lazy.compile_source(
         reference, search_path, at, step, any_step=any_step, on_warning=warn, question=question
     )
 
 
 def _prefixes(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
     """The machines for incomplete traces, which compiled files of version 3 lack."""
-    from rulec.automata.prefix_machines import prefix_machines
-
-    return prefix_machines(rulebook)
+    return lazy.prefix_machines(rulebook)
 
 
 def compile_rulebook(
@@ -118,22 +113,19 @@ def compile_rulebook(
             return _of_source(
                 reference, search_path, warn, step, at=at, any_step=any_step, recalls=recalls
             )
-        from rulec.automata.bundle.bundle_file import read_compiled
-
-        reference = read_compiled(Path(reference), at)
+        reference = lazy.read_compiled(Path(reference), at)
         if reference.prefixes is None:
             reference = replace(reference, prefixes=_prefixes)
     if isinstance(reference, CompiledRulebook):
         return reference if step is None else reference.at_step(step)
-    from rulec.automata.compiler import lower
-    from rulec.automata.step_compilation import StepCompiler, build_automata
-
     if not isinstance(reference, Rulebook):
         raise TypeError(
             f"rules are a rulebook's name, its path, or a Rulebook, not {type(reference).__name__}"
         )
 
-    return build_automata(lower(reference, step, any_step=any_step), StepCompiler(reference))
+    return lazy.build_automata(
+        lazy.compiler.lower(reference, step, any_step=any_step), lazy.StepCompiler(reference)
+    )
 
 
 def _for_steps(
@@ -145,8 +137,6 @@ def _for_steps(
     at: str,
     recalls: bool,
 ) -> CompiledRulebook:
-    from rulec.automata.bundle.stored_steps import for_steps
-
     if not steps:
         raise ValueError("`step_s` has no step: give one, or None")
     compiled = machines(reference, search_path, warn, at, recalls=recalls)

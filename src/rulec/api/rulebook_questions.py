@@ -1,7 +1,5 @@
 """Verbs of a session about rulebooks: explain, diff, analyze, audit, show."""
 
-# Imports within functions: all that these verbs need takes 340 ms, a session alone 25 ms.
-
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
@@ -11,6 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args, overload
 
+from rulec.api import lazy_imports as lazy
 from rulec.api.rulebook_verbs import RulebookVerbs
 from rulec.api.session_settings import ignore
 from rulec.diagnostics import Diagnostic
@@ -19,6 +18,7 @@ from rulec.diagnostics.code import Code
 from rulec.resources import scenarios_folder
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_trace
+from rulec.trace.vocabulary_projection import values_lacking, with_told_values
 
 if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit
@@ -63,23 +63,17 @@ class RulebookQuestions(RulebookVerbs):
         Raises KeyError for an unknown code.
         """
         if isinstance(subject, str):
-            from rulec.report.findings.code_registry import code_named
-
-            code = code_named(subject.upper())
+            code = lazy.code_named(subject.upper())
             if code is None:
                 raise KeyError(f"there is no code {subject}")
             return code
-        from rulec.monitoring.explain.explanation import explain
-
         if trace is None or rules is None:
             raise TypeError("explaining a violation needs the trace and the rules")
         if isinstance(trace, Trace):
             check_trace(trace)
             rounded, *_ = self._compiled(rules).rounded_to(trace.step_s)
-            return explain(subject, trace, rounded)
-        from rulec.extraction.recording_verdicts import explain_drive
-
-        return explain_drive(subject, trace, self._compiled(rules))
+            return lazy.explain(subject, trace, rounded)
+        return lazy.explain_drive(subject, trace, self._compiled(rules))
 
     def diff(
         self,
@@ -101,25 +95,21 @@ class RulebookQuestions(RulebookVerbs):
         another name; ``on_progress`` is called with the number of rules compared. Raises
         RulecError.
         """
-        from rulec.analysis.diff.rulebook_comparison import diff_rulebooks, setting_pairs
-        from rulec.analysis.lineage.book_lineage import read_with_lineage
-        from rulec.automata.thresholds import exact_step
-
         finite("step_s", step_s)
-        book, lineage = read_with_lineage(first, self.search_path, self.at)
-        second_book, second_lineage = read_with_lineage(second, self.search_path, self.at)
+        book, lineage = lazy.read_with_lineage(first, self.search_path, self.at)
+        second_book, second_lineage = lazy.read_with_lineage(second, self.search_path, self.at)
         self._warn(list(dict.fromkeys((*book.warnings, *second_book.warnings))))
-        diff = diff_rulebooks(
+        diff = lazy.diff_rulebooks(
             first=book.rulebook,
             second=second_book.rulebook,
             patterns=(patterns,) if isinstance(patterns, str) else patterns,
-            step_s=None if step_s is None else exact_step(step_s),
+            step_s=None if step_s is None else lazy.exact_step(step_s),
             tell=on_progress,
             most=witnesses,
             paired=paired or {},
         )
         # With patterns no settings are compared, since other rules may depend on them.
-        settings = () if patterns else setting_pairs(lineage, second_lineage)
+        settings = () if patterns else lazy.setting_pairs(lineage, second_lineage)
         return replace(diff, settings=settings, files=(*book.paths, *second_book.paths))
 
     def analyze(
@@ -134,25 +124,22 @@ class RulebookQuestions(RulebookVerbs):
         ``on_progress`` is called with the number of questions answered so far. ``spread`` answers
         them in advance, as the command does in several processes.
         """
-        from rulec.analysis.lint.changing_lines import changing_lines
-        from rulec.analysis.lint.rulebook_findings import rulebook_findings
-        from rulec.rulebook.allowances import without_allowed
-        from rulec.rulebook.loader import read_rulebook
-
-        loaded = read_rulebook(reference, self.search_path, self.at)
+        loaded = lazy.read_rulebook(reference, self.search_path, self.at)
         book, extends = loaded.rulebook, loaded.books[-1].extends
         above = [Path(file.span.source.name) for file in loaded.books[-2:-1]]
         # Compared for the same side of traffic: a treaty's near side is that of the party.
-        bases = [read_rulebook(name, self.search_path, book.at, book.traffic) for name in above]
-        findings = rulebook_findings(
+        bases = [
+            lazy.read_rulebook(name, self.search_path, book.at, book.traffic) for name in above
+        ]
+        findings = lazy.rulebook_findings(
             book,
             [base.rulebook for base in bases],
             on_progress,
             extends=extends.span if extends else None,
             spread=spread,
-            changes=changing_lines(loaded.books),
+            changes=lazy.changing_lines(loaded.books),
         )
-        return without_allowed(findings)
+        return lazy.without_allowed(findings)
 
     def audit(
         self,
@@ -168,16 +155,14 @@ class RulebookQuestions(RulebookVerbs):
         the text of its law, in which the cited provisions are looked up; ``law_now`` is the present
         version of that law, to find changes in what rules rest on.
         """
-        from rulec.analysis.audit.law_text import read_law_text
-        from rulec.analysis.audit.rulebook_audit import audit
-        from rulec.analysis.lineage.book_lineage import read_with_lineage
-
-        loaded, inherited = read_with_lineage(reference, self.search_path, self.at)
+        loaded, inherited = lazy.read_with_lineage(reference, self.search_path, self.at)
         self._warn(loaded.warnings)
         outcomes = self.test(reference).outcomes if run_examples else ()
         failing = [(outcome.rule.name, outcome.name) for outcome in outcomes if not outcome.passed]
-        texts = (None if path is None else read_law_text(Path(path)) for path in (law, law_now))
-        return audit(loaded.rulebook, inherited, failing, *texts)
+        texts = (
+            None if path is None else lazy.read_law_text(Path(path)) for path in (law, law_now)
+        )
+        return lazy.rulebook_audit.audit(loaded.rulebook, inherited, failing, *texts)
 
     def audit_source(
         self, reference: str | Path, source: str | Path, where: RecordingSource | None = None
@@ -187,32 +172,24 @@ class RulebookQuestions(RulebookVerbs):
         ``source`` is a format, such as ``commonroad``, of which some files may provide less, or a
         file of recorded traffic; ``where`` says how to read that. Raises RulecError.
         """
-        from rulec.analysis.audit.source_audit import audit_source
-        from rulec.extraction.selection import RequestedDrives, selected_drives
-        from rulec.extraction.tellable_types import told_types
-        from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
-        from rulec.recordings.recording_files import read_recording
-        from rulec.recordings.recording_format import RecordingSource
-        from rulec.trace.vocabulary_projection import values_lacking, with_told_values
-
         rulebook = self.compile(reference)
-        told, lacking = TELLABLE_WORDS.get(str(source)), frozenset[str]()
+        told, lacking = lazy.TELLABLE_WORDS.get(str(source)), frozenset[str]()
         form = str(source)
         if told is None:
-            recording = read_recording(where or RecordingSource(Path(source)))
-            drives = selected_drives(recording, RequestedDrives(), str(source), rulebook.traffic)
-            told, form = told_words(drives), recording.form
+            recording = lazy.read_recording(where or lazy.RecordingSource(Path(source)))
+            drives = lazy.selected_drives(
+                recording, lazy.RequestedDrives(), str(source), rulebook.traffic
+            )
+            told, form = lazy.told_words(drives), recording.form
             types = (lanelet.types for lanelet in recording.lanelets.values())
             lacking = values_lacking(frozenset().union(*types))
         words = with_told_values(told, rulebook.vocabulary, lacking)
-        words |= told_types(form, rulebook.vocabulary)
-        return audit_source(rulebook, str(source), words)
+        words |= lazy.told_types(form, rulebook.vocabulary)
+        return lazy.audit_source(rulebook, str(source), words)
 
     def tree(self, reference: str | Path) -> BookLineage:
         """Trace everything in a rulebook to its origin, with its changes."""
-        from rulec.analysis.lineage.book_lineage import read_with_lineage
-
-        return read_with_lineage(reference, self.search_path, self.at)[1]
+        return lazy.read_with_lineage(reference, self.search_path, self.at)[1]
 
     lineage = tree
 
@@ -223,15 +200,13 @@ class RulebookQuestions(RulebookVerbs):
         """
         if width < _NARROWEST:
             raise ValueError(f"`width` is {_NARROWEST} columns or more, not {width}")
-        from rulec.report.rulebooks import rule_page
-
         book = self.load_rulebook(reference)
         chosen = next((known for known in book.rules if known.name == rule), None)
         if chosen is None:
             raise KeyError(f"{book.name} has no rule {rule}")
         compiled = self.compile_rulebook(replace(book, rules=(chosen,)))
-        page = rule_page.page_of(chosen, compiled)
-        return rule_page.as_text(page, book, width)
+        page = lazy.rule_page.page_of(chosen, compiled)
+        return lazy.rule_page.as_text(page, book, width)
 
     def doc(
         self,
@@ -243,61 +218,43 @@ class RulebookQuestions(RulebookVerbs):
 
         The HTML page shows its examples as pictures. Texts by the authors stay in their language.
         """
-        from rulec.analysis.lineage.book_lineage import read_with_lineage
-        from rulec.logic.sentences.language import LANGUAGES
-        from rulec.report.rulebooks.document.book_document import (
-            as_markdown,
-            contents_heading,
-            title_of,
-        )
-        from rulec.report.rulebooks.document.example_picture import ExampleFigures
-        from rulec.report.rulebooks.document_language import document_language
-        from rulec.report.text.html_page import PageTexts, as_html
-
-        if language not in LANGUAGES:
-            raise ValueError(f"the language is one of {', '.join(LANGUAGES)}, not {language!r}")
-        loaded, lineage = read_with_lineage(reference, self.search_path, self.at)
+        if language not in lazy.LANGUAGES:
+            raise ValueError(
+                f"the language is one of {', '.join(lazy.LANGUAGES)}, not {language!r}"
+            )
+        loaded, lineage = lazy.read_with_lineage(reference, self.search_path, self.at)
         self._warn(loaded.warnings)
-        words = document_language(loaded.rulebook, language)
+        words = lazy.document_language(loaded.rulebook, language)
         if form == "markdown":
-            return as_markdown(loaded, lineage, words)
-        figures = ExampleFigures(loaded.rulebook.vocabulary)
-        text = as_markdown(loaded, lineage, words, figures.add)
-        page = PageTexts(
-            title_of(loaded.rulebook), contents_heading(words), language, is_closed=True
+            return lazy.book_document.as_markdown(loaded, lineage, words)
+        figures = lazy.ExampleFigures(loaded.rulebook.vocabulary)
+        text = lazy.book_document.as_markdown(loaded, lineage, words, figures.add)
+        page = lazy.PageTexts(
+            lazy.title_of(loaded.rulebook), lazy.contents_heading(words), language, is_closed=True
         )
-        return as_html(text, page, figures.by_address)
+        return lazy.html_page.as_html(text, page, figures.by_address)
 
     def new_rulebook(self, name: str, extends: str | None = None) -> str:
         """The text of a new rulebook, optionally extending another. Raises RulecError."""
-        from rulec.rulebook import template
-
         today = datetime.now().astimezone().date()
         if extends is None:
-            return template.new_rulebook(name, today)
-        return template.new_rulebook_upon(name, extends, today, self._folders())
+            return lazy.template.new_rulebook(name, today)
+        return lazy.template.new_rulebook_upon(name, extends, today, self._folders())
 
     def list(self, kind: Kind = "rulebooks") -> tuple[Listed, ...]:
         """The available rulebooks, vocabularies, scenarios or codes, with their titles."""
-        from rulec.report.text.listing import Listed
-
         if kind not in (kinds := get_args(Kind)):
             raise ValueError(f"`kind` is one of {', '.join(kinds)}, not {kind!r}")
         if kind == "codes":
-            from rulec.report.findings.code_registry import all_codes
-
-            return tuple(Listed(text, code.title) for text, code in all_codes().items())
+            return tuple(lazy.Listed(text, code.title) for text, code in lazy.all_codes().items())
         if kind == "scenarios":
-            from rulec.scenario import available_scenarios, load_scenario
-
-            abouts = {name: load_scenario(name).about for name in available_scenarios()}
+            abouts = {name: lazy.load_scenario(name).about for name in lazy.available_scenarios()}
             return tuple(
-                Listed(name, " ".join(about.split()), str(scenarios_folder() / f"{name}.toml"))
+                lazy.Listed(name, " ".join(about.split()), str(scenarios_folder() / f"{name}.toml"))
                 for name, about in abouts.items()
             )
-        from rulec.rulebook.files.catalogue import list_rulebooks, list_vocabularies
-
-        entries = list_rulebooks if kind == "rulebooks" else list_vocabularies
+        entries = lazy.list_rulebooks if kind == "rulebooks" else lazy.list_vocabularies
         return tuple(
-            Listed(entry.name, entry.title, str(entry.path)) for entry in entries(self._folders())
+            lazy.Listed(entry.name, entry.title, str(entry.path))
+            for entry in entries(self._folders())
         )

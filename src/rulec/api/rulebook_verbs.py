@@ -1,7 +1,5 @@
 """Verbs about rulebooks: read, compile, write, check, test."""
 
-# Imports within functions: all that these verbs need takes 340 ms, a session alone 25 ms.
-
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
@@ -9,6 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from rulec.api import lazy_imports as lazy
 from rulec.api.session_settings import SessionSettings
 from rulec.diagnostics.argument_kinds import finite
 
@@ -33,23 +32,17 @@ class RulebookVerbs(SessionSettings):
         rulec; or a path, which contains a ``/`` or ends in ``.rules``. Raises RulecError with every
         mistake in it, in the rulebooks that it extends and in their vocabularies.
         """
-        from rulec.rulebook.loader import read_rulebook
-
-        loaded = read_rulebook(reference, self.search_path, self.at)
+        loaded = lazy.read_rulebook(reference, self.search_path, self.at)
         self._warn(loaded.warnings)
         return loaded.rulebook
 
     def parse_rulebook(self, text: str, name: str = "<text>") -> Rulebook:
         """Parse a rulebook's text, called ``name`` in messages. Raises RulecError."""
-        from rulec.rulebook.loader import parse_rulebook
-
-        return parse_rulebook(text, name, self._folders(), self.at)
+        return lazy.parse_rulebook(text, name, self._folders(), self.at)
 
     def load_vocabulary(self, name: str) -> Vocabulary:
         """Read a vocabulary by its name. Raises RulecError."""
-        from rulec.rulebook.loader import load_vocabulary
-
-        return load_vocabulary(name, self._folders())
+        return lazy.load_vocabulary(name, self._folders())
 
     def compile_rulebook(
         self,
@@ -66,9 +59,7 @@ class RulebookVerbs(SessionSettings):
             RulecError: mistakes in the source; R0401 to R0403 if there is no automaton, R0407 for a
                 bound that is not a multiple of the step, R0507 if it was compiled for another one.
         """
-        from rulec.api.rulebook_compilation import compile_rulebook
-
-        return compile_rulebook(
+        return lazy.compile_rulebook(
             reference, self.search_path, self._warn, step_s, self.at, recalls=True
         )
 
@@ -82,19 +73,11 @@ class RulebookVerbs(SessionSettings):
         With ``certificate`` rules compiled by Spot are also compiled by a second compiler, and the
         file says which tables are equal. Raises RulecError, R0417 if some are not.
         """
-        from rulec.automata.bundle.bundle_file import write_compiled
-
-        # Late import, only to write files: the compiler (30 ms).
-        from rulec.automata.second_compiler import with_automata
-
         # A rulebook with two steps could not judge any trace.
-        rulebook = with_automata(rulebook.at_one_step())
+        rulebook = lazy.with_automata(rulebook.at_one_step())
         if certificate:
-            # Imported late: the compiler takes 30 ms to load.
-            from rulec.automata.second_compiler import certified
-
-            rulebook = certified(rulebook)
-        return tuple(write_compiled(rulebook, Path(folder)))
+            rulebook = lazy.second_compiler.certified(rulebook)
+        return tuple(lazy.write_compiled(rulebook, Path(folder)))
 
     def write_monitor(
         self,
@@ -114,10 +97,10 @@ class RulebookVerbs(SessionSettings):
         before it is written, with a report. Raises RulecError R0750 if no such monitor is possible,
         and with ``prove`` R0751 to R0753.
         """
-        from rulec.code_generation.monitor_files import write_monitor
-
         compiled = self._compiled(rules)
-        paths = write_monitor(compiled, Path(folder), objects or {}, prove=prove, language=language)
+        paths = lazy.write_monitor(
+            compiled, Path(folder), objects or {}, prove=prove, language=language
+        )
         return tuple(paths)
 
     def write_ltl(
@@ -131,18 +114,13 @@ class RulebookVerbs(SessionSettings):
         ``step_s`` is the number of seconds between two states; None for the step of the rules'
         examples. Raises RulecError R0407 for bounds that are not multiples of it, and R0754.
         """
-        from rulec.automata.compiler import lower
-        from rulec.automata.thresholds import exact_step
-        from rulec.logic.bounds import has_seconds, longest_divisor
-        from rulec.ltl_export.ltl_files import write_ltl
-
         finite("step_s", step_s)
-        step = None if step_s is None else exact_step(step_s)
+        step = None if step_s is None else lazy.exact_step(step_s)
         rulebook = self.load_rulebook(reference) if isinstance(reference, str | Path) else reference
-        steps = [rule.step_s for rule in rulebook.rules if has_seconds(rule.formula)]
+        steps = [rule.step_s for rule in rulebook.rules if lazy.has_seconds(rule.formula)]
         if step is None and steps:
-            step = longest_divisor(steps)
-        return tuple(write_ltl(rulebook, lower(rulebook, step), Path(folder)))
+            step = lazy.longest_divisor(steps)
+        return tuple(lazy.write_ltl(rulebook, lazy.compiler.lower(rulebook, step), Path(folder)))
 
     def verify_compiled(self, path: str | Path) -> tuple[RuleProof, ...]:
         """Compare the tables in a compiled rulebook's file with its formulas, without Spot.
@@ -150,35 +128,29 @@ class RulebookVerbs(SessionSettings):
         Returns one result for each rule, which is proved if its ``because`` is empty. Raises
         RulecError: R0701, and for a file that is not a compiled rulebook, or damaged.
         """
-        from rulec.automata.bundle.bundle_proof import proofs_of_file
-
-        return tuple(proofs_of_file(Path(path)))
+        return tuple(lazy.proofs_of_file(Path(path)))
 
     def check(self, *references: str | Path) -> Checked:
         """List all diagnostics of rulebooks and vocabularies, without raising them.
 
         Each is a name, a file, or a folder (all .rules files in it).
         """
-        from rulec.rulebook.batch.batch_check import check
-
         names = [str(reference) for reference in references]
-        return check(names, bytes, self._folders(), self.at)
+        return lazy.batch_check.check(names, bytes, self._folders(), self.at)
 
     def format(self, text: str, name: str = "<text>") -> str:
         """A rulebook's or vocabulary's text in the canonical form. Raises RulecError."""
-        from rulec.rulebook.batch.batch_format import formatted
-
-        return formatted(name, None, text.encode("utf-8", "surrogatepass")).after.decode()
+        return lazy.batch_format.formatted(
+            name, None, text.encode("utf-8", "surrogatepass")
+        ).after.decode()
 
     def test(self, reference: str | Path, pattern: str | None = None) -> ExampleRun:
         """Run a rulebook's examples whose RULE or RULE/LABEL matches the pattern."""
-        from rulec.batch.example_batch import ExampleRequest, run_examples
-
         patterns = () if pattern is None else (pattern,)
-        return run_examples(ExampleRequest(self.search_path, self.at, patterns), reference)
+        return lazy.run_examples(
+            lazy.ExampleRequest(self.search_path, self.at, patterns), reference
+        )
 
     def coverage(self, run: ExampleRun) -> tuple[RuleCoverage, ...]:
         """Measure what the examples of a run cover, rule by rule."""
-        from rulec.book_tests.example_coverage import coverage
-
-        return coverage(run)
+        return lazy.example_coverage.coverage(run)

@@ -1,7 +1,5 @@
 """Verbs about scenarios: navigation graph, maneuvers, envelopes, pictures."""
 
-# Imports within functions: all that these verbs need takes 220 ms, a session alone 25 ms.
-
 from __future__ import annotations
 
 import sys
@@ -9,9 +7,11 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from rulec.api import lazy_imports as lazy
 from rulec.api.session_settings import SessionSettings
 from rulec.garbage_collection import no_garbage_collection
 from rulec.trace import Trace
+from rulec.trace.plain_unknowns import with_plain_unknowns
 from rulec.trace.trace_model import all_traces, check_trace
 
 if TYPE_CHECKING:
@@ -42,23 +42,16 @@ class ScenarioVerbs(SessionSettings):
         ``choice`` is for recorded scenes.
         """
         if isinstance(reference, str | Path):
-            from rulec.scenario import load_scenario
-
-            return load_scenario(reference, choice)
-        from rulec.scenario import Choice
-        from rulec.scenario.scenario_files import scene_of
-
-        return scene_of(reference, choice or Choice(), Path(reference.name))
+            return lazy.load_scenario(reference, choice)
+        return lazy.scene_of(reference, choice or lazy.Choice(), Path(reference.name))
 
     @no_garbage_collection()
     def navigation_graph(
         self, scenario: str | Path | Scenario, **options: Unpack[GraphOptions]
     ) -> NavigationGraph:
         """A scenario as cells and successors over time. Raises RulecError."""
-        from rulec.partition import navigation_graph
-
         scene = self.load_scenario(scenario) if isinstance(scenario, str | Path) else scenario
-        return navigation_graph(scene, **options)
+        return lazy.navigation_graph(scene, **options)
 
     @no_garbage_collection()
     def find_maneuvers(
@@ -80,35 +73,24 @@ class ScenarioVerbs(SessionSettings):
         if its side of traffic is not that of the rules. Source: algorithm 1 of the paper. Raises
         RulecError.
         """
-        from rulec.monitoring.assumptions import Assumptions, check_assumed
-        from rulec.planning import SceneReading, evaluate, partition_for
-
-        reading = SceneReading(assumptions or Assumptions(), told_only)
+        reading = lazy.SceneReading(assumptions or lazy.Assumptions(), told_only)
         compiled = self._compiled(rules)
-        check_assumed(reading.assumptions.values, compiled.vocabulary, "values")
-        options["partition"] = partition_for(compiled, options.get("partition"))
+        lazy.check_assumed(reading.assumptions.values, compiled.vocabulary, "values")
+        options["partition"] = lazy.partition_for(compiled, options.get("partition"))
         scene = self.load_scenario(scenario) if isinstance(scenario, str | Path) else scenario
         if scene.account is not None:
-            # Imported late: extraction takes 100 ms, and is only needed for recorded scenes
-            from rulec.cell_words import on_side_of
-
-            scene = on_side_of(compiled, scene)
+            scene = lazy.on_side_of(compiled, scene)
         graph = self.navigation_graph(scene, **options)
         account, words = graph.scenario.account, None
         # As in the paper, its relations come from the cells, not from the recording
         is_papers = graph.partition == "paper" or graph.bounds is None
         if account is not None and account.origin is not None and not is_papers:
-            # Imported late, as above
-            from rulec.cell_words import cell_words
-
-            words = cell_words(graph, compiled)
-        return evaluate(graph, compiled, after, reading, words)
+            words = lazy.cell_words(graph, compiled)
+        return lazy.evaluate(graph, compiled, after, reading, words)
 
     def envelope(self, graph: NavigationGraph, nodes: Sequence[int]) -> Sequence[Envelope]:
         """The bounds of a maneuver by layer. Raises RulecError R0609 if ``nodes`` is not a path."""
-        from rulec.partition import envelope
-
-        return envelope(graph, tuple(nodes))
+        return lazy.envelope(graph, tuple(nodes))
 
     def envelopes(self, maneuvers: Maneuvers, n: int = 1) -> tuple[Sequence[Envelope], ...]:
         """The envelopes of the ``n`` cheapest maneuvers that are satisfying or open."""
@@ -125,9 +107,7 @@ class ScenarioVerbs(SessionSettings):
             RulecError: R0781 if a maneuver has no trajectory, or the scene is not recorded; R0507
                 for rules compiled for another step than the recording's.
         """
-        from rulec.scoring.maneuver_trajectories import score_trajectories
-
-        return score_trajectories(maneuvers, tuple(listed))
+        return lazy.score_trajectories(maneuvers, tuple(listed))
 
     def traces(
         self,
@@ -138,8 +118,6 @@ class ScenarioVerbs(SessionSettings):
         **options: Unpack[GraphOptions],
     ) -> Iterator[Trace]:
         """Generate a scenario's maneuvers lazily as traces, in the rules' vocabulary."""
-        from rulec.trace.plain_unknowns import with_plain_unknowns
-
         if limit < 0:
             raise ValueError(f"`limit` is how many are wanted at most, not {limit}")
         scene = self.load_scenario(scenario) if isinstance(scenario, str | Path) else scenario
@@ -152,15 +130,11 @@ class ScenarioVerbs(SessionSettings):
 
     def rule_probabilities(self, maneuvers: Maneuvers, maneuver: Maneuver) -> RuleProbabilities:
         """The probability that a maneuver keeps each rule, over the obstacles' predictions."""
-        from rulec.planning.probability.rule_probability import rule_probabilities
-
-        return rule_probabilities(maneuvers, maneuver)
+        return lazy.rule_probabilities(maneuvers, maneuver)
 
     def alternative_counts(self, maneuvers: Maneuvers) -> tuple[AlternativeCounts, ...]:
         """Counts of maneuvers for each less likely prediction of an obstacle."""
-        from rulec.planning.probability.rule_probability import alternative_counts
-
-        return tuple(alternative_counts(maneuvers))
+        return tuple(lazy.alternative_counts(maneuvers))
 
     def draw(
         self,
@@ -177,21 +151,19 @@ class ScenarioVerbs(SessionSettings):
         cheapest if ``subject`` is ``Maneuvers``; ``as_graph`` draws the navigation graph instead of
         the scene. PNG requires the extra ``pictures``. Returns the content of a file.
         """
-        from rulec.api import pictures
-        from rulec.partition import NavigationGraph
-        from rulec.report.pictures.drawing.picture_formats import as_bytes
-
         if isinstance(subject, Trace):
             check_trace(subject)
             if rules is None:
                 raise TypeError("drawing a trace needs the rules that judge it")
             used = self._compiled(rules).fitted_to(subject.step_s)
-            return as_bytes(pictures.trace_drawing(subject, used), form, subject.id)
-        draw = pictures.graph_drawing if as_graph else pictures.scene_drawing
-        if isinstance(subject, NavigationGraph):
+            return lazy.picture_formats.as_bytes(
+                lazy.pictures.trace_drawing(subject, used), form, subject.id
+            )
+        draw = lazy.pictures.graph_drawing if as_graph else lazy.pictures.scene_drawing
+        if isinstance(subject, lazy.NavigationGraph):
             drawing = draw(subject, None, maneuver)
         else:
             if maneuver is None:
                 maneuver = next(iter(subject.cheapest(1, perhaps=True)), None)
             drawing = draw(subject.graph, subject, maneuver)
-        return as_bytes(drawing, form, drawing.title)
+        return lazy.picture_formats.as_bytes(drawing, form, drawing.title)

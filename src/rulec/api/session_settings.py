@@ -9,6 +9,7 @@ from inspect import isfunction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rulec.api import lazy_imports as lazy
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.argument_kinds import checked_kinds, expected
 
@@ -64,7 +65,4 @@ class SessionSettings:
         return tuple(Path(folder) for folder in self.search_path)
 
     def _compiled(self, rules: Rules) -> CompiledRulebook:
-        # Called for every trace, so imported late, and fast for a compiled rulebook.
-        from rulec.api.rulebook_compilation import machines
-
-        return machines(rules, self.search_path, self._warn, self.at, recalls=True)
+        return lazy.machines(rules, self.search_path, self._warn, self.at, recalls=True)

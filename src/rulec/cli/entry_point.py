@@ -30,6 +30,7 @@ from io import TextIOWrapper
 from types import FrameType
 from typing import TYPE_CHECKING, TextIO
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.interruption import interrupt, is_interrupted
 from rulec.version import __version__
 
@@ -57,13 +58,8 @@ def _run() -> int:
         _prepare()
         if sys.argv[1:] == ["--version"] and _printed_version():
             return 0
-        # Late import, after signals are set, not for --version: click and diagnostics (30 ms).
-        from rulec.cli.dataclass_methods import write_when_called
-
-        write_when_called()  # before any module with dataclasses
-        from rulec.cli.main import main
-
-        return main()
+        lazy.write_when_called()  # before any module with dataclasses
+        return lazy.main.main()
     except BaseException as problem:
         # Some imported modules turn an interrupt into errors of their own.
         if isinstance(problem, KeyboardInterrupt) or is_interrupted():
@@ -133,13 +129,10 @@ def _unraisable(problem: UnraisableHookArgs) -> None:
         if not _leaving:
             sys.__unraisablehook__(problem)
         return
-    # Late import, rarely needed (3 ms).
-    from threading import Timer, get_ident
-
     # Delayed, since nothing can be raised here either; on a busy machine not for long enough.
     for delay_s in (0.01, 0.1, 1.0):
         try:
-            Timer(delay_s, signal.pthread_kill, (get_ident(), number)).start()
+            lazy.Timer(delay_s, signal.pthread_kill, (lazy.get_ident(), number)).start()
         except (KeyboardInterrupt, SystemExit):
             continue
         return

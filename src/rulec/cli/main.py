@@ -11,6 +11,7 @@ from importlib import import_module
 import click
 
 from rulec.cache.keeping import keeping
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.interruption import is_interrupted
 from rulec.cli.options.invocation import Invocation, invocation_of
@@ -33,10 +34,7 @@ from rulec.version import __version__
 
 def _require_signed(context: click.Context, _: click.Parameter, key: str | None) -> None:
     if key:
-        # Late import, only if a key is given (20 ms).
-        from rulec.automata.bundle.required_signature import in_force
-
-        context.with_resource(in_force(key))
+        context.with_resource(lazy.signature_in_force(key))
 
 
 _REQUIRE_SIGNED = click.Option(
@@ -105,10 +103,7 @@ class _Verbs(click.Group):
         if args[0].startswith("-"):
             return super().resolve_command(ctx, args)
         if args[0] not in VERBS and args[0] not in FORMER:
-            # Late import, only after an error: examples (2 ms).
-            from rulec.cli.usage_help import unknown_verb
-
-            ctx.fail(unknown_verb(args[0]))
+            ctx.fail(lazy.unknown_verb(args[0]))
         if args[0] in FORMER and not ctx.resilient_parsing:
             _say(f"`rulec {args[0]}` is now called `rulec {FORMER[args[0]]}`")
         name, arguments = called(args)
@@ -148,15 +143,9 @@ def rulec(context: click.Context, limits: Sequence[str]) -> None:
     """Compile traffic law into automata, and judge traces and maneuvers with them."""
     context.with_resource(keeping())
     if limits:
-        # Late import, only if limits are set (2 ms).
-        from rulec.resource_limits import in_force
-
-        context.with_resource(in_force(limits))
+        context.with_resource(lazy.limits_in_force(limits))
     if context.invoked_subcommand is not None and invocation_of(context).is_program:
-        # Late import, not for `rulec --help` (2 ms).
-        from rulec.enforced_limits import enforced
-
-        context.with_resource(enforced())
+        context.with_resource(lazy.enforced())
     if context.invoked_subcommand is None:
         click.echo(context.get_help())
 
@@ -180,10 +169,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return _status_after(problem)
     status = outcome if isinstance(outcome, int) else ExitStatus.OK
     if found := faults_found():
-        # Late import, only after a fault: its text and colours (7 ms).
-        from rulec.report.findings.diagnostics_text import print_diagnostics, printed
-
-        print_diagnostics([fault for fault in found if fault.message not in printed])
+        lazy.print_diagnostics(
+            [fault for fault in found if fault.message not in lazy.diagnostics_text.printed]
+        )
         return ExitStatus.NOT_ANSWERED
     return status
 
@@ -193,16 +181,13 @@ def _status_after(problem: BaseException) -> int:
     if is_interrupted() or isinstance(problem, click.Abort | KeyboardInterrupt):
         _say("interrupted")
         return ExitStatus.INTERRUPTED
-    problem = _limit_error(problem) or problem
+    problem = lazy.limit_error(problem) or problem
     match problem:
         case click.ClickException():
             _say_misuse(problem)
             return ExitStatus.NOT_ANSWERED
         case RulecError():
-            # Late import, not for `rulec --help`: its text and colours (7 ms).
-            from rulec.report.findings.diagnostics_text import print_diagnostics
-
-            print_diagnostics(problem.diagnostics)
+            lazy.print_diagnostics(problem.diagnostics)
             return ExitStatus.NOT_ANSWERED
         case SystemExit():
             # click exits with 1 if the reader is gone; signals set their own status.
@@ -214,19 +199,9 @@ def _status_after(problem: BaseException) -> int:
     raise problem
 
 
-def _limit_error(problem: BaseException) -> RulecError | None:
-    # Late import, only after an error (2 ms).
-    from rulec.enforced_limits import limit_error
-
-    return limit_error(problem)
-
-
 def _bug(problem: Exception) -> int:
     if os.environ.get("RULEC_TRACEBACK"):
-        # Late import, only after an error (50 ms).
-        from traceback import print_exception
-
-        print_exception(problem)
+        lazy.print_exception(problem)
         return ExitStatus.BUG
     _say(
         f"this is a bug in rulec {__version__}: "
@@ -242,12 +217,10 @@ def _refused(problem: OSError) -> int:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     if isinstance(problem, BrokenPipeError):
         return ExitStatus.READER_GONE
-    # Late import, only after an error: messages, their text and colours (7 ms).
-    from rulec.files.file_messages import refused
-    from rulec.report.findings.diagnostics_text import print_diagnostics
-
     with suppress(OSError):
-        print_diagnostics([refused(problem, is_gone=not _has_working_folder())])
+        lazy.print_diagnostics(
+            [lazy.file_messages.refused(problem, is_gone=not _has_working_folder())]
+        )
     return ExitStatus.NOT_ANSWERED
 
 
@@ -259,10 +232,7 @@ def _has_working_folder() -> bool:
 
 
 def _visible(text: str) -> str:
-    # Late import, only after an error (3 ms).
-    from rulec.report.text.outgoing import outgoing
-
-    return outgoing(visible(text))
+    return lazy.outgoing(visible(text))
 
 
 def _say(text: str) -> None:
@@ -272,18 +242,15 @@ def _say(text: str) -> None:
 
 def _say_misuse(problem: click.ClickException) -> None:
     """Print a usage error in the format of other diagnostics, with advice."""
-    # Late import, only after an error: colours and examples (9 ms).
-    from rulec.cli.usage_help import reworded, ways_out
-
     color = wants_color(sys.stderr)
-    text = _visible(reworded(problem))
+    text = _visible(lazy.usage_help.reworded(problem))
     message = f"{styled('error', 'bold red', color)}: {text}"
     context = getattr(problem, "ctx", None)
     if context is not None:
         help_of = context.command_path.replace("rulec", "rulec help", 1)
         usage = " ".join(context.command.collect_usage_pieces(context))
         if isinstance(problem, click.UsageError):
-            message += "".join(f"\n  = help: {way_out}" for way_out in ways_out(problem))
+            message += "".join(f"\n  = help: {way_out}" for way_out in lazy.ways_out(problem))
         message += f"\n  = usage: {context.command_path} {usage}\n  = help: `{help_of}` says more"
     with suppress(OSError):
         click.echo(message, err=True, color=color)

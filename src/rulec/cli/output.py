@@ -9,11 +9,12 @@ from contextlib import contextmanager
 from functools import partial
 from glob import has_magic
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, cast
+from typing import IO, cast
 
 import click
 
 import rulec
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.output_options import Output
 from rulec.cli.options.shared_options import only_sources
@@ -35,10 +36,6 @@ from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.rulebook.files.source_walk import LeftAlone, in_words
 from rulec.settings import exclusion, search_path
 
-if TYPE_CHECKING:
-    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-
-
 _REPORTS = ("html", "junit", "sarif", "svg")
 """Formats for people and for display in other programs."""
 
@@ -51,12 +48,9 @@ def open_session(at: str = "") -> rulec.Session:
     return rulec.Session(search_path(), at, print_diagnostics)
 
 
-def read_machines(rulebook: str, at: str = "") -> CompiledRulebook:
+def read_machines(rulebook: str, at: str = "") -> lazy.CompiledRulebook:
     """Compile a rulebook for any step; print warnings. Raises RulecError."""
-    # Late import, not for --help: the tables of automata (20 ms).
-    from rulec.api.rulebook_compilation import machines
-
-    return machines(rulebook, search_path(), print_diagnostics, at, recalls=True)
+    return lazy.machines(rulebook, search_path(), print_diagnostics, at, recalls=True)
 
 
 @contextmanager
@@ -174,10 +168,7 @@ def rulebooks_named(references: Sequence[str]) -> tuple[str, ...]:
     """
     if not any(has_magic(reference) or os.path.isdir(reference) for reference in references):  # noqa: PTH112
         return tuple(references)
-    # Late import, not for --help: sources below folders (10 ms).
-    from rulec.rulebook.batch.batch_check import named_rulebooks
-
-    names, on_the_way = named_rulebooks(references, search_path(), exclusion())
+    names, on_the_way = lazy.named_rulebooks(references, search_path(), exclusion())
     if on_the_way.refused:
         raise RulecError(on_the_way.refused)
     print_left_alone(on_the_way.left_alone, verbose=False)
@@ -191,17 +182,15 @@ def books_and_rule(arguments: Sequence[str], verb: str) -> tuple[tuple[str, ...]
         raise click.UsageError(
             f"`{last}` is no rulebook; for rules that match it write `--rule '{last}'`"
         )
-    if not before and not _is_rulebook(last):
-        # Late import, only if an argument may be a rule: file search and their rules (60 ms).
-        from rulec.rulebook.files.catalogue import rulebooks_with_rule
-
-        if books := rulebooks_with_rule(last, search_path()):
-            raise click.UsageError(
-                f"`{last}` is a rule; give its rulebook, too: `rulec {verb} {books[0]} {last}`"
-            )
-    if not before or _is_rulebook(last):
+    if _is_rulebook(last):
         return rulebooks_named(arguments), None
-    return rulebooks_named(before), last
+    if before:
+        return rulebooks_named(before), last
+    if books := lazy.rulebooks_with_rule(last, search_path()):
+        raise click.UsageError(
+            f"`{last}` is a rule; give its rulebook, too: `rulec {verb} {books[0]} {last}`"
+        )
+    return rulebooks_named(arguments), None
 
 
 def _is_rulebook(argument: str) -> bool:

@@ -17,6 +17,7 @@ from rulec.batch.recording_judge import (
     in_short,
     judge_with_progress,
 )
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.standard_input import copied
 from rulec.cli.output import print_lost
 from rulec.cli.verdict_outputs import VerdictOutputs
@@ -61,10 +62,7 @@ class RecordingRun:
         if file not in self.unread:
             self.unread.append(file)
             if self.to.wants_findings:
-                # Late import, only if wanted: findings (20 ms).
-                from rulec.report.findings.findings_of_drives import not_judged_file
-
-                recording = not_judged_file(file, error, self.settings.rules.name)
+                recording = lazy.not_judged_file(file, error, self.settings.rules.name)
                 if self.to.to_rows is not None:
                     row = self.to.to_rows.of_nothing({"file": file}, recording.failure)
                     recording = replace(recording, rows=(row,))
@@ -73,11 +71,8 @@ class RecordingRun:
     def _aloud(self, files: Sequence[str], jobs: Jobs) -> Iterator[tuple[str, Piece]]:
         """The pieces of all files, with progress messages."""
         if len(files) > 1:
-            # Late import, not for one file: processes (15 ms).
-            from rulec.batch.recording_batch import judged_files
-
             with progress(f"judging {len(files):,} files", len(files)) as tell:
-                yield from judged_files(self.settings, files, jobs, tell, self._lost)
+                yield from lazy.judged_files(self.settings, files, jobs, tell, self._lost)
             return
         (file,) = files
         with progress(f"judging {self.settings.labels.get(file, file)}", 1) as tell:

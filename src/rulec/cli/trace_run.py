@@ -9,9 +9,10 @@ from dataclasses import dataclass, field
 from functools import partial
 from io import UnsupportedOperation
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, cast
+from typing import IO, Any, cast
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.standard_input import standard_input
 from rulec.cli.verdict_outputs import VerdictOutputs
 from rulec.diagnostics import RulecError, SourceLocation
@@ -32,14 +33,10 @@ from rulec.trace import Trace
 from rulec.trace.formats.trace_files import Format, format_of, read_chunks
 from rulec.trace.trace_messages import SAME_ID
 
-if TYPE_CHECKING:
-    from rulec.monitoring.explain.explanation import Explanation
-    from rulec.monitoring.moments.drive_facts import DriveFacts
-
 Answer = tuple[Sequence[Trace | RulecError], int, Verdict | NotJudged]
 """A sequence of traces, an index in it, and that trace's verdict or why there is none."""
 
-AnswerWithFacts = tuple[Answer, "DriveFacts | None"]
+AnswerWithFacts = tuple[Answer, "lazy.DriveFacts | None"]
 """An answer with the facts for rows of drives, if they are wanted."""
 
 _GOES_ON = (
@@ -122,7 +119,7 @@ class TraceRun:
         self,
         file: str,
         answer: Verdict | NotJudged,
-        facts: DriveFacts | None,
+        facts: lazy.DriveFacts | None,
         findings: Sequence[VerdictFinding],
     ) -> Iterator[Mapping[str, object]]:
         """The rows of a trace and of its findings, if they are wanted."""
@@ -138,15 +135,9 @@ class TraceRun:
         self.total.not_judged += 1
         self.complaints.add(answer.error)
         if self.to.wants_lines:
-            # Late import, only if wanted: evidence and sentences (8 ms).
-            from rulec.report.verdicts import verdict_json
-
-            self.to.line(verdict_json.not_judged_as_json(answer, self.rules.name))
+            self.to.line(lazy.verdict_json.not_judged_as_json(answer, self.rules.name))
         if self.to.wants_findings:
-            # Late import, as above.
-            from rulec.report.findings.findings_of_traces import not_judged_trace
-
-            findings.append(not_judged_trace(file, answer, self.rules.name))
+            findings.append(lazy.not_judged_trace(file, answer, self.rules.name))
 
     def _judged(self, file: str, answer: Any, left: int, findings: list[VerdictFinding]) -> int:
         """Print a verdict; returns the number of violations explained."""
@@ -161,19 +152,15 @@ class TraceRun:
         if not says and not self.to.wants_lines:
             return 0
         used = rulebook_for(traces, place, self.rules)
-        explained: list[Explanation] = []
+        explained: list[lazy.Explanation] = []
         # Traces of a table are only made on access.
         if left and verdict.violations:
-            # Late import, as above.
-            from rulec.monitoring.explain.explanation import explain
-
             trace = cast("Trace", traces[place])
-            explained = [explain(violation, trace, used) for violation in verdict.violations[:left]]
+            explained = [
+                lazy.explain(violation, trace, used) for violation in verdict.violations[:left]
+            ]
         if self.to.wants_lines:
-            # Late import, as above.
-            from rulec.report.verdicts import verdict_json
-
-            self.to.line(verdict_json.as_json(verdict, used, explained))
+            self.to.line(lazy.verdict_json.as_json(verdict, used, explained))
         if says and self.to.wants_text:
             text = verdict_report.as_text(
                 verdict,
@@ -187,10 +174,7 @@ class TraceRun:
             shown = verdict.open[: verdict_report.MOST_VIOLATIONS]
             self.pending |= any("not over" in result.because for result in shown)
         if self.to.wants_findings:
-            # Late import, as above.
-            from rulec.report.findings.findings_of_traces import trace_findings
-
-            findings += trace_findings(file, traces[place], verdict, used, explained)
+            findings += lazy.trace_findings(file, traces[place], verdict, used, explained)
         return len(explained)
 
     def _answers(
@@ -230,14 +214,11 @@ class TraceRun:
     def _in_chunk(self, items: Items) -> Iterator[AnswerWithFacts]:
         judge = partial(verify_items, rulebook=self.rules)
         for traces, answers in judge(items):
-            facts: Iterator[DriveFacts] = iter(())
+            facts: Iterator[lazy.DriveFacts] = iter(())
             if self.to.to_rows is not None:
-                # Late import, only for rows of drives: counting opportunities (10 ms).
-                from rulec.monitoring.moments.drive_facts import facts_of_many
-
                 answers = list(answers)
                 verdicts = [x if isinstance(x, Verdict) else None for x in answers]
-                facts = iter(facts_of_many(traces, verdicts, self.rules))
+                facts = iter(lazy.facts_of_many(traces, verdicts, self.rules))
             for place, answer in enumerate(answers):
                 own = next(facts, None) if isinstance(answer, Verdict) else None
                 yield (traces, place, answer), own

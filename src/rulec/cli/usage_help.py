@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.invocation import invocation_of
 from rulec.cli.verb_table import FORMER, OTHER_QUESTIONS, VERBS
 from rulec.diagnostics import nearest_name
@@ -198,11 +199,10 @@ def ways_out(problem: click.UsageError) -> Iterator[str]:
 
 def _rulebook_hint(context: click.Context) -> tuple[str, ...]:
     """A hint naming the argument that may be the rulebook, given without ``-r``."""
-    # Late import, only after an error: file search and its messages (3 ms).
-    from rulec.rulebook.files.search_path import available_rulebooks
-
     given = invocation_of(context).arguments
-    names = [word for word in given[1:] if word.endswith(".rules") or word in available_rulebooks()]
+    names = [
+        word for word in given[1:] if word.endswith(".rules") or word in lazy.available_rulebooks()
+    ]
     return tuple(f"a rulebook is given by `-r {name}`" for name in names[:1])
 
 
@@ -211,10 +211,7 @@ def unknown_verb(name: str) -> str:
     near = nearest_name(name, (*VERBS, *FORMER))
     verb = _OTHER_WORDS.get(name.casefold()) or FORMER.get(near or "", near)
     way_out = f"did you mean `{verb}`?" if verb else "`rulec help` lists them"
-    # Late import, only after an error: file search and its messages (3 ms).
-    from rulec.rulebook.files.search_path import available_rulebooks
-
-    if name.endswith(".rules") or name in available_rulebooks():
+    if name.endswith(".rules") or name in lazy.available_rulebooks():
         way_out = f"to name a rulebook, put a command before it, as in `rulec check {name}`"
     return f"there is no command `{name}`; {way_out}"
 

@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from typing import TYPE_CHECKING
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.output_options import Endings, Output, endings_of
 from rulec.cli.output import answer_lines, output_stream
 from rulec.report.findings.finding_writers import ENDINGS, FindingWriter, finding_writer
 from rulec.report.text.console import print_line, print_result
 from rulec.report.text.terminal_text import counted
-
-if TYPE_CHECKING:
-    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.fleet.drive_rows import DriveRows
-    from rulec.report.findings.verdict_finding import RecordingFindings
 
 FORMATS: Endings = {**endings_of("text", "json"), **ENDINGS}
 """Text, verdicts as one line of JSON per trace or drive, or findings in many formats."""
@@ -28,7 +23,7 @@ class VerdictOutputs:
     """
 
     def __init__(self) -> None:
-        self.to_rows: DriveRows | None = None
+        self.to_rows: lazy.DriveRows | None = None
         """The builder of rows of drives and rules, if tables of findings include them."""
         self._text: list[Callable[[str], None]] = []
         self._lines: list[Callable[[str], None]] = []
@@ -68,7 +63,7 @@ class VerdictOutputs:
         for write in self._lines:
             write(line)
 
-    def add(self, findings: RecordingFindings) -> None:
+    def add(self, findings: lazy.RecordingFindings) -> None:
         """Take the findings of a recording, or of a file of traces. Raises RulecError."""
         self._findings += len(findings.findings)
         for writer, _ in self._writers:
@@ -77,7 +72,11 @@ class VerdictOutputs:
 
 @contextmanager
 def verdict_outputs(
-    to: Sequence[Output], rules: CompiledRulebook, *, with_rows: bool = False, strict: bool = False
+    to: Sequence[Output],
+    rules: lazy.CompiledRulebook,
+    *,
+    with_rows: bool = False,
+    strict: bool = False,
 ) -> Iterator[VerdictOutputs]:
     """Outputs that are written completely when the block succeeds, and otherwise not at all.
 
@@ -88,10 +87,7 @@ def verdict_outputs(
     """
     columns: Mapping[str, type] | None = None
     if with_rows:
-        # Late import, not for --help: Arrow.
-        from rulec.fleet.finding_columns import COLUMNS
-
-        columns = COLUMNS
+        columns = lazy.COLUMNS
     outputs = VerdictOutputs()
     written: list[Output] = []
     with ExitStack() as files:
@@ -102,11 +98,8 @@ def verdict_outputs(
                 lines = outputs._text if output.form == "text" else outputs._lines
                 lines.append(files.enter_context(answer_lines(output)))
             else:
-                # Late import, only if there are findings to write: JSON documents (12 ms).
-                from rulec.report.findings.verdict_finding import FindingContext
-
                 stream, name = files.enter_context(output_stream(output))
-                about = FindingContext(rules, columns=columns, strict=strict)
+                about = lazy.FindingContext(rules, columns=columns, strict=strict)
                 writer = finding_writer(output.form, stream, about, name)
                 outputs._writers.append((writer, name))
         if len(written) == len(to) and not outputs._text:

@@ -11,6 +11,7 @@ from typing import NoReturn
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.output import errors_told
 from rulec.diagnostics import RulecError
 from rulec.report.text.console import print_remark
@@ -61,9 +62,6 @@ def _state(references: Sequence[str]) -> dict[Path, tuple[int, int]]:
 
 def _files(references: Sequence[str]) -> Iterable[Path]:
     """The sources referred to, those beside them and on the search path, and the settings."""
-    # Late import, not for --help: sources below folders (10 ms).
-    from rulec.rulebook.batch.batch_check import find_sources
-
     folders: dict[Path, None] = {}
     excluded = None
     with suppress(RulecError):
@@ -71,7 +69,7 @@ def _files(references: Sequence[str]) -> Iterable[Path]:
         excluded = exclusion()
     for reference in references:
         with suppress(RulecError):
-            for path in find_sources(reference, tuple(folders), excluded).paths:
+            for path in lazy.find_sources(reference, tuple(folders), excluded).paths:
                 folders[path.parent] = None
                 yield path
     for folder in folders:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
@@ -155,9 +156,7 @@ class _Unpacking(RawIOBase):
     """The decompressed content of a gzip file, up to a limit."""
 
     def __init__(self, stream: IO[bytes], path: Path) -> None:
-        # Imported late (1 ms): only needed for gzip files.
-        import gzip
-        import zlib
+        import gzip  # 1 ms, only for gzip files
 
         self._gzip = gzip.GzipFile(fileobj=stream)
         self._damaged = gzip.BadGzipFile, zlib.error

@@ -8,6 +8,7 @@ from typing import Any, Optional, TypeAlias
 
 from rulec.report.findings import verdict_finding
 from rulec.report.json_document import JsonDocument, made_class
+from rulec.trace.formats import arrow as arrow_tables
 from rulec.trace.formats.arrow.parquet import arrow
 
 Cell: TypeAlias = "str | float | tuple[str, ...] | None"
@@ -83,13 +84,10 @@ def arrow_table(rows: Iterable[Row]) -> Any:
 
 
 def _array(cells: Sequence[Any], kind: type) -> Any:
-    # Arrow, 0.1 s: where there is a table of it, it is loaded.
-    from rulec.trace.formats.arrow.arrow_made import (
-        array_of_lists,
-        array_of_numbers,
-        array_of_texts,
-    )
-
     if kind is str:
-        return array_of_texts(cells)
-    return array_of_lists(cells) if kind is list else array_of_numbers(cells, kind)
+        return arrow_tables.array_of_texts(cells)
+    return (
+        arrow_tables.array_of_lists(cells)
+        if kind is list
+        else arrow_tables.array_of_numbers(cells, kind)
+    )

@@ -17,6 +17,7 @@ from rulec.fleet.table_recordings import TrackTableJudge
 from rulec.fleet.table_traces import TraceTableJudge
 from rulec.monitoring.assumptions import Assumptions
 from rulec.recordings.road_map import RoadMap
+from rulec.trace.formats import arrow as arrow_tables
 from rulec.trace.formats.arrow.parquet import arrow
 from rulec.trace.trace_model import Ending
 
@@ -76,10 +77,7 @@ class FleetJudge:
 
 
 def _check_names(table: Any, keys: Sequence[str]) -> None:
-    # There is a table, so Arrow is already loaded.
-    from rulec.trace.formats.arrow.table_groups import not_utf8
-
-    if why := not_utf8(table, keys):
+    if why := arrow_tables.not_utf8(table, keys):
         raise unnamed_drives(why)
 
 
@@ -93,7 +91,4 @@ def _as_table(table: Any) -> Any:
             f"a pyarrow.Table is judged, not a {type(table).__name__}; with Ray's map_batches and "
             "map_groups give batch_format='pyarrow'"
         )
-    # There is a table, so Arrow is already loaded
-    from rulec.trace.formats.arrow.arrow_arrays import with_plain_texts
-
-    return with_plain_texts(table)
+    return arrow_tables.with_plain_texts(table)

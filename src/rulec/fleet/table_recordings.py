@@ -25,6 +25,7 @@ from rulec.recordings.recording import Recording
 from rulec.recordings.road_map import RoadMap
 from rulec.recordings.tracks.roads_of_tracks import track_recording
 from rulec.recordings.tracks.track_table import track_rows_of
+from rulec.trace.formats import arrow as arrow_tables
 
 Roads = RoadMap | str | None
 """A map already read, or the path of one."""
@@ -50,17 +51,14 @@ class TrackTableJudge:
 
         Raises RulecError R0709 for a recording that is cut, if tables are not grouped by recording.
         """
-        # Arrow, 0.1 s: where there is an Arrow table, it is already loaded.
-        from rulec.trace.formats.arrow.table_groups import extent, groups, not_utf8
-
         keys = keys_of(table.column_names, "tracks")
-        for key, rows in groups(table, keys, []):
+        for key, rows in arrow_tables.groups(table, keys, []):
             own = dict(zip(keys, key, strict=True))
             own.setdefault(RECORDING, PurePath(own.get(FILE, "")).name or "tracks")
-            unread = not_utf8(rows, rows.column_names)
+            unread = arrow_tables.not_utf8(rows, rows.column_names)
             lacks = lacking(rows, len(rows))
             if self.seen is not None:
-                if not lacks and not unread and self.seen.is_other(key, extent(rows)):
+                if not lacks and not unread and self.seen.is_other(key, arrow_tables.extent(rows)):
                     lacks = "other rows of it came before"
                 if lacks:
                     raise cut_drive(f"recording `{own[RECORDING]}`", lacks, keys)
@@ -89,11 +87,8 @@ def recording_of(table: Any, name: str, roads: Roads, frame_rate: float | None =
     maps = table.column(MAP).unique().to_pylist() if MAP in table.column_names else []
     if len(maps) > 1:
         raise no_map(name, f"its rows name {len(maps)} maps")
-    # Arrow, 0.1 s: where there is an Arrow table, it is already loaded.
-    from rulec.trace.formats.arrow.arrow_arrays import cells_in
-
     known = [column for column in table.column_names if column not in (MAP, ROWS)]
-    columns = {column: cells_in(table.column(column)) for column in known}
+    columns = {column: arrow_tables.cells_in(table.column(column)) for column in known}
     rows, remark = track_rows_of(
         table_of(columns, f"tracks of `{name}`, rows counted in it"), frame_rate
     )

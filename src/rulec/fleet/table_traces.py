@@ -18,6 +18,7 @@ from rulec.monitoring.moments.drive_facts import DriveFacts, facts_of_many
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.report.findings.findings_of_traces import trace_findings
 from rulec.report.findings.verdict_finding import VerdictFinding
+from rulec.trace.formats import arrow as arrow_tables
 from rulec.trace.formats.table_reader import OBJECT, OTHER, STEP, TRACE
 from rulec.trace.trace_model import Trace
 
@@ -35,20 +36,17 @@ class TraceTableJudge:
 
         Raises RulecError R0709 for a trace that is cut, if tables are not grouped by trace.
         """
-        # Arrow, 0.1 s: where there is an Arrow table, it is already loaded.
-        from rulec.trace.formats.arrow.table_groups import groups
-
         own = [name for name in keys_of(table.column_names, "traces") if name != TRACE]
         order = [TRACE, STEP, *(x for x in (OBJECT, OTHER) if x in table.column_names)]
-        for key, rows in groups(table, own, order):
+        for key, rows in arrow_tables.groups(table, own, order):
             yield from self._of_source(rows, dict(zip(own, key, strict=True)))
 
     def _of_source(self, rows: Any, own: Mapping[str, str]) -> Iterator[Row]:
         """The rows of the traces from one file and recording."""
-        # As above.
-        from rulec.trace.formats.arrow.table_groups import not_utf8, trace_outlines, without_rows
-
-        outlines, some_unread = trace_outlines(rows), not_utf8(rows, rows.column_names)
+        outlines, some_unread = (
+            arrow_tables.trace_outlines(rows),
+            arrow_tables.not_utf8(rows, rows.column_names),
+        )
         is_counted = ROWS in rows.column_names
         cut = []
         for number, outline in enumerate(outlines):
@@ -62,23 +60,26 @@ class TraceTableJudge:
                 if lacks:
                     raise cut_drive(f"trace `{outline.name}`", lacks, [*own, TRACE])
             if some_unread and not lacks:
-                lacks = not_utf8(rows.slice(outline.first, outline.rows), rows.column_names)
+                lacks = arrow_tables.not_utf8(
+                    rows.slice(outline.first, outline.rows), rows.column_names
+                )
             if lacks:
                 yield self.to_rows.of_nothing({**own, "vehicle": outline.name}, lacks)
                 cut.append(number)
-        rest = without_rows(rows, [outlines[number] for number in cut])
+        rest = arrow_tables.without_rows(rows, [outlines[number] for number in cut])
         whole = [whole_trace for number, whole_trace in enumerate(outlines) if number not in {*cut}]
         others = [name for name in (MAP, ROWS) if name in rest.column_names]
         yield from self._judged(rest.drop_columns(others), whole, own)
 
     def _judged(self, rows: Any, outlines: list[Any], own: Mapping[str, str]) -> Iterator[Row]:
-        # As above.
-        from rulec.trace.formats.arrow.table_groups import traces_of_table
-
         to_rows, waiting = self.to_rows, iter(outlines)
         try:
             with contained():
-                chunks = traces_of_table(rows, own.get(FILE, "") or "the table") if outlines else ()
+                chunks = (
+                    arrow_tables.traces_of_table(rows, own.get(FILE, "") or "the table")
+                    if outlines
+                    else ()
+                )
                 for chunk in chunks:
                     yield from self._of_chunk(chunk, waiting, own)
         except RulecError as error:

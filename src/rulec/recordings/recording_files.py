@@ -25,6 +25,7 @@ from rulec.recordings.recording_format import (
     RecordingSource,
 )
 from rulec.recordings.recording_messages import NOT_IN_RECORDING, OTHER_CHOICE
+from rulec.trace.formats import arrow as arrow_tables
 
 if TYPE_CHECKING:
     from rulec.recordings.recording import Recording
@@ -185,10 +186,7 @@ def check_readable(path: Path) -> None:
     with opened(path):
         pass
     if path.name.lower().endswith(PARQUET):
-        # NumPy and Arrow, only for those who have such a file.
-        from rulec.trace.formats.arrow.parquet_columns import parquet_names
-
-        parquet_names(path, lambda why, **more: RECORDING.refused(path, why, **more))
+        arrow_tables.parquet_names(path, lambda why, **more: RECORDING.refused(path, why, **more))
 
 
 def _some(names: list[str]) -> str:

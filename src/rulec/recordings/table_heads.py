@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.csv_head import PARQUET, is_number, is_parquet, names_in
 from rulec.recordings.recording_format import RECORDING, Glance
+from rulec.trace.formats import arrow as arrow_tables
 
 TABLES = (".csv", ".tsv", ".txt", *PARQUET)
 SAME_NAME = 0.85
@@ -28,11 +29,10 @@ def head_of(glance: Glance) -> tuple[str, ...]:
         return ()
     if not is_parquet(glance.name, glance.head):
         return names_in(glance.head)
-    # As above: NumPy, and Arrow
-    from rulec.trace.formats.arrow.parquet_columns import parquet_names
-
     try:
-        names = parquet_names(glance.path, lambda why, **_: RECORDING.refused(glance.path, why))
+        names = arrow_tables.parquet_names(
+            glance.path, lambda why, **_: RECORDING.refused(glance.path, why)
+        )
     except RulecError:
         # Whoever reads it next says what is wrong
         return ()

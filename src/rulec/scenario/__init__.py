@@ -5,57 +5,26 @@ Names are imported on first use, because a recorded drive needs only few of them
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from rulec.lazy_loading import lazy_names
 
 if TYPE_CHECKING:
-    from rulec.scenario.geometry import Box
-    from rulec.scenario.motion_bounds import MotionBounds
-    from rulec.scenario.scenario_files import available_scenarios, load_scenario
-    from rulec.scenario.scenario_model import (
-        Account,
-        Alternative,
-        Choice,
-        ConstantAcceleration,
-        Ego,
-        Footprints,
-        MissingLane,
-        Obstacle,
-        Road,
-        Scenario,
-        Stretch,
-        Trajectory,
-    )
-
-__all__ = [
-    "Account",
-    "Alternative",
-    "Box",
-    "Choice",
-    "ConstantAcceleration",
-    "Ego",
-    "Footprints",
-    "MissingLane",
-    "MotionBounds",
-    "Obstacle",
-    "Road",
-    "Scenario",
-    "Stretch",
-    "Trajectory",
-    "available_scenarios",
-    "load_scenario",
-]
-
-_HOME = {
-    "Box": "geometry",
-    "MotionBounds": "motion_bounds",
-    "available_scenarios": "scenario_files",
-    "load_scenario": "scenario_files",
-}
-"""The modules of the exported names that are not in ``scenario_model``."""
-
-
-def __getattr__(name: str) -> Any:
-    if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOME.get(name, 'scenario_model')}"), name)
+    from rulec.scenario.geometry import Box as Box
+    from rulec.scenario.motion_bounds import MotionBounds as MotionBounds
+    from rulec.scenario.scenario_files import available_scenarios as available_scenarios
+    from rulec.scenario.scenario_files import load_scenario as load_scenario
+    from rulec.scenario.scenario_model import Account as Account
+    from rulec.scenario.scenario_model import Alternative as Alternative
+    from rulec.scenario.scenario_model import Choice as Choice
+    from rulec.scenario.scenario_model import ConstantAcceleration as ConstantAcceleration
+    from rulec.scenario.scenario_model import Ego as Ego
+    from rulec.scenario.scenario_model import Footprints as Footprints
+    from rulec.scenario.scenario_model import MissingLane as MissingLane
+    from rulec.scenario.scenario_model import Obstacle as Obstacle
+    from rulec.scenario.scenario_model import Road as Road
+    from rulec.scenario.scenario_model import Scenario as Scenario
+    from rulec.scenario.scenario_model import Stretch as Stretch
+    from rulec.scenario.scenario_model import Trajectory as Trajectory
+else:
+    __getattr__ = lazy_names(__name__)

@@ -31,7 +31,9 @@ from rulec.witnesses.state_synthesis import (
     JointState,
     Subject,
     Value,
-    synthesize_state,
+    float_values,
+    solve_numbers,
+    values_of,
 )
 from rulec.witnesses.undecided import UndecidedError
 
@@ -295,10 +297,12 @@ def _first_of_each(
         if adds in seen:
             continue
         own_digits = [*zip(own, compress(digits, counted.are_about_it), strict=True)]
-        state = synthesize_state(vocabulary, own_digits)
-        if state is not None:
+        sums = [(read, digit) for read, digit in own_digits if isinstance(read, NumberRead)]
+        numbers = solve_numbers(sums, vocabulary, {})
+        if numbers is not None:
             seen.add(adds)
-            yield CountedObject(counted.type, adds, state.values)
+            values = values_of(own_digits, vocabulary) | float_values(numbers)
+            yield CountedObject(counted.type, adds, values)
 
 
 def _digit(read: Read | NumberRead, state: JointState, vocabulary: Vocabulary) -> int:

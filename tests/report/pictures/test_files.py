@@ -2,6 +2,7 @@
 
 import io
 import re
+import sys
 import xml.etree.ElementTree as ET
 from html.parser import HTMLParser
 
@@ -106,7 +107,9 @@ def test_a_png_that_is_too_large_is_refused():
 
 
 def test_without_matplotlib_there_is_a_way_out(monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "matplotlib.figure", None)
+    drawing_room = as_bytes.__module__.rpartition(".")[0]
+    monkeypatch.delitem(sys.modules, f"{drawing_room}.matplotlib_file", raising=False)
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
     with pytest.raises(RulecError) as caught:
         as_bytes(drawing(), "png", "f.png")
     (problem,) = caught.value.diagnostics

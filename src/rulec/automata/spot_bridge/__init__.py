@@ -5,19 +5,11 @@ this package is loaded only in a separate process, see ``compiler_worker``. The 
 file describes the modules.
 """
 
-from rulec.automata.compiler_jobs import CheckError
-from rulec.automata.spot_bridge.spot_automata import VERSION, explore, in_hoa
-from rulec.automata.spot_bridge.spot_compiler import COMPILER
-from rulec.automata.spot_bridge.spot_formulas import projected
-from rulec.automata.spot_bridge.translation import Translation, translate
-
-__all__ = [
-    "COMPILER",
-    "VERSION",
-    "CheckError",
-    "Translation",
-    "explore",
-    "in_hoa",
-    "projected",
-    "translate",
-]
+from rulec.automata.compiler_jobs import CheckError as CheckError
+from rulec.automata.spot_bridge.spot_automata import VERSION as VERSION
+from rulec.automata.spot_bridge.spot_automata import explore as explore
+from rulec.automata.spot_bridge.spot_automata import in_hoa as in_hoa
+from rulec.automata.spot_bridge.spot_compiler import COMPILER as COMPILER
+from rulec.automata.spot_bridge.spot_formulas import projected as projected
+from rulec.automata.spot_bridge.translation import Translation as Translation
+from rulec.automata.spot_bridge.translation import translate as translate

@@ -17,6 +17,7 @@ from typing import Any, TypeVar, cast
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.files.file_messages import OVERWRITES_INPUT
 from rulec.files.read_files import from_here
@@ -300,13 +301,9 @@ def _refuse_what_is_read(path: str) -> None:
         raise _overwrites(path, f"`{path}` is a source, and would be overwritten")
     if Path(path).name in _OF_PROJECTS and os.path.lexists(path):
         raise _overwrites(path, f"`{path}` is a project's own, and would be overwritten")
-    if is_ordinary(Path(path)):
-        # Late import, only if a file would be replaced: formats of recordings (80 ms).
-        from rulec.recordings.recording_files import is_beside_recordings
-
-        if is_beside_recordings(path):
-            message = f"`{path}` is recorded traffic, a map, or read along with these, and would be"
-            raise _overwrites(path, f"{message} overwritten")
+    if is_ordinary(Path(path)) and lazy.is_beside_recordings(path):
+        message = f"`{path}` is recorded traffic, a map, or read along with these, and would be"
+        raise _overwrites(path, f"{message} overwritten")
 
 
 _OF_PROJECTS = ("rulec.toml", "rulec.lock")

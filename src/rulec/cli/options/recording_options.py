@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.output_options import RenamedOption, input_format_option
 from rulec.cli.options.shared_options import asked, finite, gathered
 from rulec.monitoring.assumptions import Assumptions
@@ -18,11 +18,7 @@ from rulec.trace import Value
 from rulec.trace.trace_model import Ending
 from rulec.vocabulary import Vocabulary
 
-if TYPE_CHECKING:
-    from rulec.extraction.selection import RequestedDrives
-    from rulec.trace.formats.trace_files import Format
-
-TRACE_FORMATS: tuple[Format, ...] = ("jsonl", "csv", "parquet")
+TRACE_FORMATS: tuple[lazy.Format, ...] = ("jsonl", "csv", "parquet")
 """The formats of traces, listed here to avoid an import for --help."""
 
 _RECORDING_FORMATS = tuple(form.name for form in FORMATS)
@@ -62,7 +58,7 @@ class RecordingOptions:
     )
 
     @property
-    def trace_format(self) -> Format | None:
+    def trace_format(self) -> lazy.Format | None:
         """The format of traces that is given, if any."""
         return next((form for form in TRACE_FORMATS if form == self.input_format), None)
 
@@ -114,32 +110,27 @@ class DrivesOptions:
     def check_thresholds(self) -> None:
         """Check thresholds before any work. Raises click.UsageError."""
         if self.thresholds:
-            # Late import, only for recordings: NumPy and shapely (150 ms).
-            from rulec.extraction.traffic_thresholds import threshold_options
-
             try:
-                threshold_options(self.thresholds)
+                lazy.threshold_options(self.thresholds)
             except ValueError as problem:
                 raise click.UsageError(_sentence(problem)) from None
 
-    def requested(self, egos: tuple[str, ...], vocabulary: Vocabulary | None) -> RequestedDrives:
+    def requested(
+        self, egos: tuple[str, ...], vocabulary: Vocabulary | None
+    ) -> lazy.RequestedDrives:
         """The drives of these vehicles.
 
         Raises:
             click.UsageError: an assumption or a threshold is invalid.
         """
-        # Late import, only for recordings: NumPy and shapely (150 ms).
-        from rulec.extraction.selection import RequestedDrives, assumption_options
-        from rulec.extraction.traffic_thresholds import threshold_options
-
         if self.assumed and vocabulary is None:
             raise click.UsageError("--assume needs a rulebook that has these words: --rulebook R")
         texts = [text for text in self.assumed if text != "defaults"]
         try:
-            return RequestedDrives(
+            return lazy.RequestedDrives(
                 egos,
-                threshold_options(self.thresholds),
-                {} if vocabulary is None else assumption_options(texts, vocabulary),
+                lazy.threshold_options(self.thresholds),
+                {} if vocabulary is None else lazy.assumption_options(texts, vocabulary),
                 self.as_recorded,
                 len(texts) < len(self.assumed),
             )
@@ -182,11 +173,8 @@ def assumptions(ends: Ending | None, texts: Sequence[str], vocabulary: Vocabular
     """Assumptions about traces. Raises click.UsageError."""
     values: Mapping[str, Value] = {}
     if named := [text for text in texts if text != "defaults"]:
-        # Late import, only if values are assumed: NumPy and shapely (150 ms).
-        from rulec.extraction.selection import assumption_options
-
         try:
-            values = assumption_options(named, vocabulary)
+            values = lazy.assumption_options(named, vocabulary)
         except ValueError as problem:
             raise click.UsageError(_sentence(problem)) from None
     return Assumptions(ends, values, len(named) < len(texts))

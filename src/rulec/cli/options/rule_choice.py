@@ -5,19 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.diagnostics import did_you_mean
-
-if TYPE_CHECKING:
-    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.rulebook.rulebook_model import Rulebook
 
 
 def refuse_unmatched(
-    patterns: Sequence[str], books: Sequence[Rulebook] | Sequence[CompiledRulebook]
+    patterns: Sequence[str], books: Sequence[lazy.Rulebook] | Sequence[lazy.CompiledRulebook]
 ) -> None:
     """Refuse a pattern that matches no rule: nothing to report would look like nothing found.
 
@@ -35,13 +31,10 @@ def refuse_unmatched(
             )
 
 
-def rules_on_topic(books: Sequence[Rulebook], topic: str) -> tuple[Rulebook, ...]:
+def rules_on_topic(books: Sequence[lazy.Rulebook], topic: str) -> tuple[lazy.Rulebook, ...]:
     """The rulebooks with only their rules on a topic. Raises click.BadParameter: there is none."""
-    # Late import, only if a topic is given: the phrases of vocabularies (10 ms).
-    from rulec.rulebook.rules.rule_topics import on_topic
-
     try:
-        chosen = on_topic(books, topic)
+        chosen = lazy.on_topic(books, topic)
     except LookupError as problem:
         raise click.BadParameter(str(problem.args[0]), param_hint="--topic") from None
     if not any(book.rules for book in chosen):
@@ -50,7 +43,7 @@ def rules_on_topic(books: Sequence[Rulebook], topic: str) -> tuple[Rulebook, ...
     return chosen
 
 
-def with_rules_like(rules: CompiledRulebook, patterns: Sequence[str]) -> CompiledRulebook:
+def with_rules_like(rules: lazy.CompiledRulebook, patterns: Sequence[str]) -> lazy.CompiledRulebook:
     """A compiled rulebook with only the rules that match one of the patterns, if there are any."""
     if not patterns:
         return rules

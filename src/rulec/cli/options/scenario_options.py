@@ -6,18 +6,16 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.recording_options import RecordingOptions, assumptions
 from rulec.cli.options.shared_options import asked, combined, finite, gathered
 from rulec.cli.options.shell_completion import complete_scenarios
 from rulec.cli.options.standard_input import file_named
 from rulec.vocabulary import Vocabulary
-
-if TYPE_CHECKING:
-    from rulec.scenario import Scenario
 
 _CELLS = ("step_s", "horizon_s", "extent", "adjacency", "bounds")
 _WEIGHT = re.compile(r"[01]|0?\.[0-9]{1,9}")
@@ -26,21 +24,18 @@ _WEIGHT = re.compile(r"[01]|0?\.[0-9]{1,9}")
 def _prediction(
     context: click.Context, parameter: click.Parameter, value: str
 ) -> str | dict[str, Fraction]:
-    # Late import, not for --help: scenarios' formats (30 ms).
-    from rulec.scenario.scenario_model import PREDICTIONS, is_distribution
-
-    known = " or ".join(f"`{kind}`" for kind in PREDICTIONS)
-    if value in PREDICTIONS:
+    known = " or ".join(f"`{kind}`" for kind in lazy.PREDICTIONS)
+    if value in lazy.PREDICTIONS:
         return value
     fractions: dict[str, Fraction] = {}
     for part in value.split(","):
         kind, _, weight = (piece.strip() for piece in part.partition("="))
-        if kind not in PREDICTIONS or kind in fractions:
+        if kind not in lazy.PREDICTIONS or kind in fractions:
             raise click.BadParameter(f"it has to be {known}, or each of them once with a weight")
         fractions[kind] = Fraction(weight) if _WEIGHT.fullmatch(weight) else Fraction(0)
         if not fractions[kind]:
             raise click.BadParameter(f"`{part}` has to end in a weight above 0, such as `=0.7`")
-    if not is_distribution(sum(fractions.values(), Fraction(0))):
+    if not lazy.is_distribution(sum(fractions.values(), Fraction(0))):
         raise click.BadParameter("the weights have to add up to 1")
     return fractions
 
@@ -139,13 +134,10 @@ class SceneOptions(RecordingOptions):
         help="Recorded scenes: below this median speed traffic counts as congested.",
     )
 
-    def scene(self, scenario: str) -> Scenario:
+    def scene(self, scenario: str) -> lazy.Scenario:
         """Load the scenario. Raises RulecError."""
-        # Late import, not for --help: scenarios' formats (30 ms).
-        from rulec.scenario import Choice, load_scenario
-
-        choice = Choice(**{one.name: getattr(self, one.name) for one in fields(Choice)})
-        return load_scenario(file_named(scenario), choice)
+        choice = lazy.Choice(**{one.name: getattr(self, one.name) for one in fields(lazy.Choice)})
+        return lazy.load_scenario(file_named(scenario), choice)
 
     def cells(self, partition: str | None = None) -> dict[str, Any]:
         """Keyword arguments of ``find_maneuvers``; ``partition`` is the default one."""

@@ -18,6 +18,7 @@ from click.core import ParameterSource
 
 from rulec.batch.jobs import Jobs, chosen_jobs
 from rulec.cache.keeping import keeping
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.output_options import RenamedOption, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.options.standard_input import read_as_file
@@ -133,10 +134,7 @@ def _day(context: click.Context, parameter: click.Parameter, value: str) -> str:
     """A date in ISO form; empty if none is given."""
     if not value:
         return ""
-    # Late import, only if a day is given: the parser of rulebooks (60 ms).
-    from rulec.syntax.messages.literals import why_not_a_day
-
-    wrong = why_not_a_day(value)
+    wrong = lazy.why_not_a_day(value)
     if wrong:
         options = [option for param in context.command.params for option in param.opts]
         if _SECONDS.fullmatch(value) and "--at-time" in options:

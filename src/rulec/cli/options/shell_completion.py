@@ -4,47 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.diagnostics import RulecError
 from rulec.rulebook.files.search_path import available_rulebooks, available_vocabularies
 from rulec.settings import search_path
 
-if TYPE_CHECKING:
-    from click.shell_completion import CompletionItem
-
 
 def complete_rulebooks(
     ctx: click.Context, param: click.Parameter, incomplete: str
-) -> list[CompletionItem]:
+) -> list[lazy.CompletionItem]:
     """Names of rulebooks, and files."""
     return _named(_book_names(), incomplete)
 
 
 def complete_sources(
     ctx: click.Context, param: click.Parameter, incomplete: str
-) -> list[CompletionItem]:
+) -> list[lazy.CompletionItem]:
     """Names of rulebooks and vocabularies, and files."""
     return _named(_book_names(vocabularies=True), incomplete)
 
 
 def complete_rules(
     ctx: click.Context, param: click.Parameter, incomplete: str
-) -> list[CompletionItem]:
+) -> list[lazy.CompletionItem]:
     """Complete rule names of the given rulebook, with their titles."""
-    # Late import, only to complete rules: rulebooks and automata (170 ms).
-    from rulec.automata.bundle.bundle_file import read_compiled
-    from rulec.rulebook.loader import load_rulebook
-
     reference = str(ctx.params.get("rulebook"))
     try:
         compiled = Path(reference).suffix == ".json"
         rules = (
-            read_compiled(Path(reference)).rules
+            lazy.read_compiled(Path(reference)).rules
             if compiled
-            else load_rulebook(reference, _folders()).rules
+            else lazy.load_rulebook(reference, _folders()).rules
         )
     except RulecError:
         return []
@@ -55,24 +48,18 @@ def complete_rules(
 
 def complete_scenarios(
     ctx: click.Context, param: click.Parameter, incomplete: str
-) -> list[CompletionItem]:
+) -> list[lazy.CompletionItem]:
     """Names of scenarios, and files."""
-    # Late import, only to complete their names: scenarios' formats (30 ms).
-    from rulec.scenario import available_scenarios
-
-    return _named(available_scenarios(), incomplete)
+    return _named(lazy.available_scenarios(), incomplete)
 
 
 def complete_codes(
     ctx: click.Context, param: click.Parameter, incomplete: str
-) -> list[CompletionItem]:
+) -> list[lazy.CompletionItem]:
     """Codes of messages, with their titles."""
-    # Late import, only to complete codes (4 ms).
-    from rulec.report.findings.code_registry import all_codes
-
     return [
         _item(text, code.title)
-        for text, code in all_codes().items()
+        for text, code in lazy.all_codes().items()
         if text.startswith(incomplete.upper())
     ]
 
@@ -92,14 +79,11 @@ def _book_names(*, vocabularies: bool = False) -> list[str]:
     return names
 
 
-def _named(names: Iterable[str], incomplete: str) -> list[CompletionItem]:
+def _named(names: Iterable[str], incomplete: str) -> list[lazy.CompletionItem]:
     fitting = [_item(name) for name in names if name.startswith(incomplete)]
     # The first item makes the shell also offer files whose paths begin so.
     return [_item(incomplete, kind="file"), *fitting]
 
 
-def _item(value: str, about: str | None = None, kind: str = "plain") -> CompletionItem:
-    # Late import, only for shell completion (0.5 ms).
-    from click.shell_completion import CompletionItem
-
-    return CompletionItem(value, type=kind, help=about)
+def _item(value: str, about: str | None = None, kind: str = "plain") -> lazy.CompletionItem:
+    return lazy.CompletionItem(value, type=kind, help=about)

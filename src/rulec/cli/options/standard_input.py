@@ -12,6 +12,7 @@ from typing import IO, Any, cast
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.invocation import invocation_of
 from rulec.files.file_messages import no_input
 from rulec.files.read_files import STANDARD_INPUT_COPY, opened
@@ -128,14 +129,10 @@ def _in_place_of_a_file(usual: str) -> Iterator[str]:
 @contextmanager
 def copied() -> Iterator[Path]:
     """A copy of standard input, which may be read more than once, and from its middle."""
-    # Late import, not for files: archives and random names (4 ms).
-    import shutil
-    from tempfile import TemporaryDirectory
-
     with ExitStack() as stack:
         with temporary_files():
-            folder = stack.enter_context(TemporaryDirectory(prefix=TEMPORARY))
+            folder = stack.enter_context(lazy.TemporaryDirectory(prefix=TEMPORARY))
             copy = Path(folder, "standard input")
             with copy.open("wb") as stream:
-                shutil.copyfileobj(standard_input(), stream)
+                lazy.shutil.copyfileobj(standard_input(), stream)
         yield copy

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from rulec.fleet.fleet_messages import no_fleet_input, unnamed_drives
 from rulec.fleet.table_kind import TableKind, keys_of, kind_of
+from rulec.trace.formats import arrow as arrow_tables
 from rulec.trace.formats.arrow.parquet import arrow
 
 ROWS_AT_ONCE = 1 << 14
@@ -77,9 +78,6 @@ def keyed_rows(
 
     Raises RulecError R0710 for a table of something else, or keys that are not UTF-8.
     """
-    # Arrow, 0.1 s: where there is an Arrow table, it is already loaded.
-    from rulec.trace.formats.arrow.table_groups import key_texts, not_utf8, table_of_batch
-
     names = source.schema_arrow.names
     kind = kind_of(names, path)
     keys = keys_of(names, kind)
@@ -87,10 +85,10 @@ def keyed_rows(
         ROWS_AT_ONCE, list(row_groups), columns=None if whole else keys, use_threads=False
     )
     for batch in batches:
-        rows = table_of_batch(batch)
-        if why := not_utf8(rows, keys):
+        rows = arrow_tables.table_of_batch(batch)
+        if why := arrow_tables.not_utf8(rows, keys):
             raise unnamed_drives(why, path)
-        codes, texts = key_texts(rows, keys, _BETWEEN_KEYS)
+        codes, texts = arrow_tables.key_texts(rows, keys, _BETWEEN_KEYS)
         yield KeyedRows(rows, codes, kind, texts)
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rulec.fleet.fleet_messages import no_fleet_input, other_types
 from rulec.fleet.runs.drive_keys import KeyedRows, keyed_rows, opened_table
 from rulec.fleet.runs.work_units import TablePiece, WorkUnit
+from rulec.trace.formats import arrow as arrow_tables
 from rulec.trace.formats.arrow.parquet import arrow
 
 MOST_TOGETHER = 1 << 15
@@ -62,12 +63,9 @@ def slices_of_unit(unit: WorkUnit) -> Iterator[Any]:
 
 
 def _one_table(parts: Sequence[Any], path: str) -> Any:
-    # Arrow, 0.1 s: where there is an Arrow table, it is already loaded.
-    from rulec.trace.formats.arrow.table_groups import joined
-
     pyarrow, _ = arrow(path)
     try:
-        return joined(parts)
+        return arrow_tables.joined(parts)
     except pyarrow.ArrowException as reason:
         raise other_types(path, str(reason).split("\n")[0]) from None
 
@@ -150,9 +148,6 @@ class _Reader:
 
     def rows_of(self, hashes: NDArray[np.int64], first: int, wanted: int) -> Iterator[Any]:
         """The ``wanted`` number of rows of some drives; ``first`` is the index of the first row."""
-        # As above.
-        from rulec.trace.formats.arrow.table_groups import rows_where
-
         now = self._now
         if now is None or not now.start <= first < self._groups[now.group].stop:
             self._start(first)
@@ -162,7 +157,7 @@ class _Reader:
             count = int(kept[now.batch.codes].sum())
             wanted -= count
             if count:
-                yield rows_where(now.batch.rows, now.batch.codes, kept)
+                yield arrow_tables.rows_where(now.batch.rows, now.batch.codes, kept)
             self._now = now
             if wanted <= 0:
                 return

@@ -1,18 +1,13 @@
 """Answers about a rule that need a compiler: examples, sentence, parent."""
 
-# Imports within functions: compilers, automata and reports take 400 ms, needed on request only.
-
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
+from rulec.api import lazy_imports as lazy
 from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.trace.vocabulary_projection import with_told_values
-
-if TYPE_CHECKING:
-    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 
 COMMONROAD = "commonroad"
 
@@ -54,33 +49,22 @@ class ParentAnswer:
     text: str
 
 
-def _compiled(book: Rulebook, rule: Rule) -> CompiledRulebook:
-    from rulec.api.rulebook_compilation import compile_rulebook
-
-    return compile_rulebook(replace(book, rules=(rule,)))
-
-
 def example_answer(book: Rulebook, rule: Rule) -> ExampleAnswer:
     """Run the examples of a rule and find what they do not cover. Raises RulecError."""
-    from rulec.analysis.audit.source_audit import audit_source
-    from rulec.book_tests.example_coverage import coverage
-    from rulec.book_tests.example_runs import run_rulebook_examples
-    from rulec.extraction.tellable_types import told_types
-    from rulec.report.tests.example_text import missing_examples
-
-    compiled = _compiled(book, rule)
-    run = run_rulebook_examples(replace(book, rules=(rule,)), compiled)
-    seen = coverage(run) if rule.examples else ()
+    alone = replace(book, rules=(rule,))
+    compiled = lazy.compile_rulebook(alone)
+    run = lazy.run_rulebook_examples(alone, compiled)
+    seen = lazy.example_coverage.coverage(run) if rule.examples else ()
     words = with_told_values(TELLABLE_WORDS[COMMONROAD], compiled.vocabulary)
-    words |= told_types(COMMONROAD, compiled.vocabulary)
-    audited = audit_source(compiled, COMMONROAD, words)
+    words |= lazy.told_types(COMMONROAD, compiled.vocabulary)
+    audited = lazy.audit_source(compiled, COMMONROAD, words)
     return ExampleAnswer(
         sum(outcome.passed for outcome in run.outcomes),
         tuple(outcome.name for outcome in run.outcomes if not outcome.passed),
         tuple(
             example
             for witness in seen
-            for example in missing_examples(witness, compiled.vocabulary)
+            for example in lazy.missing_examples(witness, compiled.vocabulary)
         ),
         audited.rules[0].lacking,
     )
@@ -88,16 +72,11 @@ def example_answer(book: Rulebook, rule: Rule) -> ExampleAnswer:
 
 def english(book: Rulebook, rule: Rule) -> str:
     """A rule in plain English."""
-    from rulec.report.rulebooks.rule_page import summary
-
-    return summary(rule, book, _WIDTH)
+    return lazy.rule_page.summary(rule, book, _WIDTH)
 
 
 def parent_answer(book: Rulebook, parent: Rulebook, rule: str) -> ParentAnswer:
     """Whether a rule is stricter or laxer than its parent. Raises RulecError."""
-    from rulec.analysis.diff.rulebook_comparison import diff_rulebooks
-    from rulec.report.rulebooks.comparison.diff_text import as_text
-
-    diff = diff_rulebooks(first=book, second=parent, patterns=(rule,))
+    diff = lazy.diff_rulebooks(first=book, second=parent, patterns=(rule,))
     relation = diff.pairs[0].comparison.relation if diff.pairs else "of its own"
-    return ParentAnswer(relation, parent.name, as_text(diff, _WIDTH))
+    return ParentAnswer(relation, parent.name, lazy.diff_text.as_text(diff, _WIDTH))

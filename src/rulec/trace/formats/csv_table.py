@@ -12,6 +12,7 @@ from importlib.util import find_spec
 from typing import IO, cast
 
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.trace.formats import arrow as arrow_tables
 from rulec.trace.formats import table_reader as tables
 from rulec.trace.formats.stream_lines import foreign, not_utf8, placed
 from rulec.trace.trace_model import Trace
@@ -40,11 +41,8 @@ def read_csv(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | RulecErr
     if columns is None:
         yield from tables.in_chunks(_traces(stream, file))
         return
-    from rulec.trace.formats.arrow.arrow_blocks import cut  # loads Arrow, 0.1 s
-    from rulec.trace.formats.arrow.arrow_csv import pieces  # loads Arrow, 0.1 s
-
-    plain = pieces(stream, columns, 2, lambda rest, number: _rows(rest, number, file))
-    yield from cut(plain, _table(columns, file), 2, SourceLocation(file))
+    plain = arrow_tables.pieces(stream, columns, 2, lambda rest, number: _rows(rest, number, file))
+    yield from arrow_tables.cut(plain, _table(columns, file), 2, SourceLocation(file))
 
 
 def _no_table(stream: IO[bytes], file: str) -> RulecError | None:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from rulec.analysis.audit.audit_kinds import KINDS
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
@@ -16,11 +16,6 @@ from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.options.standard_input import read_as_file
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, open_session, put_answer, sources_of_rulebooks, width_of
-
-if TYPE_CHECKING:
-    from rulec.analysis.audit.rulebook_audit import Audit
-    from rulec.analysis.audit.source_audit import SourceAudit
-
 
 _FOUND_WITH = {
     "failing": "--examples",
@@ -95,11 +90,6 @@ def command(
 
     Exit status: 0 done, 1 a finding named by --fail-on, 2 a rulebook could not be read.
     """
-    # Late import, not for --help: rulebooks and their automata (180 ms).
-    from rulec.analysis.audit.rulebook_audit import compare_audits
-    from rulec.analysis.audit.saved_audit import read_audits
-    from rulec.report.rulebooks.audit_report import render
-
     rulebooks = sources_of_rulebooks(rulebooks, "cannot be audited")
     if law_now is not None and law is None:
         raise click.UsageError("--law-now needs --law, the text that it is compared with")
@@ -118,20 +108,22 @@ def command(
     older = None
     if compare is not None:
         if Path(compare).suffix == ".json":
-            older = read_audits(Path(compare))
+            older = lazy.read_audits(Path(compare))
         else:
             older = (open_session(at).audit(compare, run_examples=run),)
-    audits: list[Audit] = []
-    sources: list[SourceAudit] = []
+    audits: list[lazy.Audit] = []
+    sources: list[lazy.SourceAudit] = []
     for rulebook in rulebooks:
         with errors_told():
             done = open_session(at).audit(rulebook, run_examples=run, law=law, law_now=law_now)
             if source is not None:
                 sources.append(open_session(at).audit_source(rulebook, source, where))
             audits.append(done)
-    against = {} if older is None else compare_audits(audits, older)
+    against = {} if older is None else lazy.compare_audits(audits, older)
     if audits or to.form == "json":
-        text = render(audits, against, to.form, width_of(to), sources, in_full=every)
+        text = lazy.audit_report.render(
+            audits, against, to.form, width_of(to), sources, in_full=every
+        )
         put_answer(text, to)
     findings = [
         finding

@@ -8,11 +8,12 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import click
 
 import rulec
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
@@ -35,10 +36,6 @@ from rulec.report.text.terminal_text import counted, wants_color
 from rulec.rulebook.batch.answer_cache import AnswerQuestion
 from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.settings import search_path
-
-if TYPE_CHECKING:
-    from rulec.analysis.diff.rulebook_comparison import RulebookDiff
-    from rulec.rulebook.rulebook_model import Rulebook
 
 
 @click.command(cls=Verb)
@@ -152,7 +149,7 @@ def command(
         difference = _difference(rulebooks, two, at, warned)
         if witness is not None:
             _write_witnesses(difference, witness)
-        text = _text_of(difference, to, in_full=in_full)
+        text = lazy.diff_formats.render(difference, to.form, width_of(to), in_full=in_full)
         known = text, difference.is_complete, difference.is_none
         if difference.is_complete and not warned:
             question.remember(known, difference.files)
@@ -166,10 +163,8 @@ def _difference(
     question: TwoBooks,
     at: str,
     warned: list[Diagnostic],
-) -> RulebookDiff:
+) -> lazy.RulebookDiff:
     """The differences of two rulebooks; their warnings are printed, and added to ``warned``."""
-    # Late import, not for cached results: rulebooks and their automata (140 ms).
-    from rulec.rulebook.loader import load_rulebook
 
     def warn(diagnostics: Sequence[Diagnostic]) -> None:
         print_diagnostics(diagnostics)
@@ -177,7 +172,7 @@ def _difference(
 
     named = []
     if question.paired or question.patterns:
-        named = [load_rulebook(name, search_path(), at) for name in rulebooks]
+        named = [lazy.load_rulebook(name, search_path(), at) for name in rulebooks]
         refuse_unmatched(question.patterns, named)
     with progress("comparing", None) as tell:
         first, second = rulebooks
@@ -196,30 +191,16 @@ def _on_topic(
     rulebooks: Sequence[str], about: tuple[str, str], to: Output, *, in_full: bool
 ) -> tuple[str, Sequence[str]]:
     """What rulebooks say on a topic, by the law of a day, and the files that were read."""
-    # Late import, not for cached results: rulebooks (140 ms).
-    from rulec.report.rulebooks.comparison.topic_report import render
-    from rulec.rulebook.loader import read_rulebook
-
     topic, at = about
-    read = [read_rulebook(name, search_path(), at) for name in rulebooks]
+    read = [lazy.read_rulebook(name, search_path(), at) for name in rulebooks]
     books = rules_on_topic([loaded.rulebook for loaded in read], topic)
-    text = render(books, topic, to.form, width_of(to), in_full=in_full)
+    text = lazy.topic_report.render(books, topic, to.form, width_of(to), in_full=in_full)
     return text, [path for loaded in read for path in loaded.paths]
 
 
-def _text_of(difference: RulebookDiff, to: Output, *, in_full: bool) -> str:
-    # Late import, not for cached results: rulebooks and their automata (140 ms).
-    from rulec.report.rulebooks.comparison import diff_formats
-
-    return diff_formats.render(difference, to.form, width_of(to), in_full=in_full)
-
-
-def _write_witnesses(difference: RulebookDiff, path: str) -> None:
-    # Late import, not for cached results: traces' formats (30 ms).
-    from rulec.trace.formats.json_lines import write_traces
-
+def _write_witnesses(difference: lazy.RulebookDiff, path: str) -> None:
     with output_stream(Output(path, "jsonl")) as (stream, name):
-        number = write_traces(difference.witnesses, stream)
+        number = lazy.json_lines.write_traces(difference.witnesses, stream)
     print_remark(f"wrote {counted(number, 'trace')} to {name}")
 
 
@@ -276,21 +257,15 @@ def _matrix(
 
     It is written as it is made; for fewer than two rulebooks it is empty.
     """
-    # Late import, not for cached results: rulebooks and their automata (140 ms).
-    from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, growing_matrices
-    from rulec.report.rulebooks.comparison import matrix_report
-    from rulec.rulebook.files.catalogue import named_by_heads
-    from rulec.rulebook.loader import read_rulebook
-
     paths: list[str] = []
     parts: list[str] = []
 
-    def books() -> Iterator[Rulebook]:
+    def books() -> Iterator[lazy.Rulebook]:
         # Treaties before the rulebooks that extend them, so that the treaty is law A.
-        for reference, name in named_by_heads(names, search_path()).items():
+        for reference, name in lazy.named_by_heads(names, search_path()).items():
             loaded = None
             with errors_told():
-                loaded = read_rulebook(reference, search_path(), pairs.at)
+                loaded = lazy.read_rulebook(reference, search_path(), pairs.at)
             if loaded is not None:
                 paths.extend(loaded.paths)
                 yield replace(loaded.rulebook, name=name)
@@ -300,13 +275,13 @@ def _matrix(
             parts.append(text)
             write(text)
 
-    matrix = ComparisonMatrix((), ())
+    matrix = lazy.ComparisonMatrix((), ())
     with progress("comparing", len(names)) as tell:
-        for matrix in growing_matrices(books(), pairs.patterns, pairs.step_s):
+        for matrix in lazy.growing_matrices(books(), pairs.patterns, pairs.step_s):
             tell(len(matrix.books))
-            lines = matrix_report.last_pairs(matrix, pairs.form, pairs.width)
+            lines = lazy.matrix_report.last_pairs(matrix, pairs.form, pairs.width)
             if lines and not parts:
-                put(matrix_report.opening(pairs.form, pairs.width))
+                put(lazy.matrix_report.opening(pairs.form, pairs.width))
             put("\n".join(lines))
     refuse_unmatched(pairs.patterns, matrix.books)
     is_read = len(matrix.books) == len(names)
@@ -318,12 +293,12 @@ def _matrix(
     ]
     matrix = matrix.without(alone)
     if len(matrix.books) > 1:
-        put(matrix_report.render(matrix, pairs.form, pairs.width))
+        put(lazy.matrix_report.render(matrix, pairs.form, pairs.width))
     is_complete = is_read and matrix.is_complete
     return "\n".join(parts), alone, is_complete, matrix.is_uniform, paths
 
 
-def _pairs(texts: Sequence[str], books: Sequence[Rulebook]) -> dict[str, str]:
+def _pairs(texts: Sequence[str], books: Sequence[lazy.Rulebook]) -> dict[str, str]:
     """Pairs of rule names from texts ``A=B``: a rule of the first, one of the second rulebook."""
     pairs: dict[str, str] = {}
     for text in texts:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_codes
@@ -21,9 +21,6 @@ from rulec.report.text.console import print_remark
 from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.rulebook.files.source_walk import SUFFIX
 from rulec.settings import search_path
-
-if TYPE_CHECKING:
-    from rulec.rulebook.word_search import FoundWord
 
 _ALIKE = 0.75
 """As for names in formulas: less similar words are seldom slips, such as `trikk` for `truck`."""
@@ -77,11 +74,8 @@ def command(names: tuple[str, ...], every: bool, to: Output) -> int:
     return ExitStatus.after(answered=not unknown, failed=False)
 
 
-def _words(name: str) -> Sequence[FoundWord]:
-    # Late import, only for names that are not codes: parsing vocabularies (60 ms).
-    from rulec.rulebook.word_search import find_word
-
-    return find_word(name, _places())
+def _words(name: str) -> Sequence[lazy.FoundWord]:
+    return lazy.find_word(name, _places())
 
 
 def _places() -> tuple[Path, ...]:
@@ -93,38 +87,27 @@ def _unknown(name: str) -> str:
     return f"there is no code and no word `{name}`; {_way_out(name)}"
 
 
-def _texts(words: Sequence[FoundWord], width: int | None) -> list[str]:
+def _texts(words: Sequence[lazy.FoundWord], width: int | None) -> list[str]:
     """The texts about words, of a width, or as Markdown for None."""
     if not words:
         return []
-    # Late import, as above: not needed for codes.
-    from rulec.report.rulebooks.word_texts import as_markdown, as_text, readers_of
+    read = [(word, lazy.readers_of(word, _places())) for word in words]
+    return [
+        lazy.word_texts.as_markdown(*one) if width is None else lazy.word_texts.as_text(*one, width)
+        for one in read
+    ]
 
-    read = [(word, readers_of(word, _places())) for word in words]
-    return [as_markdown(*one) if width is None else as_text(*one, width) for one in read]
 
-
-def _as_json(codes: Sequence[Code], words: Sequence[FoundWord]) -> str:
+def _as_json(codes: Sequence[Code], words: Sequence[lazy.FoundWord]) -> str:
     if words:
         if codes:
             raise click.UsageError("as JSON codes and words are two lists; ask for either")
-        # Late import, as above.
-        from rulec.report.rulebooks.word_texts import readers_of, words_as_json
-
-        return words_as_json((word, readers_of(word, _places())) for word in words)
-    # Late import, only for this format: msgspec (8 of the command's 54 ms).
-    from rulec.report.findings.diagnostics_json import codes_as_json
-
-    return codes_as_json(codes)
+        return lazy.words_as_json((word, lazy.readers_of(word, _places())) for word in words)
+    return lazy.codes_as_json(codes)
 
 
 def _way_out(name: str) -> str:
     """Where another thing of this name is explained, or a code or word that may be meant."""
-    # Late import, only for unknown names: file search and their rules (60 ms).
-    from rulec.rulebook.files import words_in_files as texts
-    from rulec.rulebook.files.catalogue import rulebooks_with_rule
-    from rulec.rulebook.names.word_meanings import described, offer
-
     places = _places()
     if Path(name).suffix == SUFFIX and Path(name).is_file():
         return f"it is a file, which `rulec show {name}` explains"
@@ -134,21 +117,21 @@ def _way_out(name: str) -> str:
         return f"did you mean `{near}`?"
     if name in available_rulebooks(places):
         return f"it is a rulebook, which `rulec show {name}` explains"
-    if books := rulebooks_with_rule(name, places):
+    if books := lazy.rulebooks_with_rule(name, places):
         more = f" (also of {first_of(books[1:], 3)})" if books[1:] else ""
         return f"it is a rule, which `rulec show {books[0]} {name}` explains{more}"
-    topics = texts.topics_of_rulebooks(places)
+    topics = lazy.words_in_files.topics_of_rulebooks(places)
     if name in topics:
         of = f" of rules such as {any_of([f'`{rule}`' for rule in topics[name]])}"
         topic = f"it is a topic{of if topics[name] else ''}"
         return f"{topic}: `rulec list rules --topic {name}` shows who has rules on it"
-    words = texts.words_of_vocabularies(places)
+    words = lazy.words_in_files.words_of_vocabularies(places)
     known = sorted(frozenset[str]().union(*words.values()))
-    defined = frozenset[str]().union(*texts.definitions_of_rulebooks(places).values())
+    defined = frozenset[str]().union(*lazy.words_in_files.definitions_of_rulebooks(places).values())
     as_long = sorted(one for one in defined if abs(len(one) - len(name)) <= _SLIP)
     kinds = {
         "did you mean the word `{}`?": known,
-        "did you mean the rule `{}`?": sorted(texts.rules_of_rulebooks(places)),
+        "did you mean the rule `{}`?": sorted(lazy.words_in_files.rules_of_rulebooks(places)),
         "did you mean the topic `{}`?": topics,
         "did you mean `{}`, which a rulebook defines?": as_long,
         "did you mean the command `{0}`, which `rulec help {0}` explains?": VERBS,
@@ -161,6 +144,6 @@ def _way_out(name: str) -> str:
     if meant:
         near = nearest_name(name, meant, _ALIKE) or next(reversed(meant))
         return meant[near].format(near)
-    return str(offer(name, described(known, words))) or (
+    return str(lazy.word_meanings.offer(name, lazy.word_meanings.described(known, words))) or (
         "`rulec list codes` shows all codes, and `rulec list vocabularies` the files with words"
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 import rulec
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import put_answer
@@ -30,9 +31,6 @@ def command(
     With --words also the words that each format can provide to a rulebook. A particular file may
     provide fewer; `rulec show --audit R --source FILE` lists those.
     """
-    # Late import, not for --help: signals derived from recordings, and msgspec (250 ms).
-    from rulec.report.recordings import format_listing
-
     every = rulec.formats()
     known = list(dict.fromkeys(format_.name for format_ in every))
     for name in names:
@@ -40,12 +38,12 @@ def command(
             hint = did_you_mean(name, known)
             raise click.UsageError(f"there is no format `{name}`{f'; {hint}' if hint else '.'}")
     listed = [format_ for format_ in every if not names or format_.name in names]
-    order = format_listing.words_in_order()
+    order = lazy.format_listing.words_in_order()
     match to.form:
         case "json":
-            text = format_listing.as_json(listed)
+            text = lazy.format_listing.as_json(listed)
         case "markdown":
-            text = format_listing.as_markdown(listed, order, words=words)
+            text = lazy.format_listing.as_markdown(listed, order, words=words)
         case _:
-            text = format_listing.as_text(listed, order, words=words, width=page_width())
+            text = lazy.format_listing.as_text(listed, order, words=words, width=page_width())
     put_answer(text, to)

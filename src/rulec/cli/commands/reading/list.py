@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import Literal, get_args
 
 import click
 
 import rulec
 from rulec.api.rulebook_questions import Kind
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
@@ -19,9 +20,6 @@ from rulec.cli.output import errors_told, open_session, put_answer, sources_of_r
 from rulec.rulebook.batch.answer_cache import AnswerQuestion
 from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.settings import search_path
-
-if TYPE_CHECKING:
-    from rulec.report.text.listing import Listed
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
@@ -54,16 +52,19 @@ def command(
         return ExitStatus.after(answered=is_complete, failed=False)
     if rulebooks or topic or at:
         raise click.UsageError("only rules are those of a RULEBOOK: `rulec list rules de`")
-    # Late import, not for --help: msgspec (7 ms).
-    from rulec.report.text.listing import as_json, as_text
 
     def session(kind: Kind) -> rulec.Session:
         # Scenarios and codes are listed even if the project's settings have a mistake.
         return open_session() if kind in ("rulebooks", "vocabularies") else rulec.Session()
 
     kinds = KINDS[:-1] if kind is None else (kind,)
-    lists: dict[str, Sequence[Listed]] = {kind: session(kind).list(kind) for kind in kinds}
-    put_answer(as_json(lists) if to.form == "json" else as_text(lists, width_of(to)), to)
+    lists: dict[str, Sequence[lazy.Listed]] = {kind: session(kind).list(kind) for kind in kinds}
+    put_answer(
+        lazy.listing.as_json(lists)
+        if to.form == "json"
+        else lazy.listing.as_text(lists, width_of(to)),
+        to,
+    )
     return ExitStatus.OK
 
 
@@ -74,18 +75,14 @@ def _rules(
 
     Also whether all could be read, and if so the files.
     """
-    # Late import, not for --help: rulebooks (130 ms).
-    from rulec.report.rulebooks import rule_list
-    from rulec.rulebook.loader import read_rulebook
-
     named = sources_of_rulebooks(rulebooks, "has no list") or available_rulebooks(search_path())
     read = []
     for name in named:
         with errors_told():
-            read.append(read_rulebook(name, search_path(), at))
+            read.append(lazy.read_rulebook(name, search_path(), at))
     is_complete = len(read) == len(named)
     books = [loaded.rulebook for loaded in read if loaded.rulebook.rules]
     books = books if topic is None else [*rules_on_topic(books, topic)]
-    text = rule_list.as_text(books, width, "") if width else rule_list.as_json(books)
+    text = lazy.rule_list.as_text(books, width, "") if width else lazy.rule_list.as_json(books)
     paths = [path for loaded in read for path in loaded.paths] if is_complete else []
     return (text, is_complete), paths

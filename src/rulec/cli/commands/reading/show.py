@@ -7,12 +7,13 @@ from contextlib import contextmanager
 from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import click
 
 import rulec
 from rulec.automata.bundle.required_signature import refuse_source
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
@@ -24,13 +25,6 @@ from rulec.diagnostics import first_of, named, nearest_name
 from rulec.report.text.console import print_remark
 from rulec.rulebook.batch.answer_cache import AnswerQuestion
 from rulec.settings import search_path
-
-if TYPE_CHECKING:
-    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.report.automata.automaton_model import Automaton
-    from rulec.report.rulebooks.rule_page import RulePage
-    from rulec.rulebook.rulebook_model import Rule, Rulebook
-
 
 _MOST_NAMED = 6
 """The most rules listed where one has to be chosen."""
@@ -135,40 +129,32 @@ def _shown(reference: str, request: ShowRequest, *, several: bool) -> tuple[str,
     book = _matching(whole, request)
     chosen = _chosen(book, request.name, reference)
     if book.rules and chosen is None and request.to.form == "text" and not request.every:
-        # Late import, not for --help: topics (20 ms).
-        from rulec.report.rulebooks import rule_list
-
         some = "" if request.topic or not book.topics else ", `--topic overtaking` some"
         ways_on = f"a RULE's name shows it in full{some}, `--all` every one"
-        return rule_list.as_text([book], width_of(request.to), ways_on), paths
-    # Late import, not for --help: rules and automata (60 ms).
-    from rulec.report.json_document import as_indented, as_line
-    from rulec.report.rulebooks import rule_json, rule_page
-
+        return lazy.rule_list.as_text([book], width_of(request.to), ways_on), paths
     page = None if chosen is None else _page(book, compiled, chosen)
     rules = book.rules if chosen is None else (chosen,)
     if request.to.form == "json":
-        document = rule_json.as_document(book, rules, page)
-        return as_line(document) if several else as_indented(document), paths
+        document = lazy.rule_json.as_document(book, rules, page)
+        return lazy.json_document.as_line(document) if several else lazy.json_document.as_indented(
+            document
+        ), paths
     width = width_of(request.to)
     if page is not None:
-        return rule_page.as_text(page, book, width), paths
+        return lazy.rule_page.as_text(page, book, width), paths
     if not rules:
         return f"{book.name} has no rules; `rulec explain NAME` explains what it defines", paths
-    pages = [rule_page.summary(rule, book, width) for rule in rules]
+    pages = [lazy.rule_page.summary(rule, book, width) for rule in rules]
     return "\n\n\n".join(pages), paths
 
 
-def _matching(book: Rulebook, request: ShowRequest) -> Rulebook:
+def _matching(book: lazy.Rulebook, request: ShowRequest) -> lazy.Rulebook:
     """The rulebook with only the rules on the topic that match one of the patterns, if any."""
     if request.topic is not None:
         book = rules_on_topic([book], request.topic)[0]
     if not request.patterns:
         return book
-    # Late import, not for --help: comparisons of rulebooks.
-    from rulec.analysis.diff.rulebook_comparison import rules_matching
-
-    rules = tuple(rules_matching(book, request.patterns).values())
+    rules = tuple(lazy.rules_matching(book, request.patterns).values())
     if not rules:
         raise click.UsageError(f"{book.name} has no rule like {named(request.patterns)}")
     return replace(book, rules=rules)
@@ -186,38 +172,35 @@ def _automaton_of(reference: str, request: ShowRequest) -> str:
     return _automaton(page.automaton, request.to.form, name, width_of(request.to))
 
 
-def _page(book: Rulebook, compiled: CompiledRulebook | None, chosen: Rule) -> RulePage:
+def _page(
+    book: lazy.Rulebook, compiled: lazy.CompiledRulebook | None, chosen: lazy.Rule
+) -> lazy.RulePage:
     """All data about a rule for display."""
-    # Late import, not for --help: rules and automata (60 ms).
-    from rulec.report.rulebooks.rule_page import page_of
-
     if compiled is None:
         compiled = rulec.compile_rulebook(replace(book, rules=(chosen,)))
-    return page_of(chosen, compiled)
+    return lazy.page_of(chosen, compiled)
 
 
-def _read(reference: str, at: str) -> tuple[Rulebook, CompiledRulebook | None, Sequence[str]]:
+def _read(
+    reference: str, at: str
+) -> tuple[lazy.Rulebook, lazy.CompiledRulebook | None, Sequence[str]]:
     """A rulebook, in its compiled form if it is, and the files of its source."""
-    # Late import, not for --help: rulebooks (130 ms).
-    from rulec.automata.bundle.bundle_file import read_compiled
-    from rulec.automata.bundle.compiled_rulebook import CompiledRule
-    from rulec.rulebook.loader import read_rulebook
-    from rulec.rulebook.rulebook_model import Rule, Rulebook
-
     if Path(reference).suffix != ".json":
         refuse_source(reference)
-        loaded = read_rulebook(reference, search_path(), at)
+        loaded = lazy.read_rulebook(reference, search_path(), at)
         return loaded.rulebook, None, loaded.paths
-    compiled = read_compiled(Path(reference), at)
+    compiled = lazy.read_compiled(Path(reference), at)
     # The other fields of a compiled rule are its compiled form.
-    names = {field.name for field in fields(CompiledRule)} & {field.name for field in fields(Rule)}
-    rules = [Rule(**{name: getattr(rule, name) for name in names}) for rule in compiled.rules]
+    names = {field.name for field in fields(lazy.CompiledRule)} & {
+        field.name for field in fields(lazy.Rule)
+    }
+    rules = [lazy.Rule(**{name: getattr(rule, name) for name in names}) for rule in compiled.rules]
     in_books = tuple(replace(rule, book=rule.book or compiled.name) for rule in rules)
     about = {name: getattr(compiled, name) for name in ("title", "law", "as_of")}
-    return Rulebook(compiled.name, compiled.vocabulary, in_books, **about), compiled, ()
+    return lazy.Rulebook(compiled.name, compiled.vocabulary, in_books, **about), compiled, ()
 
 
-def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:
+def _chosen(book: lazy.Rulebook, name: str | None, reference: str) -> lazy.Rule | None:
     if name is None:
         return book.rules[0] if len(book.rules) == 1 else None
     by_name = {rule.name: rule for rule in book.rules}
@@ -228,30 +211,23 @@ def _chosen(book: Rulebook, name: str | None, reference: str) -> Rule | None:
     return by_name[name]
 
 
-def _way_out(book: Rulebook, name: str) -> str:
+def _way_out(book: lazy.Rulebook, name: str) -> str:
     """A suggestion of the rule that may be meant, here or in another rulebook."""
-    # Late import, only for unknown rules: file search and their rules (60 ms).
-    from rulec.rulebook.files.catalogue import rulebooks_with_rule
-    from rulec.rulebook.files.words_in_files import definitions_of_rulebooks
-
     if near := nearest_name(name, {rule.name for rule in book.rules}):
         return f"did you mean `{near}`?"
     if name in {*book.vocabulary.declarations, *book.vocabulary.enumeration_of}:
         return f"it is a word that rules read, which `rulec explain {name}` explains"
-    if any(name in names for names in definitions_of_rulebooks(search_path()).values()):
+    if any(name in names for names in lazy.definitions_of_rulebooks(search_path()).values()):
         return f"it is a definition or a parameter, which `rulec explain {name}` explains"
     words = {*name.casefold().split("_")}
     if longer := [f"`{rule.name}`" for rule in book.rules if words < {*rule.name.split("_")}]:
         return f"it has {first_of(longer, _MOST_NAMED)}"
-    if others := rulebooks_with_rule(name, search_path()):
+    if others := lazy.rulebooks_with_rule(name, search_path()):
         return f"there is one in {first_of(others, _MOST_NAMED)}"
     return f"it has {_names(book)}" if book.rules else "it has no rules"
 
 
-def _why_absent(book: Rulebook, name: str, reference: str) -> str:
-    # Late import, only for this message: the printer of rulebooks (60 ms).
-    from rulec.syntax.tree_printer import print_in_force
-
+def _why_absent(book: lazy.Rulebook, name: str, reference: str) -> str:
     if Path(reference).suffix == ".json":
         return ""
     inherited = rulec.Session(search_path(), book.at).tree(reference)
@@ -259,32 +235,26 @@ def _why_absent(book: Rulebook, name: str, reference: str) -> str:
     if last is None:
         return ""
     if last.rule is not None and last.rule.in_force is not None:
-        return f" on {book.at}: it is {print_in_force(last.rule.in_force)}"
+        return f" on {book.at}: it is {lazy.print_in_force(last.rule.in_force)}"
     deed = {"dropped": "dropped it", "silent": "is silent on it"}[last.deed]
     return f": {last.book} {deed}, because {last.because}"
 
 
-def _names(book: Rulebook) -> str:
+def _names(book: lazy.Rulebook) -> str:
     names = [f"`{rule.name}`" for rule in book.rules]
     more = f"; `rulec show {book.name}` shows all" if len(names) > _MOST_NAMED else ""
     return f"{first_of(names, _MOST_NAMED)}{more}"
 
 
-def _automaton(automaton: Automaton, output_format: str, name: str, width: int) -> str:
-    # Late import, only with --automaton: pictures of automata (40 ms).
-    from rulec.report.automata.automaton_layout import is_too_large
-    from rulec.report.automata.automaton_picture import as_picture
-    from rulec.report.automata.automaton_text import as_dot, as_text
-    from rulec.report.pictures.drawing.picture_formats import as_svg
-
+def _automaton(automaton: lazy.Automaton, output_format: str, name: str, width: int) -> str:
     if output_format == "text":
-        return as_text(automaton, width)
+        return lazy.automaton_text.as_text(automaton, width)
     if output_format == "dot":
-        return as_dot(automaton, name)
-    if is_too_large(automaton):
+        return lazy.automaton_text.as_dot(automaton, name)
+    if lazy.is_too_large(automaton):
         raise click.ClickException(
             f"an automaton of {len(automaton.fates):,} states and {len(automaton.transitions):,} "
             "transitions is too large to draw; see it with --automaton text, or lay it out "
             "yourself from --automaton dot"
         )
-    return as_svg(as_picture(automaton, name))
+    return lazy.picture_formats.as_svg(lazy.automaton_picture.as_picture(automaton, name))

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.verb_class import Verb
@@ -43,33 +44,27 @@ def command(
 
     def made() -> tuple[str, Sequence[str]]:
         """What to show, and its sources; none with warnings, or of several rulebooks."""
-        # Late import, not for cached answers: rulebooks and their colours (80 ms).
-        from rulec.analysis.lineage.book_lineage import book_header, read_with_lineage
-        from rulec.analysis.lineage.rule_lineage import extension_forest
-        from rulec.report.rulebooks import lineage_tree
-        from rulec.rulebook.files.catalogue import rulebook_heads
-
         if len(rulebooks) == 1:
-            loaded, lineage = read_with_lineage(rulebooks[0], search_path(), at)
+            loaded, lineage = lazy.read_with_lineage(rulebooks[0], search_path(), at)
             if loaded.warnings:
                 print_diagnostics(loaded.warnings)
-            inherited = lineage_tree.chosen(lineage, patterns)
+            inherited = lazy.lineage_tree.chosen(lineage, patterns)
             if patterns and not inherited.rules:
                 raise click.UsageError(f"{inherited.book} has no rule like {named(patterns)}")
             sources = () if loaded.warnings else loaded.paths
             if to.form == "text" and not every and not patterns:
-                return lineage_tree.as_overview(inherited, width), sources
+                return lazy.lineage_tree.as_overview(inherited, width), sources
             if to.form == "text":
-                return lineage_tree.as_text(inherited, width, color=color), sources
-            return lineage_tree.as_json(inherited), sources
+                return lazy.lineage_tree.as_text(inherited, width, color=color), sources
+            return lazy.lineage_tree.as_json(inherited), sources
         session = open_session(at)
         if rulebooks:
             books = [book for name in rulebooks for book in session.tree(name).books]
         else:
-            books = [book_header(tree) for tree in rulebook_heads(search_path())]
-        branches = extension_forest(books)
+            books = [lazy.book_header(tree) for tree in lazy.rulebook_heads(search_path())]
+        branches = lazy.extension_forest(books)
         if to.form == "text":
-            return lineage_tree.forest_as_text(branches, width, color=color), ()
-        return lineage_tree.forest_as_json(branches), ()
+            return lazy.lineage_tree.forest_as_text(branches, width, color=color), ()
+        return lazy.lineage_tree.forest_as_json(branches), ()
 
     put_answer(AnswerQuestion(words, search_path()).answer(made), to)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import sys
 from itertools import islice
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeAlias
 
 import click
 
 import rulec
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import (
     Output,
@@ -40,15 +41,7 @@ from rulec.report.pictures.drawing.styles import Theme
 from rulec.report.text.terminal_text import shown_count
 from rulec.trace import Trace
 
-if TYPE_CHECKING:
-    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.partition import NavigationGraph
-    from rulec.planning import Maneuvers
-    from rulec.planning.ranking.cheapest import Maneuver
-    from rulec.report.pictures.drawing.picture_formats import Drawing
-    from rulec.trace.formats.trace_files import Format
-
-    Judged = tuple[NavigationGraph, Maneuvers | None, Maneuver | None]
+Judged: TypeAlias = "tuple[lazy.NavigationGraph, lazy.Maneuvers | None, lazy.Maneuver | None]"
 
 _WHY_ONE = "a picture shows what one rulebook says"
 
@@ -116,7 +109,7 @@ def trace(
     patterns: tuple[str, ...],
     only: tuple[str, ...],
     every_row: bool,
-    input_format: Format | None,
+    input_format: lazy.Format | None,
     at: str,
     to: Output,
 ) -> None:
@@ -125,10 +118,6 @@ def trace(
     If no rule is violated, the values that any rule reads are drawn. A violation is marked at the
     state where it is decided, with the rule and its article.
     """
-    # Late import, not for --help: verdicts and pictures (150 ms).
-    from rulec.api.pictures import trace_drawing
-    from rulec.monitoring.batch.by_states import rulebook_for_trace
-
     rules = read_machines(rulebook, at)
     drawn = _trace(file, trace_id, input_format)
     for item in only:
@@ -136,8 +125,8 @@ def trace(
             raise click.UsageError(
                 f"trace `{drawn.id}` has no object `{item}`; it has {named(list(drawn.objects))}."
             )
-    used = _only(rulebook_for_trace(drawn, rules), patterns)
-    _write(trace_drawing(drawn, used, only, patterns, every_row=every_row), to)
+    used = _only(lazy.rulebook_for_trace(drawn, rules), patterns)
+    _write(lazy.trace_drawing(drawn, used, only, patterns, every_row=every_row), to)
 
 
 @command.command()
@@ -187,9 +176,6 @@ def drive(
     FILE is recorded traffic, in one of `rulec list formats`. A picture shows the moment of the
     first violation; an HTML page plays the whole drive and lists all violations.
     """
-    # Late import, not for --help: recordings, verdicts and pictures (400 ms).
-    from rulec.api.pictures import drive_drawing
-
     rules = read_machines(rulebook, at)
     vehicle, part, _ = ego.partition("#")
     wanted = drives.requested((vehicle,) if vehicle else (), rules.vocabulary)
@@ -197,7 +183,7 @@ def drive(
     recording = read_recording(recorded.source(file_named(file)))
     verdicts = rulec.verify_recording(recording, rules, wanted)
     with contained("not drawn", SourceLocation(file)):
-        drawing = drive_drawing(verdicts, ego if part else "", kept, at_s)
+        drawing = lazy.drive_drawing(verdicts, ego if part else "", kept, at_s)
     _write(drawing, to, theme)
 
 
@@ -218,15 +204,12 @@ def scene(layers: tuple[int, ...], to: Output, **options: Any) -> None:
     With a rulebook, the cells of the cheapest satisfying maneuver are highlighted; their bounds are
     its envelope. An HTML page has a time slider.
     """
-    # Late import, not for --help: cells, maneuvers and pictures (150 ms).
-    from rulec.api.pictures import scene_drawing
-
     graph, maneuvers, maneuver = _judged(**options)
     last = len(graph.layers) - 1
     if layers and max(layers) > last:
         raise click.UsageError(f"There is no layer {max(layers)}; they are 0 to {last}.")
     number = options["number"] or 1
-    _write(scene_drawing(graph, maneuvers, maneuver, layers, number), to)
+    _write(lazy.scene_drawing(graph, maneuvers, maneuver, layers, number), to)
 
 
 @command.command()
@@ -239,18 +222,12 @@ def graph(to: Output, **options: Any) -> None:
     With a rulebook, the edges of satisfying maneuvers are drawn differently from those of rejected
     ones, and the cheapest satisfying maneuver is highlighted.
     """
-    # Late import, as for ``scene``.
-    from rulec.api.pictures import graph_drawing
-
-    _write(graph_drawing(*_judged(**options)), to)
+    _write(lazy.graph_drawing(*_judged(**options)), to)
 
 
-def _trace(file: str, trace_id: str | None, form: Format | None) -> Trace:
-    # Late import, not for --help: the formats of traces (20 ms).
-    from rulec.trace.formats.trace_files import read_traces
-
+def _trace(file: str, trace_id: str | None, form: lazy.Format | None) -> Trace:
     names: list[str] = []
-    for item in read_traces(file_named(file), form):
+    for item in lazy.read_traces(file_named(file), form):
         if isinstance(item, RulecError):
             raise item
         if trace_id in (None, item.id):
@@ -260,7 +237,7 @@ def _trace(file: str, trace_id: str | None, form: Format | None) -> Trace:
     raise click.UsageError(f"`{file}` has no trace `{trace_id}`; it has {some}.")
 
 
-def _only(rules: CompiledRulebook, patterns: tuple[str, ...]) -> CompiledRulebook:
+def _only(rules: lazy.CompiledRulebook, patterns: tuple[str, ...]) -> lazy.CompiledRulebook:
     refuse_unmatched(patterns, [rules])
     return with_rules_like(rules, patterns)
 
@@ -301,11 +278,8 @@ def _judged(
     return maneuvers.graph, maneuvers, maneuver
 
 
-def _write(drawing: Drawing, to: Output, theme: Theme = "auto") -> None:
-    # Late import, not for --help: fonts and layout (5 ms).
-    from rulec.report.pictures.drawing.picture_formats import as_bytes
-
-    data = as_bytes(drawing, to.form, to.path, theme)
+def _write(drawing: lazy.Drawing, to: Output, theme: Theme = "auto") -> None:
+    data = lazy.picture_formats.as_bytes(drawing, to.form, to.path, theme)
     with output_stream(to) as (stream, _):
         stream.write(data)
     print_written(to.path, to)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import click
 
 import rulec
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import TABLES, Output, output_options
@@ -22,10 +23,6 @@ from rulec.diagnostics import SourceLocation
 from rulec.diagnostics.fault_messages import contained
 from rulec.report.text.console import print_remark
 from rulec.report.text.terminal_text import shown_count
-
-if TYPE_CHECKING:
-    from rulec.trace.formats.trace_files import Format
-
 
 _WHY_ONE = "a planner's table has the maneuvers of one rulebook"
 
@@ -56,9 +53,6 @@ def command(
     Exit status: 0 there is a satisfying or open maneuver, 1 there is none, 2 the scenario could not
     be evaluated.
     """
-    # Late import, not for --help: maneuvers and the formats of tables (100 ms).
-    from rulec.report.maneuvers.envelope_table import write_envelopes
-
     rules = read_machines(rulebook, at)
     reading = missing.reading(rules.vocabulary)
     scene = cut.scene(scenario)
@@ -66,7 +60,7 @@ def command(
         maneuvers = rulec.find_maneuvers(scene, rules, **reading, **cut.cells())
         cheapest = maneuvers.cheapest(number, perhaps=True)
     with output_stream(to) as (stream, name):
-        write_envelopes(maneuvers.graph, cheapest, stream, name, cast("Format", to.form))
+        lazy.write_envelopes(maneuvers.graph, cheapest, stream, name, cast("lazy.Format", to.form))
     account = maneuvers.graph.scenario.account
     if account is not None and account.mirrored:
         print_remark("rulec: mirrored: d is positive to the right of what was recorded")

@@ -8,10 +8,10 @@ from dataclasses import replace
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import (
@@ -42,9 +42,6 @@ from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import page_width
 from rulec.rulebook.query_model import FormulaQuery
 from rulec.settings import search_path
-
-if TYPE_CHECKING:
-    from rulec.extraction.moment_search import DriveMoments
 
 FORMATS = {**endings_of("text", "json"), **TABLES}
 
@@ -102,11 +99,6 @@ def command(
 
     Exit status: 0, or 2 if a file or a trace could not be read.
     """
-    # Late import, not for --help: formats, the language and display of moments (300 ms).
-    from rulec.report.findings.finding_tables import RowWriter
-    from rulec.report.moments import moment_rows
-    from rulec.rulebook.query_reader import read_query
-
     if os.path.isfile(formula) and not any(map(os.path.exists, files)):  # noqa: PTH113 - Path raises on a null character
         raise click.UsageError(
             f"`{formula}` is a file: the formula comes first, as in `rulec find '{files[0]}' "
@@ -114,7 +106,7 @@ def command(
         )
     inputs = input_files(files)
     refuse_overwriting((to,), inputs.paths)
-    query = read_query(
+    query = lazy.read_query(
         formula,
         rulebook=rulebook or "",
         vocabulary=vocabulary,
@@ -124,10 +116,10 @@ def command(
     complaints = Complaints()
     for problem in inputs.problems:
         complaints.add(problem)
-    tally = moment_rows.MomentTally()
+    tally = lazy.moment_rows.MomentTally()
     complete = not inputs.problems
 
-    def found() -> Iterator[DriveMoments]:
+    def found() -> Iterator[lazy.DriveMoments]:
         nonlocal complete
         for drive in _moments(query, inputs.paths, egos, drives, recorded):
             if isinstance(drive, RulecError):
@@ -141,8 +133,8 @@ def command(
             yield drive
 
     if to.form in ("text", "json", "jsonl"):
-        lines_of = partial(moment_rows.lines, width=page_width())
-        as_lines = lines_of if to.form == "text" else moment_rows.json_lines
+        lines_of = partial(lazy.moment_rows.lines, width=page_width())
+        as_lines = lines_of if to.form == "text" else lazy.moment_rows.json_lines
         with answer_lines(to) as write:
             for drive in found():
                 for line in as_lines(drive):
@@ -151,9 +143,9 @@ def command(
                 write(tally.as_text())
     else:
         with output_stream(to) as (stream, name):
-            writer = RowWriter(to.form, stream, name, moment_rows.COLUMNS)
+            writer = lazy.RowWriter(to.form, stream, name, lazy.moment_rows.COLUMNS)
             for drive in found():
-                writer.add(moment_rows.rows(drive))
+                writer.add(lazy.moment_rows.rows(drive))
             writer.close()
     print_written(to.path, to)
     complaints.close()
@@ -166,12 +158,8 @@ def _moments(
     egos: tuple[str, ...],
     drives: DrivesOptions,
     recorded: RecordingOptions,
-) -> Iterator[DriveMoments | RulecError]:
+) -> Iterator[lazy.DriveMoments | RulecError]:
     """The moments of all drives of all files, and the errors of those that could not be read."""
-    # Late import, as above.
-    from rulec.extraction.moment_search import in_recordings, in_traces
-    from rulec.trace.formats.trace_files import format_of, read_chunks
-
     form = recorded.trace_format
     named = recorded.input_format is not None
     wanted = drives.requested(egos, query.vocabulary)
@@ -183,14 +171,14 @@ def _moments(
             with contained("not searched", SourceLocation(path)):
                 if form is None and (named or (not is_stream and is_recording(path))):
                     recordings = read_recordings(replace(source, path=Path(path)))
-                    yield from in_recordings(recordings, query, wanted, path)
+                    yield from lazy.in_recordings(recordings, query, wanted, path)
                     continue
                 if is_stream:
-                    chunks = read_chunks(standard_input(), "standard input", form or "jsonl")
-                    yield from in_traces(chain.from_iterable(chunks), query, assumed, path)
+                    chunks = lazy.read_chunks(standard_input(), "standard input", form or "jsonl")
+                    yield from lazy.in_traces(chain.from_iterable(chunks), query, assumed, path)
                     continue
                 with opened(Path(path)) as stream:
-                    chunks = read_chunks(stream, path, form or format_of(path))
-                    yield from in_traces(chain.from_iterable(chunks), query, assumed, path)
+                    chunks = lazy.read_chunks(stream, path, form or lazy.format_of(path))
+                    yield from lazy.in_traces(chain.from_iterable(chunks), query, assumed, path)
         except RulecError as error:
             yield error

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.bundle.renamed_rulebook import with_distinct_names
 from rulec.batch.jobs import Jobs
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.recording_options import (
@@ -24,9 +25,6 @@ from rulec.cli.output import read_machines, rulebooks_named, told_apart
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_result, progress
 from rulec.trace.trace_model import Ending
-
-if TYPE_CHECKING:
-    from rulec.fleet.runs.fleet_run import FleetRun
 
 
 @click.command(cls=Verb)
@@ -83,16 +81,12 @@ def command(
     Exit status: 0 no hard rule is violated, 1 some are, 2 a file, recording or trace could not be
     judged, or no drive could.
     """
-    # Late import, not for --help: NumPy, shapely and formats of recordings (250 ms).
-    from rulec.fleet.runs.fleet_run import FleetSettings, run_fleet
-    from rulec.fleet.runs.fleet_summary import as_text, compared
-
     named = told_apart(rulebooks_named(rulebooks))
     books = {name: read_machines(reference, at) for name, reference in named.items()}
-    runs: list[tuple[CompiledRulebook, FleetRun]] = []
+    runs: list[tuple[CompiledRulebook, lazy.FleetRun]] = []
     complaints = Complaints()
     for name, rules in books.items():
-        settings = FleetSettings(
+        settings = lazy.FleetSettings(
             drives.requested((), rules.vocabulary),
             recorded.source("-"),
             ends,
@@ -101,18 +95,18 @@ def command(
         )
         own = folder if len(books) == 1 else folder / name
         with progress("judging drives", 1) as tell:
-            run = run_fleet(
+            run = lazy.run_fleet(
                 inputs, rules, own, settings, lambda done, total: tell(done / max(total, 1))
             )
         for problem in run.problems:
             complaints.add(problem)
         runs.append((rules, run))
     complaints.close()
-    print_result("\n\n".join(as_text(run) for _, run in runs))
+    print_result("\n\n".join(lazy.fleet_summary.as_text(run) for _, run in runs))
     if len(runs) > 1:
         distinct = with_distinct_names(list(books.values()), list(named.values()))
         columns = [(rules, run) for rules, (_, run) in zip(distinct, runs, strict=True)]
-        print_result(f"\n{compared(columns)}")
+        print_result(f"\n{lazy.fleet_summary.compared(columns)}")
     return ExitStatus.after(
         answered=all(run.is_complete for _, run in runs),
         failed=any(run.tally.drives["violated"] for _, run in runs),

@@ -8,11 +8,11 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 import rulec
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import scenario_options
 from rulec.cli.options import shared_options as shared
@@ -30,13 +30,6 @@ from rulec.diagnostics.fault_messages import contained
 from rulec.recordings.recording_inputs import InputFiles, input_files
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import page_width, print_remark
-
-if TYPE_CHECKING:
-    from rulec.planning import Maneuvers
-    from rulec.planning.probability.rule_probability import AlternativeCounts, RuleProbabilities
-    from rulec.planning.ranking.cheapest import Maneuver
-    from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
-    from rulec.scoring.maneuver_trajectories import TrajectoryScores
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,11 +66,8 @@ class ManeuverQuestions:
         "of them does something less likely.",
     )
 
-    def answered(self, maneuvers: Maneuvers, form: str) -> ManeuverAnswers:
+    def answered(self, maneuvers: lazy.Maneuvers, form: str) -> lazy.ManeuverAnswers:
         """The answers; in JSON also those that text gives only for several predictions."""
-        # Late import, already loaded here: maneuvers (130 ms).
-        from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
-
         listed = None if self.n_listed is None else maneuvers.cheapest(self.n_listed, perhaps=True)
         best = None
         if not maneuvers.satisfying + maneuvers.open and self.n_ranked is None:
@@ -93,7 +83,7 @@ class ManeuverQuestions:
         judged = None
         if maneuvers.words is not None:
             judged = [own.rule.name for own in maneuvers.rule_outcomes() if own.judged]
-        return ManeuverAnswers(
+        return lazy.ManeuverAnswers(
             judged=judged,
             listed=listed,
             best=best,
@@ -102,7 +92,7 @@ class ManeuverQuestions:
             verdicts={maneuver.nodes: maneuvers.verdict(maneuver) for maneuver in listed or ()}
             if maneuvers.in_doubt
             else {},
-            worlds=_worlds(maneuvers) if self.worlds else None,
+            worlds=lazy.alternative_counts(maneuvers) if self.worlds else None,
             prunings=maneuvers.prunings() if self.why else None,
             classes=classes,
             driven=_driven(maneuvers, shown),
@@ -156,10 +146,6 @@ def command(
     Exit status: 0 each scenario has a satisfying or open maneuver, 1 some scenario has none, 2 a
     scenario could not be evaluated, or no hard rule could be judged.
     """
-    # Late import, not for --help: maneuvers (130 ms).
-    from rulec.report.maneuvers.maneuver_table import ManeuverCounts
-    from rulec.report.maneuvers.maneuver_table import as_text as table_of
-
     begin = time.perf_counter()
     books = rulebooks_named(rulebooks)
     inputs = _inputs(scenarios)
@@ -167,11 +153,8 @@ def command(
     machines = [read_machines(book, at) for book in dict.fromkeys(books)]
     past = None
     if after is not None:
-        # Late import, only with a past: monitors and formats of traces (40 ms).
-        from rulec.planning.trace_history import read_past
-
-        past = read_past(after)
-    counts: list[ManeuverCounts] = []
+        past = lazy.read_past(after)
+    counts: list[lazy.ManeuverCounts] = []
     failed = False
     for problem in inputs.problems:
         print_diagnostics(problem.diagnostics)
@@ -186,13 +169,13 @@ def command(
                 seconds = time.perf_counter() - begin
                 begin += seconds
                 write(_shown(maneuvers, shown, seconds, to.form, several=several))
-                counts.append(ManeuverCounts.of(path, maneuvers))
+                counts.append(lazy.ManeuverCounts.of(path, maneuvers))
                 failed |= not (maneuvers.satisfying + (0 if strict else maneuvers.open))
         if not counts:
             # Raised so that no file is written.
             raise click.exceptions.Exit(ExitStatus.NOT_ANSWERED)
         if several and to.form == "text":
-            write(table_of(counts, page_width()))
+            write(lazy.maneuver_table.as_text(counts, page_width()))
     print_written(to.path, to)
     answered = len(counts) == len(inputs.paths) * len(machines) and not inputs.problems
     return ExitStatus.after(
@@ -202,10 +185,7 @@ def command(
 
 def _inputs(scenarios: Sequence[str]) -> InputFiles:
     """The scenarios given by names, files, folders and patterns."""
-    # Late import, not for --help: scenarios' formats and those of recordings (80 ms).
-    from rulec.scenario import available_scenarios
-
-    known = available_scenarios()
+    known = lazy.available_scenarios()
     inputs_of_each = [
         InputFiles((name,)) if name in known else input_files([name])
         for name in dict.fromkeys(scenarios)
@@ -219,45 +199,35 @@ def _inputs(scenarios: Sequence[str]) -> InputFiles:
 
 
 def _shown(
-    maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float, form: str, *, several: bool
+    maneuvers: lazy.Maneuvers,
+    answers: lazy.ManeuverAnswers,
+    seconds: float,
+    form: str,
+    *,
+    several: bool,
 ) -> str:
     if form == "json":
-        # Late import, not for text: creating its types takes 2 ms.
-        from rulec.report.maneuvers.maneuver_json import as_json
-
-        return as_json(maneuvers, answers, seconds)
-    # Late import, already loaded here: maneuvers (130 ms).
-    from rulec.report.maneuvers.maneuver_report import as_text
-
-    return as_text(maneuvers, answers, seconds, page_width()) + ("\n" if several else "")
+        return lazy.maneuver_json.as_json(maneuvers, answers, seconds)
+    return lazy.maneuver_report.as_text(maneuvers, answers, seconds, page_width()) + (
+        "\n" if several else ""
+    )
 
 
-def _driven(maneuvers: Maneuvers, shown: Sequence[Maneuver]) -> TrajectoryScores | None:
+def _driven(
+    maneuvers: lazy.Maneuvers, shown: Sequence[lazy.Maneuver]
+) -> lazy.TrajectoryScores | None:
     """The verdicts on the trajectories of maneuvers in a recorded scene."""
     if maneuvers.words is None or not shown:
         return None
-    # Late import, only for recorded scenes: scores (130 ms).
-    from rulec.scoring.maneuver_trajectories import trajectory_scores
-
     try:
         with contained("verdicts on trajectories"):
-            return trajectory_scores(maneuvers, shown)
+            return lazy.trajectory_scores(maneuvers, shown)
     except rulec.RulecError as error:
         print_diagnostics(error.diagnostics)
         return None
 
 
 def _chances(
-    maneuvers: Maneuvers, shown: Iterable[Maneuver]
-) -> dict[tuple[int, ...], RuleProbabilities]:
-    # Late import, only if obstacles have several predictions: probabilities (15 ms).
-    from rulec.planning.probability.rule_probability import rule_probabilities
-
-    return {maneuver.nodes: rule_probabilities(maneuvers, maneuver) for maneuver in shown}
-
-
-def _worlds(maneuvers: Maneuvers) -> list[AlternativeCounts]:
-    # As above.
-    from rulec.planning.probability.rule_probability import alternative_counts
-
-    return alternative_counts(maneuvers)
+    maneuvers: lazy.Maneuvers, shown: Iterable[lazy.Maneuver]
+) -> dict[tuple[int, ...], lazy.RuleProbabilities]:
+    return {maneuver.nodes: lazy.rule_probabilities(maneuvers, maneuver) for maneuver in shown}

@@ -9,6 +9,7 @@ from typing import IO, Any
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import (
@@ -78,43 +79,36 @@ def command(
     state could not be judged, or none arrived. With --save the trace is taken to continue, so
     pending rules do not count as violated.
     """
-    # Late import, not for --help: monitors and the reader of states (60 ms).
-    from rulec.automata.bundle.stored_steps import StoredSteps
-    from rulec.monitoring.online import monitor_sources
-    from rulec.monitoring.online.running_monitor import RunningMonitor
-    from rulec.report.verdicts import running_verdicts
-    from rulec.trace.formats.json_lines import read_live
-
     is_shown = save == STANDARD_OUTPUT
     if is_shown and not to.is_file:
         raise click.UsageError("standard output takes one answer: give -o FILE, or --save FILE.")
     given = standard_input()
     saved = _saved(restore, given)
-    step_s = step_s or monitor_sources.step_of(saved)
+    step_s = step_s or lazy.monitor_sources.step_of(saved)
     rules = open_session(at).compile_rulebook(rulebook, step_s=step_s)
     if restore is None:
-        if step_s is None and isinstance(rules.recompile, StoredSteps):
+        if step_s is None and isinstance(rules.recompile, lazy.StoredSteps):
             taken = number_in_words(rules.recompile.steps[0])
             others = named([f"{number_in_words(step)} s" for step in rules.recompile.steps[1:]])
             print_remark(
                 f"rulec: for states {taken} s apart; {rulebook} was also compiled for {others}, "
                 "which `--step` says"
             )
-        monitor = RunningMonitor(rules, step_s)
+        monitor = lazy.RunningMonitor(rules, step_s)
     else:
         place = "standard input" if restore == STANDARD_INPUT else restore
-        monitor = RunningMonitor.restore(rules, saved, SourceLocation(place))
+        monitor = lazy.RunningMonitor.restore(rules, saved, SourceLocation(place))
     complaints, refused = Complaints(), False
-    form = running_verdicts.as_json if to.form == "json" else running_verdicts.as_text
+    form = lazy.running_verdicts.as_json if to.form == "json" else lazy.running_verdicts.as_text
     file = None if save is None or is_shown else Path(save)
-    with monitor_sources.saved_at_the_end(monitor, file), answer_lines(to) as write:
-        for live in read_live(given, "standard input", _object_type(rules.vocabulary)):
-            result = monitor_sources.answer(monitor, live)
+    with lazy.monitor_sources.saved_at_the_end(monitor, file), answer_lines(to) as write:
+        for live in lazy.read_live(given, "standard input", _object_type(rules.vocabulary)):
+            result = lazy.monitor_sources.answer(monitor, live)
             if isinstance(result, RulecError):
                 refused = True
                 complaints.add(result)
                 if to.form == "json":
-                    write(running_verdicts.refused_as_json(result))
+                    write(lazy.running_verdicts.refused_as_json(result))
             else:
                 write(form(result))
         complaints.close()
@@ -137,13 +131,9 @@ def _object_type(vocabulary: Vocabulary) -> str:
 
 def _saved(restore: str | None, given: IO[bytes]) -> Any:
     """The content of a saved monitor's file, or the first line of standard input, or None."""
-    # Late import, as above.
-    from rulec.monitoring.online import monitor_sources
-    from rulec.trace.formats.json_line_problems import LONGEST_LINE_BYTES
-
     if restore is None:
         return None
     if restore == STANDARD_INPUT:
-        line = given.readline(LONGEST_LINE_BYTES + 1)
-        return monitor_sources.saved_from(line, "standard input")
-    return monitor_sources.read_saved(Path(restore))
+        line = given.readline(lazy.LONGEST_LINE_BYTES + 1)
+        return lazy.monitor_sources.saved_from(line, "standard input")
+    return lazy.monitor_sources.read_saved(Path(restore))

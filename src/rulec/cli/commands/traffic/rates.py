@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.standard_input import not_standard_input
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_written, put_answer, width_of
 from rulec.diagnostics.fault_messages import contained
-
-if TYPE_CHECKING:
-    from rulec.rates.drive_counts import GroupKey
 
 GROUPS = ("rulebook", "country", "road", "source", "file", "recording")
 PER = ("hour", "1000_km", "opportunity")
@@ -64,7 +61,7 @@ def _confidence(_: click.Context, __: click.Parameter, value: float) -> float:
 @output_options(endings_of("text", "markdown", "csv", "json", *PICTURES), "the rates")
 def command(
     files: tuple[str, ...],
-    by: tuple[GroupKey, ...],
+    by: tuple[lazy.GroupKey, ...],
     confidence: float,
     seed: int,
     per: str,
@@ -80,24 +77,20 @@ def command(
     bootstrap over drives, and one for independent drives of any kind. This needs the extra
     `rates`: in a checkout `.venv/bin/python -m pip install -e '.[rates]'`.
     """
-    # Late import, not for --help: NumPy, Arrow and display of rates (150 ms).
-    from rulec.rates.rates_of_findings import rates_of_findings
-    from rulec.report.pictures.drawing.picture_formats import as_bytes
-    from rulec.report.rates import rates_json, rates_table
-    from rulec.report.rates.rates_picture import rates_drawing
-
     with contained("no rates"):
-        rates = rates_of_findings(files, by, confidence=confidence, seed=seed)
+        rates = lazy.rates_of_findings(files, by, confidence=confidence, seed=seed)
     if to.form in PICTURES:
-        data = as_bytes(rates_drawing(rates, f"per_{per}"), to.form, to.path)
+        data = lazy.picture_formats.as_bytes(
+            lazy.rates_drawing(rates, f"per_{per}"), to.form, to.path
+        )
         with output_stream(to) as (stream, _):
             stream.write(data)
         print_written(to.path, to)
         return
     renderers = {
-        "json": rates_json.as_json,
-        "csv": rates_table.as_csv,
-        "markdown": rates_table.as_markdown,
+        "json": lazy.rates_json.as_json,
+        "csv": lazy.rates_table.as_csv,
+        "markdown": lazy.rates_table.as_markdown,
     }
-    render = renderers.get(to.form, partial(rates_table.as_text, width=width_of(to)))
+    render = renderers.get(to.form, partial(lazy.rates_table.as_text, width=width_of(to)))
     put_answer(render(rates), to)

@@ -8,13 +8,14 @@ from dataclasses import fields
 from functools import partial
 from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar, cast
+from typing import TypeVar, cast
 
 import click
 from click.core import ParameterSource
 
 import rulec
 from rulec.batch.jobs import Jobs
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import TABLES, Output, output_options
 from rulec.cli.options.recording_options import (
@@ -33,12 +34,6 @@ from rulec.monitoring.state_validation import partial_names
 from rulec.report.text.console import progress
 from rulec.report.text.terminal_text import shown_count
 from rulec.trace.trace_model import all_traces
-
-if TYPE_CHECKING:
-    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.extraction.selection import RequestedDrives
-    from rulec.recordings.recording_format import RecordingSource
-    from rulec.trace.formats.trace_files import Format
 
 MOST_TRACES = 10_000_000
 _ALOUD = 100
@@ -101,10 +96,6 @@ def command(
         option = "-j"
     if option:
         raise click.UsageError(f"{option} is for drives: add --recorded.")
-    # Late import, not for --help and recordings: maneuvers and formats of traces (130 ms).
-    from rulec.planning.product.graph_product import count_paths
-    from rulec.trace.formats.trace_files import kinds_in, write_traces
-
     scene = cut.scene(scenario)
     rules = None if rulebook is None else read_machines(rulebook)
     with contained("no answer", SourceLocation(scenario)):
@@ -112,7 +103,7 @@ def command(
             graph = rulec.navigation_graph(scene, **cut.cells("paper")).trace_graph()
         else:
             graph = rulec.find_maneuvers(scene, rules, **cut.cells()).paths
-        total = count_paths(graph)
+        total = lazy.count_paths(graph)
     if first is None and total > MOST_TRACES:
         raise click.UsageError(
             f"There are {shown_count(total)} traces; that would fill a disk. "
@@ -121,10 +112,12 @@ def command(
     wanted = total if first is None else min(first, total)
     with progress(f"writing {to.path}", wanted) as tell:
         traces = _counted_aloud(all_traces(graph, scene.name, wanted), tell)
-        kinds = kinds_in(chain.from_iterable(graph.states))
+        kinds = lazy.kinds_in(chain.from_iterable(graph.states))
         partial = graph.told is not None or bool(partial_names(chain.from_iterable(graph.states)))
         with output_stream(to) as (stream, name):
-            write_traces(traces, stream, name, cast("Format", to.form), kinds, partial=partial)
+            lazy.trace_files.write_traces(
+                traces, stream, name, cast("lazy.Format", to.form), kinds, partial=partial
+            )
     print_written(f"{wanted:,} of {shown_count(total)} traces to {to.path}", to)
 
 
@@ -134,24 +127,20 @@ _OF_MANEUVERS -= {one.name for one in fields(RecordingOptions)}
 
 
 def _write_drives(
-    source: RecordingSource,
-    wanted: RequestedDrives,
-    book: CompiledRulebook | None,
+    source: lazy.RecordingSource,
+    wanted: lazy.RequestedDrives,
+    book: lazy.CompiledRulebook | None,
     to: Output,
     *,
     jobs: Jobs,
     first: int | None,
 ) -> None:
-    # Late import, only for recordings: NumPy and shapely (200 ms).
-    from rulec.batch.drive_batch import WrittenDrives, in_vehicle_order
-    from rulec.trace.formats.trace_files import write_traces
-
-    drives = WrittenDrives(
+    drives = lazy.WrittenDrives(
         source,
         wanted,
         None if book is None else book.vocabulary,
         "" if book is None else book.traffic,
-        cast("Format", to.form),
+        cast("lazy.Format", to.form),
     )
     vehicles, kinds = drives.selected.egos, drives.kinds
     count = 0
@@ -169,11 +158,13 @@ def _write_drives(
     ):
         if to.form == "parquet":
             # In Parquet the rows of a vehicle have to be contiguous.
-            with closing(in_vehicle_order(drives.traces, drives, jobs, tell, lost)) as traces:
-                write_traces(counted(traces), stream, name, "parquet", kinds, partial=True)
+            with closing(lazy.in_vehicle_order(drives.traces, drives, jobs, tell, lost)) as traces:
+                lazy.trace_files.write_traces(
+                    counted(traces), stream, name, "parquet", kinds, partial=True
+                )
         else:
             stream.write(drives.head)
-            with closing(in_vehicle_order(drives.written, drives, jobs, tell, lost)) as pieces:
+            with closing(lazy.in_vehicle_order(drives.written, drives, jobs, tell, lost)) as pieces:
                 for piece in counted(pieces):
                     stream.write(piece)
     print_written(f"{count:,} drives to {to.path}", to)

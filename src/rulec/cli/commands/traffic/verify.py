@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from rulec.batch.jobs import Jobs
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import (
@@ -38,13 +38,6 @@ from rulec.recordings.recording_inputs import STANDARD_INPUT, InputFiles, input_
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import page_width, print_remark
 from rulec.trace.trace_model import Ending
-
-if TYPE_CHECKING:
-    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.cli.recording_run import RecordingRun
-    from rulec.cli.trace_run import TraceRun
-    from rulec.fleet.drive_rows import DriveRows
-    from rulec.report.verdicts.batch_table import BatchTally
 
 _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
 """The formats in which every line names its rulebook."""
@@ -180,23 +173,16 @@ def command(
         results = []
         for rules, rows_of, reference in zip(books, own, references, strict=True):
             if rules.law or len(books) > 1:
-                # Late import, only where it is said: verdicts, and the hash of rulebooks (30 ms).
-                from rulec.report.verdicts.verdict_report import headline
-
-                outputs.heading(
-                    f"{'' if rules is books[0] else chr(10)}{headline(rules, page_width())}"
-                )
+                headline = lazy.verdict_report.headline(rules, page_width())
+                outputs.heading(f"{'' if rules is books[0] else chr(10)}{headline}")
             if exposure:
                 outputs.to_rows = _to_rows(rows_of, rules.name, request)
             named = ["-r", reference, *(("--at", at) if at else ())]
             own_request = replace(request, drives=_speaking_of(rules, books, drives))
             results.append(_judge(own_request, rules, outputs, complaints, named))
         if len(books) > 1:
-            # Late import, only if there are recordings: verdicts and recordings.
-            from rulec.report.verdicts import side_by_side
-
             tallies = [(rules, result.total) for rules, result in zip(books, results, strict=True)]
-            outputs.text(f"\n{side_by_side.as_text(tallies, page_width())}")
+            outputs.text(f"\n{lazy.side_by_side.as_text(tallies, page_width())}")
     complaints.close()
     return ExitStatus.after(
         answered=all(result.judged and result.complete for result in results),
@@ -205,7 +191,7 @@ def command(
 
 
 def _speaking_of(
-    rules: CompiledRulebook, books: Sequence[CompiledRulebook], drives: DrivesOptions
+    rules: lazy.CompiledRulebook, books: Sequence[lazy.CompiledRulebook], drives: DrivesOptions
 ) -> DrivesOptions:
     """The options without assumptions about words that another of the rulebooks knows alone."""
 
@@ -217,14 +203,13 @@ def _speaking_of(
     return replace(drives, assumed=tuple([x for x in drives.assumed if not is_others(x)]))
 
 
-def _told_apart(books: list[CompiledRulebook], references: Sequence[str]) -> list[CompiledRulebook]:
+def _told_apart(
+    books: list[lazy.CompiledRulebook], references: Sequence[str]
+) -> list[lazy.CompiledRulebook]:
     """The rulebooks under distinct names."""
     if len({book.name for book in books}) == len(books):
         return books
-    # Late import, only for editions of one rulebook: the tables of automata (20 ms).
-    from rulec.automata.bundle.renamed_rulebook import with_distinct_names
-
-    return with_distinct_names(books, references)
+    return lazy.renamed_rulebook.with_distinct_names(books, references)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -249,7 +234,7 @@ class VerifyResult:
     judged; ``violated``: whether hard rules are violated or, with ``--strict``, open.
     """
 
-    total: BatchTally
+    total: lazy.BatchTally
     judged: bool = False
     complete: bool = True
     violated: bool = False
@@ -288,16 +273,13 @@ def _check_outputs(request: VerifyRequest, to: Sequence[Output], *, n_books: int
 
 def _judge(
     request: VerifyRequest,
-    rules: CompiledRulebook,
+    rules: lazy.CompiledRulebook,
     outputs: VerdictOutputs,
     complaints: Complaints,
     named: Sequence[str],
 ) -> VerifyResult:
     """Judge all files by one rulebook; the options that it was ``named`` by are for messages."""
-    # Late import, not for --help: formats of recordings (80 ms).
-    from rulec.report.verdicts.batch_table import BatchTally
-
-    result = VerifyResult(BatchTally())
+    result = VerifyResult(lazy.BatchTally())
     if request.recordings or request.inputs.problems:
         recorded = _judge_recordings(request, rules, outputs, complaints, named)
         _include(result, recorded, strict=request.asked.strict)
@@ -311,26 +293,21 @@ def _judge(
 
 def _judge_recordings(
     request: VerifyRequest,
-    rules: CompiledRulebook,
+    rules: lazy.CompiledRulebook,
     outputs: VerdictOutputs,
     complaints: Complaints,
     named: Sequence[str],
-) -> RecordingRun:
-    # Late import, only for recordings: NumPy and shapely (250 ms).
-    from rulec.batch.recording_judge import JudgeSettings
-    from rulec.cli.recording_run import RecordingRun
-    from rulec.report.verdicts.recording_answer import AnswerLayout
-
+) -> lazy.RecordingRun:
     to_rows = outputs.to_rows
     given = as_typed(request.drives, request.recorded)
     source = (*request.recordings, *named, *given)
-    settings = JudgeSettings(
+    settings = lazy.JudgeSettings(
         rules,
         request.drives.requested(request.asked.egos, rules.vocabulary),
         request.recorded.source("-"),
         to_explain=request.n_explained,
         every_part=request.asked.every_part,
-        layout=AnswerLayout(page_width(), request.asked.why, source)
+        layout=lazy.AnswerLayout(page_width(), request.asked.why, source)
         if outputs.wants_text
         else None,
         lines=outputs.wants_lines,
@@ -338,7 +315,7 @@ def _judge_recordings(
         to_rows=None if to_rows is None else to_rows.of_answer,
         idle=request.asked.why,
     )
-    run = RecordingRun(settings, outputs, complaints)
+    run = lazy.RecordingRun(settings, outputs, complaints)
     for problem in request.inputs.problems:
         run.not_read(problem)
     if request.recordings:
@@ -348,22 +325,19 @@ def _judge_recordings(
 
 def _judge_traces(
     request: VerifyRequest,
-    rules: CompiledRulebook,
+    rules: lazy.CompiledRulebook,
     outputs: VerdictOutputs,
     complaints: Complaints,
-) -> TraceRun:
-    # Late import, not for recordings: formats of traces (30 ms).
-    from rulec.cli.trace_run import TraceRun
-
+) -> lazy.TraceRun:
     assumed = assumptions(request.asked.ends, request.drives.assumed, rules.vocabulary)
     step = None if request.asked.step_s is None else float(request.asked.step_s)
     n_explained, every_part = request.n_explained, request.asked.every_part
-    run = TraceRun(rules, outputs, complaints, n_explained, every_part)
+    run = lazy.TraceRun(rules, outputs, complaints, n_explained, every_part)
     run.files(request.traces, request.recorded.trace_format, replace(assumed, step_s=step))
     return run
 
 
-def _include(result: VerifyResult, run: RecordingRun | TraceRun, *, strict: bool) -> None:
+def _include(result: VerifyResult, run: lazy.RecordingRun | lazy.TraceRun, *, strict: bool) -> None:
     is_broken = bool(run.total.outcomes["violated"])
     if strict and run.open_hard and not is_broken:
         click.echo("note: a hard rule is open, which counts as violated by `--strict`", err=True)
@@ -372,18 +346,14 @@ def _include(result: VerifyResult, run: RecordingRun | TraceRun, *, strict: bool
     result.total.include(run.total)
 
 
-def _to_rows(rules: CompiledRulebook, name: str, request: VerifyRequest) -> DriveRows:
+def _to_rows(rules: lazy.CompiledRulebook, name: str, request: VerifyRequest) -> lazy.DriveRows:
     """The builder of rows of drives and rules; in them the rulebook has this name.
 
     Its hash remains that of the rulebook itself, by which findings of other calls have it.
     """
-    # Late import, only if requested: verdicts, evidence and Arrow (200 ms).
-    from rulec.fleet.drive_rows import DriveRows
-    from rulec.fleet.judged_by import judged_by
-
     wanted = request.drives.requested(request.asked.egos, rules.vocabulary)
-    return DriveRows(
-        rules, replace(judged_by(rules, wanted, request.asked.ends or ""), rulebook=name)
+    return lazy.DriveRows(
+        rules, replace(lazy.judged_by(rules, wanted, request.asked.ends or ""), rulebook=name)
     )
 
 

@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, refuse_overwriting, refuse_standard_output
@@ -21,9 +22,6 @@ from rulec.diagnostics.fault_messages import contained
 from rulec.files.written_files import refuse_unwritable
 from rulec.logic.printing import number_in_words
 from rulec.report.text.console import print_line, print_remark
-
-if TYPE_CHECKING:
-    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 
 _HEAD_CHARACTERS = 4000
 _SOURCE = re.compile(
@@ -225,7 +223,7 @@ def _tell_replaced(folder: Path, before: Mapping[str, str]) -> None:
         )
 
 
-def _tell_step(compiled: CompiledRulebook) -> None:
+def _tell_step(compiled: lazy.CompiledRulebook) -> None:
     """Name the step of a monitor if a rule depends on it and the user did not give it."""
     steps = [rule.step_s for rule in compiled.at_one_step().rules if rule.step_s is not None]
     if steps:

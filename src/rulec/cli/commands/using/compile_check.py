@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.standard_input import read_as_file
@@ -14,9 +14,6 @@ from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, put_answer
 from rulec.diagnostics import first_of
 from rulec.report.text.console import print_remark
-
-if TYPE_CHECKING:
-    from rulec.validation.file_proof import RuleProof
 
 _MOST_NAMED = 6
 """So many of the files passed over are named."""
@@ -35,20 +32,16 @@ def command(files: tuple[str, ...], to: Output) -> int:
 
     Exit status: 0 all rules are proved, 1 some are not, 2 a file could not be read.
     """
-    # Late import, not for --help: compiled files and the checker (60 ms).
-    from rulec.automata.bundle.bundle_proof import compiled_files, proofs_of_file
-    from rulec.report.rulebooks.proof_report import render
-
-    proofs: list[tuple[str, list[RuleProof]]] = []
-    found = compiled_files(files)
+    proofs: list[tuple[str, list[lazy.RuleProof]]] = []
+    found = lazy.compiled_files(files)
     for name in found.paths:
         with errors_told():
-            proofs.append((name, proofs_of_file(Path(name))))
+            proofs.append((name, lazy.proofs_of_file(Path(name))))
     if found.others:
         names = first_of(found.others, _MOST_NAMED)
         print_remark(f"rulec: passed over, as other JSON: {names}")
     if proofs or to.form == "json":
-        put_answer(render(proofs, to.form), to)
+        put_answer(lazy.proof_report.render(proofs, to.form), to)
     return ExitStatus.after(
         answered=len(proofs) == len(found.paths),
         failed=any(proof.because for _, of_file in proofs for proof in of_file),

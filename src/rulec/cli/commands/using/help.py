@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 from click.shell_completion import CompletionItem
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.verb_table import FORMER, VERBS, called
 from rulec.diagnostics import nearest_name
@@ -46,13 +47,9 @@ def command(context: click.Context, words: tuple[str, ...]) -> None:
 
 def _way_out(word: str) -> str:
     """Where something else of this name is explained, or where commands are listed."""
-    # Late import, only for what is no command: codes and file search (60 ms).
-    from rulec.rulebook.files.catalogue import rulebooks_with_rule
-    from rulec.rulebook.word_search import find_word
-
     places = (*search_path(), Path())
-    if code_named(word.upper()) or find_word(word, places):
+    if code_named(word.upper()) or lazy.find_word(word, places):
         return f"`rulec explain {word}` explains it"
-    if books := rulebooks_with_rule(word, places):
+    if books := lazy.rulebooks_with_rule(word, places):
         return f"it is a rule, which `rulec show {books[0]} {word}` explains"
     return "`rulec help` lists them"

@@ -9,6 +9,7 @@ import click
 
 from rulec.analysis.lint.finding_messages import NOT_DECIDED
 from rulec.batch.jobs import Jobs
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output
@@ -51,10 +52,6 @@ def command(
 
     Exit status: 0 no mistakes found, 1 mistakes found, 2 a question could not be answered.
     """
-    # Late import, not for --help: automata and their analysis (150 ms).
-    from rulec.batch.spreading import spreading
-    from rulec.rulebook.loader import read_rulebook
-
     rulebooks = sources_of_rulebooks(rulebooks, "cannot be analyzed")
     findings: list[Diagnostic] = []
     unread: list[Diagnostic] = []
@@ -66,10 +63,12 @@ def command(
                 findings += map(diagnostic_of, known)
                 continue
             with progress(f"analyzing {rulebook}", None) as tell:
-                spread = spreading(jobs, rulebook, partial(print_lost, "analyzed", rulebook))
+                spread = lazy.spreading.spreading(
+                    jobs, rulebook, partial(print_lost, "analyzed", rulebook)
+                )
                 diagnostics = open_session(at).analyze(rulebook, on_progress=tell, spread=spread)
             findings += diagnostics
-            read = read_rulebook(rulebook, search_path(), at)
+            read = lazy.read_rulebook(rulebook, search_path(), at)
             question.remember([asdict(finding) for finding in diagnostics], read.paths)
     status = print_findings(
         list(dict.fromkeys(findings)),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.output_options import Output
 from rulec.cli.options.shared_options import (
     at_option,
@@ -73,10 +74,7 @@ def command(
     def run() -> int:
         done = _checked(sources, at, recalls=not no_cache)
         if fix and any(finding.fix for finding in done.findings):
-            # Late import, only if something is written: the formatter (20 ms).
-            from rulec.rulebook.batch.batch_fix import write_fixes
-
-            number, changed = write_fixes(done.files, done.findings)
+            number, changed = lazy.write_fixes(done.files, done.findings)
             print_remark(f"{counted(number, 'fix', 'fixes')} written to {', '.join(changed)}")
             done = _checked(sources, at, recalls=not no_cache)
         if lock and not done.unread:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.verb_class import Verb
 from rulec.language_server.editor_settings import EDITORS, editor_settings
@@ -31,8 +32,7 @@ def command(*, editor: str | None, stdio: bool) -> int:  # noqa: ARG001 - it doe
         click.echo(editor_settings(editor), nl=False)
         return ExitStatus.OK
     try:
-        # Late import, not for --help: the server and the protocol's types (200 ms).
-        from rulec.language_server.server import serve
+        serve = lazy.serve
     except ModuleNotFoundError as problem:
         if (problem.name or "").partition(".")[0] not in ("pygls", "lsprotocol", "cattrs"):
             raise

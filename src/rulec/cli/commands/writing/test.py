@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from time import monotonic
-from typing import TYPE_CHECKING
 
 import click
 
 from rulec.batch.jobs import Jobs
 from rulec.book_tests.book_test_messages import nothing_to_run, untested
+from rulec.cli import lazy_imports as lazy
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, RenamedOption, endings_of, output_options
@@ -24,10 +24,6 @@ from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_remark
 from rulec.rulebook.allowances import without_allowed
 from rulec.settings import search_path
-
-if TYPE_CHECKING:
-    from rulec.book_tests.example_coverage import RuleCoverage
-    from rulec.book_tests.example_runs import ExampleRun
 
 
 @click.command(cls=Verb)
@@ -114,32 +110,25 @@ def _tested(
     to: Output,
     jobs: Jobs,
 ) -> int:
-    # Late import, not for --help: rulebooks and their automata (130 ms).
-    from rulec.batch.example_batch import ExampleRequest, measured_runs
-    from rulec.book_tests.example_coverage import uncovered_verdicts
-    from rulec.book_tests.example_runs import with_distinct_names
-    from rulec.report.tests.example_formats import render
-    from rulec.report.tests.example_text import Besides, shortcomings
-
     begun = monotonic()
     rulebooks = sources_of_rulebooks(references, "has no examples")
-    runs: list[ExampleRun] = []
-    coverages: list[tuple[RuleCoverage, ...]] = []
+    runs: list[lazy.ExampleRun] = []
+    coverages: list[tuple[lazy.RuleCoverage, ...]] = []
     tested: list[str] = []
     unread: dict[str, Sequence[Diagnostic]] = {}
-    request = ExampleRequest(search_path(), wanted.at, wanted.patterns, wanted.measured)
-    answers = measured_runs(request, rulebooks, jobs, partial(print_lost, "tested"))
+    request = lazy.ExampleRequest(search_path(), wanted.at, wanted.patterns, wanted.measured)
+    answers = lazy.measured_runs(request, rulebooks, jobs, partial(print_lost, "tested"))
     for name, answer in zip(rulebooks, answers, strict=True):
         if isinstance(answer, RulecError):
             print_diagnostics(answer.diagnostics)
             unread[name] = answer.diagnostics
             continue
         run, covers = answer
-        print_diagnostics(without_allowed([*run.warnings, *uncovered_verdicts(run)]))
+        print_diagnostics(without_allowed([*run.warnings, *lazy.uncovered_verdicts(run)]))
         runs.append(run)
         tested.append(name)
         coverages.append(covers)
-    runs = with_distinct_names(runs, tested)
+    runs = lazy.example_runs.with_distinct_names(runs, tested)
     answered = not unread
     left_out = [*filter(None, (untested(run.rulebook, run.name, wanted.patterns) for run in runs))]
     if answered:
@@ -147,11 +136,13 @@ def _tested(
     for sentence in left_out:
         print_remark(f"rulec: {sentence}")
     covered = coverages if wanted.measured else None
-    short = shortcomings(runs, covered, percent, fail_on_empty=wanted.fails_empty)
+    short = lazy.example_text.shortcomings(runs, covered, percent, fail_on_empty=wanted.fails_empty)
     if runs or to.form != "full":
-        besides = Besides(unread, short, monotonic() - begun)
+        besides = lazy.Besides(unread, short, monotonic() - begun)
         width, in_full = width_of(to), wanted.in_full
-        text = render(runs, covered, to.form, besides, width=width, in_full=in_full)
+        text = lazy.example_formats.render(
+            runs, covered, to.form, besides, width=width, in_full=in_full
+        )
         put_answer(text, to)
     for sentence in short.values():
         print_remark(f"rulec: {sentence}")
@@ -160,19 +151,16 @@ def _tested(
 
 
 def _refuse_unmatched(
-    runs: Sequence[ExampleRun], patterns: Sequence[str], left_out: Sequence[str]
+    runs: Sequence[lazy.ExampleRun], patterns: Sequence[str], left_out: Sequence[str]
 ) -> None:
     """Refuse a pattern that matches no rule and no example: it may be misspelt.
 
     Rules that are not in force count as matched if anything else is; ``left_out`` tells of them.
     """
-    # Late import, not for --help: rulebooks and their automata (130 ms).
-    from rulec.book_tests.example_runs import is_chosen
-
     missing = [
         pattern
         for pattern in patterns
-        if not any(is_chosen(rule, [pattern]) for run in runs for rule in run.rulebook.rules)
+        if not any(lazy.is_chosen(rule, [pattern]) for run in runs for rule in run.rulebook.rules)
     ]
     unknown = [
         pattern

@@ -9,10 +9,16 @@ import io
 import warnings
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import Any, Literal
+from typing import Any
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
+from matplotlib.patheffects import withStroke
 
 from rulec.diagnostics import SourceLocation
-from rulec.diagnostics.missing_package import missing_package
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.picture_messages import PNG_UNAVAILABLE
 from rulec.report.pictures.drawing.styles import DARK, LIGHT, STYLES
@@ -28,8 +34,6 @@ _POINTS = 72 / 96
 """One px in points, matplotlib's unit for widths and font sizes."""
 
 
-Printed = Literal["png", "pdf"]
-
 _METADATA: Mapping[str, Mapping[str, None]] = {
     "png": {"Software": None},
     "pdf": {"Creator": None, "Producer": None, "CreationDate": None},
@@ -38,24 +42,11 @@ _METADATA: Mapping[str, Mapping[str, None]] = {
 _ALIGNMENTS = {"start": "left", "middle": "center", "end": "right"}
 
 
-def as_printed(picture: Picture, form: Printed, file: str, *, dark: bool = False) -> bytes:
+def as_printed(picture: Picture, form: str, file: str, *, dark: bool = False) -> bytes:
     """The picture on a light or dark ground.
 
-    Raises RulecError: R0707 if matplotlib is missing, or the picture is too large.
+    Raises RulecError: R0707 if the picture is too large.
     """
-    try:
-        # matplotlib is installed on request, and takes 0.3 s.
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise missing_package(
-            PNG_UNAVAILABLE,
-            form.upper(),
-            "matplotlib",
-            "pictures",
-            SourceLocation(file),
-            otherwise="write SVG or HTML",
-        ) from None
     largest = max(picture.width, picture.height)
     if largest > MOST_DOTS:
         message = (
@@ -84,12 +75,6 @@ def as_printed(picture: Picture, form: Printed, file: str, *, dark: bool = False
 
 
 def _draw(axes: Any, mark: Mark, order: int, colours: Mapping[str, str]) -> None:
-    # As above: matplotlib is installed only for PNG and PDF.
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path
-    from matplotlib.patheffects import withStroke
-
     style = STYLES[mark.style]
     stroke = colours[style.stroke] if style.stroke else "none"
     width = style.width * _POINTS

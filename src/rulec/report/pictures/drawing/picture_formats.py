@@ -6,11 +6,13 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import Literal, cast
+from typing import Literal
 
+from rulec.diagnostics import SourceLocation
+from rulec.diagnostics.missing_package import missing_package
 from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
-from rulec.report.pictures.drawing.matplotlib_file import Printed, as_printed
+from rulec.report.pictures.drawing.picture_messages import PNG_UNAVAILABLE
 from rulec.report.pictures.drawing.styles import STYLES, Theme, as_css
 from rulec.report.text.page_policy import policy
 from rulec.report.text.terminal_text import visible
@@ -57,9 +59,21 @@ def as_bytes(drawing: Drawing, form: str, file: str, theme: Theme = "auto") -> b
     )
     below = [drawing.legend] if drawing.legend else []
     whole = canvas.stacked(drawing.title, [head, *drawing.pictures, *below])
-    if form in ("png", "pdf"):
-        return as_printed(whole, cast("Printed", form), file, dark=theme == "dark")
-    return f"{as_svg(whole, theme)}\n".encode()
+    if form == "svg":
+        return f"{as_svg(whole, theme)}\n".encode()
+    try:
+        # matplotlib is installed on request, and takes 0.3 s.
+        from rulec.report.pictures.drawing.matplotlib_file import as_printed
+    except ImportError:
+        raise missing_package(
+            PNG_UNAVAILABLE,
+            form.upper(),
+            "matplotlib",
+            "pictures",
+            SourceLocation(file),
+            otherwise="write SVG or HTML",
+        ) from None
+    return as_printed(whole, form, file, dark=theme == "dark")
 
 
 def _as_page(drawing: Drawing) -> str:

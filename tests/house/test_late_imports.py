@@ -1,0 +1,146 @@
+"""Imports stand at the top of a module; commands and verbs have a door each for what is late."""
+
+import re
+from importlib import import_module
+
+import pytest
+
+from rulec.lazy_loading import homes
+from support.source_modules import PACKAGE, source_modules
+
+DOORS = ("rulec.api.lazy_imports", "rulec.cli.lazy_imports")
+SURFACES = ("rulec", "rulec.scenario", "rulec.trace.formats.arrow")
+"""Packages whose names are imported at first use, in the way of the doors."""
+
+NUMPY = "NumPy takes 0.1 s, and what is known or small does without"
+COMPILER = "compilers take 30 to 200 ms, where the cache has the answer"
+FORMAT = "a format takes 5 to 100 ms, and only one is asked for"
+MESSAGE = "only for a message"
+OPTIONAL = "an optional package"
+PARSER = "the parser takes 60 ms, where the cache has the answer"
+EXPLAINED = "explanations take 20 ms, only where something is violated or asked for"
+UNKNOWN = "what judges the unknown takes 5 to 100 ms, only where something is"
+POOL = "worker processes take 15 ms, only where there are several"
+
+LATE = {
+    "__init__.py": (1, "importing the package imports nothing"),
+    "automata/bundle/minisign.py": (2, OPTIONAL),
+    "automata/bundle/required_signature.py": (2, "hashes take 6 ms, where a signature is required"),
+    "automata/bundle/stored_prefixes.py": (1, NUMPY),
+    "automata/compiled_cache.py": (5, COMPILER),
+    "automata/outcome_machine.py": (1, NUMPY),
+    "automata/step_compilation.py": (1, NUMPY),
+    "automata/worker/confinement.py": (2, "ctypes, for the worker alone"),
+    "automata/worker/worker_answers.py": (2, "Spot is optional; one compiler is chosen"),
+    "batch/example_batch.py": (1, POOL),
+    "batch/recording_judge.py": (7, EXPLAINED),
+    "code_generation/monitor_files.py": (2, "a proof takes 170 ms to import, if asked for"),
+    "diagnostics/fault_messages.py": (1, MESSAGE),
+    "diagnostics/phrases.py": (1, MESSAGE),
+    "enforced_limits.py": (1, "NumPy is loaded before memory is limited"),
+    "extraction/recording_parts.py": (1, "only where a source states errors"),
+    "extraction/recording_verdicts.py": (1, EXPLAINED),
+    "extraction/selection.py": (1, MESSAGE),
+    "extraction/tellable_words.py": (1, NUMPY),
+    "files/read_files.py": (1, FORMAT),
+    "files/source_detection.py": (1, MESSAGE),
+    "fleet/runs/ray_engine.py": (2, OPTIONAL),
+    "fleet/runs/spark_engine.py": (1, OPTIONAL),
+    "lazy_loading.py": (1, "ast takes 3 ms, not for `rulec --version`"),
+    "monitoring/batch/joined/joined_traces.py": (2, UNKNOWN),
+    "monitoring/batch/stacked/stacked_run.py": (1, UNKNOWN),
+    "monitoring/batch/verify_arrays.py": (1, "engines for states, which few recordings need"),
+    "monitoring/online/running_monitor.py": (1, UNKNOWN),
+    "monitoring/rulebook_edition.py": (2, FORMAT),
+    "monitoring/unfitting_values.py": (2, MESSAGE),
+    "monitoring/verify.py": (1, NUMPY),
+    "partition/cell_graph.py": (1, OPTIONAL),
+    "partition/cells/cell_model.py": (1, "Shapely takes 0.1 s, and is rarely needed"),
+    "partition/emergencies.py": (1, NUMPY),
+    "partition/navigation_graph.py": (2, NUMPY),
+    "planning/evaluation.py": (1, UNKNOWN),
+    "planning/maneuvers.py": (2, UNKNOWN),
+    "planning/product/graph_bindings.py": (1, UNKNOWN),
+    "planning/rule_instances.py": (1, UNKNOWN),
+    "rates/exact_intervals.py": (1, OPTIONAL),
+    "recordings/encodings/arrow/arrow_tables.py": (3, OPTIONAL),
+    "recordings/encodings/mcap_file.py": (1, OPTIONAL),
+    "recordings/recording_files.py": (4, NUMPY),
+    "recordings/sumo/fcd_content.py": (1, FORMAT),
+    "report/findings/finding_formats.py": (2, FORMAT),
+    "report/findings/finding_writers.py": (4, FORMAT),
+    "report/maneuvers/maneuver_blocks.py": (1, MESSAGE),
+    "report/pictures/drawing/picture_formats.py": (1, OPTIONAL),
+    "report/rulebooks/comparison/diff_formats.py": (1, FORMAT),
+    "report/rulebooks/comparison/matrix_report.py": (1, FORMAT),
+    "report/rulebooks/comparison/topic_report.py": (1, FORMAT),
+    "report/tests/example_formats.py": (1, FORMAT),
+    "report/text/console.py": (4, "rich takes 40 ms, only for a terminal"),
+    "report/text/terminal_text.py": (2, "rich takes 40 ms, only for colours"),
+    "report/verdicts/verdict_report.py": (1, EXPLAINED),
+    "rulebook/batch/batch_check.py": (1, PARSER),
+    "rulebook/batch/batch_format.py": (2, PARSER),
+    "rulebook/batch/shipped_lock.py": (1, PARSER),
+    "rulebook/names/word_meanings.py": (1, MESSAGE),
+    "rulebook/vocabulary_phrases.py": (
+        1,
+        "patterns of sentences take 10 ms, not for phrases alone",
+    ),
+    "scenario/recorded/lane_coordinates.py": (1, "scenarios take 10 ms, not for recorded drives"),
+    "scenario/scenario_files.py": (1, NUMPY),
+    "syntax/grammar.py": (1, "Lark takes 40 ms, only where the grammar has changed"),
+    "syntax/parser.py": (1, MESSAGE),
+    "trace/formats/arrow/parquet.py": (4, OPTIONAL),
+    "trace/formats/json_lines.py": (2, NUMPY),
+    "value_display.py": (2, "1 ms in each start, and only notebooks ask for HTML"),
+    "version.py": (5, MESSAGE),
+    "vocabulary/pint_units.py": (2, "Pint takes 0.2 s, only for units that are not listed"),
+}
+"""Module -> how many imports stand in its functions, and why."""
+
+MOST_LATE = 114
+"""A bound that only falls."""
+
+
+def late_imports():
+    """Module -> the number of imports in its functions."""
+    return {one.name: len(one.inner_imports) for one in source_modules() if one.inner_imports}
+
+
+def test_imports_in_functions_are_those_with_a_reason():
+    assert late_imports() == {name: number for name, (number, _) in LATE.items()}
+    assert sum(late_imports().values()) == MOST_LATE, "lower it where one leaves"
+
+
+def test_commands_and_verbs_have_none():
+    assert [name for name in late_imports() if name.startswith(("api/", "cli/"))] == []
+
+
+@pytest.mark.parametrize("door", DOORS + SURFACES)
+def test_what_is_listed_is_there(door):
+    names = {name for name, (home, _) in homes(door).items() if home.startswith("rulec.")}
+    assert names
+    for name in names:
+        assert getattr(import_module(door), name) is not None
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_a_door_lists_what_is_taken_from_it(door):
+    room = door.removesuffix(".lazy_imports")
+    texts = (module.read_text(encoding="utf-8") for module in PACKAGE.rglob("*.py"))
+    own = [text for text in texts if f"from {room} import lazy_imports as lazy" in text]
+    taken = {name for text in own for name in re.findall(r"\blazy\.(\w+)", text)}
+    assert set(homes(door)) == taken
+
+
+def test_other_names_are_not_there():
+    for module in (*DOORS, *SURFACES):
+        with pytest.raises(AttributeError, match=f"{module}' has no attribute 'nothing'"):
+            _ = import_module(module).nothing
+
+
+def test_a_replaced_function_is_the_one_found(monkeypatch):
+    lazy = import_module("rulec.cli.lazy_imports")
+    assert lazy.read_rulebook("esterle2019").rulebook.name == "esterle2019"
+    monkeypatch.setattr("rulec.rulebook.loader.read_rulebook", str.upper)
+    assert lazy.read_rulebook("name") == "NAME"
