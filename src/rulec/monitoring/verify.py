@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.monitoring.batch.by_states import by_each_rounding, verified_by_states
+from rulec.monitoring.batch.by_states import by_each_rounding, judged_by_states
 from rulec.monitoring.verdict import Verdict
 from rulec.trace import Trace
 
@@ -25,5 +25,5 @@ def _verified(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     except ModuleNotFoundError as missing:
         if missing.name != "numpy":
             raise
-        return verified_by_states(trace, rulebook)
-    return verdict_in_arrays(trace, rulebook) or verified_by_states(trace, rulebook)
+        return judged_by_states(trace, rulebook)
+    return verdict_in_arrays(trace, rulebook) or judged_by_states(trace, rulebook)

@@ -28,7 +28,7 @@ Judge = Callable[[Trace, CompiledRulebook], Verdict]
 
 def verify_by_states(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     """As ``verify`` in every respect, but state by state: for what arrays do not tell."""
-    return by_each_rounding(trace, rulebook, verified_by_states)
+    return by_each_rounding(trace, rulebook, judged_by_states)
 
 
 def by_each_rounding(trace: Trace, rulebook: CompiledRulebook, judge: Judge) -> Verdict:
@@ -39,7 +39,7 @@ def by_each_rounding(trace: Trace, rulebook: CompiledRulebook, judge: Judge) -> 
     return agreed([judge(trace, rounded) for rounded in roundings])
 
 
-def verified_by_states(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
+def judged_by_states(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     """The verdict on a trace that has passed ``check_trace``, by a rulebook for its step."""
     is_partial = check_fitting(trace, rulebook)
     # A name that is unknown for all objects is unknown for each object without a value.

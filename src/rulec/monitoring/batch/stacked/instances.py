@@ -150,7 +150,7 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     if not busy.any():
         return _NO_INSTANCES
     if not rule.variables:
-        traces = (~rule.are_surely_kept(every, stack.begins[:-1])).nonzero()[0]
+        traces = (~rule.are_kept_in_any_order(every, stack.begins[:-1])).nonzero()[0]
         firsts, lasts = stack.begins[traces], stack.begins[traces + 1] - 1
         return Instances(traces, (), firsts, lasts, every)
     objects: tuple[Indices, ...]
@@ -221,7 +221,7 @@ def _doubtful_of_few(rule: StackedRule, reader: StackReader) -> Indices:
     ]
     begins = stack.are_first.nonzero()[0]
     objects = stack.object_of[begins]
-    are_kept = rule.are_surely_kept(rule.letters.numbers(numbers), begins)
+    are_kept = rule.are_kept_in_any_order(rule.letters.numbers(numbers), begins)
     return objects[stack.of_type(kind)[objects] & ~are_kept]
 
 
@@ -255,7 +255,7 @@ def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Ind
     letters = rule.letters.numbers(numbers)
     begins = stack.are_first[cells].nonzero()[0]
     objects: Indices = stack.object_of[cells[begins]]
-    return objects[~rule.are_surely_kept(letters, begins)]
+    return objects[~rule.are_kept_in_any_order(letters, begins)]
 
 
 def _are_busy(rule: StackedRule, letters: Numbers) -> Mask:
@@ -291,7 +291,7 @@ def _pairs(
     stack = reader.stack
     n_objects = len(stack.types)
     pairs_met = [np.empty(0, dtype=np.intp)]
-    for left, right in _joined(first, second, stack):
+    for left, right in _cells_met(first, second, stack):
         differ = stack.object_of[left] != stack.object_of[right]
         left, right = left[differ], right[differ]
         cells = dict(zip(rule.variables, (left, right), strict=True))
@@ -303,7 +303,7 @@ def _pairs(
     return every // n_objects, every % n_objects
 
 
-def _joined(first: Indices, second: Indices, stack: Stack) -> Iterator[tuple[Indices, Indices]]:
+def _cells_met(first: Indices, second: Indices, stack: Stack) -> Iterator[tuple[Indices, Indices]]:
     """The pairs of cells in the same state, some at a time."""
     second = second[stack.state_of[second].argsort(kind="stable")]
     states, theirs = stack.state_of[first], stack.state_of[second]

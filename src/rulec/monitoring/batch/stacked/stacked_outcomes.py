@@ -70,6 +70,9 @@ def outcomes(
 ) -> Iterator[StackedOutcomes]:
     """All choices for which a rule is not kept.
 
+    They are sifted three times, ever more exactly: letters in any order (``doubtful_instances``),
+    the machine on what each read allows by itself (``_doubtful_words``), the machine on what they
+    allow together. A known letter is a set of one, of which best and worst outcome are the same.
     In traces that are ``suspects`` all choices are examined for letters that axioms exclude. Raises
     UnencodableError.
     """
@@ -96,7 +99,7 @@ def outcomes(
         different = distinct(first_alike[~is_odd]).tolist()
         of_each = [rule.answers(rows, ends, different) for rows, ends in alternatives]
         for place, *of_word in zip(different, *of_each, strict=True):
-            answer = answers[place] = _joined(of_word)
+            answer = answers[place] = _combined(of_word)
             is_told[place] = answer.worst != KEPT
         places = is_told[first_alike].nonzero()[0]
         answers_at = [answers[first] for first in first_alike[places].tolist()]
@@ -114,7 +117,7 @@ def _few(words: StackedWords) -> StackedOutcomes:
         if not any_odd or not words.odd[begin:end].any():
             of_words = [words.rule.answer_to(own[begin:end]) for own in words.letters]
             # Letters that axioms exclude make a word odd
-            answer = _joined([own for own in of_words if own is not None])
+            answer = _combined([own for own in of_words if own is not None])
             if answer.worst == KEPT:
                 continue
         places.append(place)
@@ -152,7 +155,7 @@ def _weights(count: int) -> NDArray[np.uint64]:
     return weights
 
 
-def _joined(answers: Sequence[Answer]) -> Answer:
+def _combined(answers: Sequence[Answer]) -> Answer:
     """The combined answer of several words."""
     if len(answers) == 1:
         return answers[0]
@@ -237,7 +240,7 @@ def _doubtful_words(
     alternatives = _alternatives(rule, reader, chosen)
     doubtful = suspects[chosen.instances.traces]
     for _, _, letters in alternatives:
-        doubtful |= ~_are_surely_kept(rule, letters, chosen.bounds)
+        doubtful |= ~_are_kept_by_machine(rule, letters, chosen.bounds)
     if not doubtful.any():
         return None
     if not doubtful.all():
@@ -277,7 +280,7 @@ def _alternatives(
     return alternatives
 
 
-def _are_surely_kept(
+def _are_kept_by_machine(
     rule: StackedRule, letters: NDArray[np.intp], bounds: NDArray[np.intp]
 ) -> NDArray[np.bool_]:
     """For each word whether it is kept whichever of its possible letters are the actual ones."""

@@ -213,7 +213,9 @@ class StackedRule:
             self._busy_flags = np.concatenate([self._busy_flags, np.array(more, dtype=bool)])
         return self._busy_flags
 
-    def are_surely_kept(self, letters: Numbers, begins: NDArray[np.intp]) -> NDArray[np.bool_]:
+    def are_kept_in_any_order(
+        self, letters: Numbers, begins: NDArray[np.intp]
+    ) -> NDArray[np.bool_]:
         """Whether words are kept, judged only by their sets of letters and by their last letter.
 
         Each word begins at one of these positions, and none is empty. Letters that axioms exclude,

@@ -1,4 +1,4 @@
-"""One run of all rules over traces laid end to end: the engine behind every way to judge many."""
+"""One run of all rules over traces laid end to end: the engine that judges one trace and many."""
 
 from __future__ import annotations
 
