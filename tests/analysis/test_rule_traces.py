@@ -8,7 +8,7 @@ from hypothesis import given
 from rulec.analysis.counterexample import MOST_KMH
 from rulec.analysis.rule_traces import rule_traces
 from rulec.analysis.shared_compilation import compile_shared
-from rulec.monitoring.verify import run
+from rulec.monitoring.uncertainty.known_words import run
 from rulec.rulebook.loader import parse_rulebook
 from support.generators.random_rule_pairs import ALONE, COUNTED, X, allows, formulas, sides
 

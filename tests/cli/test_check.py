@@ -161,7 +161,7 @@ def test_check_neither_starts_spot_nor_imports_what_it_does_not_need():
     heavy = ["spot", "shapely", "networkx", "numpy", "rich", "rulec.monitoring", "rulec.automata"]
     # Spot's process is started by rulec.automata alone.
     assert found.isdisjoint([*heavy, "msgspec"])
-    assert "lark" in found
+    assert "rulec.syntax.grammar" in found
 
 
 def imported(arguments):

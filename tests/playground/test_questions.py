@@ -109,7 +109,7 @@ def test_countries_are_compared_with_a_witness(browser):
     assert pair["relation"] == "stricter"
     (witness,) = pair["first_forbids"]
     assert [state["station"]["b"] for state in witness["states"]] == ["behind", "beside"]
-    assert [state.get("speed", 0) for state in witness["states"]] == [1, 1]
+    assert [state.get("speed", 0) for state in witness["states"]] == [20, 20]
 
 
 def test_rules_are_said_in_english_and_a_text_is_tidied(browser):

@@ -54,7 +54,7 @@ HOSTILE = {
     "counts in counts": (COUNTS + "hard rule r (v: car) { require always d300(v) }", {"R0111"}),
     "many exceptions and phases": (
         rule(f"never ({'p then q then ' * 40} p)", THROUGHOUT),
-        {"R0323"},
+        {"R0111"},
     ),
     "thousands of exceptions": (rule("never p", "unless q at start " * 3000), {"R0111"}),
     "a million digits": (rule(f"gap < {'1' * 1_000_000} m"), {"R0112"}),

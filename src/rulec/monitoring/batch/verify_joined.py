@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from functools import partial
+from itertools import chain
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
@@ -40,6 +41,8 @@ def derived_trace(trace: Trace, vocabulary: Vocabulary) -> Trace | None:
     try:
         check_frame(trace)
         check_presence(trace)
+        if not all(isinstance(text, str) for text in chain(*trace.objects.items())):
+            return None  # states tell what is wrong with an object's name or type
         if not vocabulary.constants and not vocabulary.implied:
             return trace
         if any(state.get(name) is UNKNOWN for name in about for state in trace.states):
