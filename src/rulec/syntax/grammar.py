@@ -139,10 +139,9 @@ class _Run:
 
     def next_kinds(self) -> Iterator[str]:
         """The terminals that may follow, and the end."""
-        for kind in self.tables.actions[self.states[-1]]:
+        for kind in filter(str.isupper, self.tables.actions[self.states[-1]]):
             trial = replace(self, states=[*self.states], matched=[*self.matched])
-            fits = trial.ends() if kind == END else trial._reduced(kind) is not None
-            if fits and kind.isupper():
+            if trial.ends() if kind == END else trial._reduced(kind) is not None:
                 yield kind
 
     def _reduced(self, kind: str) -> int | None:

@@ -43,7 +43,7 @@ class Landmarks:
 
     def is_symbol(self, index: int, text: str) -> bool:
         """Whether a token is this symbol, outside of quotes."""
-        return self._text(index, "symbol") == text
+        return self.symbol(index) == text
 
     def is_word(self, index: int, *texts: str) -> bool:
         """Whether a token is one of these words."""

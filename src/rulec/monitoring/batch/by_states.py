@@ -22,7 +22,7 @@ from rulec.resource_limits import BudgetSpentError
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_frame, check_trace
 
-Judge = Callable[[Trace, CompiledRulebook], Verdict]
+TraceJudge = Callable[[Trace, CompiledRulebook], Verdict]
 """Judges a trace by a rulebook, in arrays or by its states."""
 
 
@@ -31,7 +31,7 @@ def verify_by_states(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     return by_each_rounding(trace, rulebook, judged_by_states)
 
 
-def by_each_rounding(trace: Trace, rulebook: CompiledRulebook, judge: Judge) -> Verdict:
+def by_each_rounding(trace: Trace, rulebook: CompiledRulebook, judge: TraceJudge) -> Verdict:
     """The verdicts by a rulebook for a trace's step, or by its two roundings, as one."""
     check_trace(trace)
     with _errors_at(trace.place):
@@ -91,7 +91,7 @@ def _at(place: SourceLocation | None, problem: Diagnostic) -> Diagnostic:
 
 
 def verify_contained(
-    trace: Trace, rulebook: CompiledRulebook, judge: Judge = verify_by_states
+    trace: Trace, rulebook: CompiledRulebook, judge: TraceJudge = verify_by_states
 ) -> Verdict:
     """The verdict on a trace; a fault of rulec costs only the rules that it is in."""
     try:
@@ -108,13 +108,13 @@ def verify_contained(
 
 
 def _each_verified(
-    judge: Judge, traces: Sequence[Trace], roundings: Sequence[CompiledRulebook]
+    judge: TraceJudge, traces: Sequence[Trace], roundings: Sequence[CompiledRulebook]
 ) -> list[Verdict]:
     return [agreed([judge(trace, rounded) for rounded in roundings]) for trace in traces]
 
 
 def verify_or_reason(
-    item: Trace | RulecError, rulebook: CompiledRulebook, judge: Judge = verify_by_states
+    item: Trace | RulecError, rulebook: CompiledRulebook, judge: TraceJudge = verify_by_states
 ) -> Verdict | NotJudged:
     """Verify one trace of many, and return an error instead of raising it.
 
