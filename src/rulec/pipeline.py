@@ -28,7 +28,6 @@ def compile_source(
     at: str = "",
     step_s: Fraction | None = None,
     *,
-    any_step: bool = False,
     on_warning: Callable[[Sequence[Diagnostic]], object],
     question: CompiledQuestion | None = None,
 ) -> CompiledRulebook:
@@ -40,9 +39,8 @@ def compile_source(
         at: the day (ISO) whose law applies; if empty, that of its `law` line or else today.
         step_s: the seconds between two states of the traces to be judged; None for the step of each
             rule's own examples, and then for any other step that occurs.
-        any_step: rules without examples need not fit the step that these would have.
         on_warning: called with warnings, such as an example whose verdict is not the stated one.
-        question: the key under which the cache stores the rulebook, if compiled for ``any_step``.
+        question: the key under which the cache stores the rulebook; None to store nothing.
     """
     file = find(reference, search_path)
     trees = parse_all(file)
@@ -50,17 +48,12 @@ def compile_source(
     steps = StepCompiler(book.rulebook)
     warnings = [*book.warnings, *example_warnings(book.rulebook, steps.at_own_steps)]
     on_warning(warnings)
-    formulas = lower(book.rulebook, step_s, any_step=any_step)
-    compiled = build_automata(formulas, steps)
+    compiled = build_automata(lower(book.rulebook, step_s), steps)
     if question is None or trees.dependencies is None:
-        return compiled
-    own = lower(book.rulebook)
-    own_steps = own == lower(book.rulebook, any_step=True)
-    if not own_steps and (step_s is not None or not any_step):
         return compiled
     about = warnings, trees.dependencies
     if step_s is None:
-        return remembered(question, compiled, steps, *about, own_steps=own_steps)
+        return remembered(question, compiled, steps, *about)
     with suppress(RulecError):  # for its own steps an automaton may be too large
-        remembered(question, build_automata(own, steps), steps, *about, own_steps=True)
+        remembered(question, build_automata(lower(book.rulebook), steps), steps, *about)
     return compiled

@@ -148,21 +148,6 @@ def rows(table):
     return [list(row) for row in table]
 
 
-def test_bounds_that_do_not_fit_are_rounded_once(folder, no_worker):
-    step = Fraction(3, 10)
-    with no_worker.allowed():
-        first = compiled().rounded_to(step)
-        with pytest.raises(RulecError) as problem:
-            compiled().at_step(step)
-    assert compiled().rounded_to(step) == first
-    assert len(first) == 2
-    assert first[0].rules[1].formula != first[1].rules[1].formula
-    with pytest.raises(RulecError) as again:
-        compiled().at_step(step)
-    assert again.value.diagnostics == problem.value.diagnostics
-    assert [one.code for one in again.value.diagnostics] == ["R0407"]
-
-
 @pytest.mark.parametrize("name", ["book", "base", "words"])
 def test_a_change_anywhere_counts(folder, made, name):
     compiled().at_step(0.5)
@@ -320,12 +305,10 @@ def test_without_its_source_a_rule_has_no_place(folder):
     assert caught.value.diagnostics[0].code in {"R0701", "R0703"}
 
 
-def test_a_rule_without_examples_that_does_not_fit_their_step_is_no_less_refused(folder):
+def test_a_rule_without_examples_has_a_step_that_fits_its_bounds(folder):
     text = "rulebook odd\nuse words\nhard rule odd { require always eventually[<= 0.7 s] p }\n"
     (folder / "odd.rules").write_text(text)
     assert compiled("odd.rules").at_step(0.7)
     for _ in range(2):
-        with pytest.raises(RulecError) as caught:
-            rulec.compile_rulebook("odd.rules")
-        assert caught.value.diagnostics[0].code == "R0407"
+        assert rulec.compile_rulebook("odd.rules").rules[0].step_s == Fraction(1, 10)
         assert compiled("odd.rules").at_step(0.7)

@@ -268,7 +268,6 @@ SAME_TREE = ("rules", 1, "tree", 1, 2, "terms", 0, 1, "body", 2)
         ((*SAME_TREE, "same"), ["y", "z"], "outside of a count"),
         (("rules", 0, "tree", 1, 2, 2, "to"), "4", "two different formulas"),
         (("rules", 0, "step_s"), None, "wrong step"),
-        (("rules", 0, "step_s"), "3/4", "multiple"),
         (("rules", 0, "step_s"), "-1/2", "more than 0"),
         (("rules", 1, "step_s"), "1", "wrong step"),
         (

@@ -433,41 +433,6 @@ def test_seconds_become_steps_of_the_trace_or_of_the_examples():
     assert finer.formula == own.formula == rulebook.rules[0].formula
 
 
-def test_a_bound_between_two_states_is_an_error_with_the_nearest_ones():
-    bad = replace(seconds("3.25"), span=None)
-    with pytest.raises(RulecError) as caught:
-        compile_rulebook(book(bad, seconds(1, "B"), seconds("0.2", "C")))
-    first, second = caught.value.diagnostics
-    assert (first.code, second.code) == ("R0407", "R0407")
-    assert first.message == "`3.25 s` is not a multiple of the step, 0.5 s"
-    assert first.help == (
-        "the nearest multiples are 3 s and 3.5 s; or write `step 0.25 s` in the header"
-    )
-    assert second.help == "the nearest multiple is 0.5 s; or write `step 0.1 s` in the header"
-    assert "`A`" in first.notes[0]
-
-
-@pytest.mark.parametrize(
-    ("bounds", "step", "fit"),
-    [
-        # The longest step of which all bounds are multiples is 1 s, 0.5 s, 0.5 s
-        (("10", "1"), "0.3", "0.25 s or 0.5 s"),  # not 1/3 s, which is no decimal
-        (("10", "1.5"), "0.3", "0.25 s or 0.5 s"),
-        (("2", "1.5"), "0.8", "0.5 s"),
-    ],
-)
-def test_the_last_bound_that_does_not_fit_names_steps_that_do(bounds, step, fit):
-    rules = [seconds(bound, name) for name, bound in zip("AB", bounds, strict=True)]
-    rulebook = book(*rules, rule("C", P))
-    with pytest.raises(RulecError) as caught:
-        compile_rulebook(rulebook, step_s=Fraction(step))
-    *others, last = caught.value.diagnostics
-    assert last.notes[-1] == f"steps of {fit} fit all bounds of the rulebook"
-    assert not any("fit all" in note for one in others for note in one.notes)
-    for time in fit.replace(" s", "").split(" or "):
-        assert len(compile_rulebook(rulebook, step_s=Fraction(time)).rules) == 3
-
-
 def test_what_a_rulebook_says_of_its_rules_is_kept():
     kept = {
         "level": "safety",

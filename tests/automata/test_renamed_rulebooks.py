@@ -41,14 +41,13 @@ def test_names_of_editions(names, files, expected):
 
 def test_a_renamed_rulebook_keeps_its_name_at_every_step():
     book = renamed(machines(rulec.parse_rulebook(TIMED)), NAME)
-    # 1 s is 2 steps of 0.5 s; no multiple of 0.3 s, so it is rounded down and up.
-    fits, down, up = *book.judgeable_at(Fraction(1, 2)), *book.rounded_to(Fraction(3, 10))
-    for fitted in (book, fits, down, up, *pickle.loads(pickle.dumps(book)).rounded_to(Fraction(1))):
+    fits, other = book.judgeable_at(Fraction(1, 2)), book.at_step(Fraction(3, 10))
+    for fitted in (book, fits, other, pickle.loads(pickle.dumps(book)).at_step(Fraction(1))):
         assert fitted.name == NAME
         assert [rule.book for rule in fitted.rules] == [NAME]
     assert fits.rules[0].step_s == Fraction(1, 2)
     # What engines prepare for it is prepared once.
-    assert book.judgeable_at(Fraction(1, 2))[0] is fits
+    assert book.judgeable_at(Fraction(1, 2)) is fits
 
 
 def test_only_editions_of_one_name_are_renamed():

@@ -117,12 +117,6 @@ def test_each_automaton_has_its_file(folder):
     ]
 
 
-def test_a_step_at_which_a_bound_falls_between_states_is_refused(soon):
-    with pytest.raises(RulecError) as problem:
-        rulec.compile_rulebook(soon, step_s=[0.5, 0.3])
-    assert {one.code for one in problem.value.diagnostics} == {"R0407"}
-
-
 def test_one_step_of_one_is_as_without_others(soon):
     one, alone = (rulec.compile_rulebook(soon, step_s=step) for step in ([0.5], 0.5))
     assert to_json(one) == to_json(alone)

@@ -1,4 +1,4 @@
-"""Rules with bounds in seconds: a machine for each step, and none for a step that does not fit."""
+"""Rules with bounds in seconds: a machine for each step, about the states that there are."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -112,35 +112,47 @@ def test_the_float_nearest_to_a_frame_rates_step_is_that_step(rate):
 
 
 @pytest.mark.parametrize(
-    ("text", "lost", "doubtful"),
+    ("text", "lost"),
     [
-        ("p..q", [], []),  # after 0.9 s
-        ("p...q", [], [("answered", ("step",))]),  # not after 0.9 s, but after 1.2 s
-        ("p....q", ["answered"], []),
+        ("p..q", []),  # after 0.9 s
+        ("p...q", ["answered"]),  # not after 0.9 s, but after 1.2 s
+        ("p....q", ["answered"]),
     ],
 )
-def test_where_a_step_does_not_fit_what_both_roundings_say_is_sure(text, lost, doubtful):
+def test_where_a_bound_is_no_multiple_of_the_step_the_states_that_there_are_decide(text, lost):
     for rules in (machines(BOOK), machines(book(ANSWERED))):
         for verdict in (
             verify(trace(text, 0.3), rules),
             *verify_many([trace(text, 0.3)] * 9, rules),
         ):
             assert [one for one in violated(verdict) if one != "plain"] == lost
-            assert [(one.rule, one.because) for one in verdict.open] == doubtful
+            assert verdict.open == ()
 
 
-def test_other_rules_are_judged_where_a_step_does_not_fit():
-    assert violated(verify(trace("pq", 0.3), machines(BOOK))) == ["plain"]
+def test_nothing_is_exactly_as_far_away_as_no_state_is():
+    next_one = Unary(UnaryOperator.NEXT, Q, Bound(ONE, ONE, "s"))
+    rules = machines(book(rule("exact", always(implies(P, next_one)))))
+    for text, step_s, lost in (
+        ("p.q", 0.5, []),
+        ("p..qq", 0.3, ["exact"]),
+        ("pqqqqq", 2.0, ["exact"]),
+    ):
+        assert violated(verify(trace(text, step_s), rules)) == lost
+
+
+def test_duties_at_least_a_time_away_begin_at_the_first_state_that_far():
+    later = Unary(UnaryOperator.EVENTUALLY, Q, Bound(ONE, None, "s"))
+    rules = machines(book(rule("later", always(implies(P, later)))))
+    assert violated(verify(trace("p..q.", 0.3), rules)) == ["later"]  # 0.9 s
+    assert violated(verify(trace("p...q.", 0.3), rules)) == []
 
 
 def test_rules_that_were_left_out_stay_out_where_a_step_does_not_fit():
     both = machines(BOOK)
     answered = replace(both, rules=tuple([own for own in both.rules if own.name == "answered"]))
-    for rules in answered.judgeable_at(0.3):
-        assert [own.name for own in rules.rules] == ["answered"]
+    assert [own.name for own in answered.judgeable_at(0.3).rules] == ["answered"]
     assert violated(verify(trace("pq", 0.3), answered)) == []
-    again = zip(both.rounded_to(0.3), both.rounded_to(0.3), strict=True)
-    assert all(first is second for first, second in again)
+    assert both.fitted_to(0.3) is both.fitted_to(0.3)
 
 
 LARGE = """rulebook large
@@ -153,28 +165,26 @@ MILLISECOND = Fraction(1, 1000)
 
 @pytest.mark.parametrize("step_s", [MILLISECOND, Fraction(3, 10_000)])
 def test_of_recordings_other_rules_are_judged_where_one_is_too_large(step_s, tmp_path):
-    """100 s are 100,000 steps, or are rounded to 333,333 or more; 10,000 states are allowed."""
+    """100 s are 100,000 steps, or 333,333; 10,000 states are allowed."""
     (tmp_path / "large.rules").write_text(LARGE)
     every = compile_rulebook(tmp_path / "large.rules")
     with pytest.raises(RulecError) as caught:
-        every.rounded_to(step_s)
+        every.at_step(step_s)
     assert {problem.code for problem in caught.value.diagnostics} == {"R0401"}
-    for judgeable in every.judgeable_at(step_s):
-        assert [one.name for one in judgeable.rules] == ["plain"]
-        assert [own[:2] for own in judgeable.too_large] == [("large", "hard")]
-        cut = replace(trace("p.", float(step_s)), ends="cut")
-        verdict = verify(cut, judgeable)
-        assert violated(verdict) == ["plain"]
-        (left_out,) = verdict.not_judged
-        assert left_out.rule == "large"
-        assert "too large for steps of 0.00" in left_out.why
-    assert every.judgeable_at(ONE)[0].too_large == ()
-    again = zip(every.judgeable_at(step_s), every.judgeable_at(step_s), strict=True)
-    assert all(first is second for first, second in again)
-    plain = replace(every, rules=every.rules[1:])
-    for judgeable in plain.judgeable_at(step_s):
-        assert [one.name for one in judgeable.rules] == ["plain"]
-        assert judgeable.too_large == ()
+    judgeable = every.judgeable_at(step_s)
+    assert [one.name for one in judgeable.rules] == ["plain"]
+    assert [own[:2] for own in judgeable.too_large] == [("large", "hard")]
+    cut = replace(trace("p.", float(step_s)), ends="cut")
+    verdict = verify(cut, judgeable)
+    assert violated(verdict) == ["plain"]
+    (left_out,) = verdict.not_judged
+    assert left_out.rule == "large"
+    assert "too large for steps of 0.00" in left_out.why
+    assert every.judgeable_at(ONE).too_large == ()
+    assert every.judgeable_at(step_s) is judgeable
+    plain = replace(every, rules=every.rules[1:]).judgeable_at(step_s)
+    assert [one.name for one in plain.rules] == ["plain"]
+    assert plain.too_large == ()
 
 
 def test_what_is_wrong_otherwise_is_refused_of_recordings_too(monkeypatch):
@@ -227,15 +237,6 @@ def test_only_what_is_needed_is_compiled(compiled):
     assert compiled == [(["answered", "plain"], HALF), (["answered"], ONE)]
 
 
-def test_a_step_that_does_not_fit_is_found_out_once(compiled):
-    every = StepCompiler(BOOK)
-    for _ in range(3):
-        with pytest.raises(RulecError):
-            every(Fraction(3, 10))
-    assert len(compiled) == 1
-    assert every(ONE).rules[1].name == "plain"
-
-
 def test_each_rule_at_the_step_of_its_own_examples(compiled):
     every = StepCompiler(book(replace(ANSWERED, step_s=HALF), ANSWERED_TOO))
     assert [one.step_s for one in every.at_own_steps().rules] == [HALF, ONE]
@@ -249,9 +250,8 @@ ANSWERED_TOO = rule("too", always(implies(P, within(2, Q))))
 def test_a_rule_without_examples_fits_any_step_that_its_bounds_fit():
     """Its bound of half a second is no multiple of the 1 s that examples would have."""
     quick = book(rule("quick", always(implies(P, within(Fraction(1, 2), Q)))))
-    with pytest.raises(RulecError, match="R0407"):
-        compile_rulebook(quick)
-    every = machines(quick)
+    every = compile_rulebook(quick)
+    assert [own.step_s for own in every.rules] == [HALF]
     assert violated(verify(trace("p..q", 0.25), every)) == ["quick"]
     assert violated(verify(trace("p.q", 0.25), every)) == []
 
@@ -263,8 +263,6 @@ def test_a_rulebook_compiled_for_no_step_fits_itself_to_that_of_each_trace():
     assert rules.at_step(0.5) is rules.at_step(HALF)
     assert rules.at_step(1) is rules
     assert rules.source is BOOK
-    with pytest.raises(RulecError, match="R0407"):
-        rules.at_step(0.3)
 
 
 def test_some_of_the_rules_stay_some_at_another_step():
@@ -305,15 +303,6 @@ def test_maneuvers_of_another_step_than_the_compiled_rulebooks():
     assert (problem.code, problem.place) == ("R0507", SourceLocation("s1"))
 
 
-def test_a_step_that_fits_no_bound_starts_no_process(monkeypatch):
-    every = StepCompiler(book(ANSWERED))
-    every(ONE)
-    monkeypatch.setattr(compiler, "_worker", None)  # which would not be called in vain
-    for number in range(1, 40):
-        with pytest.raises(RulecError, match="R0407"):
-            every(Fraction(3, 10) + Fraction(1, 10**5 * number))
-
-
 def test_there_is_a_limit_on_the_time_that_all_rules_take(monkeypatch, tmp_path):
     asked, ask = [], compiler._ask
 
@@ -327,17 +316,17 @@ def test_there_is_a_limit_on_the_time_that_all_rules_take(monkeypatch, tmp_path)
     every = StepCompiler(book(ANSWERED))
     every(ONE)
     every(HALF)
-    for rounded in (every, every.rounded):
-        with pytest.raises(RulecError, match=r"120 seconds.*R0718"):
-            rounded(Fraction(1, 4))
+    with pytest.raises(RulecError, match=r"120 seconds.*R0718"):
+        every(Fraction(1, 4))
     assert len(asked) == 2
 
 
-def test_steps_that_hardly_differ_are_compiled_together_where_bounds_are_rounded(compiled):
+def test_steps_that_hardly_differ_are_compiled_together(compiled):
     every = StepCompiler(book(ANSWERED))
     for number in range(1, 40):
-        every.rounded(Fraction(3, 10) + Fraction(1, 10**5 * number))
-    assert len(compiled) <= 2
+        step = Fraction(3, 10) + Fraction(1, 10**5 * number)
+        assert [own.step_s for own in every(step).rules] == [step]
+    assert len(compiled) == 1
 
 
 def test_there_is_a_limit_on_the_steps_that_are_compiled_for(compiled):

@@ -41,7 +41,7 @@ ANSWERED = {
     "steps of the traces of one file": (
         MEASURED,
         "automata/test_steps.py::test_there_is_a_limit_on_the_steps_that_are_compiled_for",
-        "automata/test_steps.py::test_steps_that_hardly_differ_are_compiled_together_where_bounds_are_rounded",
+        "automata/test_steps.py::test_steps_that_hardly_differ_are_compiled_together",
         "automata/test_steps.py::test_a_bound_of_too_many_steps_is_refused_without_trying",
     ),
     "alternatives of a drawn condition": (

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.logic.bounds import (
-    NotAMultipleError,
     Range,
+    between_instants,
     has_seconds,
     in_steps,
     operations_of,
@@ -48,13 +48,20 @@ def test_a_bound_between_two_states_is_named():
         Unary(UnaryOperator.ALWAYS, P, within(0, "3.25")),
         Unary(UnaryOperator.ALWAYS, P, within("0.1", 3)),
     )
-    with pytest.raises(NotAMultipleError) as caught:
-        in_steps(formula, Fraction(1, 2))
-    assert (caught.value.offending, caught.value.step_s) == (Fraction(13, 4), Fraction(1, 2))
-    with pytest.raises(NotAMultipleError) as caught:
-        in_steps(formula, QUARTER)
-    assert caught.value.offending == Fraction(1, 10)
-    assert isinstance(caught.value, ValueError)
+    assert between_instants(formula, Fraction(1, 2)) == (Fraction(13, 4), None)
+    assert between_instants(formula, QUARTER) == (Fraction(1, 10), None)
+    assert between_instants(formula, Fraction(1, 20)) is None
+
+
+ends = st.fractions(0, 20)
+
+
+@given(ends, st.none() | ends, st.fractions(Fraction(1, 100), 3), st.integers(0, 2000))
+def test_a_bound_holds_the_states_whose_distance_in_seconds_is_in_it(low, high, step, away):
+    bounded = Unary(UnaryOperator.ONCE, P, Bound(low, high, "s"))
+    steps = range_of(in_steps(bounded, step))
+    is_in = low <= away * step and (high is None or away * step <= high)
+    assert is_in is (steps.low <= away and (steps.high is None or away <= steps.high))
 
 
 @pytest.mark.parametrize("step", [Fraction(0), Fraction(-1, 2)])

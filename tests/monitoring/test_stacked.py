@@ -89,7 +89,7 @@ def test_a_rule_comes_to_the_same_without_others_and_what_these_read(chance):
     book = rulebook(chance, Fraction(1))
     compiled = compile_here(book, Fraction(1))
     chosen = frozenset(rule.name for rule in compiled.rules if chance.random() < 0.5)
-    (smaller,), names = some_rules(chosen, [compiled])
+    smaller, names = some_rules(chosen, compiled)
     read = {n for x in (*book.rules, *book.axioms) for n in names_in(x.formula)}
     for whole in traces(chance, Fraction(1))[:3]:
         dark = blurred(chance, without_pairs(whole, book.vocabulary), read, most=12)

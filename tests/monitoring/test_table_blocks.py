@@ -371,7 +371,7 @@ def test_the_rulebook_of_a_trace_is_the_one_for_its_step():
     # What follows the last trace of a block might have been a row of it.
     assert (len(items), len(last)) == (39, 1)
     assert isinstance(items, Block)
-    rulebook = mock.Mock(rounded_to=lambda step: asked.append(step) or (traffic(),))
+    rulebook = mock.Mock(fitted_to=lambda step: asked.append(step) or traffic())
     assert rulebook_for(items, 3, rulebook) is traffic()
     assert asked == [Fraction(1, 2)]
     ((found, answered),) = verify_items(items, traffic())

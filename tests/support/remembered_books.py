@@ -33,7 +33,7 @@ def remember_books() -> None:
     shipped, cache = str(rulebooks_folder()), os.environ["RULEC_CACHE_DIR"]
     trees: dict[tuple[str, str], tuple[tree.File, tuple[Diagnostic, ...]]] = {}
     books: dict[tuple[object, ...], tuple[CompiledRulebook, Sequence[Diagnostic]]] = {}
-    recalls: dict[tuple[CompiledQuestion, bool], Recalled] = {}
+    recalls: dict[CompiledQuestion, Recalled] = {}
     machines_are_remembered = compiler.answers_to
 
     def parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
@@ -78,16 +78,16 @@ def remember_books() -> None:
             books[key] = compiled, heard
         return compiled
 
-    def recalled(question: CompiledQuestion, *, any_step: bool) -> Recalled | None:
+    def recalled(question: CompiledQuestion) -> Recalled | None:
         is_usual = question.source.startswith(shipped) and question.file.startswith(cache)
         if not is_usual or question.search_path:
-            return _RECALLED(question, any_step=any_step)
-        if (question, any_step) not in recalls:
-            found = _RECALLED(question, any_step=any_step)
+            return _RECALLED(question)
+        if question not in recalls:
+            found = _RECALLED(question)
             if found is None:
                 return None
-            recalls[question, any_step] = found
-        return recalls[question, any_step]
+            recalls[question] = found
+        return recalls[question]
 
     loader.parsed = referenced_files.parsed = parsed
     pipeline.compile_source = compile_source

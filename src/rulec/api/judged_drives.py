@@ -270,8 +270,8 @@ class JudgedTraces(Judged):
         return "\n".join(lines)
 
     def _rules_of(self, name: str) -> CompiledRulebook:
-        """The rules at a trace's step; where a bound is no multiple of it, rounded down."""
-        return self.rules.rounded_to(self._traces[name].step_s)[0]
+        """The rules at a trace's step."""
+        return self.rules.fitted_to(self._traces[name].step_s)
 
     def _free(self, name: str) -> str:
         """A name that no earlier trace has, such as ``t (2)``."""

@@ -45,7 +45,7 @@ def machines(
     # Called for every trace, so the fast case of a compiled rulebook comes first.
     if isinstance(rules, CompiledRulebook):
         return rules
-    return compile_rulebook(rules, search_path, warn, at=at, any_step=True, recalls=recalls)
+    return compile_rulebook(rules, search_path, warn, at=at, recalls=recalls)
 
 
 def _of_source(
@@ -55,23 +55,17 @@ def _of_source(
     step: Fraction | None,
     *,
     at: str,
-    any_step: bool,
     recalls: bool,
 ) -> CompiledRulebook:
     refuse_source(reference)
     question = None
     if recalls:
         question = lazy.question_of(reference, search_path, at)
-        any_first = any_step or step is not None
-        known = (
-            None if question is None else lazy.compiled_cache.recalled(question, any_step=any_first)
-        )
+        known = None if question is None else lazy.compiled_cache.recalled(question)
         if known is not None:
             warn(known[1])
             return known[0] if step is None else replace(known[0].at_step(step), recompile=None)
-    return lazy.compile_source(
-        reference, search_path, at, step, any_step=any_step, on_warning=warn, question=question
-    )
+    return lazy.compile_source(reference, search_path, at, step, on_warning=warn, question=question)
 
 
 def _prefixes(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
@@ -86,15 +80,13 @@ def compile_rulebook(
     step_s: Fraction | float | Sequence[Fraction | float] | None = None,
     at: str = "",
     *,
-    any_step: bool = False,
     recalls: bool = False,
 ) -> CompiledRulebook:
     """Compile rules for one step, for several, or for that of their examples.
 
     ``step_s`` (above 0, a float meaning its decimal notation) is that step; with several, each
     trace is judged by its own. Without it, rules with bounds in seconds are compiled for the step
-    of their own examples, which they need not have if ``any_step``; ``recalls`` as in ``machines``.
-    R0407 for a bound that is not a multiple of the step, R0507 if the rules have been compiled for
+    of their own examples; ``recalls`` as in ``machines``. R0507 if the rules have been compiled for
     another one.
     """
     if isinstance(step_s, Sequence):
@@ -110,9 +102,7 @@ def compile_rulebook(
     step = None if step_s is None else exact_step(step_s)
     if isinstance(reference, str | Path):
         if Path(reference).suffix != ".json":
-            return _of_source(
-                reference, search_path, warn, step, at=at, any_step=any_step, recalls=recalls
-            )
+            return _of_source(reference, search_path, warn, step, at=at, recalls=recalls)
         reference = lazy.read_compiled(Path(reference), at)
         if reference.prefixes is None:
             reference = replace(reference, prefixes=_prefixes)
@@ -123,9 +113,7 @@ def compile_rulebook(
             f"rules are a rulebook's name, its path, or a Rulebook, not {type(reference).__name__}"
         )
 
-    return lazy.build_automata(
-        lazy.compiler.lower(reference, step, any_step=any_step), lazy.StepCompiler(reference)
-    )
+    return lazy.build_automata(lazy.compiler.lower(reference, step), lazy.StepCompiler(reference))
 
 
 def _for_steps(

@@ -71,8 +71,7 @@ class RulebookQuestions(RulebookVerbs):
             raise TypeError("explaining a violation needs the trace and the rules")
         if isinstance(trace, Trace):
             check_trace(trace)
-            rounded, *_ = self._compiled(rules).rounded_to(trace.step_s)
-            return lazy.explain(subject, trace, rounded)
+            return lazy.explain(subject, trace, self._compiled(rules).fitted_to(trace.step_s))
         return lazy.explain_drive(subject, trace, self._compiled(rules))
 
     def diff(

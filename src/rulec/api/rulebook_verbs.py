@@ -56,8 +56,8 @@ class RulebookVerbs(SessionSettings):
         step (s) alone, or for several; a float means its decimal notation.
 
         Raises:
-            RulecError: mistakes in the source; R0401 to R0403 if there is no automaton, R0407 for a
-                bound that is not a multiple of the step, R0507 if it was compiled for another one.
+            RulecError: mistakes in the source; R0401 to R0403 if there is no automaton, R0507 if it
+                was compiled for another step.
         """
         return lazy.compile_rulebook(
             reference, self.search_path, self._warn, step_s, self.at, recalls=True
@@ -112,7 +112,7 @@ class RulebookVerbs(SessionSettings):
         """Write a rulebook's formulas in LTL, for Spot, PRISM and nuXmv; returns the paths.
 
         ``step_s`` is the number of seconds between two states; None for the step of the rules'
-        examples. Raises RulecError R0407 for bounds that are not multiples of it, and R0754.
+        examples. Raises RulecError R0754.
         """
         finite("step_s", step_s)
         step = None if step_s is None else lazy.exact_step(step_s)

@@ -81,17 +81,12 @@ def question_of(
 
 
 def recalled(
-    question: CompiledQuestion, *, any_step: bool
+    question: CompiledQuestion,
 ) -> tuple[CompiledRulebook, tuple[Diagnostic, ...]] | None:
-    """The cached rulebook with its warnings; None if it has to be compiled.
-
-    Unless ``any_step`` it has to be for its rules' ``own_steps``.
-    """
+    """The cached rulebook with its warnings; None if it has to be compiled."""
     file = _File(question, _OWN)
     known = file.read()
     if known is None or not _is_valid(known, question) or known.rulebook is None:
-        return None
-    if not (any_step or known.own_steps):
         return None
     text = replace(known, rulebook=None)
     compiled = replace(known.rulebook, origin=_ReadAgain(question))
@@ -104,15 +99,11 @@ def remembered(
     steps: StepCompiler,
     warnings: Sequence[Diagnostic],
     dependencies: Sequence[Dependency],
-    *,
-    own_steps: bool,
 ) -> CompiledRulebook:
     """Cache a newly compiled rulebook; what is later compiled from it is cached, too."""
     day = "" if question.at or compiled.as_of else _today()
     depends_on = tuple(dependencies)
-    text = Compilation(
-        question.stamp, day, depends_on, warnings=tuple(warnings), own_steps=own_steps
-    )
+    text = Compilation(question.stamp, day, depends_on, warnings=tuple(warnings))
     file = _File(question, _OWN)
     file.write(text, compiled)
     return _cached(compiled, CachedSteps(question, text, compiled, steps), file)
@@ -207,13 +198,7 @@ class CachedSteps:
         """The rulebook for a step. Raises RulecError as ``StepCompiler``."""
         return self._answer(_name(step_s), lambda: self._compiler()(step_s))
 
-    def rounded(self, step_s: Fraction) -> tuple[CompiledRulebook, CompiledRulebook]:
-        """The rulebook with bounds rounded down to multiples of a step, and rounded up."""
-        name = _name(step_s)
-        down = self._answer(f"{name}-down", lambda: self._compiler().rounded(step_s)[0])
-        return down, self._answer(f"{name}-up", lambda: self._compiler().rounded(step_s)[1])
-
-    def judgeable_at(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
+    def judgeable_at(self, step_s: Fraction) -> CompiledRulebook:
         """The rulebook without rules too large for the step; which these are is not cached."""
         return self._compiler().judgeable_at(step_s)
 
@@ -232,19 +217,12 @@ class CachedSteps:
     ) -> CompiledRulebook | RulecError:
         text = self._text
         known = file.read()
-        if known is not None and _depends_on(known) == _depends_on(text):
-            if known.rulebook is None:
-                return RulecError(known.problems)
+        if known and known.rulebook and _depends_on(known) == _depends_on(text):
             return _cached(replace(known.rulebook, origin=self._own.origin), self, file)
         try:
             compiled = _sharing(compile_it(), self._own)
         except RulecError as error:
-            # Takes 20 ms to import with the parser, which an error has already loaded.
-            from rulec.rulebook.elaborate.rule_messages import NOT_A_MULTIPLE
-
             # Not cached: machines that are too large and a missing Spot, which may change.
-            if all(problem.code == NOT_A_MULTIPLE.code for problem in error.diagnostics):
-                file.write(replace(text, problems=error.diagnostics), None)
             return error
         # The source may have changed since the rulebook was read from the cache.
         if compiled.sources == self._own.sources:

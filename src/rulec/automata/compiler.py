@@ -35,12 +35,10 @@ from rulec.automata.worker.worker_answers import HAS_PROCESSES, WorkerGreeting, 
 from rulec.cache.keeping import is_keeping
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.diagnostic import at
-from rulec.logic.bounds import NotAMultipleError, fitting_step, has_seconds, in_steps
-from rulec.logic.fitting_steps import steps_near
+from rulec.logic.bounds import fitting_step, has_seconds, in_steps
 from rulec.logic.formula import Formula
 from rulec.logic.printing import time_in_words
 from rulec.resource_limits import COMPILING
-from rulec.rulebook.elaborate.rule_messages import no_multiple, with_steps
 from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, parts_of
 from rulec.rulebook.rules.axiom_instances import axiom_instances
 from rulec.rulebook.rules.exemptions import rule_trigger
@@ -67,46 +65,40 @@ class RuleFormula:
     formula: Formula
     step_s: Fraction | None
 
+    @property
+    def key(self) -> tuple[str, Formula]:
+        """What decides the rule's machine in its rulebook."""
+        return self.rule.name, self.formula
+
 
 @dataclass(frozen=True, slots=True)
 class RulebookFormulas:
-    """The formulas of a rulebook's rules for one step, and the problems of rules without one.
+    """The formulas of a rulebook's rules for one step.
 
     ``step_s`` is None if each rule has the step of its own examples.
     """
 
     rules: tuple[RuleFormula, ...]
     step_s: Fraction | None = None
-    problems: tuple[Diagnostic, ...] = ()
 
 
-def lower(
-    rulebook: Rulebook, step_s: Fraction | None = None, *, any_step: bool = False
-) -> RulebookFormulas:
+def lower(rulebook: Rulebook, step_s: Fraction | None = None) -> RulebookFormulas:
     """Translate every rule's bounds in seconds into steps.
 
     ``step_s`` is the number of seconds between two states of the traces to be judged; None for the
-    step of each rule's own examples, and with ``any_step``, for a rule without examples, for a step
-    that fits. A bound that is not a multiple of the step is a problem (R0407); the last one names
-    steps of which all bounds are.
+    step of each rule's own examples, and for a rule without examples, for one of which all its
+    bounds are multiples.
     """
     formulas: list[RuleFormula] = []
-    problems: list[Diagnostic] = []
     for rule in rulebook.rules:
         step: Fraction | None = rule.step_s if step_s is None else step_s
         if not has_seconds(rule.formula):
             step = None  # any fits
-        if any_step and step is not None and not rule.examples:
+        if step is not None and step_s is None and not rule.examples:
             step = fitting_step(rule.formula, step)
-        try:
-            formula = rule.formula if step is None else in_steps(rule.formula, step)
-            formulas.append(RuleFormula(rule, formula, step))
-        except NotAMultipleError as error:
-            problems.append(no_multiple(rule, error))
-    if problems and step_s is not None:
-        fit = steps_near([rule.formula for rule in rulebook.rules], step_s)
-        problems[-1] = with_steps(problems[-1], fit)
-    return RulebookFormulas(tuple(formulas), step_s, tuple(problems))
+        formula = rule.formula if step is None else in_steps(rule.formula, step)
+        formulas.append(RuleFormula(rule, formula, step))
+    return RulebookFormulas(tuple(formulas), step_s)
 
 
 def compile_rulebook(rulebook: Rulebook, *, step_s: Fraction | None = None) -> CompiledRulebook:
@@ -126,15 +118,12 @@ def build_all(
 
     With ``more_will_come`` the worker stays alive for the next call, since starting one takes
     0.25 s.
-    Raises RulecError with the formulas' problems; R0401 for each rule whose automaton is too large,
-    R0402 for each whose automaton failed its check, R0403 for each that needs Spot if Spot is
-    missing, R0409 for axioms that contradict each other; BudgetSpentError (R0718) alone if no
-    ``time`` is left.
+    Raises RulecError R0401 for each rule whose automaton is too large, R0402 for each whose
+    automaton failed its check, R0403 for each that needs Spot if Spot is missing, R0409 for axioms
+    that contradict each other; BudgetSpentError (R0718) alone if no ``time`` is left.
     """
     compiled: list[CompiledRule] = []
-    problems = list(formulas.problems)
-    if problems and not formulas.rules:
-        raise RulecError(problems)  # there is nothing to compile, so no process is started
+    problems: list[Diagnostic] = []
     jobs = [_job(rulebook, rule, with_texts=with_texts) for rule in formulas.rules]
     answers, spot = answers_to(jobs, more_will_come=more_will_come, time=time)
     for lowered, answer in zip(formulas.rules, answers, strict=True):

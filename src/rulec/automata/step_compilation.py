@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from math import ceil, floor
 from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import (
@@ -16,7 +15,7 @@ from rulec.automata.bundle.compiled_rulebook import (
 )
 from rulec.automata.compiler import CompilerTime, RulebookFormulas, build_all, lower
 from rulec.diagnostics import RulecError
-from rulec.logic.bounds import Rounding, has_seconds, in_steps
+from rulec.logic.bounds import has_seconds
 from rulec.logic.formula import Formula
 from rulec.logic.printing import number_in_words
 from rulec.resource_limits import STEPS
@@ -38,11 +37,10 @@ class StepCompiler:
 
     def __init__(self, rulebook: Rulebook, time: CompilerTime | None = None) -> None:
         self.rulebook = rulebook
-        self._machines: dict[tuple[str, Fraction | None], CompiledRule] = {}
+        self._machines: dict[tuple[str, Formula], CompiledRule] = {}
         self._answers: dict[Fraction, CompiledRulebook | RulecError] = {}
         self._header: CompiledRulebook | None = None
-        self._roundings: dict[tuple[Formula, ...], StepCompiler] = {}
-        self._judgeable: dict[Fraction, tuple[CompiledRulebook, ...]] = {}
+        self._judgeable: dict[Fraction, CompiledRulebook] = {}
         self._built = 0
         self.time = time or CompilerTime()
 
@@ -52,8 +50,7 @@ class StepCompiler:
     def __call__(self, step_s: Fraction) -> CompiledRulebook:
         """The rulebook for traces whose states are ``step_s`` seconds apart.
 
-        Raises RulecError: as ``build_automata``; R0407 for a bound that is no multiple of the step,
-        R0718 for more steps than the limit `steps`.
+        Raises RulecError: as ``build_automata``; R0718 for more steps than the limit `steps`.
         """
         if step_s not in self._answers:
             if len(self._answers) >= MOST_STEPS:
@@ -67,39 +64,18 @@ class StepCompiler:
             raise answer
         return answer
 
-    def rounded(self, step_s: Fraction) -> tuple[CompiledRulebook, CompiledRulebook]:
-        """The rulebook with bounds rounded down to multiples of a step (s), and rounded up.
+    def judgeable_at(self, step_s: Fraction) -> CompiledRulebook:
+        """The rulebook for a step (s), without rules too large for that step.
 
-        Its formulas are in steps. If all bounds fit, both are the same. Raises RulecError as
-        ``build_automata``.
-        """
-        down, up = (self._rounded(step_s, rounding) for rounding in (floor, ceil))
-        return down, up
-
-    def _rounded(self, step_s: Fraction, rounding: Rounding) -> CompiledRulebook:
-        # Steps that hardly differ, such as those of an unsteady clock, give the same formulas.
-        formulas = tuple([in_steps(rule.formula, step_s, rounding) for rule in self.rulebook.rules])
-        if formulas not in self._roundings:
-            _check_steps(len(self._roundings), self.rulebook)
-            rules = zip(self.rulebook.rules, formulas, strict=True)
-            rounded = tuple([replace(rule, formula=formula) for rule, formula in rules])
-            self._roundings[formulas] = StepCompiler(
-                replace(self.rulebook, rules=rounded), self.time
-            )
-        return self._roundings[formulas](step_s)
-
-    def judgeable_at(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
-        """The rulebook for a step (s), or rounded to it, without rules too large for that step.
-
-        Raises RulecError as ``rounded`` for any other problem.
+        Raises RulecError as calling it for any other problem.
         """
         if step_s not in self._judgeable:
             self._judgeable[step_s] = self._without_too_large(step_s)
         return self._judgeable[step_s]
 
-    def _without_too_large(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
+    def _without_too_large(self, step_s: Fraction) -> CompiledRulebook:
         try:
-            return _fitted(self, step_s)
+            return self(step_s)
         except RulecError as error:
             places = [problem.place for problem in error.diagnostics]
             spans = [(rule, rule.span) for rule in self.rulebook.rules]
@@ -110,11 +86,8 @@ class StepCompiler:
             why = f"its automaton is too large for steps of {number_in_words(step_s)} s"
             left_out = [TooLargeRule(rule.name, rule.strength, why) for rule in rules]
             smaller = StepCompiler(replace(self.rulebook, rules=kept), self.time)
-            # With bounds rounded up, other rules may be too large than with bounds rounded down.
-            return tuple(
-                replace(book, too_large=(*left_out, *book.too_large))
-                for book in smaller.judgeable_at(step_s)
-            )
+            book = smaller.judgeable_at(step_s)
+            return replace(book, too_large=(*left_out, *book.too_large))
 
     def at_own_steps(self, rules: Sequence[Rule] | None = None) -> CompiledRulebook:
         """Compile rules (all by default) for the steps of their own examples. Raises RulecError."""
@@ -122,11 +95,9 @@ class StepCompiler:
 
     def built(self, formulas: RulebookFormulas) -> CompiledRulebook:
         """The rulebook with the automata of these formulas. Raises RulecError as ``build_all``."""
-        keys = [(formula.rule.name, formula.step_s) for formula in formulas.rules]
         machines = self._machines
-        pairs = zip(formulas.rules, keys, strict=True)
-        missing = tuple([formula for formula, key in pairs if key not in machines])
-        if missing or formulas.problems or self._header is None:
+        missing = tuple([rule for rule in formulas.rules if rule.key not in machines])
+        if missing or self._header is None:
             if missing and self._header is not None:
                 _check_steps(self._built, self.rulebook)
                 self._built += 1
@@ -135,8 +106,10 @@ class StepCompiler:
             lacking = replace(formulas, rules=missing)
             built = build_all(self.rulebook, lacking, more_will_come=more_will_come, time=self.time)
             self._header = replace(built, recompile=self, prefixes=self._prefixes)
-            machines.update({(rule.name, rule.step_s): rule for rule in built.rules})
-        return replace(self._header, rules=tuple(machines[key] for key in keys))
+            machines.update(zip([rule.key for rule in missing], built.rules, strict=True))
+        # Steps that hardly differ, such as those of an unsteady clock, have the same formulas.
+        rules = [replace(machines[rule.key], step_s=rule.step_s) for rule in formulas.rules]
+        return replace(self._header, rules=tuple(rules))
 
     def _prefixes(self, rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
         # Takes 0.1 s to import with NumPy, and is needed only for cut traces.
@@ -146,15 +119,6 @@ class StepCompiler:
 
     def _compiled(self, rules: Sequence[Rule], step_s: Fraction | None) -> CompiledRulebook:
         return self.built(lower(replace(self.rulebook, rules=tuple(rules)), step_s))
-
-
-def _fitted(compiler: StepCompiler, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
-    try:
-        return (compiler(step_s),)
-    except RulecError as error:
-        if is_too_large(error):
-            raise
-        return compiler.rounded(step_s)
 
 
 def _check_steps(before: int, rulebook: Rulebook) -> None:

@@ -13,8 +13,8 @@ from rulec.diagnostics.fault_messages import fault_of
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.logic.free_names import names_of
+from rulec.monitoring.batch.contained_verify import judge_contained
 from rulec.monitoring.batch.findings import JudgedTrace
-from rulec.monitoring.batch.rounded_verify import judge_rounded
 from rulec.monitoring.batch.verify_arrays import answer_to
 from rulec.monitoring.fault_containment import without
 from rulec.monitoring.rulebook_edition import edition_of
@@ -41,8 +41,8 @@ MOST_STATES, MOST_CELLS_TOGETHER = 1 << 13, 1 << 18
 more would take more memory."""
 
 
-def rounded_rulebooks(rulebook: CompiledRulebook, step_s: float) -> tuple[CompiledRulebook, ...]:
-    """A rulebook at a recording's step, with bounds that are no multiples rounded down and up.
+def rulebook_at(rulebook: CompiledRulebook, step_s: float) -> CompiledRulebook:
+    """A rulebook at a recording's step.
 
     Rules whose automata are too large at so short a step are left out; others can be judged.
     """
@@ -52,7 +52,7 @@ def rounded_rulebooks(rulebook: CompiledRulebook, step_s: float) -> tuple[Compil
         if any(problem.code != OTHER_STEP.code for problem in error.diagnostics):
             raise
         # Each drive will report that it cannot be judged.
-        return (rulebook,)
+        return rulebook
 
 
 def explain_drive(violation: Violation, drive: Drive, rules: CompiledRulebook) -> Explanation:
@@ -63,8 +63,8 @@ def explain_drive(violation: Violation, drive: Drive, rules: CompiledRulebook) -
     # Explanations, 20 ms: only where something is violated.
     from rulec.monitoring.explain.explanation import explain
 
-    (rounded, *_) = rounded_rulebooks(rules, drive.arrays.step_s)
-    return explain(violation, drive.trace, rounded, drive.decided_by)
+    at_step = rulebook_at(rules, drive.arrays.step_s)
+    return explain(violation, drive.trace, at_step, drive.decided_by)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,9 +97,9 @@ class JudgedDrive:
 class RecordingVerdicts(Rows):
     """The verdicts of a rulebook on a recording's drives, computed on demand.
 
-    Bounds that are no multiples of the recording's step are rounded down and up. Raises RulecError
-    R0507 if the rulebook was compiled for another step, R0612 for a vehicle that is not there. With
-    ``says_law`` each verdict has the text that it is by, which takes the rulebook's hash.
+    Raises RulecError R0507 if the rulebook was compiled for another step, R0612 for a vehicle that
+    is not there. With ``says_law`` each verdict has the text that it is by, which takes the
+    rulebook's hash.
     """
 
     def __init__(
@@ -113,8 +113,7 @@ class RecordingVerdicts(Rows):
     ) -> None:
         self._says_law = says_law
         self.request = request
-        self._roundings = rounded_rulebooks(rulebook, recording.step_s)
-        self.rules = self._roundings[0]
+        self.rules = rulebook_at(rulebook, recording.step_s)
         self.drives = selected_drives(
             recording,
             request,
@@ -147,7 +146,7 @@ class RecordingVerdicts(Rows):
         yield from self._verified(waiting)
 
     def _verified(self, drives: Sequence[Drive | NoDrive]) -> Iterator[DriveVerdict | NoDrive]:
-        for found in verified(drives, self._roundings):
+        for found in verified(drives, self.rules):
             if self._says_law and isinstance(found, DriveVerdict):
                 found = replace(found, answer=with_law(found.answer, edition_of(self.rules)))
             yield found
@@ -189,46 +188,43 @@ def names_read(rulebook: CompiledRulebook) -> frozenset[str]:
 
 
 class SomeRules(NamedTuple):
-    """Rulebooks with some of their rules, and the names that these and facts about them read.
+    """A rulebook with some of its rules, and the names that these and facts about them read.
 
     Traces with these names are enough to judge the rules, unless they contradict other facts.
     """
 
-    roundings: Sequence[CompiledRulebook]
+    rulebook: CompiledRulebook
     names: frozenset[str]
 
 
-def some_rules(names: frozenset[str], roundings: Sequence[CompiledRulebook]) -> SomeRules:
-    """The rules with these names from a rounded rulebook; cached, as names mostly repeat."""
-    known: dict[frozenset[str], SomeRules] = roundings[0].prepared.setdefault(SomeRules, {})
+def some_rules(names: frozenset[str], rulebook: CompiledRulebook) -> SomeRules:
+    """The rules with these names from a rulebook; cached, as names mostly repeat."""
+    known: dict[frozenset[str], SomeRules] = rulebook.prepared.setdefault(SomeRules, {})
     if names not in known:
         if len(known) >= _MOST_KEPT:
             known.clear()
-        books = [
-            replace(book, rules=tuple([rule for rule in book.rules if rule.name in names]))
-            for book in roundings
-        ]
-        read = frozenset().union(*[names_of(rule.formula) for rule in books[0].rules])
-        facts = related_facts(read, books[0].axioms)
-        known[names] = SomeRules(books, read.union(*[names_of(fact.formula) for fact in facts]))
+        some = replace(rulebook, rules=tuple([x for x in rulebook.rules if x.name in names]))
+        read = frozenset().union(*[names_of(rule.formula) for rule in some.rules])
+        facts = related_facts(read, some.axioms)
+        known[names] = SomeRules(some, read.union(*[names_of(fact.formula) for fact in facts]))
     return known[names]
 
 
 def verified(
-    drives: Sequence[Drive | NoDrive], roundings: Sequence[CompiledRulebook]
+    drives: Sequence[Drive | NoDrive], rulebook: CompiledRulebook
 ) -> Iterator[DriveVerdict | NoDrive]:
-    """The verdicts of a rulebook, rounded to the drives' step, on drives verified together."""
-    for drive in judged_drives(drives, roundings):
+    """The verdicts of a rulebook for the drives' step, on drives verified together."""
+    for drive in judged_drives(drives, rulebook):
         yield drive.with_verdict() if isinstance(drive, JudgedDrive) else drive
 
 
 def judged_drives(
-    drives: Sequence[Drive | NoDrive], roundings: Sequence[CompiledRulebook]
+    drives: Sequence[Drive | NoDrive], rulebook: CompiledRulebook
 ) -> Iterator[JudgedDrive | NoDrive]:
     """The judged drives, whose verdicts are built on demand, in the same order."""
     known = [drive for drive in drives if isinstance(drive, Drive)]
     traces = [trace for drive in known for trace in (drive.arrays, *drive.otherwise)]
-    judged = iter(judge_rounded(traces, roundings))
+    judged = iter(judge_contained(traces, rulebook))
     for drive in drives:
         if isinstance(drive, Drive):
             own = next(judged)
@@ -260,14 +256,6 @@ def _of_any_type(
     faults = [fault for _, verdict in verdicts for fault in verdict.faults]
     lost = [x for _, verdict in verdicts for x in verdict.not_judged if x.by_fault]
     return without(agreed_on, lost, faults) if faults else agreed_on
-
-
-def agreed_answers(
-    traces: Sequence[TraceArrays], roundings: Sequence[CompiledRulebook]
-) -> list[Verdict | NotJudged]:
-    """The answer of a rulebook, rounded to the traces' step, to each trace."""
-    judged = judge_rounded(traces, roundings)
-    return [answer_to(own, trace) for own, trace in zip(judged, traces, strict=True)]
 
 
 def _row(answer: DriveVerdict | NoDrive) -> dict[str, Any]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from fractions import Fraction
-from math import gcd, lcm
+from math import ceil, floor, gcd, lcm
 from typing import NamedTuple
 
 from rulec.diagnostics import Span
@@ -43,16 +43,6 @@ DISTANCE: frozenset[ltl.UnaryOperator | ltl.BinaryOperator] = frozenset(
     )
 )
 """The operators that refer to a single instant: without a bound, to the adjacent one."""
-
-
-class NotAMultipleError(ValueError):
-    """A bound in seconds (``offending``, written at ``span``) falls between two instants."""
-
-    def __init__(self, offending: Fraction, step_s: Fraction, span: Span | None) -> None:
-        super().__init__(f"{offending} s is not a multiple of {step_s} s")
-        self.offending = offending
-        self.step_s = step_s
-        self.span = span
 
 
 class Range(NamedTuple):
@@ -121,49 +111,43 @@ def operations_of(formula: ltl.Formula) -> Iterator[ltl.Unary | ltl.Binary]:
                 waiting += [right, left]
 
 
-Rounding = Callable[[Fraction], int]
-"""How a bound becomes a whole number of steps: ``math.floor`` or ``math.ceil``."""
+def between_instants(formula: ltl.Formula, step_s: Fraction) -> tuple[Fraction, Span | None] | None:
+    """The first bound (s) of a formula that is no multiple of a step, and where it is written."""
+    for operation in operations_of(formula):
+        bound = operation.bound
+        if bound is not None and bound.unit == "s":
+            for end in (bound.low, bound.high):
+                if end is not None and (end / step_s).denominator != 1:
+                    return end, bound.span
+    return None
 
 
-def in_steps(
-    formula: ltl.Formula, step_s: Fraction, rounding: Rounding | None = None
-) -> ltl.Formula:
-    """The formula with bounds in steps of ``step_s`` seconds, rounded if there is a ``rounding``.
+def in_steps(formula: ltl.Formula, step_s: Fraction) -> ltl.Formula:
+    """The formula with bounds in steps of ``step_s`` seconds, without their ``span``.
 
-    The new bounds have no ``span``.
-
-    Raises:
-        NotAMultipleError: without rounding, for the first bound (from left to right) that is no
-            multiple of the step.
-        ValueError: if the step is not positive.
+    A bound in seconds is about the instants that exist, a whole number of steps away: within 0.5 s
+    are, at steps of 0.2 s, those 0.2 and 0.4 s away. Where none exists the range is empty.
+    Raises ValueError if the step is not positive.
     """
     if step_s <= 0:
         raise ValueError("a step lasts more than 0 s")
     match formula:
         case ltl.Unary(operator, operand, bound):
-            steps = _steps(bound, step_s, rounding)
-            return ltl.Unary(operator, in_steps(operand, step_s, rounding), steps)
+            return ltl.Unary(operator, in_steps(operand, step_s), _steps(bound, step_s))
         case ltl.Binary(operator, left, right, bound):
-            first = in_steps(left, step_s, rounding)
-            steps = _steps(bound, step_s, rounding)
-            return ltl.Binary(operator, first, in_steps(right, step_s, rounding), steps)
+            steps = _steps(bound, step_s)
+            return ltl.Binary(operator, in_steps(left, step_s), in_steps(right, step_s), steps)
         case ltl.Atom() | ltl.Comparison() | ltl.Same() | ltl.Constant():
             return formula
 
 
-def _steps(
-    bound: ltl.Bound | None, step_s: Fraction, rounding: Rounding | None
-) -> ltl.Bound | None:
+def _steps(bound: ltl.Bound | None, step_s: Fraction) -> ltl.Bound | None:
     if bound is None:
         return None
     if bound.unit == "steps":
         return replace(bound, span=None)
-    low, high = bound.low / step_s, None if bound.high is None else bound.high / step_s
-    if rounding is not None:
-        low, high = Fraction(rounding(low)), None if high is None else Fraction(rounding(high))
-    for seconds, steps in ((bound.low, low), (bound.high, high)):
-        if seconds is not None and steps is not None and steps.denominator != 1:
-            raise NotAMultipleError(seconds, step_s, bound.span)
+    low = Fraction(ceil(bound.low / step_s))
+    high = None if bound.high is None else Fraction(floor(bound.high / step_s))
     return replace(bound, low=low, high=high, unit="steps", span=None)
 
 

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rulec.automata.compiler import RulebookFormulas
-from rulec.diagnostics import RulecError
 from rulec.files.file_sets import write_together
 from rulec.files.written_files import make_folder
 from rulec.ltl_export.ltl_terms import NUXMV, PRISM, SPOT, TRUE, Term, text_of
@@ -22,11 +21,8 @@ from rulec.version import __version__
 def write_ltl(rulebook: Rulebook, lowered: RulebookFormulas, folder: Path) -> list[Path]:
     """Write ``R.csv``, ``R.props``, ``R.smv`` and ``R.propositions.json`` of a rulebook R.
 
-    Writes all files or none; returns the paths. Raises RulecError R0702, R0754, and R0407 for
-    bounds that do not fit the step.
+    Writes all files or none; returns the paths. Raises RulecError R0702, R0754.
     """
-    if lowered.problems:
-        raise RulecError(lowered.problems)
     phrases = phrases_of(rulebook)
     rules = [rule_terms(rulebook, formula, phrases) for formula in lowered.rules]
     texts = {

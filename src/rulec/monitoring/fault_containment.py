@@ -23,20 +23,20 @@ class _Judged(Protocol):
 Item = TypeVar("Item", bound=_Judged)
 _Any = TypeVar("_Any")
 
-Judge: TypeAlias = Callable[[Sequence[Item], Sequence[CompiledRulebook]], Sequence[Answer]]
-"""Judges traces by a rulebook, rounded to their step in one way or two."""
+Judge: TypeAlias = Callable[[Sequence[Item], CompiledRulebook], Sequence[Answer]]
+"""Judges traces by a rulebook for their step."""
 
 
 def judged_apart(
-    judge: Judge[Item], items: Sequence[Item], roundings: Sequence[CompiledRulebook]
+    judge: Judge[Item], items: Sequence[Item], rulebook: CompiledRulebook
 ) -> Sequence[Answer]:
     """The answers, if a fault comes by halves: it costs one rule on one trace."""
     try:
-        return judge(items, roundings)
+        return judge(items, rulebook)
     except NOT_FAULTS:
         raise
     except Exception as problem:
-        rules = roundings[0].rules
+        rules = rulebook.rules
         if len(rules) <= 1 and len(items) == 1:
             fault = fault_of(problem, f"`{rules[0].name if rules else 'facts'}` in `{items[0].id}`")
             lost = [rule_lost(rule, fault) for rule in rules]
@@ -44,10 +44,10 @@ def judged_apart(
             return [verdict if lost else NotJudged(items[0].id, fault)]
         failed = problem
     if len(rules) > 1:
-        halves = [[_with_rules(book, own) for book in roundings] for own in _halves(rules)]
-        parts = [judged_apart(judge, items, books) for books in halves]
+        halves = [replace(rulebook, rules=tuple(own)) for own in _halves(rules)]
+        parts = [judged_apart(judge, items, half) for half in halves]
         return said([_joined(*both) for both in zip(*parts, strict=True)], failed)
-    apart = [x for some in _halves(items) for x in judged_apart(judge, some, roundings)]
+    apart = [x for some in _halves(items) for x in judged_apart(judge, some, rulebook)]
     return said(apart, failed)
 
 
@@ -101,11 +101,6 @@ def without(verdict: Verdict, lost: Sequence[RuleNotJudged], faults: list[RulecE
 
 def _halves(items: Sequence[_Any]) -> tuple[Sequence[_Any], Sequence[_Any]]:
     return items[: len(items) // 2], items[len(items) // 2 :]
-
-
-def _with_rules(book: CompiledRulebook, rules: Sequence[CompiledRule]) -> CompiledRulebook:
-    names = {rule.name for rule in rules}
-    return replace(book, rules=tuple([rule for rule in book.rules if rule.name in names]))
 
 
 def _joined(one: Answer, other: Answer) -> Answer:

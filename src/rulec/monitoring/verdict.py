@@ -30,12 +30,11 @@ class Violation:
 
 OutcomeName: TypeAlias = Literal["kept", "violated", "open"]
 
-Reason: TypeAlias = Literal["not told", "tolerance", "not over", "began before", "step"]
+Reason: TypeAlias = Literal["not told", "tolerance", "not over", "began before"]
 """Why a verdict is open.
 
 Values are unknown; or are numbers whose bounds contain a limit; or a duty is pending; or the past
-was not observed; or a bound that is no multiple of the step gives different outcomes when rounded
-down and up.
+was not observed.
 """
 
 
@@ -204,37 +203,30 @@ def rule_for(result: Violation | OpenVerdict) -> RuleFor:
     return result.rule, tuple(result.binding.values())
 
 
-def agreed(
-    verdicts: Sequence[Verdict], because: Reason = "step", depends_on: Sequence[str] = ()
-) -> Verdict:
-    """The common part of verdicts on one trace, by rules with differently rounded bounds.
+def _common(one: Verdict, other: Verdict, types: Sequence[str]) -> Verdict:
+    """The common part of verdicts on two traces, of which one is the real one.
 
-    Where they differ the verdict is open, because of the step; or they are on traces of which one
-    is the real one: then it is open for another reason, and ``depends_on`` has what decides which.
+    Where they differ the verdict is open, and depends on the types that decide which it is.
     """
-    first, *others = verdicts
-    violations = {rule_for(violation): violation for violation in first.violations}
-    doubtful = {rule_for(result): result for result in first.open}
-    for verdict in others:
-        further = {rule_for(violation): violation for violation in verdict.violations}
-        further_open = {rule_for(result): result for result in verdict.open}
-        for key in violations.keys() ^ further.keys():
-            known = violations.get(key) or further[key]
-            if key not in doubtful:
-                doubtful[key] = OpenVerdict(
-                    known.rule, known.strength, known.binding, (because,), tuple(depends_on)
-                )
-        for key in doubtful.keys() ^ further_open.keys():
-            known_open = doubtful.get(key) or further_open[key]
-            reasons = tuple(dict.fromkeys((*known_open.because, because)))
-            names = tuple(dict.fromkeys((*known_open.depends_on, *depends_on)))
-            doubtful[key] = replace(known_open, because=reasons, depends_on=names, outcomes=())
-        violations = {
-            key: replace(violation, step=_later(violation.step, further[key].step))
-            for key, violation in violations.items()
-            if key in further
-        }
-    return replace(first, violations=tuple(violations.values()), open=tuple(doubtful.values()))
+    violations = {rule_for(violation): violation for violation in one.violations}
+    further = {rule_for(violation): violation for violation in other.violations}
+    doubtful = {rule_for(result): result for result in one.open}
+    further_open = {rule_for(result): result for result in other.open}
+    for key in violations.keys() ^ further.keys():
+        known = violations.get(key) or further[key]
+        own = OpenVerdict(known.rule, known.strength, known.binding, ("not told",), tuple(types))
+        doubtful.setdefault(key, own)
+    for key in doubtful.keys() ^ further_open.keys():
+        known_open = doubtful.get(key) or further_open[key]
+        reasons = tuple(dict.fromkeys((*known_open.because, "not told")))
+        names = tuple(dict.fromkeys((*known_open.depends_on, *types)))
+        doubtful[key] = replace(known_open, because=reasons, depends_on=names, outcomes=())
+    both = [
+        replace(violation, step=_later(violation.step, further[key].step))
+        for key, violation in violations.items()
+        if key in further
+    ]
+    return replace(one, violations=tuple(both), open=tuple(doubtful.values()))
 
 
 def agreed_by_type(known: Verdict, others: Sequence[tuple[Sequence[str], Verdict]]) -> Verdict:
@@ -245,9 +237,9 @@ def agreed_by_type(known: Verdict, others: Sequence[tuple[Sequence[str], Verdict
     violations = {rule_for(violation): violation for violation in known.violations}
     doubtful = {rule_for(result): result for result in known.open}
     for types, other in others:
-        pair = agreed([known, other], "not told", types)
+        pair = _common(known, other, types)
         # Each time a part of those before, and where they agree no earlier
-        common = agreed([replace(known, violations=tuple(violations.values())), other])
+        common = _common(replace(known, violations=tuple(violations.values())), other, types)
         violations = {rule_for(violation): violation for violation in common.violations}
         for result in pair.open:
             key = rule_for(result)

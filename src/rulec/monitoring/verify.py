@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.monitoring.batch.by_states import by_each_rounding, judged_by_states
+from rulec.monitoring.batch.by_states import judged_by_states, rulebook_for_trace
 from rulec.monitoring.verdict import Verdict
 from rulec.trace import Trace
+from rulec.trace.trace_model import check_trace
 
 
 def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
@@ -15,10 +16,8 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     R0507 if a rule was compiled for traces with another step, R0508 if a state contradicts an axiom
     on which a rule depends; errors have the trace's own place.
     """
-    return by_each_rounding(trace, rulebook, _verified)
-
-
-def _verified(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
+    check_trace(trace)
+    rulebook = rulebook_for_trace(trace, rulebook)
     try:
         # Loads NumPy, 100 ms, which a browser does not have.
         from rulec.monitoring.batch.verify_joined import verdict_in_arrays

@@ -22,10 +22,10 @@ from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.extraction.recording_verdicts import (
     DriveVerdict,
     SomeRules,
-    agreed_answers,
     some_rules,
 )
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
+from rulec.monitoring.batch.contained_verify import answers_contained
 from rulec.monitoring.verdict import (
     NotJudged,
     OpenVerdict,
@@ -52,7 +52,7 @@ def verdicts_of(
 def judged_anew(
     scores: list[CandidateScore],
     before: Sequence[Violation],
-    roundings: Sequence[CompiledRulebook],
+    rulebook: CompiledRulebook,
     steps: tuple[int, int],
 ) -> list[CandidateScore]:
     """The scores, with rules that the past violated judged anew by the future alone.
@@ -63,13 +63,13 @@ def judged_anew(
     known = {rule_for(violation) for violation in before}
     if not known:
         return scores
-    found = _anew(scores, known, roundings, steps)
+    found = _anew(scores, known, rulebook, steps)
     n_others = max(
         (len(drive.otherwise) for x in scores for drive, _ in verdicts_of(x.drives)), default=0
     )
     for number in range(n_others):
         others, types = zip(*[_with_types(own, number) for own in scores], strict=True)
-        anew = _anew(others, known, roundings, steps)
+        anew = _anew(others, known, rulebook, steps)
         found = [
             _agreed_by_type(own, other, kinds, known) if kinds else own
             for own, other, kinds in zip(found, anew, types, strict=True)
@@ -87,7 +87,7 @@ def opened_by(drives: Sequence[DriveVerdict | NoDrive]) -> frozenset[RuleFor]:
 def apart_from_past(
     scores: Sequence[CandidateScore],
     known: Collection[RuleFor],
-    roundings: Sequence[CompiledRulebook],
+    rulebook: CompiledRulebook,
     first: int,
 ) -> list[CandidateScore]:
     """The scores, in which ``known`` rules that are open count only if the future leaves them so.
@@ -97,7 +97,7 @@ def apart_from_past(
     """
     if not known:
         return list(scores)
-    books, names = _after_any_past(frozenset(rule for rule, _ in known), roundings)
+    some, names = _after_any_past(frozenset(rule for rule, _ in known), rulebook)
     doubtful = [{rule_for(result) for result in score.open} & set(known) for score in scores]
     futures = _saying(
         names,
@@ -110,7 +110,7 @@ def apart_from_past(
             for trace in (drive.arrays, *drive.otherwise)
         ],
     )
-    answers = agreed_answers([future.since(first) for future in futures], books)
+    answers = answers_contained([future.since(first) for future in futures], some)
     for future, answer in zip(futures, answers, strict=True):
         own = doubtful[future.number]
         if isinstance(answer, Verdict):
@@ -128,21 +128,20 @@ def apart_from_past(
     ]
 
 
-def _after_any_past(names: frozenset[str], roundings: Sequence[CompiledRulebook]) -> SomeRules:
+def _after_any_past(names: frozenset[str], rulebook: CompiledRulebook) -> SomeRules:
     """Some rules for traces that begin after any states that have not lost the rule for good.
 
     Duties of those states may be left, too, which ``since`` takes to be none.
     """
-    known: dict[frozenset[str], SomeRules] = roundings[0].prepared.setdefault(_after_any_past, {})
+    known: dict[frozenset[str], SomeRules] = rulebook.prepared.setdefault(_after_any_past, {})
     if names not in known:
         known.clear()  # mostly the same ones are open in each past
-        books, read = some_rules(names, roundings)
-        begun = [
-            replace(book, prefixes=partial(_begun_anywhere, book.prefixes))
-            for book in books
-            if book.prefixes is not None
-        ]
-        known[names] = SomeRules(begun or books, read)
+        some = some_rules(names, rulebook)
+        prefixes = some.rulebook.prefixes
+        if prefixes is not None:
+            begun = replace(some.rulebook, prefixes=partial(_begun_anywhere, prefixes))
+            some = SomeRules(begun, some.names)
+        known[names] = some
     return known[names]
 
 
@@ -194,12 +193,12 @@ def _agreed_by_type(
 def _anew(
     scores: Sequence[CandidateScore],
     known: Collection[RuleFor],
-    roundings: Sequence[CompiledRulebook],
+    rulebook: CompiledRulebook,
     steps: tuple[int, int],
 ) -> list[CandidateScore]:
     """The scores, with the ``known`` rules judged anew."""
     first, begin = steps
-    books, names = some_rules(frozenset(rule for rule, _ in known), roundings)
+    some, names = some_rules(frozenset(rule for rule, _ in known), rulebook)
     futures = _saying(
         names,
         [
@@ -209,10 +208,10 @@ def _anew(
             if drive.first_step + drive.arrays.n_states > begin
         ],
     )
-    answers = agreed_answers([one.since(begin) for one in futures], books)
-    late = _mended_after(futures, known, books, steps)
-    new, ended = _violated_again(futures, known, books, steps)
-    reopened = _open_again(futures, ended, books, begin)
+    answers = answers_contained([one.since(begin) for one in futures], some)
+    late = _mended_after(futures, known, some, steps)
+    new, ended = _violated_again(futures, known, some, steps)
+    reopened = _open_again(futures, ended, some, begin)
     violations: dict[int, list[Violation]] = {}
     judged_from: dict[int, dict[RuleFor, int]] = {}
     doubtful: dict[int, list[OpenVerdict]] = {}
@@ -273,7 +272,7 @@ def _saying(names: Set[str], futures: Sequence[_Future]) -> list[_Future]:
 def _mended_after(
     futures: Sequence[_Future],
     known: Collection[RuleFor],
-    books: Sequence[CompiledRulebook],
+    rulebook: CompiledRulebook,
     steps: tuple[int, int],
 ) -> dict[int, int]:
     """For each candidate the number of states until what the past violated is kept for good.
@@ -287,7 +286,9 @@ def _mended_after(
         traces = [
             own.since(first + after) for after, own in zip(middle.tolist(), futures, strict=True)
         ]
-        is_kept = np.array([_keeps(answer, known) for answer in agreed_answers(traces, books)])
+        is_kept = np.array(
+            [_keeps(answer, known) for answer in answers_contained(traces, rulebook)]
+        )
         low, high = np.where(is_kept, low, middle + 1), np.where(is_kept, middle, high)
         low = np.minimum(low, high)
     late: dict[int, int] = {}
@@ -306,7 +307,7 @@ def _keeps(answer: Verdict | NotJudged, known: Collection[RuleFor]) -> bool:
 def _violated_again(
     futures: Sequence[_Future],
     known: Collection[RuleFor],
-    books: Sequence[CompiledRulebook],
+    rulebook: CompiledRulebook,
     steps: tuple[int, int],
 ) -> tuple[list[dict[RuleFor, tuple[int, Violation]]], list[dict[RuleFor, int]]]:
     """For each future what it violates after the past's violation has ended, and when it has.
@@ -318,7 +319,7 @@ def _violated_again(
     one on.
     """
     first, begin = steps
-    soonest = {rule.name: _least_states(rule) for rule in books[0].rules}
+    soonest = {rule.name: _least_states(rule) for rule in rulebook.rules}
     found: list[dict[RuleFor, tuple[int, Violation]]] = [{} for _ in futures]
     ended: list[dict[RuleFor, int]] = [{} for _ in futures]
     asked = {(n, about): first for n in range(len(futures)) for about in known}
@@ -327,7 +328,7 @@ def _violated_again(
         traces = [futures[n].since(step) for n, step in jobs]
         violations = {
             (*job, rule_for(one)): one
-            for job, answer in zip(jobs, agreed_answers(traces, books), strict=True)
+            for job, answer in zip(jobs, answers_contained(traces, rulebook), strict=True)
             for one in (answer.violations if isinstance(answer, Verdict) else ())
         }
         goes_on = {}
@@ -348,7 +349,7 @@ def _violated_again(
 def _open_again(
     futures: Sequence[_Future],
     ended: Sequence[Mapping[RuleFor, int]],
-    books: Sequence[CompiledRulebook],
+    rulebook: CompiledRulebook,
     begin: int,
 ) -> list[dict[RuleFor, OpenVerdict]]:
     """For each future what is open after the past's violation has surely ended, before ``begin``.
@@ -358,19 +359,19 @@ def _open_again(
     """
     found: list[dict[RuleFor, OpenVerdict]] = [{} for _ in futures]
     asked = {(n, about): step for n, own in enumerate(ended) for about, step in own.items()}
-    is_open = _open_from(futures, asked, books)
+    is_open = _open_from(futures, asked, rulebook)
     waiting = {key: asked[key] for key in is_open}
     surely = {}
     while waiting := {key: step for key, step in waiting.items() if step < begin}:
         jobs = sorted({(n, step) for (n, _), step in waiting.items()})
-        answers = agreed_answers([futures[n].at(step) for n, step in jobs], books)
+        answers = answers_contained([futures[n].at(step) for n, step in jobs], rulebook)
         answer_to = dict(zip(jobs, answers, strict=True))
         for key in list(waiting):
             if _keeps(answer_to[key[0], waiting[key]], {key[1]}):
                 surely[key] = waiting.pop(key)
             else:
                 waiting[key] += 1
-    for (n, about), verdict in _open_from(futures, surely, books).items():
+    for (n, about), verdict in _open_from(futures, surely, rulebook).items():
         found[n][about] = verdict
     return found
 
@@ -378,11 +379,11 @@ def _open_again(
 def _open_from(
     futures: Sequence[_Future],
     asked: Mapping[tuple[int, RuleFor], int],
-    books: Sequence[CompiledRulebook],
+    rulebook: CompiledRulebook,
 ) -> dict[tuple[int, RuleFor], OpenVerdict]:
     """What is open, by future and rule, if it is asked from a step on."""
     jobs = sorted({(n, step) for (n, _), step in asked.items()})
-    answers = agreed_answers([futures[n].since(step) for n, step in jobs], books)
+    answers = answers_contained([futures[n].since(step) for n, step in jobs], rulebook)
     verdicts = {
         (*job, rule_for(own)): own
         for job, answer in zip(jobs, answers, strict=True)

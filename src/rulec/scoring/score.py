@@ -92,8 +92,8 @@ def _scored_apart(
         candidates.append(replace(found, number=number))
     if not any(candidate.faults for candidate in candidates):
         candidates[0] = replace(candidates[0], faults=(fault_of(problem, "candidates"),))
-    rounded = _roundings(rules, world.recording.step_s)[0]
-    return Scores(rounded, CandidateScores(candidates), before, paths, world.now + 1)
+    at_step = _at_step(rules, world.recording.step_s)
+    return Scores(at_step, CandidateScores(candidates), before, paths, world.now + 1)
 
 
 def _scored(
@@ -113,13 +113,13 @@ def _scored(
     if is_asked:
         # The past alone, first, to find what it violates whatever follows
         bodies.insert(0, world.body_at(past, steps[0]))
-    roundings = _roundings(rules, world.recording.step_s)
+    at_step = _at_step(rules, world.recording.step_s)
     beside, back = world.beside_lanes(paths), world.drives_back(paths, past)
     again = partial(_by_itself, paths, past, world, rules)
     half = first + n_states // 2
     candidates: dict[int, CandidateCharges | CandidateScore] = {}
     is_awaited = is_asked
-    for block in _judged(bodies, world, roundings, steps):
+    for block in _judged(bodies, world, at_step, steps):
         # Of many candidates, most are never looked at again
         is_kept = len(block) == len(bodies)
         if is_awaited:
@@ -130,10 +130,10 @@ def _scored(
             scores = judged_anew(
                 [candidate_charges.score() for candidate_charges in charges],
                 before.violated,
-                roundings,
+                at_step,
                 (first, half),
             )
-            scores = apart_from_past(scores, before.opened, roundings, first)
+            scores = apart_from_past(scores, before.opened, at_step, first)
             if not is_kept:
                 scores = [
                     without_drives(
@@ -152,15 +152,15 @@ def _scored(
     # The next candidates mostly have the same past.
     known[world] = about, before
     ordered = CandidateScores([candidates[number] for number in range(len(paths))])
-    return Scores(roundings[0], ordered, before.violated, paths, first)
+    return Scores(at_step, ordered, before.violated, paths, first)
 
 
-def _roundings(rules: CompiledRulebook, step_s: float) -> tuple[CompiledRulebook, ...]:
-    """The rulebook at a world's step, rounded as for recordings. Raises R0507 for another step."""
-    roundings = rules.judgeable_at(step_s)
-    for rule in roundings[0].rules:
+def _at_step(rules: CompiledRulebook, step_s: float) -> CompiledRulebook:
+    """The rulebook at a world's step. Raises R0507 if it is for another one."""
+    at_step = rules.judgeable_at(step_s)
+    for rule in at_step.rules:
         check_step(rule, exact_step(step_s), "the world")
-    return roundings
+    return at_step
 
 
 def _by_itself(
@@ -184,11 +184,10 @@ def _past(drives: Sequence[JudgedDrive | NoDrive]) -> _Past:
 def _judged(
     bodies: Sequence[Participant],
     world: TrafficWorld,
-    roundings: Sequence[CompiledRulebook],
+    rules: CompiledRulebook,
     steps: tuple[int, int],
 ) -> Iterator[list[tuple[int, list[JudgedDrive | NoDrive]]]]:
     """The judged drives of some bodies at a time, with the body's index."""
-    rules = roundings[0]
     drives, mirrored = world.drives(rules.traffic, *steps)
     if mirrored:
         bodies = [mirrored_participant(body) for body in bodies]
@@ -196,7 +195,7 @@ def _judged(
     names = names_read(rules)
     writer = TraceWriter(rules.vocabulary, names, wanted.assumed, wanted.defaults)
     for block in drives.in_blocks(bodies, writer):
-        judged = judged_drives([drive for _, own in block for drive in own], roundings)
+        judged = judged_drives([drive for _, own in block for drive in own], rules)
         yield [(number, [next(judged) for _ in own]) for number, own in block]
         del block, judged
 

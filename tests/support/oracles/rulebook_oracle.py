@@ -5,6 +5,7 @@ is. It shares no code with anything that judges in ``rulec``: all engines are co
 """
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 from rulec.logic.formula import Binary, Bound, Unary
 from support.oracles.continuation_oracle import Hope
@@ -100,7 +101,7 @@ class Meaning:
 
 
 def in_steps(formula, step_s):
-    """The formula with its bounds in steps of so many seconds."""
+    """The formula with its bounds in steps of so many seconds, at which there is a state."""
     match formula:
         case Unary(operator, operand, bound):
             return Unary(operator, in_steps(operand, step_s), steps_of(bound, step_s))
@@ -113,5 +114,5 @@ def in_steps(formula, step_s):
 def steps_of(bound, step_s):
     if bound is None or bound.unit == "steps":
         return bound
-    high = None if bound.high is None else bound.high / step_s
-    return Bound(bound.low / step_s, high, "steps")
+    high = None if bound.high is None else Fraction(bound.high // step_s)
+    return Bound(Fraction(-(-bound.low // step_s)), high, "steps")

@@ -79,13 +79,10 @@ class Recompiler(Protocol):
     """A compiler of one rulebook for any step (s)."""
 
     def __call__(self, step_s: Fraction) -> CompiledRulebook:
-        """The rulebook for a step. Raises RulecError R0407 for a bound that does not fit."""
+        """The rulebook for a step."""
 
-    def rounded(self, step_s: Fraction) -> tuple[CompiledRulebook, CompiledRulebook]:
-        """The rulebook with bounds rounded down to multiples of a step, and rounded up."""
-
-    def judgeable_at(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
-        """As ``CompiledRulebook.rounded_to``, without rules that are too large for the step."""
+    def judgeable_at(self, step_s: Fraction) -> CompiledRulebook:
+        """The rulebook for a step, without rules that are too large for it."""
 
 
 Origin: TypeAlias = Callable[[], model.Rulebook]
@@ -175,8 +172,7 @@ class CompiledRulebook(Rows):
 
         A float stands for its decimal. Rules without bounds in seconds are the same for any step;
         each step is compiled once. Raises RulecError R0507 if the rules are for another step and
-        cannot be recompiled, R0407 for a bound that is no multiple of the step, else as
-        ``compile_rulebook``.
+        cannot be recompiled, else as ``compile_rulebook``.
         """
         finite("step_s", expected("step_s", "Fraction | float", step_s))
         step = exact_step(step_s)
@@ -216,28 +212,14 @@ class CompiledRulebook(Rows):
         """The rulebook recompiled for a step (s) if possible, else this one unchanged."""
         return self if self.recompile is None else self.at_step(step_s)
 
-    def rounded_to(self, step_s: Fraction | float) -> tuple[CompiledRulebook, ...]:
-        """The rulebook recompiled for a step (s), if possible.
-
-        If bounds are no multiples of the step, two rulebooks: one rounded down, one rounded up.
-        Raises RulecError as ``at_step``, except R0407.
-        """
+    def judgeable_at(self, step_s: Fraction | float) -> CompiledRulebook:
+        """As ``fitted_to``, without the rules that are ``too_large`` for the step."""
         try:
-            return (self.fitted_to(step_s),)
-        except RulecError as error:
-            if self.recompile is None or is_too_large(error):
-                raise
-            return tuple(map(self._of_these_rules, self.recompile.rounded(exact_step(step_s))))
-
-    def judgeable_at(self, step_s: Fraction | float) -> tuple[CompiledRulebook, ...]:
-        """As ``rounded_to``, without the rules that are ``too_large`` for the step."""
-        try:
-            return self.rounded_to(step_s)
+            return self.fitted_to(step_s)
         except RulecError as error:
             if self.recompile is None or not is_too_large(error):
                 raise
-            books = self.recompile.judgeable_at(exact_step(step_s))
-            return tuple(map(self._of_these_rules, books))
+            return self._of_these_rules(self.recompile.judgeable_at(exact_step(step_s)))
 
     def rows(self) -> list[dict[str, Any]]:
         """One row per rule."""

@@ -26,21 +26,17 @@ from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabula
 
 @dataclass(frozen=True, slots=True)
 class Compilation:
-    """The content of a file: its dependencies, the diagnostics, and the rulebook.
+    """The content of a file: its dependencies, the warnings, and the rulebook.
 
     ``stamp`` is a digest of the source and of the compiler. ``day`` is the day whose law applies,
-    if it is today by default; empty if the source or the user sets it. ``problems`` explain why
-    there is no rulebook. ``own_steps``: whether each rule is for the step of its examples, or for
-    the step that these would have.
+    if it is today by default; empty if the source or the user sets it.
     """
 
     stamp: str
     day: str
     dependencies: tuple[Dependency, ...]
     warnings: tuple[Diagnostic, ...] = ()
-    problems: tuple[Diagnostic, ...] = ()
     rulebook: CompiledRulebook | None = None
-    own_steps: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,14 +50,9 @@ class _RenamedSteps:
         """The rulebook for a step. Raises RulecError as the compiler of the other name."""
         return self._renamed(self.steps(step_s))
 
-    def rounded(self, step_s: Fraction) -> tuple[CompiledRulebook, CompiledRulebook]:
-        """The rulebook with bounds rounded down to multiples of a step, and rounded up."""
-        down, up = self.steps.rounded(step_s)
-        return self._renamed(down), self._renamed(up)
-
-    def judgeable_at(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
-        """The rulebook for a step, or rounded to it, without rules too large for that step."""
-        return tuple(self._renamed(book) for book in self.steps.judgeable_at(step_s))
+    def judgeable_at(self, step_s: Fraction) -> CompiledRulebook:
+        """The rulebook for a step, without rules too large for that step."""
+        return self._renamed(self.steps.judgeable_at(step_s))
 
     def _renamed(self, book: CompiledRulebook) -> CompiledRulebook:
         # By identity: comparing rulebooks takes longer than renaming one.

@@ -32,13 +32,9 @@ class StoredSteps:
             help=f"compile its source with `--step {wanted}`, too",
         )
 
-    def rounded(self, step_s: Fraction) -> tuple[CompiledRulebook, CompiledRulebook]:
-        """As for a stored step, without rounding. Raises RulecError R0507 for any other step."""
-        return self(step_s), self(step_s)
-
-    def judgeable_at(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
+    def judgeable_at(self, step_s: Fraction) -> CompiledRulebook:
         """The rulebook for one of the steps, whose rules all have automata. Raises R0507."""
-        return (self(step_s),)
+        return self(step_s)
 
 
 def for_steps(books: Sequence[CompiledRulebook], steps: Sequence[Fraction]) -> CompiledRulebook:

@@ -236,11 +236,8 @@ def _verify_alike(
 
 
 def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> CompiledRulebook:
-    """The rulebook by which an item of ``verify_items`` was judged.
-
-    Of two roundings it is the lower one.
-    """
-    return rulebook.rounded_to(step_of(items, place))[0]
+    """The rulebook by which an item of ``verify_items`` was judged."""
+    return rulebook.fitted_to(step_of(items, place))
 
 
 def step_of(items: Items, place: int) -> float:

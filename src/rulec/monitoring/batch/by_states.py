@@ -17,7 +17,7 @@ from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.state_validation import check_objects, check_states, check_told
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
-from rulec.monitoring.verdict import NotJudged, Verdict, agreed
+from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.resource_limits import BudgetSpentError
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_frame, check_trace
@@ -28,15 +28,8 @@ TraceJudge = Callable[[Trace, CompiledRulebook], Verdict]
 
 def verify_by_states(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     """As ``verify`` in every respect, but state by state: for what arrays do not tell."""
-    return by_each_rounding(trace, rulebook, judged_by_states)
-
-
-def by_each_rounding(trace: Trace, rulebook: CompiledRulebook, judge: TraceJudge) -> Verdict:
-    """The verdicts by a rulebook for a trace's step, or by its two roundings, as one."""
     check_trace(trace)
-    with _errors_at(trace.place):
-        roundings = rulebook.rounded_to(trace.step_s)
-    return agreed([judge(trace, rounded) for rounded in roundings])
+    return judged_by_states(trace, rulebook_for_trace(trace, rulebook))
 
 
 def judged_by_states(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
@@ -101,16 +94,16 @@ def verify_contained(
             raise
         check_frame(trace)  # a trace of wrong kinds is the caller's fault, and is said again
         each = partial(_each_verified, judge)
-        (answer,) = judged_apart(each, [trace], rulebook.rounded_to(trace.step_s))
+        (answer,) = judged_apart(each, [trace], rulebook.fitted_to(trace.step_s))
     if isinstance(answer, NotJudged):
         raise answer.error
     return answer
 
 
 def _each_verified(
-    judge: TraceJudge, traces: Sequence[Trace], roundings: Sequence[CompiledRulebook]
+    judge: TraceJudge, traces: Sequence[Trace], rulebook: CompiledRulebook
 ) -> list[Verdict]:
-    return [agreed([judge(trace, rounded) for rounded in roundings]) for trace in traces]
+    return [judge(trace, rulebook) for trace in traces]
 
 
 def verify_or_reason(

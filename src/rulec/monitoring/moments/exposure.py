@@ -7,7 +7,6 @@ as violated if the rule is breached in one of its states. See docs/rates.md.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -119,10 +118,10 @@ def _watched(rulebook: CompiledRulebook, step_s: Fraction) -> Sequence[_Watched]
 
 
 def _watched_rule(rule: CompiledRule, step_s: Fraction, place: SourceLocation | None) -> _Watched:
-    breach = in_steps(breach_of(rule.formula), step_s, math.floor)
+    breach = in_steps(breach_of(rule.formula), step_s)
     if rule.trigger is None:
         return _Watched(rule, None, ReadyFormula(breach, place=place))
-    trigger = in_steps(rule.trigger, step_s, math.floor)
+    trigger = in_steps(rule.trigger, step_s)
     # Both have the same columns if the last state is repeated for ever.
     settles = max(steps_to_settle(breach), steps_to_settle(trigger))
     return _Watched(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -11,8 +10,7 @@ import numpy as np
 
 from rulec.array_types import Flags
 from rulec.automata.thresholds import exact_step
-from rulec.logic.bounds import NotAMultipleError, in_steps
-from rulec.logic.formula import Formula
+from rulec.logic.bounds import in_steps
 from rulec.monitoring.moments.name_tables import tables_of
 from rulec.monitoring.moments.stretches import stretches_of
 from rulec.monitoring.moments.trace_truth import (
@@ -45,29 +43,21 @@ class Moment:
 def moments(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Moment]:
     """The moments at which a formula holds in a checked trace, by objects and time.
 
-    Moments are maximal. Bounds that are no multiple of the trace's step are rounded down and up;
-    what holds under both is certain.
+    Moments are maximal.
     """
-    roundings = _in_steps(trace, query)
     tables = tables_of(trace, query.vocabulary)
     truth, n_states = TraceTruth(tables, query.semantics, trace.ends), tables.n_states
     choices = truth.choices_of(query.rule.variables)
-    truths_of: dict[tuple[str, ...], list[Truth]] = {}
-    for rounded in roundings:
-        ready = ReadyFormula(rounded, place=trace.place if isinstance(trace, Trace) else None)
-        for part in truth.of(ready, choices):
-            own = part.in_trace()
-            for row in np.flatnonzero(own.possible[:, :n_states].any(axis=1)).tolist():
-                choice = tuple([tables.objects[item] for item in part.choices.items[row]])
-                of_row = Truth(own.sure[row, :n_states], own.possible[row, :n_states])
-                truths_of.setdefault(choice, []).append(of_row)
+    formula = in_steps(query.rule.formula, exact_step(trace.step_s))
+    ready = ReadyFormula(formula, place=trace.place if isinstance(trace, Trace) else None)
     result = []
-    for choice, truths in truths_of.items():
-        possible = np.any([truth.possible for truth in truths], axis=0)
-        sure = np.all([truth.sure for truth in truths], axis=0)
-        sure &= len(truths) == len(roundings)
-        objects = dict(zip(choices.variables, choice, strict=True))
-        result += sorted(_of_one(objects, Truth(sure, possible)), key=lambda moment: moment.first)
+    for part in truth.of(ready, choices):
+        own = part.in_trace()
+        for row in np.flatnonzero(own.possible[:, :n_states].any(axis=1)).tolist():
+            choice = [tables.objects[item] for item in part.choices.items[row]]
+            objects = dict(zip(choices.variables, choice, strict=True))
+            of_row = Truth(own.sure[row, :n_states], own.possible[row, :n_states])
+            result += sorted(_of_one(objects, of_row), key=lambda moment: moment.first)
     return result
 
 
@@ -80,13 +70,3 @@ def _of_one(objects: Mapping[str, str], truth: Truth) -> Iterator[Moment]:
         stretches = stretches_of(flags[None])
         for first, last in zip(stretches.first.tolist(), stretches.last.tolist(), strict=True):
             yield Moment(objects, first, last, holds)
-
-
-def _in_steps(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Formula]:
-    step = exact_step(trace.step_s)
-    try:
-        return [in_steps(query.rule.formula, step)]
-    except NotAMultipleError:
-        return [
-            in_steps(query.rule.formula, step, rounding) for rounding in (math.floor, math.ceil)
-        ]

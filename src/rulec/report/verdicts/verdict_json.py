@@ -180,7 +180,7 @@ class OpenData(JsonPart, frozen=True, kw_only=True):
     rule: str
     binding: Mapping[str, str]
     strength: Literal["hard", "soft"]
-    because: Sequence[Literal["not told", "tolerance", "not over", "began before", "step"]]
+    because: Sequence[Literal["not told", "tolerance", "not over", "began before"]]
     depends_on: Sequence[str]
     outcomes: Sequence[ConditionalOutcome]
     exact: bool

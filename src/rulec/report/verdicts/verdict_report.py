@@ -144,8 +144,6 @@ def open_in_words(result: OpenVerdict, most: int = MOST_CASES) -> str:
         parts.append("depends on what was before the first state")
     if "not over" in result.because:
         parts.append("not over when the trace is cut" if not parts else "not over")
-    if "step" in result.because:
-        parts.append("depends on a bound that is not a multiple of the step")
     fewest = fewest_cases(result.outcomes)
     cases = [f"{case.outcome} if {_conditions(case.when)}" for case in fewest[:most]]
     if len(fewest) > most:

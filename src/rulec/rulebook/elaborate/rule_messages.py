@@ -11,7 +11,7 @@ from math import perm
 from rulec.diagnostics import Diagnostic, Label, Offer, Span, named
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.ways_out import Help, meant, offering, write
-from rulec.logic.bounds import NotAMultipleError, longest_divisor
+from rulec.logic.bounds import longest_divisor
 from rulec.logic.printing import time_in_words
 from rulec.resource_limits import CHOICES
 from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS, Limit
@@ -111,15 +111,14 @@ NOT_ABOVE_ZERO = Code(
 NOT_A_MULTIPLE = Code(
     "R0407",
     title="a bound is not a multiple of the step",
-    why="A bound in seconds is converted to a number of states by the time step of a trace. If a "
-    "bound falls between two states, it is unknown what held at that moment. Choose a bound that "
-    "is a multiple of the step, or traces with a finer step. For a rule without examples this is "
-    "only a warning: traces with a fitting step can be judged, and others as well, but their "
-    "verdict is open where it depends on that bound.",
+    why="A bound in seconds is about the states that a trace has: at steps of 1 s, `within 1.5 s` "
+    "is within one state. The examples of this rule, whose states are a step of the rulebook "
+    "apart, therefore judge it by another bound than the one that is written. Choose a bound that "
+    "is a multiple of the step, or a finer step.",
     bad="rulebook example\nsignal wet default false\n"
-    "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) }\n",
+    "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) accept { } }\n",
     good="rulebook example\nstep 0.5 s\nsignal wet default false\n"
-    "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) }\n",
+    "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) accept { } }\n",
     kind="compiled",
 )
 
@@ -288,32 +287,24 @@ def _around_all(required: tree.Formula) -> str:
     return ""
 
 
-def no_multiple(rule: Rule, error: NotAMultipleError) -> Diagnostic:
-    """R0407: a bound of the rule falls between two states."""
-    below = error.offending // error.step_s * error.step_s
-    nearest = [time_in_words(time, "s") for time in (below, below + error.step_s) if time]
-    bound, was = error.span or rule.span, time_in_words(error.offending, "s")
+def no_multiple(rule: Rule, offending: Fraction, span: Span | None) -> Diagnostic:
+    """A warning (R0407): at the rulebook's own step, a bound (s) falls between two states."""
+    below = offending // rule.step_s * rule.step_s
+    nearest = [time_in_words(time, "s") for time in (below, below + rule.step_s) if time]
+    bound, was = span or rule.span, time_in_words(offending, "s")
     # With another number it is another law, except for one that is about the same.
-    close = [time for time in (below, below + error.step_s) if _is_close(time, error.offending)]
-    fitting = time_in_words(longest_divisor((error.offending, error.step_s)), "s")
+    close = [time for time in (below, below + rule.step_s) if _is_close(time, offending)]
+    fitting = time_in_words(longest_divisor((offending, rule.step_s)), "s")
     are = "multiples are" if len(nearest) > 1 else "multiple is"
     return NOT_A_MULTIPLE.at(
         bound,
-        f"`{was}` is not a multiple of the step, {time_in_words(error.step_s, 's')}",
+        f"`{was}` is not a multiple of the step, {time_in_words(rule.step_s, 's')}",
         help=offering(
-            f"the nearest {are} {' and '.join(nearest)}"
-            + (f"; or write `step {fitting}` in the header" if error.step_s == rule.step_s else ""),
+            f"the nearest {are} {' and '.join(nearest)}; or write `step {fitting}` in the header",
             *_other_times(bound, was, [time_in_words(time, "s") for time in close]),
         ),
-        notes=(f"rule `{rule.name}` would have to know what happens between two states",),
-    )
-
-
-def with_steps(problem: Diagnostic, steps: Sequence[Fraction]) -> Diagnostic:
-    """R0407 with the nearest steps (s) of which all bounds of the rulebook are multiples."""
-    fit = " or ".join([time_in_words(step, "s") for step in steps])
-    return replace(
-        problem, notes=(*problem.notes, f"steps of {fit} fit all bounds of the rulebook")
+        notes=(f"the examples of rule `{rule.name}` have no state at that moment",),
+        severity="warning",
     )
 
 
@@ -328,18 +319,6 @@ def _other_times(bound: Span | None, was: str, times: Iterable[str]) -> Iterator
         start = bound.start + len(head)
         place = Span(bound.source, start, start + len(was))
         yield from (write(time, place) for time in times)
-
-
-def only_fitting_traces(rule: Rule, error: NotAMultipleError) -> Diagnostic:
-    """R0407 as a warning: at the rulebook's own step, a bound falls between two states."""
-    return replace(
-        no_multiple(rule, error),
-        severity="warning",
-        notes=(
-            f"of traces of another step, rule `{rule.name}` is open where it hangs on this",
-            "`rulec test`, `show`, `compile` and `analyze` go by the rulebook's own, and refuse it",
-        ),
-    )
 
 
 def exceptions_on_one_line(item: tree.RuleItem) -> Iterator[Diagnostic]:

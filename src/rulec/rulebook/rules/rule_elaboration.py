@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from rulec.diagnostics import Diagnostic, Label
 from rulec.logic import formula as ltl
-from rulec.logic.bounds import NotAMultipleError, in_steps
+from rulec.logic.bounds import between_instants
 from rulec.rulebook.arithmetic.linear_arithmetic import negated
 from rulec.rulebook.arithmetic.size_limits import exceeded_limit
 from rulec.rulebook.elaborate import rule_messages as say
@@ -105,13 +105,9 @@ def translate_rule(
         defined=defined,
         inherited_from=law.name.text if law.name and not confirmed else "",
     )
-    try:
-        in_steps(formula, step)
-    except NotAMultipleError as error:
-        if rule.examples:
-            return None, [*mistakes, say.no_multiple(rule, error)]
-        # Traces with another step can be judged by it.
-        mistakes.append(say.only_fitting_traces(rule, error))
+    between = between_instants(formula, step) if rule.examples else None
+    if between is not None:
+        mistakes.append(say.no_multiple(rule, *between))
     return rule, mistakes
 
 
