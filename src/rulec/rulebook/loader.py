@@ -8,6 +8,7 @@ from datetime import date
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, Span
+from rulec.garbage_collection import no_garbage_collection
 from rulec.rulebook.allowances import judged_allowances
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import vocabulary_for_rulebook
@@ -82,6 +83,7 @@ def load_rulebook(
     return read_rulebook(reference, search_path, at).rulebook
 
 
+@no_garbage_collection()
 def read_rulebook(
     reference: str | Path,
     search_path: Sequence[str | Path] = (),

@@ -39,6 +39,7 @@ from rulec.logic.formula import (
     with_operands,
 )
 from rulec.logic.past_registers import eliminate_past
+from rulec.logic.pastification import pastified
 from rulec.logic.semantics import Semantics
 from rulec.rulebook.rules.axiom_instances import AxiomInstance
 from rulec.validation.table_proof import prove_words
@@ -85,11 +86,14 @@ def _whole(job: Job, compiler: Compiler) -> Done:
 def _by_registers(job: Job, compiler: Compiler) -> Done | None:
     """The answer by translating what remains of a formula once its past is in registers.
 
-    None if the compiler does not do so, the automaton's text is wanted, or there is no such rest.
+    So are bounded duties, as conditions on the past. None if the compiler does not do so, the
+    automaton's text is wanted, or there is no such rest.
     """
     if compiler.rest is None or job.remarks:
         return None
-    skeleton = _skeleton(job, compiler.possible(job))
+    past, possible = pastified(job.formula, job.semantics), compiler.possible(job)
+    skeleton = _skeleton(past, job, possible) if past is not None else None
+    skeleton = skeleton or _skeleton(job.formula, job, possible)
     if skeleton is None:
         return None
     letters = skeleton.letters_with
@@ -103,8 +107,8 @@ def _by_registers(job: Job, compiler: Compiler) -> Done | None:
     return Done(machine, "")
 
 
-def _skeleton(job: Job, possible: int | None) -> Skeleton | None:
-    outline, parts = outlined(job.formula)
+def _skeleton(formula: Formula, job: Job, possible: int | None) -> Skeleton | None:
+    outline, parts = outlined(formula)
     past = eliminate_past(outline)
     if past.memories or len(past.registers) > MOST_REGISTERS:
         return None

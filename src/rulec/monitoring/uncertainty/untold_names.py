@@ -25,6 +25,9 @@ MOST_LOOKED_AT = 1 << 21
 Some word is then assumed to violate the rule.
 """
 
+MOST_COMPARED, MOST_WHOLE = 200, 1 << 4
+"""Of larger machines up to so many states are kept whole: to compare all takes longer."""
+
 MOST_REPETITIONS = 1 << 12
 """A letter is repeated at most so often."""
 
@@ -110,7 +113,7 @@ class RequiredNames:
         machine = self._machine
         letters = self._classes_in_the_dark(untold)
         # If they do from the least states, they do from all states.
-        start = machine.least(sum(1 << state for state in machine.starts))
+        start = self._least(sum(1 << state for state in machine.starts))
         if self._is_lost_by_runs(start, letters):
             return True
         reached = {start}
@@ -175,7 +178,12 @@ class RequiredNames:
             return None
         rows = [machine.successors[state] for state in states]
         targets = {row[symbol] for row in rows for symbol in symbols}
-        return machine.least(sum([1 << target for target in targets]))
+        return self._least(sum([1 << target for target in targets]))
+
+    def _least(self, states: int) -> int:
+        if len(self._machine.successors) > MOST_COMPARED and states.bit_count() <= MOST_WHOLE:
+            return states
+        return self._machine.least(states)
 
     def _classes_in_the_dark(self, untold: frozenset[str]) -> frozenset[int]:
         """The minimal sets of classes, as bits, that letters may have, by the reads that are told.

@@ -1,0 +1,188 @@
+"""Bounded duties as conditions on the past, which registers then decide.
+
+What a rule demands from now on can be said when it has failed: `always (p implies eventually[<= b]
+q)` is lost where q has been false for b states since p, which asks the past alone (Maler, Nickovic,
+Pnueli, "Real time temporal logic: past, present, future", 2005). No state is needed for each step
+that is left: the duty that has waited longest decides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+from rulec.logic import formula as ltl
+from rulec.logic.bounds import BOOLEAN, PAST, Range, operations_of, range_of
+from rulec.logic.fold import fold_constants
+from rulec.logic.semantics import Semantics
+
+_NOT, _AND, _OR = ltl.UnaryOperator.NOT, ltl.BinaryOperator.AND, ltl.BinaryOperator.OR
+_TRUE, _FALSE = ltl.Constant(True), ltl.Constant(False)
+_LAST = ltl.Unary(ltl.UnaryOperator.WEAK_NEXT, _FALSE)
+"""Holds in the last state of a finite word, and nowhere in an infinite one."""
+
+
+class _NoDutyError(Exception):
+    """A part demands something that only the future can tell."""
+
+
+def pastified(formula: ltl.Formula, semantics: Semantics) -> ltl.Formula | None:
+    """An equivalent formula whose bounded duties are conditions on the past; None if it has none.
+
+    Bounds are in steps. Both hold for the same words, but not at the same places in them.
+    """
+    found = _pastified(formula, _TRUE, semantics)
+    return None if found == formula else found
+
+
+def _pastified(formula: ltl.Formula, begun: ltl.Formula, semantics: Semantics) -> ltl.Formula:
+    """The formula at a word's start, or where ``begun`` is true for the first time."""
+    match formula:
+        case ltl.Binary(ltl.BinaryOperator.AND, left, right):
+            first = _pastified(left, begun, semantics)
+            return ltl.Binary(_AND, first, _pastified(right, begun, semantics))
+        case ltl.Binary(
+            ltl.BinaryOperator.WEAK_UNTIL,
+            ltl.Unary(ltl.UnaryOperator.NOT, start) as before,
+            ltl.Binary(ltl.BinaryOperator.AND, again, inner),
+            None,
+        ) if start == again and begun == _TRUE and _is_past(start):
+            since = ltl.Unary(ltl.UnaryOperator.ONCE, start)
+            then = ltl.Binary(_AND, start, _pastified(inner, since, semantics))
+            return ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, before, then)
+        case ltl.Unary(
+            ltl.UnaryOperator.ALWAYS | ltl.UnaryOperator.NEVER as operator, demanded, None
+        ) if not _is_past(demanded):
+            try:
+                is_wanted = operator is ltl.UnaryOperator.ALWAYS
+                demands = list(_demands(begun, demanded, is_wanted, semantics))
+            except _NoDutyError:
+                return formula
+            every = demands[0]
+            for demand in demands[1:]:
+                every = ltl.Binary(_AND, every, demand)
+            return ltl.Unary(ltl.UnaryOperator.ALWAYS, fold_constants(every))
+    return formula
+
+
+def _is_past(formula: ltl.Formula) -> bool:
+    return all(x.operator in PAST or x.operator in BOOLEAN for x in operations_of(formula))
+
+
+def _demands(
+    when: ltl.Formula, formula: ltl.Formula, is_wanted: bool, semantics: Semantics
+) -> Iterator[ltl.Formula]:
+    """What has to hold in all states, of the past, if a formula does wherever ``when`` holds.
+
+    Or does not, unless it ``is_wanted``. Raises _NoDutyError if the past cannot say it.
+    """
+    if _is_past(formula):
+        yield _implies(when, formula if is_wanted else _not(formula))
+        return
+    match formula:
+        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
+            yield from _demands(when, operand, not is_wanted, semantics)
+        case ltl.Binary(ltl.BinaryOperator.IMPLIES, left, right):
+            yield from _demands(when, ltl.Binary(_OR, _not(left), right), is_wanted, semantics)
+        case ltl.Binary(ltl.BinaryOperator.AND | ltl.BinaryOperator.OR as operator, left, right):
+            if (operator is _AND) is is_wanted:
+                yield from _demands(when, left, is_wanted, semantics)
+                yield from _demands(when, right, is_wanted, semantics)
+                return
+            told, left_open = (left, right) if _is_past(left) else (right, left)
+            if not _is_past(told):
+                raise _NoDutyError
+            without = _not(told) if is_wanted else told
+            yield from _demands(_and(when, without), left_open, is_wanted, semantics)
+        case ltl.Unary() | ltl.Binary():
+            yield from _timed(when, formula, is_wanted, semantics)
+        case _:
+            raise AssertionError("propositions are about the present")
+
+
+def _timed(
+    when: ltl.Formula, formula: ltl.Unary | ltl.Binary, is_wanted: bool, semantics: Semantics
+) -> Iterator[ltl.Formula]:
+    """``_demands`` of a temporal operator: an until, or a release of what must hold so long."""
+    span = range_of(formula)
+    left: ltl.Formula
+    right: ltl.Formula
+    match formula:
+        case ltl.Unary(ltl.UnaryOperator.EVENTUALLY, operand):
+            is_until, left, right = True, _TRUE, operand
+        case ltl.Unary(ltl.UnaryOperator.ALWAYS, operand):
+            is_until, left, right = False, _FALSE, operand
+        case ltl.Unary(ltl.UnaryOperator.NEVER, operand):
+            is_until, left, right = False, _FALSE, _not(operand)
+        case ltl.Binary(ltl.BinaryOperator.UNTIL | ltl.BinaryOperator.THEN, first, then):
+            is_until, left, right = True, first, then
+        case ltl.Binary(ltl.BinaryOperator.RELEASE, first, then):
+            is_until, left, right = False, first, then
+        case _:
+            raise _NoDutyError
+    if not _is_past(left):
+        raise _NoDutyError
+    if not is_wanted:
+        # A release of the opposites is wanted in place of an until, and the other way round
+        left, right = _not(left), _not(right)
+    if is_until is is_wanted:
+        yield from _deadline(when, left, right, span, semantics)
+    else:
+        yield from _demands(_still_held(when, left, span), right, True, semantics)
+
+
+def _deadline(
+    when: ltl.Formula, left: ltl.Formula, right: ltl.Formula, span: Range, semantics: Semantics
+) -> Iterator[ltl.Formula]:
+    """What holds if ``left until[span] right`` does wherever ``when`` holds."""
+    if span.low or span.high is None or not _is_past(right):
+        raise _NoDutyError
+    missing = _not(right)
+    asked = _and(when, missing)
+    yield _not(_since(missing, asked, Range(span.high, None)))
+    waits = _since(missing, asked, Range(0, None))
+    if left != _TRUE:
+        yield _not(_and(waits, _not(left)))
+    if semantics == "finite":
+        yield _implies(_LAST, _not(waits))
+
+
+def _still_held(when: ltl.Formula, left: ltl.Formula, span: Range) -> ltl.Formula:
+    """Where ``left release[span] right`` still asks for ``right`` because ``when`` has held."""
+    low, high = span
+    if high is not None and high < low:
+        return _FALSE
+    if when == _TRUE and left == _FALSE and low == 0:
+        return _TRUE
+    if left == _FALSE:
+        return _since(_TRUE, when, span)
+    earlier: ltl.Formula = _FALSE
+    if high is None or high > 0:
+        # From the state before: ``left`` has released nothing up to there
+        before = Range(max(low, 1) - 1, None if high is None else high - 1)
+        kept = _since(_not(left), _and(when, _not(left)), before)
+        earlier = ltl.Unary(ltl.UnaryOperator.PREVIOUSLY, kept)
+    return earlier if low else fold_constants(ltl.Binary(_OR, when, earlier))
+
+
+def _since(left: ltl.Formula, right: ltl.Formula, span: Range) -> ltl.Formula:
+    high = None if span.high is None else Fraction(span.high)
+    bound = None if span == Range(0, None) else ltl.Bound(Fraction(span.low), high, "steps")
+    return ltl.Binary(ltl.BinaryOperator.SINCE, left, right, bound)
+
+
+def _not(formula: ltl.Formula) -> ltl.Formula:
+    match formula:
+        case ltl.Constant(value):
+            return ltl.Constant(not value)
+        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
+            return operand
+    return ltl.Unary(_NOT, formula)
+
+
+def _and(left: ltl.Formula, right: ltl.Formula) -> ltl.Formula:
+    return right if left == _TRUE else ltl.Binary(_AND, left, right)
+
+
+def _implies(left: ltl.Formula, right: ltl.Formula) -> ltl.Formula:
+    return right if left == _TRUE else ltl.Binary(ltl.BinaryOperator.IMPLIES, left, right)
