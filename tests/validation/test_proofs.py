@@ -288,7 +288,7 @@ FAST, NEAR, FEW, ONE, ALL, SOON, BACK = range(7)
         ((NEAR, "machine", "reads", 0, "terms", 1, 0), "-1/2", "does not read everything"),
         ((SOON, "step_s"), "1", "by its t"),
         ((SOON, "step_s"), None, "no time step"),
-        ((SOON, "step_s"), "2/7", "not a multiple"),
+        ((SOON, "step_s"), "2/7", "by its t"),
         ((BACK, "cut", "starts"), [0], "cut traces has other outcomes"),
         ((BACK, "cut", "starts"), [], "no valid start states"),
         ((BACK, "tree", 0), "sometimes", "in words"),

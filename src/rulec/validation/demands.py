@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from math import ceil, floor
 from typing import Any, Literal, TypeAlias
 
 from rulec.validation.formula_words import parted
@@ -240,16 +241,17 @@ def _limits(operator: str, bound: Any, step: Fraction | None) -> tuple[int, int 
     least = int(operator == "then")
     if bound is None:
         return (1, 1) if operator in _BESIDE else (least, None)
-    low = _steps(bound["from"], bound["unit"], step)
-    high = None if bound["to"] is None else _steps(bound["to"], bound["unit"], step)
+    low = ceil(_steps(bound["from"], bound["unit"], step))
+    high = None if bound["to"] is None else floor(_steps(bound["to"], bound["unit"], step))
     return max(low, least), high
 
 
-def _steps(text: str, unit: Literal["s", "steps"], step: Fraction | None) -> int:
+def _steps(text: str, unit: Literal["s", "steps"], step: Fraction | None) -> Fraction:
+    """How many steps a bound has; a part of one is shorter than the way to the next state."""
     amount = exact(text)
     if unit == "s":
         require(step is not None and step > 0, "it has a bound in seconds but no time step")
         amount /= step or 1
-    require(amount.denominator == 1 and amount >= 0, "a bound is not a multiple of its time step")
+    require(amount >= 0 and (unit == "s" or amount.denominator == 1), "a bound is no number")
     require(amount <= LONGEST_BOUND, f"a bound has more than {LONGEST_BOUND} steps")
-    return amount.numerator
+    return amount
