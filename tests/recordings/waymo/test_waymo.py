@@ -262,7 +262,9 @@ def test_a_broken_scenario_does_not_hide_the_others(tmp_path):
     found = read_recordings(RecordingSource(path))
     assert [next(found).name, next(found).name] == ["a", "b"]
     begin = len(w.record(w.crossing(id="a"))) + 12
-    with pytest.raises(RulecError, match=f"at byte {begin:,}, of record 2, its times are uneven"):
+    with pytest.raises(
+        RulecError, match=f"at byte {begin:,}, `record 2 / metadata / ts` is invalid: its"
+    ):
         next(found)
 
 
@@ -274,20 +276,29 @@ GOOD = [w.state(0.0, 0.0)] * 81
     [
         ({"times": []}, "there are no times"),
         ({"times": [0.0] * 81}, "its times do not ascend"),
-        ({"times": [float("nan")] * 81}, "a time is no number"),
-        ({"times": [0.1 * k for k in range(40)]}, "more states"),
-        ({"tracks": []}, "there are no road users in record 1"),
-        ({"tracks": [(70, 1, [None] * 81)]}, "there are no road users in record 1"),
-        ({"tracks": [(70, 1, GOOD), (70, 1, GOOD)]}, "two tracks 70"),
+        ({"times": [float("nan")] * 81}, "metadata / ts` contains a number that is not below"),
+        ({"times": [0.1 * k for k in range(40)]}, "has 81 states for 40 times"),
+        ({"tracks": []}, "`record 1 / tracks` contains no road users"),
+        ({"tracks": [(70, 1, [None] * 81)]}, "`record 1 / tracks` contains no road users"),
+        ({"tracks": [(70, 1, GOOD), (70, 1, GOOD)]}, "there is a second track 70"),
         ({"ego": 2}, "`sdc_track_index` is 2 of 2 tracks"),
         ({"ego": -1}, "`sdc_track_index` is -1 of 2 tracks"),
-        ({"tracks": [(70, 1, [w.state(float("nan"), 0.0)] * 81)]}, "`center_x` is nan"),
-        ({"tracks": [(70, 1, [w.state(1e300, 0.0)] * 81)]}, "`center_x` is 1e+300"),
+        (
+            {"tracks": [(70, 1, [w.state(float("nan"), 0.0)] * 81)]},
+            "70 / state / position` contains a number",
+        ),
+        ({"tracks": [(70, 1, [w.state(1e300, 0.0)] * 81)]}, "a number that is not below 1e+08"),
         ({"tracks": [(70, 1, [w.state(0.0, 0.0, size=(0.0, 1.0))] * 81)]}, "no length or width"),
-        ({"features": [w.lane(1, [(0, 0), (30_000, 0)])]}, "a line is longer than 20 km"),
-        ({"features": [w.lane(1, [(0, 0), (1, 0)])] * 2}, "there is a second lane 1"),
-        ({"features": [w.crosswalk(1, [(0, 0), (1, 0)])]}, "crosswalk 1 has fewer than 3 corners"),
-        ({"lights": [{}] * 82}, "more states of lights than times"),
+        (
+            {"features": [w.lane(1, [(0, 0), (30_000, 0)])]},
+            "`record 1 / map_features / 1` is longer than 20 km",
+        ),
+        ({"features": [w.lane(1, [(0, 0), (1, 0)])] * 2}, "there is a second map feature 1"),
+        (
+            {"features": [w.crosswalk(1, [(0, 0), (1, 0)])]},
+            "`record 1 / map_features / 1` has fewer than 3 corners",
+        ),
+        ({"lights": [{2: (w.STOP, (-10, 0))}] * 82}, "has 82 states for 81 times"),
     ],
 )
 def test_what_is_refused(tmp_path, parts, why):

@@ -81,8 +81,8 @@ def _feature(feature):
             "exit_lanes": lane.get("exit_lanes", []),
             "left_boundaries": _boundaries(lane.get("left_boundaries", [])),
             "right_boundaries": _boundaries(lane.get("right_boundaries", [])),
-            "left_neighbor": _neighbours(lane.get("left_neighbors", [])),
-            "right_neighbor": _neighbours(lane.get("right_neighbors", [])),
+            "left_neighbor": _neighbours(lane.get("left_neighbor", [])),
+            "right_neighbor": _neighbours(lane.get("right_neighbor", [])),
         }
     for kind, type_ in (("road_line", "ROAD_LINE_UNKNOWN"), ("road_edge", "ROAD_EDGE_BOUNDARY")):
         if kind in feature:

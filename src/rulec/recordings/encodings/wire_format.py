@@ -6,10 +6,10 @@ See https://protobuf.dev/programming-guides/encoding/. Only fields in the tables
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal, NamedTuple, TypeAlias, get_args
+from typing import Any, Literal, NamedTuple, TypeAlias, get_args
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.file_format import BinaryFormat
@@ -71,6 +71,10 @@ class Message:
 
 
 Value: TypeAlias = "int | float | bool | str | bytes | Message"
+
+
+Fields: TypeAlias = Mapping[str, Any]
+"""Field -> its value; a list if the field is repeated, and no entry if it is empty."""
 
 
 class WireField(NamedTuple):
@@ -223,6 +227,20 @@ def wire_file(path: Path, form: BinaryFormat) -> WireFile:
     if not data:
         raise form.refused(path, "it is empty")
     return WireFile(data, path, form)
+
+
+def fields_of(items: Iterable[WireField]) -> dict[str, Any]:
+    """The fields of a message."""
+    fields: dict[str, Any] = {}
+    for item in items:
+        value: Any = item.value
+        if isinstance(value, Message):
+            value = fields_of(value.fields)
+        if item.field.many:
+            fields.setdefault(item.field.name, []).append(value)
+        else:
+            fields[item.field.name] = value
+    return fields
 
 
 def _signed(bits: int) -> int:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from rulec.recordings.osi.message_fields import Fields, part
+from rulec.recordings.encodings.wire_format import Fields
+from rulec.recordings.osi.message_fields import part
 from rulec.recordings.recording import Weather
 
 _RAIN = frozenset({"light", "moderate", "heavy", "very_heavy", "extreme"})

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rulec.recordings.encodings.wire_format import WireFile
-from rulec.recordings.osi.message_fields import Fields, id_of, ids_of, part, places
+from rulec.recordings.encodings.wire_format import Fields, WireFile
+from rulec.recordings.osi.message_fields import id_of, ids_of, part, places
 from rulec.recordings.osi.trace_file import OSI
 from rulec.recordings.polylines import without_repeats
 from rulec.recordings.recording import LONGEST_M, LaneMark, Points

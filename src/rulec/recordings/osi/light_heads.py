@@ -13,8 +13,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from rulec.recordings.encodings.wire_format import WireFile
-from rulec.recordings.osi.message_fields import Fields, assigned_lanes, number, part
+from rulec.recordings.encodings.wire_format import Fields, WireFile
+from rulec.recordings.osi.message_fields import assigned_lanes, number, part
 from rulec.recordings.osi.message_times import TimeGrid
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Lanelet, ObservedLight, Points

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rulec.recordings.encodings.wire_format import WireFile
+from rulec.recordings.encodings.wire_format import Fields, WireFile
 from rulec.recordings.osi.lane_messages import Boundary, TraceLane, line_of
-from rulec.recordings.osi.message_fields import Fields, id_of, ids_of, part
+from rulec.recordings.osi.message_fields import id_of, ids_of, part
 from rulec.recordings.osi.signs_and_marks import limit_of
 
 _DRIVING = frozenset(

@@ -2,31 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import Any, TypeAlias
+from collections.abc import Iterable
 
 import numpy as np
 
 from rulec.recordings.encodings.file_values import LARGEST
-from rulec.recordings.encodings.wire_format import Message, Table, WireField, WireFile
+from rulec.recordings.encodings.wire_format import Fields, Table, WireFile, fields_of
 from rulec.recordings.recording import Points
-
-Fields: TypeAlias = Mapping[str, Any]
-"""Field -> its value; a list if the field is repeated, and no entry if it is empty."""
-
-
-def fields_of(items: Iterable[WireField]) -> dict[str, Any]:
-    """The fields of a message."""
-    fields: dict[str, Any] = {}
-    for item in items:
-        value: Any = item.value
-        if isinstance(value, Message):
-            value = fields_of(value.fields)
-        if item.field.many:
-            fields.setdefault(item.field.name, []).append(value)
-        else:
-            fields[item.field.name] = value
-    return fields
 
 
 def decoded(data: bytes, table: Table, file: WireFile) -> Fields:

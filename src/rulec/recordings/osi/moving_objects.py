@@ -12,8 +12,8 @@ import numpy as np
 from numpy import float64, int64
 from numpy.typing import NDArray
 
-from rulec.recordings.encodings.wire_format import WireFile
-from rulec.recordings.osi.message_fields import Fields, number, part, places
+from rulec.recordings.encodings.wire_format import Fields, WireFile
+from rulec.recordings.osi.message_fields import number, part, places
 from rulec.recordings.osi.message_times import TimeGrid
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Lamp, Participant, Points

@@ -10,8 +10,8 @@ import shapely
 
 from rulec.recordings.commonroad.traffic_signs import LIMITS, effect_name
 from rulec.recordings.encodings.speed_units import SPEED_UNITS
-from rulec.recordings.encodings.wire_format import WireFile
-from rulec.recordings.osi.message_fields import Fields, assigned_lanes, number, part, places
+from rulec.recordings.encodings.wire_format import Fields, WireFile
+from rulec.recordings.osi.message_fields import assigned_lanes, number, part, places
 from rulec.recordings.polylines import arc_lengths
 from rulec.recordings.recording import LIMIT_SIGN, Lanelet, Points
 from rulec.recordings.road_map import crosswalk

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rulec.diagnostics import RulecError
-from rulec.recordings.encodings.wire_format import Table, WireFile
+from rulec.recordings.encodings.wire_format import Fields, Table, WireFile
 from rulec.recordings.osi.light_heads import Bulb
-from rulec.recordings.osi.message_fields import Fields, decoded, id_of
+from rulec.recordings.osi.message_fields import decoded, id_of
 from rulec.recordings.osi.moving_objects import MovingObject
 from rulec.recordings.osi.osi_tables import STATIC
 from rulec.recordings.osi.trace_file import OSI, Frame, frames

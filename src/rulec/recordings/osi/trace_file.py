@@ -13,8 +13,8 @@ from rulec.diagnostics import RulecError, named
 from rulec.files.read_files import opened
 from rulec.recordings.encodings.file_format import BinaryFormat
 from rulec.recordings.encodings.mcap_file import MAGIC, McapChannel, read_messages
-from rulec.recordings.encodings.wire_format import Table, WireFile
-from rulec.recordings.osi.message_fields import fields_of, id_of
+from rulec.recordings.encodings.wire_format import Table, WireFile, fields_of
+from rulec.recordings.osi.message_fields import id_of
 from rulec.recordings.osi.osi_tables import LIKE_TRUTH, MESSAGES, TRUTHS, VIEWS
 
 OSI = BinaryFormat(

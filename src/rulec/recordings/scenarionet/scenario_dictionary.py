@@ -35,18 +35,24 @@ class NumbersLeft:
 
 @dataclass(frozen=True, slots=True)
 class KeyedValue:
-    """A value with the keys that lead to it. Its methods raise RulecError R0610."""
+    """A value with the keys that lead to it. Its methods raise RulecError R0610.
+
+    ``place`` is the byte at which its scenario begins, of several in a file.
+    """
 
     value: Any
     way: tuple[str, ...]
     path: Path
     form: BinaryFormat
     left: NumbersLeft = field(default_factory=NumbersLeft)
+    place: int | None = None
 
     def wrong(self, why: str) -> RulecError:
         """The error about a value."""
         where = " / ".join(self.way)
-        return self.form.refused(self.path, f"`{where}` {why}" if where else f"it {why}")
+        return self.form.refused(
+            self.path, f"`{where}` {why}" if where else f"it {why}", self.place
+        )
 
     def get(self, key: str) -> KeyedValue | None:
         """The value of a dictionary's key; None if it is missing or None."""
@@ -174,4 +180,4 @@ class KeyedValue:
             )
 
     def _below(self, key: str, value: Any) -> KeyedValue:
-        return KeyedValue(value, (*self.way, short(key)), self.path, self.form, self.left)
+        return replace(self, value=value, way=(*self.way, short(key)))

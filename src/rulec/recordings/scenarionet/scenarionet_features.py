@@ -9,6 +9,7 @@ from types import MappingProxyType
 import numpy as np
 import shapely
 
+from rulec.recordings.encodings.file_values import LARGEST
 from rulec.recordings.encodings.speed_units import MPS_PER_MPH
 from rulec.recordings.lane_centres.road_features import (
     BoundaryPart,
@@ -121,7 +122,7 @@ def _number(entry: KeyedValue) -> float:
     """A number, or the first of several."""
     if isinstance(entry.value, list | tuple | np.ndarray):
         return next(iter(entry.column().tolist()), 0.0)
-    if not isinstance(entry.value, int | float | np.number) or not abs(entry.value) < np.inf:
+    if not isinstance(entry.value, int | float | np.number) or not abs(entry.value) < LARGEST:
         raise entry.wrong("is no number")
     return float(entry.value)
 

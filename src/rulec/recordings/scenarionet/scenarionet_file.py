@@ -58,11 +58,18 @@ def read_scenarionet(path: Path) -> Recording:
         help_text = "give a scenario's own file, `sd_*.pkl`, not the summary of a data set"
         raise SCENARIONET.refused(path, why, help_text=help_text)
     metadata = scenario.child("metadata")
-    name = _text(metadata, "dataset")
-    known = data_set(name)
-    country = country_at([_text(metadata, "map")]) or known.country
+    known = data_set(_text(metadata, "dataset"))
     if _text(metadata, "coordinate") == "left-handed":
         raise metadata.wrong("says that its coordinates are left-handed, which are not read")
+    form = f"ScenarioNet scenario of {known.title}" if known.title else "ScenarioNet scenario"
+    name = _text(scenario, "id") or path.stem
+    return with_untold_neighbours(scenario_recording(scenario, known, name, form))
+
+
+def scenario_recording(scenario: KeyedValue, known: DataSet, name: str, form: str) -> Recording:
+    """The recording of a scenario in ScenarioNet's form. Raises RulecError R0610."""
+    metadata = scenario.child("metadata")
+    country = country_at([_text(metadata, "map")]) or known.country
     times = metadata.get("ts") or metadata.child("timestep")
     try:
         step_s, steps = even_steps(times.column())
@@ -76,13 +83,12 @@ def read_scenarionet(path: Path) -> Recording:
         raise scenario.child("tracks").wrong("contains no road users")
     if ego and ego not in map(str, scenario.child("tracks").value):
         raise metadata.wrong(f"says that ego is `{ego[:40]}`, who is not in `tracks`")
-    title = f" of {known.title}" if known.title else ""
-    recording = Recording(
-        name=_text(scenario, "id") or path.stem,
+    return Recording(
+        name=name,
         step_s=step_s,
         lanelets=centre_lanelets(features, has_lights=known.has_lights or bool(features.lights)),
         participants=bodies,
-        form=f"ScenarioNet scenario{title}",
+        form=form,
         side=side_in(country),
         remarks=(*remarks.lines, *gaps_remark(remarks.bridged)),
         country=country,
@@ -90,7 +96,6 @@ def read_scenarionet(path: Path) -> Recording:
         lacks=frozenset() if known.has_crosswalks else frozenset({CROSSWALK}),
         ego=ego if any(body.id == ego for body in bodies) else "",
     )
-    return with_untold_neighbours(recording)
 
 
 class _Remarks:
