@@ -6,13 +6,15 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from rulec.diagnostics import first_of
+from rulec.recordings.adjacency import side_by_lanes
+from rulec.recordings.commonroad.countries import side_in
 from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED
 from rulec.recordings.lanelet2.first_ways import first_ways
 from rulec.recordings.lanelet2.map_frame import places_of
 from rulec.recordings.lanelet2.map_lanelets import MapLanelet, map_lanelets
 from rulec.recordings.lanelet2.osm_file import LANELET2, read_osm
 from rulec.recordings.lanelet2.regulations import LaneRules, Surveyed, regulations, remarks_on
-from rulec.recordings.lanelet2.topology import country_in, nearly_connected, side_of, topology
+from rulec.recordings.lanelet2.topology import country_in, nearly_connected, topology
 from rulec.recordings.recording import Lanelet, ObservedLight
 from rulec.recordings.road_map import RoadMap
 
@@ -41,17 +43,18 @@ def read_lanelet2(path: Path) -> RoadMap:
     rules = regulations(survey)
     first = first_ways(survey, rules)
     country = country_in(entries.values())
-    side = side_of(entries, country)
+    lanelets = {
+        name: _lanelet(entry, survey, rules[name], first.get(name))
+        for name, entry in entries.items()
+    }
+    side = side_in(country) or side_by_lanes(lanelets.values())
     remarks = [places.remark, *_left_out(left_out), *remarks_on(rules.values())]
     remarks += _loose_ends(nearly_connected(entries, survey.topology))
     if side is None:
         remarks.append("the map does not give the side of traffic")
     return RoadMap(
         form="Lanelet2 map",
-        lanelets={
-            name: _lanelet(entry, survey, rules[name], first.get(name))
-            for name, entry in entries.items()
-        },
+        lanelets=lanelets,
         side=side,
         country=country,
         remarks=tuple(filter(None, remarks)),

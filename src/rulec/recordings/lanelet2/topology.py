@@ -12,18 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from rulec.recordings.commonroad.countries import country_of, side_in
+from rulec.recordings.commonroad.countries import country_of
 from rulec.recordings.lanelet2.map_lanelets import MapLanelet
 from rulec.recordings.lanelet2.osm_file import OsmFile
-from rulec.recordings.recording import Side
 
 MOST_AT_ONE_PLACE = 100
 """The most lanelets that begin, or end, at the same two nodes."""
 
 NEARLY_M = 0.25
 """Nodes so near each other were probably meant to be one."""
-
-_NOT_FOR_CARS = frozenset({"bicycleLane"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,22 +93,3 @@ def country_in(entries: Iterable[MapLanelet]) -> str:
     regions = {entry.region for entry in entries if entry.region}
     countries = {country_of(x[:2]) if x[2:3] in {"", "-"} else "" for x in regions}
     return countries.pop() if len(countries) == 1 else ""
-
-
-def side_of(entries: Mapping[str, MapLanelet], country: str) -> Side | None:
-    """The side of traffic: that of the country, or else as shown by lanes that share a bound.
-
-    Two lanes in opposite directions share their left bounds in right-hand traffic, and their right
-    bounds in left-hand traffic. None if there are no such lanes, or both kinds.
-    """
-    of_country = side_in(country)
-    if of_country is not None:
-        return of_country
-    lanes = [x for x in entries.values() if x.is_lane and not x.both_ways]
-    lanes = [x for x in lanes if not x.types & _NOT_FOR_CARS]
-    lefts, rights = {x.left_bound for x in lanes}, {x.right_bound for x in lanes}
-    keeps_right = any((way, not turned) in lefts for way, turned in lefts)
-    keeps_left = any((way, not turned) in rights for way, turned in rights)
-    if keeps_right == keeps_left:
-        return None
-    return "right" if keeps_right else "left"

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import shapely
 
 from rulec.diagnostics import first_of
+from rulec.recordings.adjacency import side_by_lanes
 from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED
 from rulec.recordings.encodings.file_values import short
 from rulec.recordings.opendrive.content.elements import Lane, OpenDrive, record_at
@@ -45,7 +45,6 @@ from rulec.recordings.recording import (
     ObservedLight,
     Points,
     Side,
-    is_lane,
 )
 from rulec.recordings.road_map import RoadMap
 
@@ -54,9 +53,6 @@ MOST_PLACES = 2_000_000
 
 NARROWEST_M = 0.05
 """Lanes that are nowhere wider than this are left out."""
-
-_SAME_M = 0.3
-"""Ends of borders at most this far apart count as the same."""
 
 _MEETS_M, _JUMP_M = 1.0, 8.0
 """A bound meets one that begins up to the first from its end; farther than the second it is a jump.
@@ -278,10 +274,8 @@ def _side(content: OpenDrive, lanelets: Mapping[str, Lanelet]) -> Side | None:
     if len(rules) > 1:
         return None
     if not any(road.has_rule for road in content.roads.values()):
-        shown = _sides_shown(lanelets)
-        if shown == {"left"}:
-            return "left"
-        return "right" if shown or content.may_have_rules or _leads_both_ways(content) else None
+        shown = side_by_lanes(x for x in lanelets.values() if not x.junction)
+        return shown or ("right" if content.may_have_rules or _leads_both_ways(content) else None)
     return "left" if rules.pop() else "right"
 
 
@@ -290,26 +284,6 @@ def _leads_both_ways(content: OpenDrive) -> bool:
     sections = (section for road in content.roads.values() for section in road.sections)
     driven = ([x.id for x in section.lanes.values() if x.type == "driving"] for section in sections)
     return any(min(ids, default=0) < 0 < max(ids, default=0) for ids in driven)
-
-
-def _sides_shown(lanelets: Mapping[str, Lanelet]) -> set[Side]:
-    """The sides on which oncoming lanes that share a border keep, within and across roads."""
-    lanes = [x for x in lanelets.values() if is_lane(x) and not x.junction]
-    borders: dict[Side, list[Points]] = {
-        "right": [x.left for x in lanes],
-        "left": [x.right for x in lanes],
-    }
-    shown: set[Side] = set()
-    for side, lines in borders.items() if lanes else ():
-        starts, ends = (shapely.points([line[at] for line in lines]) for at in (0, -1))
-        near = {"predicate": "dwithin", "distance": _SAME_M}
-        pairs = shapely.STRtree(ends).query(starts, **near).T
-        if any(
-            first != second and shapely.dwithin(ends[first], starts[second], _SAME_M)
-            for first, second in pairs.tolist()
-        ):
-            shown.add(side)
-    return shown
 
 
 def _country(content: OpenDrive) -> str:

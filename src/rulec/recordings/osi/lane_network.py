@@ -11,7 +11,7 @@ import shapely
 
 from rulec.recordings.osi.lane_messages import Boundary, TraceLane
 from rulec.recordings.osi.lane_shapes import LaneShape, lane_shape, way_across
-from rulec.recordings.recording import Lanelet, LaneMark, Points, Side
+from rulec.recordings.recording import Lanelet, LaneMark, Points
 
 MEET_M = 1.0
 """The largest gap (m) between the end line of a lane and the start line of the next one.
@@ -27,8 +27,6 @@ _TOGETHER = 0.8
 
 _DOUBLE_M = 0.6
 """Solid lines of two adjacent lanes that are this close (m) are one double line."""
-
-_LIKE = 0.7
 
 _TYPES: Mapping[str, tuple[str, ...]] = {
     "biking": ("bicycleLane",),
@@ -61,7 +59,6 @@ class LaneNetwork:
 
     lanelets: dict[str, Lanelet] = field(default_factory=dict)
     of_lane: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    side: Side | None = None
     shapeless: list[str] = field(default_factory=list)
     undirected: list[str] = field(default_factory=list)
     assumed: list[str] = field(default_factory=list)
@@ -131,7 +128,6 @@ def lane_network(lanes: Sequence[TraceLane], boundaries: Mapping[str, Boundary])
             junction=junctions.get(name, ""),
         )
     network.lanelets = _mutual(network.lanelets)
-    network.side = _side(known, shapes)
     return network
 
 
@@ -290,19 +286,3 @@ def _mark(
 def _runs_along(line: shapely.LineString, other: shapely.LineString) -> bool:
     middle = shapely.line_interpolate_point(line, 0.5, normalized=True)
     return bool(shapely.distance(middle, other) <= _DOUBLE_M)
-
-
-def _side(known: Mapping[str, TraceLane], shapes: Mapping[str, LaneShape]) -> Side | None:
-    """The side of traffic, from the side on which oncoming lanes lie; None if unknown."""
-    sides: set[Side] = set()
-    for name, lane in known.items():
-        if lane.kind != "driving":
-            continue
-        for others, side in ((lane.left_of, "right"), (lane.right_of, "left")):
-            for other in others:
-                if other in known and known[other].kind == "driving":
-                    own, its = (_direction(shapes[x].centre) for x in (name, other))
-                    cosine = float(own @ its) / max(np.hypot(*own) * np.hypot(*its), 1e-9)
-                    if cosine < -_LIKE:
-                        sides.add("right" if side == "right" else "left")
-    return sides.pop() if len(sides) == 1 else None

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from glob import escape
 from pathlib import Path
 
 from rulec.diagnostics import SourceLocation, first_of
+from rulec.recordings.adjacency import side_by_lanes
 from rulec.recordings.commonroad.countries import country_of, side_in
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.map_files import MAP_FORMATS, read_map
@@ -51,13 +52,18 @@ def read_osi(path: Path, map_path: Path | None = None) -> Recording:
         map_path = _map_beside(path)
     road = None if map_path is None else read_map(map_path, grid.step_s)
     country = country_of(f"{content.country:03}")
+    if road is None:
+        lanelets: Mapping[str, Lanelet] = _lanelets(content, network, grid, file)
+        side: Side | None = side_by_lanes(network.lanelets.values()) or _USUAL_SIDE
+    else:
+        lanelets, side = road.lanelets, road.side
     return Recording(
         name=path.name.split(".")[0] or path.name,
         step_s=grid.step_s,
-        lanelets=_lanelets(content, network, grid, file) if road is None else road.lanelets,
+        lanelets=lanelets,
         participants=tuple(_participants(content, grid, file)),
         form="ASAM OSI trace",
-        side=side_in(country) or (network.side or _USUAL_SIDE if road is None else road.side),
+        side=side_in(country) or side,
         remarks=(
             *_remarks(content, grid),
             *(_network_remarks(network) if road is None else road.remarks),
