@@ -182,6 +182,8 @@ def log_of(moments):
     [
         ((100, 100.2, 99.8), 0.1, [0, 1, 2, 3]),
         ((100, 200, 100, 100), 0.1, [0, 1, 3, 4, 5]),
+        # One is late, and so are all behind it: of one grid, each is off by 0.02 s
+        ((*[100] * 9, 140, *[100] * 9), 0.1, [*range(20)]),
         ((200, 199, 201), 0.2, [0, 1, 2, 3]),
         ((500, 500), 0.5, [0, 1, 2]),
     ],
@@ -194,7 +196,7 @@ def test_sweeps_lie_on_a_grid(tmp_path, apart_ms, step_s, steps):
 
 
 def test_uneven_sweeps_are_refused(tmp_path):
-    moments = [10**9 + round(1e6 * m) for m in (0, 100, 200, 340, 440)]
+    moments = [10**9 + round(1e6 * m) for m in (0, 70, 200, 330, 400, 470, 600)]
     with pytest.raises(RulecError) as caught:
         read_recording(write_log(tmp_path, *log_of(moments)))
     assert "its times are uneven" in caught.value.diagnostics[0].message

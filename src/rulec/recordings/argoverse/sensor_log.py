@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -25,11 +26,18 @@ from rulec.recordings.argoverse.object_types import (
     EGO_SIZE_M,
     NOT_ON_THE_ROAD,
 )
-from rulec.recordings.argoverse.sweep_boxes import TrackBoxes, check_sizes, participant, with_riders
-from rulec.recordings.argoverse.sweep_grid import NANOSECONDS, on_grid
+from rulec.recordings.argoverse.sweep_boxes import (
+    NANOSECONDS,
+    UNITS_PER_SECOND,
+    TrackBoxes,
+    check_sizes,
+    participant,
+    with_riders,
+)
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.file_values import short
+from rulec.recordings.lane_centres.even_steps import even_steps
 from rulec.recordings.recording import Recording
 from rulec.trace.plain_arrays import most_frequent
 
@@ -79,12 +87,12 @@ def read_sensor_log(path: Path, map_path: Path | None = None) -> Recording:
     if not boxes.rows:
         raise SENSOR.refused(path, "it contains no road users")
     moments, sweep_of = np.unique(boxes.whole["timestamp_ns"], return_inverse=True)
-    steps, step_s = on_grid(path, SENSOR, moments)
+    seconds = (moments - moments[0]) / NANOSECONDS
+    step_s, steps = even_steps(seconds, partial(SENSOR.refused, path), UNITS_PER_SECOND)
     at = path.parent / POSES
     if not at.is_file():
         raise SENSOR.refused(path, f"there is no `{POSES}` beside it")
     poses = _poses_at(read_table(at, SENSOR, _POSES), moments)
-    seconds = (moments - moments[0]) / NANOSECONDS
     sweeps = _Sweeps(seconds, steps, poses)
     tracks = list(_tracks(boxes, sweeps, sweep_of.reshape(-1)))
     map_path = map_path or map_beside(path, SENSOR)

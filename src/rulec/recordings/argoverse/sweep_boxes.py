@@ -16,6 +16,12 @@ from rulec.recordings.mending.derived_motion import accelerations_of, along, vel
 from rulec.recordings.recording import Participant
 from rulec.recordings.track import Track, tracked
 
+NANOSECONDS = 1_000_000_000
+"""Nanoseconds per second."""
+
+UNITS_PER_SECOND = 100
+"""Time steps are rounded to 0.01 s: sweeps are 0.1 s apart to within a millisecond."""
+
 _LARGEST_M = 200.0
 _RIDDEN_M = 1.0
 """A rider belongs to a vehicle if the middles of their boxes are at most this far apart (m)."""

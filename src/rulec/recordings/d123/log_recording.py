@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +19,14 @@ from numpy.typing import NDArray
 
 from rulec.recordings.adjacency import with_untold_neighbours
 from rulec.recordings.argoverse.city_frame import CityPoses, poses_in, rotations
-from rulec.recordings.argoverse.sweep_boxes import TrackBoxes, check_sizes, participant, with_riders
-from rulec.recordings.argoverse.sweep_grid import NANOSECONDS, on_grid
+from rulec.recordings.argoverse.sweep_boxes import (
+    NANOSECONDS,
+    UNITS_PER_SECOND,
+    TrackBoxes,
+    check_sizes,
+    participant,
+    with_riders,
+)
 from rulec.recordings.commonroad.countries import side_in
 from rulec.recordings.d123 import log_files as files
 from rulec.recordings.d123.log_files import LOG
@@ -28,6 +35,7 @@ from rulec.recordings.d123.object_labels import LABELS, LEFT_OUT, type_of
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.arrow.nested_columns import Nested
 from rulec.recordings.encodings.file_values import LARGEST, short
+from rulec.recordings.lane_centres.even_steps import even_steps
 from rulec.recordings.recording import Participant, Recording
 from rulec.trace.plain_arrays import most_frequent
 
@@ -48,16 +56,12 @@ _SOURCES = (("av2", "Argoverse 2"), ("wod", "Waymo"))
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Sweeps:
-    """The times of boxes (ns): time steps, and seconds since the first."""
+    """The times of boxes: in ns, in seconds since the first, and as time steps."""
 
     moments: NDArray[int64]
+    seconds: NDArray[float64]
     steps: NDArray[int64]
     step_s: float
-
-    @property
-    def seconds(self) -> NDArray[float64]:
-        since: NDArray[float64] = (self.moments - self.moments[0]) / NANOSECONDS
-        return since
 
 
 def read_d123(path: Path, map_path: Path | None = None) -> Recording:
@@ -79,7 +83,9 @@ def read_d123(path: Path, map_path: Path | None = None) -> Recording:
     moments = boxes.whole[f"{key}.timestamp_us"] * _MICROSECOND_NS
     if (np.diff(moments) <= 0).any() or not len(moments):
         raise LOG.refused(boxes.path, "its moments are not in ascending order")
-    sweeps = _Sweeps(moments, *on_grid(boxes.path, LOG, moments))
+    seconds = (moments - moments[0]) / NANOSECONDS
+    step_s, steps = even_steps(seconds, partial(LOG.refused, boxes.path), UNITS_PER_SECOND)
+    sweeps = _Sweeps(moments, seconds, steps, step_s)
     own = _ego(path.with_name(files.EGO), sweeps)
     others = with_riders(list(_tracks(boxes, files.said_in(boxes))))
     if any(x.id == own.id for x in others):

@@ -71,10 +71,7 @@ def scenario_recording(scenario: KeyedValue, known: DataSet, name: str, form: st
     metadata = scenario.child("metadata")
     country = country_at([_text(metadata, "map")]) or known.country
     times = metadata.get("ts") or metadata.child("timestep")
-    try:
-        step_s, steps = even_steps(times.column())
-    except ValueError as reason:
-        raise times.wrong(f"is invalid: {reason}") from None
+    step_s, steps = even_steps(times.column(), lambda why: times.wrong(f"is invalid: {why}"))
     ego = _text(metadata, "sdc_id")
     features = road_features(scenario, known, steps.tolist())
     remarks = _Remarks()
