@@ -7,8 +7,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy import float64
-from numpy.typing import NDArray
 
 from rulec.recordings.lane_centres.junction_lanes import junction_stretches
 from rulec.recordings.lane_centres.lane_pieces import (
@@ -25,7 +23,7 @@ from rulec.recordings.lane_centres.road_features import (
     NeighbourPart,
     RoadFeatures,
 )
-from rulec.recordings.polylines import parallel_line
+from rulec.recordings.polylines import far_apart, parallel_line
 from rulec.recordings.recording import Lanelet, ObservedLight, Points
 from rulec.recordings.road_map import crosswalk_with_outline
 
@@ -87,7 +85,10 @@ def _junction_type(piece: LanePiece, stretch: tuple[int, int] | None) -> frozens
 
 def _sound_lanes(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
     """The lanes with some length, without repeated points; links lead past the lanes left out."""
-    kept = {name: _kept(lane.centre) for name, lane in lanes.items()}
+    kept = {
+        name: far_apart(lane.centre[:, :2], _CLOSEST_M).tolist() if len(lane.centre) else []
+        for name, lane in lanes.items()
+    }
     there = {name for name, points in kept.items() if len(points) > 1}
 
     def reached(name: str, onward: bool, passed: frozenset[str]) -> Iterator[str]:
@@ -114,14 +115,6 @@ def _sound_lanes(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
                 right=_renumbered(lane.right, points, kept),
             )
     return sound
-
-
-def _kept(centre: NDArray[float64]) -> list[int]:
-    points = [0]
-    for index in range(1, len(centre)):
-        if np.hypot(*(centre[index, :2] - centre[points[-1], :2])) > _CLOSEST_M:
-            points.append(index)
-    return points
 
 
 def _renumbered(side: LaneSide, points: list[int], kept: Mapping[str, list[int]]) -> LaneSide:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.recordings.polylines import interpolated, line_length, shares_along
+from rulec.recordings.polylines import paired
 from rulec.recordings.recording import Points
 
 _CLOSEST_M = 1e-6
@@ -73,13 +73,7 @@ def middle_line(left: Points, right: Points) -> Points:
 
     It has a point at each fraction of the length at which either bound has one.
     """
-    parts = [shares_along(line) for line in (left, right)]
-    every = np.unique(np.concatenate(parts))
-    shortest = min(line_length(left), line_length(right))
-    apart = np.diff(every) * shortest > _CLOSEST_M
-    kept = every[np.concatenate(([True], apart[:-1], [True]))]
-    kept[-1] = 1.0
-    both = [interpolated(kept, *own) for own in zip(parts, (left, right), strict=True)]
+    both = paired(left, right)
     line = distinct((both[0] + both[1]) / 2)
     # Bounds in opposite directions with the same ends have no centre line
     return left if line is None else line
