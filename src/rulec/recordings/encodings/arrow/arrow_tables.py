@@ -5,7 +5,7 @@ Feather's second version is Arrow's file format for interprocess communication.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,7 @@ from rulec.recordings.encodings.arrow.nested_columns import (
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.file_values import LARGEST, short
 from rulec.recordings.encodings.table_columns import Texts
+from rulec.trace.formats import arrow as arrays
 from rulec.trace.formats.arrow.parquet import without_arrow
 
 MOST_ROWS = 5_000_000
@@ -235,25 +236,13 @@ def _texts(name: str, column: Any, arrow: Any) -> Texts:
     if not (arrow.types.is_string(kind) or arrow.types.is_large_string(kind)):
         raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
     _gap(name, column)
-    if not arrow.types.is_dictionary(column.type):
-        column = column.dictionary_encode()
-    chunks = list(_chunks(column))
-    values = [value for _, own in chunks for value in own]
-    longest = max((len(value or "") for value in values), default=0)
-    if longest > LONGEST_TEXT:
-        raise OddColumnError(f"a text in `{name}` is longer than {LONGEST_TEXT} characters")
-    numbers: dict[str | None, int] = {}
-    codes = [
-        np.array([numbers.setdefault(value, len(numbers)) for value in own], dtype=int)[indices]
-        for indices, own in chunks
-        if len(indices)
-    ]
-    if None in numbers:
+    codes, known = arrays.codes_in(arrays.whole_array(column))
+    if (codes < 0).any():
         raise OddColumnError(f"`{name}` has no value")
-    return Texts(
-        np.concatenate(codes) if codes else np.zeros(0, dtype=int),
-        tuple(value for value in numbers if value is not None),
-    )
+    values = tuple([value or "" for value in known])
+    if max(map(len, values), default=0) > LONGEST_TEXT:
+        raise OddColumnError(f"a text in `{name}` is longer than {LONGEST_TEXT} characters")
+    return Texts(codes.astype(int64), values)
 
 
 def _bytes(name: str, column: Any, arrow: Any) -> list[bytes]:
@@ -262,11 +251,6 @@ def _bytes(name: str, column: Any, arrow: Any) -> list[bytes]:
     _gap(name, column)
     values: list[bytes] = column.to_pylist()
     return values
-
-
-def _chunks(column: Any) -> Iterator[tuple[NDArray[int64], list[str | None]]]:
-    for chunk in getattr(column, "chunks", [column]):
-        yield chunk.indices.to_numpy(zero_copy_only=False), chunk.dictionary.to_pylist()
 
 
 _READERS: Mapping[NestedKind, Callable[[str, Any, Any], Any]] = {

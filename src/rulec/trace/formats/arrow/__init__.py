@@ -6,6 +6,8 @@ from rulec.lazy_loading import lazy_names
 
 if TYPE_CHECKING:
     from rulec.trace.formats.arrow.arrow_arrays import cells_in as cells_in
+    from rulec.trace.formats.arrow.arrow_arrays import codes_in as codes_in
+    from rulec.trace.formats.arrow.arrow_arrays import whole_array as whole_array
     from rulec.trace.formats.arrow.arrow_arrays import with_plain_texts as with_plain_texts
     from rulec.trace.formats.arrow.arrow_blocks import cut as cut
     from rulec.trace.formats.arrow.arrow_csv import pieces as pieces
