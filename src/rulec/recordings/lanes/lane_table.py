@@ -32,7 +32,7 @@ from rulec.recordings.lanes.lanes_along import (
     unknown_references,
     with_ends_that_meet,
 )
-from rulec.recordings.polylines import arc_lengths, line_length, without_repeats
+from rulec.recordings.polylines import arc_lengths, far_apart, line_length
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, Points, Side
 from rulec.recordings.road_map import RoadMap
 
@@ -177,7 +177,8 @@ class _LaneTable:
     def _line(self, name: str, own: NDArray[np.intp]) -> tuple[Points, NDArray[float64]]:
         numbers = self.named.numbers
         points = np.column_stack((numbers["x"][own], numbers["y"][own]))
-        kept = without_repeats(points, CLOSEST_M)
+        rows = far_apart(points, CLOSEST_M)
+        kept = points[rows]
         if len(kept) < 2:
             why = f"lane `{short(name)}` has one place only"
             raise self.columns.wrong(int(own[0]), why, "expected two points or more in order")
@@ -194,8 +195,7 @@ class _LaneTable:
         # By the distance: points lie closer together where a lane bends
         at = arc_lengths(points)
         filled = np.interp(at, at[known], stated[known])
-        first = np.array([int(np.argmax((points == point).all(axis=1))) for point in kept])
-        return kept, filled[first]
+        return kept, filled[rows]
 
     def _text(self, name: str, own: NDArray[np.intp]) -> str:
         """The value of a lane in a text column: one row suffices, others repeat it or are empty."""

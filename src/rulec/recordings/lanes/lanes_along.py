@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -143,14 +143,9 @@ def with_ends_that_meet(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
     Lines meet if one's end is within ``MEETING_M`` of the other's start.
     """
     names = list(lanelets)
-    lines = [lanelets[name].centre for name in names]
-    begins, ends = (shapely.points([line[at] for line in lines]) for at in (0, -1))
-    pairs = shapely.STRtree(begins).query(ends, predicate="dwithin", distance=MEETING_M)
     after: dict[str, list[str]] = defaultdict(list)
-    for own, other in pairs.T.tolist():
-        ahead, onward = (_direction(lines[own], -1), _direction(lines[other], 0))
-        if own != other and float(ahead @ onward) >= _LIKE:
-            after[names[own]].append(names[other])
+    for own, other in lines_that_meet([lanelets[name].centre for name in names], MEETING_M, _LIKE):
+        after[names[own]].append(names[other])
     return linked(
         {
             name: replace(lanelet, successors=tuple(after[name]))
@@ -159,7 +154,22 @@ def with_ends_that_meet(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
     )
 
 
-def _direction(line: Points, at: int) -> NDArray[float64]:
-    step: NDArray[float64] = line[-1] - line[-2] if at else line[1] - line[0]
+def lines_that_meet(
+    lines: Sequence[Points], within_m: float, cosine: float
+) -> Iterator[tuple[int, int]]:
+    """The pairs of lines of which the second begins where the first ends, and leads its way.
+
+    It does so if the cosine of the angle between their ends is no less than this.
+    """
+    begins, ends = (shapely.points([line[at] for line in lines]) for at in (0, -1))
+    pairs = shapely.STRtree(begins).query(ends, predicate="dwithin", distance=within_m)
+    for own, other in pairs.T.tolist():
+        ahead, onward = _direction(lines[own][-2:]), _direction(lines[other][:2])
+        if own != other and float(ahead @ onward) >= cosine:
+            yield own, other
+
+
+def _direction(ends: Points) -> NDArray[float64]:
+    step: NDArray[float64] = ends[1] - ends[0]
     direction: NDArray[float64] = step / np.hypot(*step)
     return direction

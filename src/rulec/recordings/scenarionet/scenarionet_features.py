@@ -18,7 +18,7 @@ from rulec.recordings.lane_centres.road_features import (
     NeighbourPart,
     RoadFeatures,
 )
-from rulec.recordings.polylines import wrapped
+from rulec.recordings.lanes.lanes_along import lines_that_meet
 from rulec.recordings.recording import LONGEST_M, LaneMark
 from rulec.recordings.scenarionet.data_sets import DataSet
 from rulec.recordings.scenarionet.scenario_dictionary import KeyedValue
@@ -33,7 +33,7 @@ It is another lane of the next road, which one reaches by a lane change; MetaDri
 all lanes of the next road.
 """
 
-_TURNED_RAD = np.radians(60.0)
+_LIKE = np.cos(np.radians(60.0))
 _FEWEST_CORNERS = 3
 _MOST_INDEX = 1 << 31
 
@@ -172,17 +172,12 @@ def joined(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
     there = [lane for lane in lanes.values() if len(lane.centre) > 1]
     if not there:
         return dict(lanes)
-    starts = shapely.points([lane.centre[0, :2] for lane in there])
-    ends = shapely.points([lane.centre[-1, :2] for lane in there])
-    pairs = shapely.STRtree(starts).query(ends, predicate="dwithin", distance=JOINED_M)
     after: dict[str, list[str]] = {}
     before: dict[str, list[str]] = {}
-    for end, start in sorted(pairs.T.tolist()):
-        own, following = there[end], there[start]
-        turned = _heading(following, 0) - _heading(own, -2)
-        if own is not following and abs(wrapped(turned)) < _TURNED_RAD:
-            after.setdefault(own.id, []).append(following.id)
-            before.setdefault(following.id, []).append(own.id)
+    lines = [lane.centre[:, :2] for lane in there]
+    for own, onward in sorted(lines_that_meet(lines, JOINED_M, _LIKE)):
+        after.setdefault(there[own].id, []).append(there[onward].id)
+        before.setdefault(there[onward].id, []).append(there[own].id)
     return {
         name: replace(
             lane, leads_to=tuple(after.get(name, ())), follows=tuple(before.get(name, ()))
