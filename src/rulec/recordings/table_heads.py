@@ -64,23 +64,25 @@ def is_lane_head(names: Sequence[str]) -> bool:
     return bool(_LANE & given and x and y) and not (_TIME | {"trace", "rule"}) & given
 
 
-def is_highd_head(names: Sequence[str]) -> bool:
-    """Whether column names are those of a file of highD's."""
-    tracks = {"frame", "id", "x", "y", "xvelocity", "laneid", "precedingid"}
-    meta = {"id", "initialframe", "drivingdirection"}
-    return any(ours <= {*names} for ours in (tracks, meta, {"upperlanemarkings", "framerate"}))
+HIGHD = (
+    {"frame", "id", "x", "y", "xvelocity", "laneid", "precedingid"},
+    {"id", "initialframe", "drivingdirection"},
+    {"upperlanemarkings", "framerate"},
+)
+LEVELX = (
+    {"trackid", "frame", "xcenter", "ycenter"},
+    {"trackid", "initialframe", "class"},
+    {"orthopxtometer", "framerate"},
+)
+INTERACTION = ({"track_id", "frame_id", "timestamp_ms", "agent_type", "x", "y", "vx", "vy"},)
+OMEGA_PRIME = ({"total_nanos", "idx", "x", "y", "yaw"},)
+"""Columns of the files of a data set, by which each is recognised; inD, rounD, exiD and uniD have
+those of ``LEVELX``."""
 
 
-def is_levelx_head(names: Sequence[str]) -> bool:
-    """True if the names of columns are those of a file of inD, rounD, exiD or uniD."""
-    tracks = {"trackid", "frame", "xcenter", "ycenter"}
-    meta = {"trackid", "initialframe", "class"}
-    return any(ours <= {*names} for ours in (tracks, meta, {"orthopxtometer", "framerate"}))
-
-
-def is_interaction_head(names: Sequence[str]) -> bool:
-    """True if the names of columns are those of INTERACTION."""
-    return {"track_id", "frame_id", "timestamp_ms", "agent_type", "x", "y", "vx", "vy"} <= {*names}
+def has_columns(names: Sequence[str], files: Sequence[set[str]]) -> bool:
+    """Whether column names are those of one of a data set's files."""
+    return any(columns <= {*names} for columns in files)
 
 
 def is_ngsim_head(names: Sequence[str]) -> bool:
@@ -88,8 +90,3 @@ def is_ngsim_head(names: Sequence[str]) -> bool:
     if {"vehicle_id", "global_time", "local_x", "local_y"} <= {*names}:
         return True
     return len(names) in _HEADLESS_NGSIM and all(map(is_number, names))
-
-
-def is_omega_prime_head(names: Sequence[str]) -> bool:
-    """True if the names of columns are OMEGA-PRIME's."""
-    return {"total_nanos", "idx", "x", "y", "yaw"} <= {*names}

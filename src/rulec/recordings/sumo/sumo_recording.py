@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from itertools import pairwise
 from math import gcd
@@ -42,6 +42,7 @@ from rulec.recordings.sumo.net import SumoNet, read_net
 from rulec.recordings.sumo.vehicle_types import VehicleType, read_vehicle_types, vehicle_type
 from rulec.recordings.table_heads import head_of, is_fcd_head
 from rulec.recordings.track import Track, tracked
+from rulec.recordings.tracks.even_times import unit_of
 
 ON_NETS = frozenset({"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout"})
 ON_NETS |= {"lanes", "junctions"}
@@ -141,7 +142,6 @@ def read_sumo_map(path: Path, step_s: float) -> RoadMap:
 
 
 _MOST_DECIMALS = 6
-_HAIR = 1e-3
 _MANY = 100
 """With fewer numbers, it may be chance that none has a second decimal, which SUMO writes."""
 
@@ -150,24 +150,16 @@ def _rounding(data: FloatingCarData) -> Rounding:
     """The rounding of positions and speeds: the fewest decimals that hold all of them."""
     tracks = [np.frombuffer(track.rows).reshape(-1, 4) for track in data.tracks.values()]
     speeds = [rows[:, 3] for rows in tracks]
-    place_m = _unit([rows[:, :2] for rows in tracks])
-    return Rounding(place_m, None if any(map(_has_unknown, speeds)) else _unit(speeds))
+    places = [rows[:, :2] for rows in tracks]
+    unit_m, unit_mps = (
+        unit_of(own, 0 if sum(map(np.size, own)) >= _MANY else 2, _MOST_DECIMALS)
+        for own in (places, speeds)
+    )
+    return Rounding(unit_m, None if any(map(_has_unknown, speeds)) else unit_mps)
 
 
 def _has_unknown(numbers: NDArray[float64]) -> bool:
     return bool(np.isnan(numbers).any())
-
-
-def _unit(numbers: Sequence[NDArray[float64]]) -> float:
-    fewest = 0 if sum(own.size for own in numbers) >= _MANY else 2
-    for decimals in range(fewest, _MOST_DECIMALS):
-        if all(_are_whole(own * 10.0**decimals) for own in numbers):
-            return float(10.0**-decimals)
-    return float(10.0**-_MOST_DECIMALS)
-
-
-def _are_whole(numbers: NDArray[float64]) -> bool:
-    return bool((np.abs(numbers - np.round(numbers)) < _HAIR).all())
 
 
 def _participants(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +17,6 @@ _UNEVEN = 0.02
 """The share of a step by which a time may be off its grid, besides its rounding."""
 
 _RATES = 1000
-_MOST_DECIMALS = 9
 _HAIR = 1e-3
 
 
@@ -41,7 +41,7 @@ def even_times(
     """
     start = float(times.min())
     # Floats have sixteen digits: of seconds since 1970 some seven remain for decimals
-    unit = max(_unit(times - start), 4 * float(np.spacing(np.abs(times).max())))
+    unit = max(unit_of([times - start]), 4 * float(np.spacing(np.abs(times).max())))
     moments = np.unique(np.round((times - start) / unit)) * unit
     if len(moments) == 1:
         return EvenTimes(1.0, np.zeros(len(times), dtype=int64), start)
@@ -93,13 +93,13 @@ def _uneven(times: NDArray[float64], step: float, unit: float, columns: Columns)
     return columns.wrong(row, why, help_text=way_out)
 
 
-def _unit(values: NDArray[float64]) -> float:
-    """The unit of the values' last decimal."""
-    for decimals in range(_MOST_DECIMALS):
-        scaled = values * 10.0**decimals
-        if np.abs(scaled - np.round(scaled)).max() < _HAIR:
+def unit_of(columns: Sequence[NDArray[float64]], fewest: int = 0, most: int = 9) -> float:
+    """The unit of the last decimal of values without NaN, of which there are some decimals."""
+    for decimals in range(fewest, most):
+        scaled = [values * 10.0**decimals for values in columns]
+        if all((np.abs(values - np.round(values)) < _HAIR).all() for values in scaled):
             return float(10.0**-decimals)
-    return float(10.0**-_MOST_DECIMALS)
+    return float(10.0**-most)
 
 
 def _fitted(moments: NDArray[float64], unit: float) -> float:
