@@ -1,6 +1,7 @@
 """A running monitor's best and worst verdicts are those over all completions."""
 
 import json
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -11,7 +12,7 @@ from rulec.api.named_monitor import Monitor
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.online.four_valued import WORST_FIRST, best_of, worst_of
-from rulec.monitoring.uncertainty import untold_names
+from rulec.monitoring.uncertainty import uncertain_machine, untold_names
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
@@ -265,15 +266,33 @@ def test_a_duty_of_many_steps_is_found_to_be_one_that_q_alone_violates(monkeypat
     compiled = rulec.compile_rulebook(parsed, step_s=Fraction(1, 100))
     steps = []
 
-    def counted(self, here, symbols):
+    def counted(self, here, symbols, **how):
         steps.append(here)
-        return after(self, here, symbols)
+        return after(self, here, symbols, **how)
 
     after = untold_names.RequiredNames._after
     monkeypatch.setattr(untold_names.RequiredNames, "_after", counted)
     assert judged_rules(compiled, frozenset({"q"}), cut=True).not_judged == ()
     # As many as the duty has steps, once or twice.
     assert 200 <= len(steps) <= 1000
+
+
+@pytest.mark.parametrize("whole", [0, 3, 1 << 16])
+@given(chance=seeds)
+@settings(max_examples=20)
+def test_large_machines_are_asked_in_another_way_with_the_same_answer(whole, chance):
+    """Their states are not compared unless too many sets are met; here all machines are large."""
+    compiled = rulec.compile_rulebook(rulebook(chance, Fraction(1)))
+    declared = sorted(compiled.vocabulary.declarations)
+    told = frozenset(chance.sample(declared, len(declared) // 2))
+    usual = judged_rules(replace(compiled), told, cut=True)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(untold_names, "MOST_COMPARED", 0)
+        patch.setattr(untold_names, "MOST_LOOKED_AT_WHOLE", whole)
+        patch.setattr(uncertain_machine, "_PREPARED", {})
+        found = judged_rules(replace(compiled), told, cut=True)
+    assert [rule.name for rule, _ in found.machines] == [rule.name for rule, _ in usual.machines]
+    assert found.not_judged == usual.not_judged
 
 
 def test_what_a_source_cannot_tell_is_unknown_though_it_has_a_default():

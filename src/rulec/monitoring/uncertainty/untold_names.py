@@ -25,8 +25,9 @@ MOST_LOOKED_AT = 1 << 21
 Some word is then assumed to violate the rule.
 """
 
-MOST_COMPARED, MOST_WHOLE = 200, 1 << 4
-"""Of larger machines up to so many states are kept whole: to compare all takes longer."""
+MOST_COMPARED, MOST_LOOKED_AT_WHOLE = 200, 1 << 16
+"""Of larger machines sets of states are first kept whole, as long as no more is looked at: to
+compare all states takes longer."""
 
 MOST_REPETITIONS = 1 << 12
 """A letter is repeated at most so often."""
@@ -79,7 +80,7 @@ class RequiredNames:
         names = map(names_of_read, machine.reads)
         self._names = [(*own, *values) for own, values in zip(names, self._values, strict=True)]
         self._untold: dict[frozenset[str], tuple[str, ...]] = {}
-        self._steps: dict[tuple[int, int], int | None] = {}
+        self._steps: dict[tuple[int, int, bool], int | None] = {}
 
     def missing_of(self, untold: frozenset[str]) -> tuple[str, ...]:
         """Names among these whose absence means that no word can be known to violate the rule.
@@ -110,20 +111,30 @@ class RequiredNames:
         Beyond ``MOST_LOOKED_AT`` this is assumed: then the rule is judged, and at worst always
         open.
         """
-        machine = self._machine
         letters = self._classes_in_the_dark(untold)
+        fires = None
+        if len(self._machine.successors) > MOST_COMPARED:
+            fires = self._fires(letters, MOST_LOOKED_AT_WHOLE, whole=True)
+        if fires is None:
+            fires = self._fires(letters, MOST_LOOKED_AT, whole=False)
+        return fires is not False
+
+    def _fires(self, letters: Set[int], most: int, *, whole: bool) -> bool | None:
+        """Whether all completions of some word violate the rule; None if that takes too long."""
+        machine = self._machine
         # If they do from the least states, they do from all states.
-        start = self._least(sum(1 << state for state in machine.starts))
-        if self._is_lost_by_runs(start, letters):
+        every = sum(1 << state for state in machine.starts)
+        start = every if whole else machine.least(every)
+        if self._is_lost_by_runs(start, letters, whole=whole):
             return True
         reached = {start}
         looked_at, n_classes = 0, sum(map(int.bit_count, letters))
         for here in (waiting := [start]):
             looked_at += here.bit_count() * n_classes
-            if looked_at > MOST_LOOKED_AT:
-                return True
+            if looked_at > most:
+                return None
             for classes in letters:
-                after = self._after(here, classes)
+                after = self._after(here, classes, whole=whole)
                 if after is None:
                     return True
                 if after not in reached:
@@ -131,59 +142,55 @@ class RequiredNames:
                     waiting.append(after)
         return False
 
-    def _is_lost_by_runs(self, start: int, letters: Set[int]) -> bool:
+    def _is_lost_by_runs(self, start: int, letters: Set[int], *, whole: bool) -> bool:
         """Whether long runs of one or two letters violate the rule.
 
         This suffices for most duties; with a short step no search would reach that far.
         """
         tried: set[int] = set()
         for first in letters:
-            middle = self._at_last(start, first)
+            middle = self._at_last(start, first, whole=whole)
             if middle is None:
                 return True
             if middle not in tried and None in {
-                self._at_last(middle, letter) for letter in letters
+                self._at_last(middle, letter, whole=whole) for letter in letters
             }:
                 return True
             tried.add(middle)
         return False
 
-    def _at_last(self, here: int, classes: int) -> int | None:
+    def _at_last(self, here: int, classes: int, *, whole: bool) -> int | None:
         """The least states in which a repeated letter ends up; None if it violates the rule."""
         met: set[int] = set()
         while here not in met and len(met) < MOST_REPETITIONS:
             met.add(here)
-            after = self._after(here, classes)
+            after = self._after(here, classes, whole=whole)
             if after is None:
                 return None
             here = after
         return here
 
-    def _after(self, here: int, classes: int) -> int | None:
+    def _after(self, here: int, classes: int, *, whole: bool) -> int | None:
         """The least states after a letter of any of these classes; None if all of it violates.
 
         Cached, since runs of letters, the search, and fewer untold names need the same steps.
         """
-        key = here, classes
+        key = here, classes, whole
         if key not in self._steps:
             if len(self._steps) > _MOST_REMEMBERED:
                 self._steps.clear()
-            self._steps[key] = self._step(bits_of(here), bits_of(classes))
+            self._steps[key] = self._step(bits_of(here), bits_of(classes), whole=whole)
         return self._steps[key]
 
-    def _step(self, states: Sequence[int], symbols: Sequence[int]) -> int | None:
+    def _step(self, states: Sequence[int], symbols: Sequence[int], *, whole: bool) -> int | None:
         machine = self._machine
         outputs = [machine.outputs[state] for state in states]
         if all(row[symbol] == VIOLATED for row in outputs for symbol in symbols):
             return None
         rows = [machine.successors[state] for state in states]
         targets = {row[symbol] for row in rows for symbol in symbols}
-        return self._least(sum([1 << target for target in targets]))
-
-    def _least(self, states: int) -> int:
-        if len(self._machine.successors) > MOST_COMPARED and states.bit_count() <= MOST_WHOLE:
-            return states
-        return self._machine.least(states)
+        reached = sum([1 << target for target in targets])
+        return reached if whole else machine.least(reached)
 
     def _classes_in_the_dark(self, untold: frozenset[str]) -> frozenset[int]:
         """The minimal sets of classes, as bits, that letters may have, by the reads that are told.
