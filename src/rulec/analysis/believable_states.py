@@ -1,55 +1,52 @@
 """What a witness is spared although no definition excludes it: nobody would believe it.
 
-They are no facts: a map may show a way onto a roundabout as a junction, too, and an example may say
-that ego is on a crossing without its distance to it.
+The rulebook ``believable`` beside the vocabulary ``road`` says it: its facts of each state, its
+hard rules of states that follow each other, and its soft rules what is only a wish.
 """
 
 from __future__ import annotations
 
-from collections.abc import Set
+from collections.abc import Mapping, Set
 from functools import cache
+from typing import NamedTuple
 
+from rulec.analysis.shared_compilation import AnalyzedRule, compile_shared
+from rulec.logic.formula import Unary
 from rulec.logic.free_names import names_in
-from rulec.rulebook.loader import parse_rulebook
-from rulec.rulebook.rulebook_model import Axiom, Rulebook
+from rulec.resources import rulebooks_folder
+from rulec.rulebook.loader import load_rulebook
+from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook
 from rulec.vocabulary import Vocabulary
 
-_BELIEVABLE = """\
-rulebook believable
-use road
-fact crossing implies crossing_zone
-fact crossing implies distance_to_crossing <= 1 m
-fact crossing_zone implies distance_to_crossing <= 10 m
-fact junction_zone implies distance_to_junction <= 10 m
-fact crosses_stop_line implies distance_to_stop_line <= 1 m
-fact crosses_light_line implies time_to_stop_line <= 1 s
-fact enters_roundabout implies not enters_junction
-fact on_shoulder(o) implies not same_lane(o)
-fact speed < 25 km/h implies can_stop_at_once
-fact precedes(o) implies behind(o) and same_lane(o)
-fact ego_car implies ego_mass <= 3.5 t
-fact ego_motorcycle or ego_moped or ego_cycle implies ego_mass <= 1.5 t
-fact lamps_off implies not front_fog_lamps
-fact visibility >= 10 m
-fact speed >= 20 km/h
-soft rule none { require true }
-"""
+
+class Belief(NamedTuple):
+    """What is believed of each state, of what follows what, and what is wished of each state."""
+
+    facts: tuple[Axiom, ...]
+    rules: tuple[AnalyzedRule, ...]
+    wishes: tuple[Axiom, ...]
 
 
-def believable(names: Set[str], vocabulary: Vocabulary) -> tuple[Axiom, ...]:
-    """What is believed of states in these words of a vocabulary, if it has them from `road`.
-
-    The last of it, if `speed` is among the words, is that ego drives.
-    """
-    words = _believable()
-    known = {
-        name
-        for name in names
-        if vocabulary.declarations.get(name) == words.vocabulary.declarations.get(name)
-    }
-    return tuple(axiom for axiom in words.axioms if known.issuperset(names_in(axiom.formula)))
+def believed(names: Set[str], vocabulary: Vocabulary) -> Belief:
+    """What is believed of traces in these words of a vocabulary, if it has them from `road`."""
+    book, compiled = _book()
+    declared = book.vocabulary.declarations
+    known = {name for name in names if vocabulary.declarations[name] == declared.get(name)}
+    facts = tuple(axiom for axiom in book.axioms if known.issuperset(names_in(axiom.formula)))
+    rules = [rule for rule in book.rules if known.issuperset(names_in(rule.formula))]
+    return Belief(
+        facts,
+        tuple(compiled[rule.name] for rule in rules if rule.strength == "hard"),
+        tuple(
+            Axiom(rule.variables, rule.formula.operand)
+            for rule in rules
+            if rule.strength == "soft" and isinstance(rule.formula, Unary)
+        ),
+    )
 
 
 @cache
-def _believable() -> Rulebook:
-    return parse_rulebook(_BELIEVABLE)
+def _book() -> tuple[Rulebook, Mapping[str, AnalyzedRule]]:
+    book = load_rulebook(rulebooks_folder() / "vocabulary" / "believable.rules")
+    rules: Mapping[str, Rule] = {rule.name: rule for rule in book.rules}
+    return book, compile_shared([book], [rules])[0]

@@ -16,9 +16,9 @@ from fractions import Fraction
 from functools import lru_cache, partial
 from itertools import chain, product
 
-from rulec.analysis.believable_states import believable
+from rulec.analysis.believable_states import believed
 from rulec.analysis.object_typings import answers_for_types
-from rulec.analysis.possible_traces import is_possible, steadied
+from rulec.analysis.possible_traces import approaching, is_possible, steadied
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.analysis.shared_vocabulary import shared_vocabulary
 from rulec.automata.alphabet import joined
@@ -99,6 +99,8 @@ class Contest:
     """A forbidding rule, allowing ones, and states where they may differ. Raises UndecidedError.
 
     The ``universe`` has the forbidding rule's objects, of the declared types unless it is given.
+    Its traces keep the rules that are ``believed``, too, which read no words but those of the
+    others; the search heeds those that are ``broken`` without that.
     """
 
     def __init__(
@@ -107,14 +109,22 @@ class Contest:
         allowing: Sequence[AnalyzedRule],
         given: Sequence[Axiom] = (),
         universe: ObjectUniverse | None = None,
+        *,
+        believed: Sequence[AnalyzedRule] = (),
+        broken: Sequence[AnalyzedRule] = (),
     ) -> None:
         self.forbidding, self._allowing, self._given = forbidding, allowing, tuple(given)
+        self._believed, self._broken = believed, broken
+        self.names = frozenset[str]().union(
+            *(declarations_read(analyzed.rule) for analyzed in (forbidding, *allowing))
+        )
         self._universe = universe or _universe(forbidding, allowing, given)
+        self.vocabulary = self._universe.vocabulary
         own = {variable.name: variable.name for variable in forbidding.rule.variables}
         bound = [(forbidding.rule.machine, own, False)]
         bound += [
             (allowed.rule.machine, binding, True)
-            for allowed in allowing
+            for allowed in (*allowing, *broken)
             for binding in self._universe.bindings(allowed.rule.variables)
         ]
         self._monitors, bindings, self._verdicts = zip(*bound, strict=True)
@@ -123,6 +133,13 @@ class Contest:
 
     def trace(self) -> Trace | None:
         """A shortest trace that only the first rule forbids, or None. Raises UndecidedError."""
+        trace = self._trace()
+        broken = [] if trace is None else self._disbelieved(trace)
+        if not broken:
+            return trace
+        return self._given_also((), broken=broken).trace()
+
+    def _trace(self) -> Trace | None:
         alphabet, universe = self._alphabet, self._universe
         word = self._word()
         if word is None:
@@ -150,16 +167,48 @@ class Contest:
         axioms = [said_as_usual(name, Itself(declared[name])) for name in sorted(names)]
         return self._given_also(axioms).trace()
 
-    def plausible(self, traces: Iterable[Trace]) -> Iterator[Contest]:
-        """The same contest with what makes states ``plausible``, or at least numbers.
+    def believable(self, first: Trace) -> tuple[Contest, Trace]:
+        """The same contest for what is believed, and its shortest trace; these if there is none.
 
-        There is none if that holds in the traces anyway.
+        If nobody could believe it, numbers are at least plausible if a trace as short as the
+        ``first`` has them.
         """
         rules = [analyzed.rule for analyzed in (self.forbidding, *self._allowing)]
-        for axioms in plausible(rules, self._universe.vocabulary):
-            within = replace(self._universe, axioms=axioms)
-            if not all(is_possible(trace, within) for trace in traces):
-                yield self._given_also(axioms)
+        vocabulary = self.vocabulary
+        belief, numbers = believed(self.names, vocabulary), _plausible_numbers(rules, vocabulary)
+        facts, alone = (*belief.facts, *numbers), replace(self._universe, axioms=())
+        untrue = [
+            fact for fact in belief.facts if not is_possible(first, replace(alone, axioms=(fact,)))
+        ]
+        stages: list[tuple[list[Sequence[Axiom]], Sequence[AnalyzedRule]]] = [
+            ([(*facts, *belief.wishes), facts], belief.rules),
+            ([[fact for fact in facts if fact is not one] for one in untrue], belief.rules),
+            ([facts], ()),
+        ]
+        for every, rules_kept in stages if any(belief) else ():
+            found: list[tuple[Contest, Trace]] = []
+            for axioms in every:
+                found += self._traced(axioms, rules_kept)
+                if found and len(found[-1][1].states) == len(first.states):
+                    break
+            if found:
+                return min(found, key=lambda pair: len(pair[1].states))
+        plain = [
+            (contest, trace)
+            for contest, trace in self._traced(numbers, ())
+            if len(trace.states) == len(first.states)
+        ]
+        return plain[0] if plain else (self, first)
+
+    def _traced(
+        self, axioms: Sequence[Axiom], rules: Sequence[AnalyzedRule]
+    ) -> list[tuple[Contest, Trace]]:
+        """The same contest with further axioms and rules believed, and its trace, if any."""
+        with suppress(UndecidedError):
+            contest = self._given_also(axioms, believed=rules)
+            trace = contest.trace()
+            return [] if trace is None else [(contest, trace)]
+        return []
 
     def within_limits(self, trace: Trace) -> Iterator[Contest]:
         """The same contest without what is beyond a limit in a trace, for each number in turn.
@@ -167,7 +216,7 @@ class Contest:
         The number then stays on the default's side of the last limit that it has passed.
         """
         rules = [analyzed.rule for analyzed in (self.forbidding, *self._allowing)]
-        declared = self._universe.vocabulary.declarations
+        declared = self.vocabulary.declarations
         for name, limits in sorted(limits_of(rules).items()):
             item = declared[name]
             if not isinstance(item, Quantity) or item.default is None:
@@ -187,23 +236,45 @@ class Contest:
                 yield self._given_also([axiom])
                 break
 
-    def _given_also(self, axioms: Sequence[Axiom]) -> Contest:
-        """The same contest, for objects of the same types, with further axioms."""
+    def _given_also(
+        self,
+        axioms: Sequence[Axiom],
+        *,
+        believed: Sequence[AnalyzedRule] = (),
+        broken: Sequence[AnalyzedRule] = (),
+    ) -> Contest:
+        """The same contest, for objects of the same types, with further axioms and rules."""
         given = (*self._given, *axioms)
         universe = _universe(self.forbidding, self._allowing, given)
-        own = replace(universe, objects=self._universe.objects)
-        return Contest(self.forbidding, self._allowing, given, own)
+        return Contest(
+            self.forbidding,
+            self._allowing,
+            given,
+            replace(universe, objects=self._universe.objects),
+            believed=(*self._believed, *believed),
+            broken=(*self._broken, *broken),
+        )
 
     def steadied(self, trace: Trace) -> Trace:
         """A trace of the contest with fewer changes of value from state to state."""
-        possible = partial(is_possible, universe=self._universe)
-        vocabulary = self._universe.vocabulary
-        return steadied(trace, vocabulary, lambda calmer: possible(calmer) and self._shows(calmer))
+
+        def is_right(calmer: Trace) -> bool:
+            possible = is_possible(calmer, self._universe)
+            return possible and self._shows(calmer) and not self._disbelieved(calmer)
+
+        words = self.vocabulary
+        calm = steadied(trace, words, is_right)
+        return approaching(calm, words, self.names, is_right)
+
+    def _disbelieved(self, trace: Trace) -> list[AnalyzedRule]:
+        """The rules believed that a trace violates."""
+        words = self.vocabulary
+        return [rule for rule in self._believed if rule.violations(trace, words)]
 
     def _shows(self, trace: Trace) -> bool:
-        words = self._universe.vocabulary
+        words = self.vocabulary
         return bool(self.forbidding.violations(trace, words)) and not any(
-            allowed.violations(trace, words) for allowed in self._allowing
+            allowed.violations(trace, words) for allowed in (*self._allowing, *self._broken)
         )
 
     def _word(self) -> tuple[JointLetter, ...] | None:
@@ -219,31 +290,30 @@ class Contest:
         return word
 
 
-def plausible(rules: Sequence[CompiledRule], vocabulary: Vocabulary) -> Iterator[tuple[Axiom, ...]]:
-    """What makes states plausible in the words that rules read, the most first.
-
-    Ego drives, states are believable, and numbers are plausible; then all but the first; then only
-    numbers.
-    """
+def plausible_states(rules: Sequence[CompiledRule], vocabulary: Vocabulary) -> tuple[Axiom, ...]:
+    """What is believed of states in the words that rules read, and of their numbers."""
     names = frozenset[str]().union(*map(declarations_read, rules))
-    states = believable(names, vocabulary)
-    numbers = _plausible_numbers(rules, vocabulary)
-    return ((*part, *numbers) for part in dict.fromkeys((states, states[:-1], ())))
+    return (*believed(names, vocabulary).facts, *_plausible_numbers(rules, vocabulary))
 
 
 def _plausible_numbers(rules: Sequence[CompiledRule], vocabulary: Vocabulary) -> tuple[Axiom, ...]:
     """That there are no numbers that no rule or default suggests.
 
     These are negative numbers, except of quantities with a negative default or that a rule compares
-    with zero or less, distances below 1 m, and speeds beyond ``MOST_KMH``, unless that is a
-    default.
+    with zero or less, distances below 1 m, unless a rule sets such a limit, and speeds beyond
+    ``MOST_KMH``, unless that is a default.
     """
     names = sorted({name for rule in rules for name in declarations_read(rule)})
-    signed = _compared_with_no_more_than_zero(rules)
+    limits, signed = limits_of(rules), _compared_with_no_more_than_zero(rules)
     declared = vocabulary.declarations
     quantities = {name: item for name in names if isinstance(item := declared[name], Quantity)}
     axioms = [
-        said_within(name, Itself(item), ">=", int(item.unit == "m" and bool(item.default)))
+        said_within(
+            name,
+            Itself(item),
+            ">=",
+            int(item.unit == "m" and bool(item.default) and min(limits.get(name, (2,))) > 1),
+        )
         for name, item in quantities.items()
         if name not in signed and (item.default or 0) >= 0
     ]

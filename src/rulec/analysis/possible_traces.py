@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence, Set
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import Any, TypeVar
 
 from rulec.logic.kleene import holds
 from rulec.monitoring.state_view import StateView, value_in
 from rulec.trace import State, Trace
-from rulec.vocabulary import Vocabulary
+from rulec.vocabulary import Quantity, Vocabulary
 from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.state_synthesis import Subject, subjects_of
 
 _Value = TypeVar("_Value")
+
+APPROACHED = frozenset(
+    ("distance_to_crossing", "distance_to_junction", "distance_to_stop_line", "time_to_stop_line")
+)
+"""What comes nearer as ego drives on, among the words of `road`."""
+
+USUAL_KMH = (25.0, 50.0, 75.0)
 
 
 def is_possible(trace: Trace, universe: ObjectUniverse) -> bool:
@@ -41,6 +48,45 @@ def steadied(trace: Trace, vocabulary: Vocabulary, is_right: Callable[[Trace], b
             states = [
                 said(state, subject, value)
                 for state, value in zip(trace.states, calmer, strict=True)
+            ]
+            changed = replace(trace, states=tuple(states))
+            if is_right(changed):
+                trace = changed
+                break
+    return trace
+
+
+def approaching(
+    trace: Trace, vocabulary: Vocabulary, names: Set[str], is_right: Callable[[Trace], bool]
+) -> Trace:
+    """The trace with what is ahead coming nearer as ego drives, as long as it ``is_right``.
+
+    Only these names are looked at. Without ego's speed it has a usual one throughout.
+    """
+
+    def numbers_of(name: str) -> list[float]:
+        item = vocabulary.declarations[name]
+        values = [value_in(state, name, (), item) for state in trace.states]
+        return [value for value in values if isinstance(value, int | float)]
+
+    n_states = len(trace.states)
+    driven = [[kmh] * n_states for kmh in USUAL_KMH]
+    if "speed" in names:
+        driven = [numbers_of("speed")]
+    for name in sorted(APPROACHED & names):
+        item, numbers = vocabulary.declarations[name], numbers_of(name)
+        # By default it is far away, or nowhere.
+        if len(numbers) < n_states or ({*numbers} == {item.default} and item.default):
+            continue
+        in_metres = isinstance(item, Quantity) and item.unit == "m"
+        for speeds, place in product(driven, reversed(range(n_states))):
+            by = [trace.step_s * (round(kmh / 3.6) if in_metres else 1) for kmh in speeds]
+            nearer = [
+                numbers[place] + sum(by[at:place]) - sum(by[place:at]) for at in range(n_states)
+            ]
+            states = [
+                said(state, (name, ()), value if value >= 0 else item.default)
+                for state, value in zip(trace.states, nearer, strict=True)
             ]
             changed = replace(trace, states=tuple(states))
             if is_right(changed):

@@ -21,6 +21,7 @@ from rulec.analysis.counterexample import (
 )
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.analysis.shared_vocabulary import shared_vocabulary
+from rulec.analysis.trace_display import state_literals
 from rulec.monitoring.state_view import value_in
 from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
@@ -100,16 +101,16 @@ def _compare(first: AnalyzedRule, second: AnalyzedRule, most: int) -> RuleCompar
 
 
 def plain_witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace, ...]:
-    """Diverse witnesses, with implausible numbers only if no trace as short does without them."""
-    traces = diverse_witnesses(contest, first, most)
-    for within in contest.plausible(traces):
-        with suppress(UndecidedError):
-            plain = within.trace()
-            if plain and len(plain.states) == len(first.states):
-                contest, traces = within, diverse_witnesses(within, plain, most)
-                break
+    """Diverse witnesses that can be believed, with few changes, if there are such."""
+    plain = _reasons(contest, first)
+    contest, first = contest.believable(first)
+    traces = diverse_witnesses(contest, first, most, _reasons(contest, first) - plain)
     further = _further_witnesses(contest, traces, most - len(traces))
-    return tuple(map(contest.steadied, (*traces, *further)))
+    names, words = contest.names, contest.vocabulary
+    steadied = [contest.steadied(trace) for trace in (*traces, *further)]
+    # What differs only in what no rule reads looks the same.
+    shown = {tuple(state_literals(trace, names, words)): trace for trace in reversed(steadied)}
+    return tuple(reversed(shown.values()))
 
 
 def _further_witnesses(contest: Contest, traces: Sequence[Trace], most: int) -> Iterator[Trace]:
@@ -117,13 +118,12 @@ def _further_witnesses(contest: Contest, traces: Sequence[Trace], most: int) -> 
 
     Otherwise a higher limit on a number would hide lower ones that hold under some conditions.
     """
-    vocabulary = contest.forbidding.rulebook.vocabulary
-    shown = [non_default_names(trace, vocabulary) for trace in traces]
+    shown = [_reasons(contest, trace) for trace in traces]
     for nearer in contest.within_limits(traces[0]) if most > 0 else ():
         with suppress(UndecidedError):
             first = nearer.trace()
             for trace in () if first is None else diverse_witnesses(nearer, first, most):
-                names = non_default_names(trace, vocabulary)
+                names = _reasons(contest, trace)
                 if most > 0 and names not in shown:
                     most -= 1
                     shown.append(names)
@@ -172,15 +172,17 @@ def _narrowed(
     raise AssertionError("the common types are those of both rules")
 
 
-def diverse_witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace, ...]:
+def diverse_witnesses(
+    contest: Contest, first: Trace, most: int, apart_from: frozenset[str] = frozenset()
+) -> tuple[Trace, ...]:
     """Up to ``most`` traces that only one rule forbids, each for a different reason.
 
-    ``first`` is one of them and the first of the result.
+    ``first`` is one of them and the first of the result. Some names are no reason ``apart_from``
+    others.
     """
-    vocabulary = contest.forbidding.rulebook.vocabulary
     traces = [first]
-    shown = [non_default_names(first, vocabulary)]
-    waiting = deque(frozenset([name]) for name in sorted(shown[0]))
+    shown = [_reasons(contest, first)]
+    waiting = deque(frozenset([name]) for name in sorted(shown[0] - apart_from))
     tried: set[frozenset[str]] = set()
     hopeless: list[frozenset[str]] = []
     while waiting and len(traces) < most and len(tried) < MOST_SEARCHES:
@@ -199,11 +201,15 @@ def diverse_witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace,
             if trace is None:
                 hopeless.append(defaulted)
                 continue
-            known = non_default_names(trace, vocabulary)
+            known = _reasons(contest, trace)
             traces.append(trace)
             shown.append(known)
-        waiting.extend(defaulted | {name} for name in sorted(known))
+        waiting.extend(defaulted | {name} for name in sorted(known - apart_from))
     return tuple(traces)
+
+
+def _reasons(contest: Contest, trace: Trace) -> frozenset[str]:
+    return contest.names & non_default_names(trace, contest.forbidding.rulebook.vocabulary)
 
 
 def non_default_names(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:

@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 
-from rulec.analysis.counterexample import common_step, plausible
+from rulec.analysis.counterexample import common_step, plausible_states
 from rulec.analysis.lint.harmless_states import have_harmless_state
 from rulec.analysis.object_typings import answers_for_types
 from rulec.analysis.possible_traces import is_possible
@@ -51,8 +51,8 @@ def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
     def search(own: Mapping[str, str]) -> Conflict | None:
         found = _conflict(analyzed_rules, ObjectUniverse(own, vocabulary, axioms))
         if found is not None and found.trace is not None:
-            most, *_ = plausible([each.rule for each in analyzed_rules], vocabulary)
-            within = (*axioms, *most)
+            rules = [each.rule for each in analyzed_rules]
+            within = (*axioms, *plausible_states(rules, vocabulary))
             with suppress(UndecidedError):
                 plain = _conflict(analyzed_rules, ObjectUniverse(own, vocabulary, within))
                 if plain and plain.trace and len(plain.trace.states) == len(found.trace.states):
