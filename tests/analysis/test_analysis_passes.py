@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.analysis.audit.rulebook_audit import used_declarations
-from rulec.analysis.counterexample import counterexample, declarations_read
+from rulec.analysis.believable_states import declarations_read
+from rulec.analysis.counterexample import counterexample
 from rulec.analysis.shared_compilation import at_one_step, compile_shared
 from rulec.analysis.shared_vocabulary import shared_vocabulary
 from rulec.analysis.trace_display import SignalRow, trace_note, trace_table

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rulec.analysis.counterexample import Contest, counterexample, said_as_usual
+from rulec.analysis.counterexample import Contest, counterexample
 from rulec.analysis.diff.comparison_matrix import CONVERSE, growing_matrices
 from rulec.analysis.diff.distinct_names import with_distinct_names
 from rulec.analysis.diff.rule_comparison import (
@@ -32,6 +32,7 @@ from rulec.analysis.lineage.rule_lineage import (
     RuleHistory,
 )
 from rulec.analysis.shared_compilation import compile_shared
+from rulec.analysis.stated_axioms import said_as_usual
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import Atom, Binary, BinaryOperator
 from rulec.rulebook.loader import load_rulebook, parse_rulebook

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec import Session
-from rulec.analysis.counterexample import MOST_KMH
+from rulec.analysis.believable_states import MOST_KMH
 from rulec.analysis.possible_traces import steadied
 from rulec.monitoring.state_view import value_in
 from rulec.rulebook.loader import parse_rulebook

@@ -5,7 +5,7 @@ from itertools import product
 import pytest
 from hypothesis import given
 
-from rulec.analysis.counterexample import MOST_KMH
+from rulec.analysis.believable_states import MOST_KMH
 from rulec.analysis.rule_traces import rule_traces
 from rulec.analysis.shared_compilation import compile_shared
 from rulec.monitoring.uncertainty.known_words import run

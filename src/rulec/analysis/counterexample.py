@@ -13,28 +13,27 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from functools import lru_cache, partial
+from functools import partial
 from itertools import chain, product
 
-from rulec.analysis.believable_states import believed
+from rulec.analysis.believable_states import (
+    believed,
+    declarations_read,
+    limits_of,
+    plausible_numbers,
+)
 from rulec.analysis.object_typings import answers_for_types
 from rulec.analysis.possible_traces import approaching, is_possible, steadied
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.analysis.shared_vocabulary import shared_vocabulary
-from rulec.automata.alphabet import joined
-from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.analysis.stated_axioms import said_as_usual, said_of_constant, said_within
 from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
-from rulec.rulebook.rulebook_model import Axiom, Variable
+from rulec.rulebook.rulebook_model import Axiom
 from rulec.trace import Trace
 from rulec.vocabulary import (
-    Declaration,
-    Enumeration,
     Quantity,
-    Signal,
-    Vocabulary,
 )
 from rulec.witnesses.joint_alphabet import JointAlphabet, JointLetter
 from rulec.witnesses.letter_functions import monitor_function
@@ -42,12 +41,6 @@ from rulec.witnesses.object_universe import Itself, ObjectUniverse
 from rulec.witnesses.shortest_words import shortest_word
 from rulec.witnesses.trace_synthesis import synthesize_trace
 from rulec.witnesses.undecided import ChangingConstantsError, UndecidedError
-
-MOST_KMH = 250
-"""A speed that a witness does not exceed if one as short does without."""
-
-LEAST_SIGN_KMH = 5
-"""The lowest speed limit that a witness has, likewise."""
 
 
 def counterexample(
@@ -151,7 +144,7 @@ class Contest:
             return synthesize_trace(alphabet.states_of(word), universe, step, self._shows, possible)
         except ChangingConstantsError as changing:
             reads = [alphabet.read_of(subject) for subject in changing.subjects]
-            axioms = [_said_of_constant(read, universe.vocabulary) for read in reads if read]
+            axioms = [said_of_constant(read, universe.vocabulary) for read in reads if read]
             # A constant that already has one value and still changes would recur for ever.
             if None in reads or not set(self._given).isdisjoint(chain.from_iterable(axioms)):
                 raise
@@ -175,7 +168,7 @@ class Contest:
         """
         rules = [analyzed.rule for analyzed in (self.forbidding, *self._allowing)]
         vocabulary = self.vocabulary
-        belief, numbers = believed(self.names, vocabulary), _plausible_numbers(rules, vocabulary)
+        belief, numbers = believed(self.names, vocabulary), plausible_numbers(rules, vocabulary)
         facts, alone = (*belief.facts, *numbers), replace(self._universe, axioms=())
         untrue = [
             fact for fact in belief.facts if not is_possible(first, replace(alone, axioms=(fact,)))
@@ -232,7 +225,7 @@ class Contest:
                 last = min(passed, key=lambda limit: abs(value - limit))
                 below: ltl.Relation = "<" if last == value else "<="
                 above: ltl.Relation = ">" if last == value else ">="
-                axiom = _bounded(name, item, below if value > usual else above, last)
+                axiom = said_within(name, Itself(item), below if value > usual else above, last)
                 yield self._given_also([axiom])
                 break
 
@@ -290,98 +283,6 @@ class Contest:
         return word
 
 
-def plausible_states(rules: Sequence[CompiledRule], vocabulary: Vocabulary) -> tuple[Axiom, ...]:
-    """What is believed of states in the words that rules read, and of their numbers."""
-    names = frozenset[str]().union(*map(declarations_read, rules))
-    return (*believed(names, vocabulary).facts, *_plausible_numbers(rules, vocabulary))
-
-
-def _plausible_numbers(rules: Sequence[CompiledRule], vocabulary: Vocabulary) -> tuple[Axiom, ...]:
-    """That there are no numbers that no rule or default suggests.
-
-    These are negative numbers, except of quantities with a negative default or that a rule compares
-    with zero or less, distances below 1 m, unless a rule sets such a limit, and speeds beyond
-    ``MOST_KMH``, unless that is a default.
-    """
-    names = sorted({name for rule in rules for name in declarations_read(rule)})
-    limits, signed = limits_of(rules), _compared_with_no_more_than_zero(rules)
-    declared = vocabulary.declarations
-    quantities = {name: item for name in names if isinstance(item := declared[name], Quantity)}
-    axioms = [
-        said_within(
-            name,
-            Itself(item),
-            ">=",
-            int(item.unit == "m" and bool(item.default) and min(limits.get(name, (2,))) > 1),
-        )
-        for name, item in quantities.items()
-        if name not in signed and (item.default or 0) >= 0
-    ]
-    # A limit that is beyond all speeds by default, where no sign shows one, is one on a sign.
-    axioms += [
-        said_within(name, Itself(item), "<=", MOST_KMH)
-        if (item.default or 0) <= MOST_KMH
-        else said_within(name, Itself(item), ">=", LEAST_SIGN_KMH)
-        for name, item in quantities.items()
-        if item.unit == "km/h"
-    ]
-    return tuple(axioms)
-
-
-def _said_of_constant(read: Read, vocabulary: Vocabulary) -> list[Axiom]:
-    """Axioms that a constant has one value, for each distinguished value; the default first."""
-    each: list[ltl.Formula] = [ltl.Atom(read.name, read.variables, value) for value in read.values]
-    if not read.values:
-        own = ltl.Atom(read.name, read.variables)
-        each = [ltl.Unary(ltl.UnaryOperator.NOT, own), own]
-    elif read.others:
-        each.append(ltl.Unary(ltl.UnaryOperator.NOT, joined(ltl.BinaryOperator.OR, each)))
-    default = vocabulary.declarations[read.name].default
-    usual = None if default is None else read.digit(default)
-    order = sorted(range(read.size), key=lambda digit: (digit != usual, digit))
-    return [Axiom((), each[digit]) for digit in order]
-
-
-# Cached, since facts derived from an axiom are stored with it, and many rules use the same words.
-@lru_cache(maxsize=1024)
-def said_as_usual(name: str, declared: Itself[Declaration]) -> Axiom:
-    """The axiom that a declaration has its default, for all objects."""
-    variables = _variables_of(declared.item)
-    arguments = tuple(variable.name for variable in variables)
-    return Axiom(variables, _has_default(name, arguments, declared.item))
-
-
-def _variables_of(declaration: Declaration) -> tuple[Variable, ...]:
-    return tuple(Variable(f"o{number}", kind) for number, kind in enumerate(declaration.parameters))
-
-
-@lru_cache(maxsize=1024)
-def said_within(
-    name: str, declared: Itself[Declaration], relation: ltl.Relation, limit: int
-) -> Axiom:
-    """The axiom that a quantity stands in a relation to a limit, for all objects."""
-    return _bounded(name, declared.item, relation, Fraction(limit))
-
-
-def _bounded(name: str, declaration: Declaration, relation: ltl.Relation, limit: Fraction) -> Axiom:
-    """The axiom that a quantity stands in a relation to a limit, for all objects."""
-    variables = _variables_of(declaration)
-    term = ltl.QuantityTerm(name, tuple(variable.name for variable in variables))
-    return Axiom(variables, ltl.Comparison(((Fraction(1), term),), relation, limit))
-
-
-def limits_of(rules: Iterable[CompiledRule]) -> dict[str, set[Fraction]]:
-    """The limits with which rules compare quantities on their own, by name."""
-    limits: dict[str, set[Fraction]] = {}
-    for read in chain.from_iterable(rule.machine.reads for rule in rules):
-        if isinstance(read, NumberRead) and len(read.terms) == 1:
-            ((factor, term),) = read.terms
-            if isinstance(term, ltl.QuantityTerm):
-                own = limits.setdefault(term.name, set())
-                own.update(threshold.limit / factor for threshold in read.thresholds)
-    return limits
-
-
 def _numbers_in(trace: Trace, name: str) -> Iterator[float]:
     """The numbers of one quantity in a trace, of all its objects."""
     values = (state[name] for state in trace.states if name in state)
@@ -389,32 +290,6 @@ def _numbers_in(trace: Trace, name: str) -> Iterator[float]:
         value.values() if isinstance(value, Mapping) else (value,) for value in values
     )
     return (float(value) for value in each if isinstance(value, int | float))
-
-
-def _compared_with_no_more_than_zero(rules: Iterable[CompiledRule]) -> frozenset[str]:
-    """The quantities that rules compare, on their own, with zero or less."""
-    return frozenset(
-        name
-        for rule in rules
-        for read in rule.machine.reads
-        if isinstance(read, NumberRead) and len(read.terms) == 1
-        for factor, term in read.terms
-        if any(threshold.limit / factor <= 0 for threshold in read.thresholds)
-        for name in names_in(term)
-    )
-
-
-def _has_default(name: str, arguments: tuple[str, ...], declaration: Declaration) -> ltl.Formula:
-    match declaration:
-        case Enumeration(default=str(value)):
-            return ltl.Atom(name, arguments, value)
-        case Signal(default=True):
-            return ltl.Atom(name, arguments)
-        case Signal():
-            return ltl.Unary(ltl.UnaryOperator.NOT, ltl.Atom(name, arguments))
-    assert declaration.default is not None, "only what has a default can be as usual"
-    number = exact(float(declaration.default))
-    return ltl.Comparison(((Fraction(1), ltl.QuantityTerm(name, arguments)),), "=", number)
 
 
 def common_step(rules: Iterable[AnalyzedRule]) -> Fraction:
@@ -439,14 +314,3 @@ def _universe(
         vocabulary, unsaid = words.vocabulary, unsaid | words.not_shared | words.unlike
     objects = {variable.name: variable.type for variable in forbidding.rule.variables}
     return ObjectUniverse(objects, vocabulary, axioms, unsaid - read)
-
-
-def declarations_read(rule: CompiledRule) -> frozenset[str]:
-    """The names of the declarations that a rule reads."""
-    names: set[str] = set()
-    for read in rule.machine.reads:
-        if isinstance(read, NumberRead):
-            names.update(name for _, term in read.terms for name in names_in(term))
-        else:
-            names.add(read.name)
-    return frozenset(names)

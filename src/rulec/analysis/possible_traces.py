@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from dataclasses import replace
-from itertools import pairwise, product
+from itertools import accumulate, pairwise
 from typing import Any, TypeVar
 
 from rulec.logic.kleene import holds
@@ -44,15 +44,7 @@ def steadied(trace: Trace, vocabulary: Vocabulary, is_right: Callable[[Trace], b
     names = frozenset[str]().union(*trace.states)
     for subject, declaration in subjects_of(vocabulary, trace.objects, names):
         values = [value_in(state, *subject, declaration) for state in trace.states]
-        for calmer in _calmer(values):
-            states = [
-                said(state, subject, value)
-                for state, value in zip(trace.states, calmer, strict=True)
-            ]
-            changed = replace(trace, states=tuple(states))
-            if is_right(changed):
-                trace = changed
-                break
+        trace = _first_right(trace, subject, _calmer(values), is_right)
     return trace
 
 
@@ -69,29 +61,46 @@ def approaching(
         values = [value_in(state, name, (), item) for state in trace.states]
         return [value for value in values if isinstance(value, int | float)]
 
-    n_states = len(trace.states)
-    driven = [[kmh] * n_states for kmh in USUAL_KMH]
-    if "speed" in names:
-        driven = [numbers_of("speed")]
+    usual = [[kmh] * len(trace.states) for kmh in USUAL_KMH]
+    driven = [numbers_of("speed")] if "speed" in names else usual
     for name in sorted(APPROACHED & names):
         item, numbers = vocabulary.declarations[name], numbers_of(name)
         # By default it is far away, or nowhere.
-        if len(numbers) < n_states or ({*numbers} == {item.default} and item.default):
-            continue
-        in_metres = isinstance(item, Quantity) and item.unit == "m"
-        for speeds, place in product(driven, reversed(range(n_states))):
-            by = [trace.step_s * (round(kmh / 3.6) if in_metres else 1) for kmh in speeds]
-            nearer = [
-                numbers[place] + sum(by[at:place]) - sum(by[place:at]) for at in range(n_states)
+        if len(numbers) == len(trace.states) and ({*numbers} != {item.default} or not item.default):
+            in_metres = isinstance(item, Quantity) and item.unit == "m"
+            ways = [
+                [trace.step_s * (round(kmh / 3.6) if in_metres else 1) for kmh in speeds]
+                for speeds in driven
             ]
-            states = [
-                said(state, (name, ()), value if value >= 0 else item.default)
-                for state, value in zip(trace.states, nearer, strict=True)
-            ]
-            changed = replace(trace, states=tuple(states))
-            if is_right(changed):
-                trace = changed
-                break
+            nearer = (
+                [value if value >= 0 else item.default for value in _along(numbers, way, place)]
+                for way in ways
+                for place in reversed(range(len(numbers)))
+            )
+            trace = _first_right(trace, (name, ()), nearer, is_right)
+    return trace
+
+
+def _along(numbers: Sequence[float], by: Sequence[float], place: int) -> list[float]:
+    """Numbers that fall by so much from one to the next, the same as before at one place."""
+    passed = [0.0, *accumulate(by)]
+    return [round(numbers[place] + passed[place] - passed[at], 3) for at in range(len(numbers))]
+
+
+def _first_right(
+    trace: Trace,
+    subject: Subject,
+    sequences: Iterable[Sequence[object]],
+    is_right: Callable[[Trace], bool],
+) -> Trace:
+    """The trace with the first of these sequences of values that ``is_right``, or as it is."""
+    for values in sequences:
+        pairs = zip(trace.states, values, strict=True)
+        changed = replace(
+            trace, states=tuple(said(state, subject, value) for state, value in pairs)
+        )
+        if is_right(changed):
+            return changed
     return trace
 
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from operator import itemgetter
 
-from rulec.analysis.counterexample import declarations_read, limits_of, shortest_contest
+from rulec.analysis.believable_states import declarations_read, limits_of, plausible_states
+from rulec.analysis.counterexample import shortest_contest
 from rulec.analysis.diff.rule_comparison import plain_witnesses
 from rulec.analysis.possible_traces import is_possible, said
 from rulec.analysis.shared_compilation import AnalyzedRule
@@ -59,12 +60,13 @@ def _shortest_allowed(analyzed: AnalyzedRule) -> Trace | None:
 
 
 def _near_miss(analyzed: AnalyzedRule, rejected: Trace) -> Trace | None:
-    """A possible trace that a rule allows, with one value changed, as late as can be.
+    """A plausible trace that a rule allows, with one value changed, as late as can be.
 
     What is not as usual becomes so, if that does.
     """
     vocabulary = analyzed.rulebook.vocabulary
-    universe = ObjectUniverse(rejected.objects, vocabulary, analyzed.axioms)
+    axioms = (*analyzed.axioms, *plausible_states([analyzed.rule], vocabulary))
+    universe = ObjectUniverse(rejected.objects, vocabulary, axioms)
     limits = limits_of([analyzed.rule])
     names = declarations_read(analyzed.rule)
     if len(rejected.states) > 1:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Any
 
-from rulec.analysis.counterexample import declarations_read
+from rulec.analysis.believable_states import declarations_read
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.diagnostics import named

@@ -7,12 +7,14 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 
-from rulec.analysis.counterexample import common_step, plausible_states
+from rulec.analysis.believable_states import plausible_states
+from rulec.analysis.counterexample import common_step
 from rulec.analysis.lint.harmless_states import have_harmless_state
 from rulec.analysis.object_typings import answers_for_types
-from rulec.analysis.possible_traces import is_possible
+from rulec.analysis.possible_traces import is_possible, steadied
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.mealy_monitor import MealyMonitor
+from rulec.monitoring.uncertainty.known_words import KnownLetters
 from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
@@ -83,12 +85,13 @@ def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
 
 def _conflict(analyzed_rules: Sequence[AnalyzedRule], universe: ObjectUniverse) -> Conflict | None:
     """The conflict for objects of these types."""
-    owners, monitors, functions = [], [], []
-    for number, analyzed in enumerate(analyzed_rules):
-        for binding in universe.bindings(analyzed.rule.variables):
-            owners.append(number)
-            monitors.append(analyzed.rule.machine)
-            functions.append(monitor_function(analyzed.rule.machine, binding))
+    bound = [
+        (number, analyzed.rule, binding)
+        for number, analyzed in enumerate(analyzed_rules)
+        for binding in universe.bindings(analyzed.rule.variables)
+    ]
+    owners, monitors = [owner for owner, *_ in bound], [rule.machine for _, rule, _ in bound]
+    functions = [monitor_function(rule.machine, binding) for _, rule, binding in bound]
     if have_harmless_state(monitors, functions, universe):
         return None
     alphabet = JointAlphabet(universe, functions)
@@ -114,8 +117,16 @@ def _conflict(analyzed_rules: Sequence[AnalyzedRule], universe: ObjectUniverse) 
         )
 
     step, possible = common_step(analyzed_rules), partial(is_possible, universe=universe)
-    states = alphabet.states_of(word)
-    return Conflict(synthesize_trace(states, universe, step, is_open, possible))
+    trace = synthesize_trace(alphabet.states_of(word), universe, step, is_open, possible)
+
+    def words(own: Trace) -> list[tuple[int, ...]]:
+        known = KnownLetters(own, analyzed_rules[0].rulebook)
+        return [known.word(rule, names, 0, len(word) - 1) for _, rule, names in bound]
+
+    read = words(trace)
+    return Conflict(
+        steadied(trace, universe.vocabulary, lambda own: possible(own) and words(own) == read)
+    )
 
 
 def common_objects(

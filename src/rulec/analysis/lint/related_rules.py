@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from rulec.analysis.counterexample import declarations_read
+from rulec.analysis.believable_states import declarations_read
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.logic.free_names import names_in
 from rulec.resource_limits import PAIRS

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from rulec.analysis.counterexample import declarations_read
+from rulec.analysis.believable_states import declarations_read
 from rulec.analysis.rule_traces import rule_traces
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.analysis.trace_display import special_types, state_literals
