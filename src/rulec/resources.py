@@ -25,15 +25,15 @@ def rulebooks_folder() -> Path:
 
 
 def package_files() -> Iterator[tuple[str, os.stat_result]]:
-    """The files of code, grammar and phrases in rulec, in a fixed order."""
-    phrases = rulebooks_folder() / "vocabulary" / "phrases"
-    folders = [str(_PACKAGE), str(_folder("grammar")), str(phrases)]
+    """The files of code, grammar and vocabularies in rulec, in a fixed order."""
+    words = rulebooks_folder() / "vocabulary"
+    folders = [str(_PACKAGE), str(_folder("grammar")), str(words)]
     while folders:
         with os.scandir(folders.pop()) as scandir_iterator:
             for entry in sorted(scandir_iterator, key=lambda dir_entry: dir_entry.name):
                 if entry.is_dir(follow_symlinks=False):
                     folders += [] if entry.name == "__pycache__" else [entry.path]
-                elif entry.name.endswith((".py", ".lark", ".json", ".toml")):
+                elif entry.name.endswith((".py", ".lark", ".json", ".toml", ".rules")):
                     yield entry.path, entry.stat()
 
 

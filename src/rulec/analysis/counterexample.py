@@ -88,6 +88,14 @@ def shortest_contest(
     return None
 
 
+def forbidding_all(analyzed: AnalyzedRule) -> AnalyzedRule:
+    """A rule about the same objects that forbids every trace: what else allows one keeps theirs."""
+    machine = analyzed.rule.machine
+    never = tuple((False,) * len(row) for row in machine.outputs)
+    refusing = replace(machine, outputs=never, rejecting_sink=None, accepting_sink=None)
+    return replace(analyzed, rule=replace(analyzed.rule, machine=refusing))
+
+
 class Contest:
     """A forbidding rule, allowing ones, and states where they may differ. Raises UndecidedError.
 

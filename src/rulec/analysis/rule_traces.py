@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from operator import itemgetter
 
 from rulec.analysis.believable_states import declarations_read, limits_of, plausible_states
-from rulec.analysis.counterexample import shortest_contest
+from rulec.analysis.counterexample import forbidding_all, shortest_contest
 from rulec.analysis.diff.rule_comparison import plain_witnesses
 from rulec.analysis.possible_traces import is_possible, said
 from rulec.analysis.shared_compilation import AnalyzedRule
@@ -32,31 +32,16 @@ class RuleTraces:
 def rule_traces(analyzed: AnalyzedRule) -> RuleTraces:
     """The traces of a rule, with as few objects as it needs."""
     try:
-        rejected = _shortest(analyzed)
+        rejected = _shortest(analyzed, [])
         near = None if rejected is None else _near_miss(analyzed, rejected)
-        return RuleTraces(near or _shortest_allowed(analyzed), rejected)
+        return RuleTraces(near or _shortest(forbidding_all(analyzed), [analyzed]), rejected)
     except UndecidedError as problem:
         return RuleTraces(None, None, str(problem))
 
 
-def _shortest(analyzed: AnalyzedRule) -> Trace | None:
-    found = shortest_contest(analyzed, [])
+def _shortest(forbidding: AnalyzedRule, allowing: Sequence[AnalyzedRule]) -> Trace | None:
+    found = shortest_contest(forbidding, allowing)
     return None if found is None else plain_witnesses(*found, 1)[0]
-
-
-def _shortest_allowed(analyzed: AnalyzedRule) -> Trace | None:
-    """A shortest trace that the opposite of a rule forbids, for whichever objects."""
-    machine = analyzed.rule.machine
-    opposite = replace(
-        machine,
-        outputs=tuple(tuple(not accepted for accepted in row) for row in machine.outputs),
-        rejecting_sink=machine.accepting_sink,
-        accepting_sink=machine.rejecting_sink,
-    )
-    trace = _shortest(replace(analyzed, rule=replace(analyzed.rule, machine=opposite)))
-    if trace is not None and analyzed.violations(trace, analyzed.rulebook.vocabulary):
-        raise UndecidedError("further objects, needed for counts, are subject to the rule, too")
-    return trace
 
 
 def _near_miss(analyzed: AnalyzedRule, rejected: Trace) -> Trace | None:

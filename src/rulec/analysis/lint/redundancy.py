@@ -6,15 +6,10 @@ from collections.abc import Sequence
 from contextlib import suppress
 from math import prod
 
-from rulec.analysis.counterexample import counterexample
-from rulec.analysis.object_typings import answers_for_types
+from rulec.analysis.counterexample import counterexample, forbidding_all
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.diagnostics import RulecError
 from rulec.trace import Trace
-from rulec.witnesses.joint_alphabet import JointAlphabet
-from rulec.witnesses.letter_functions import monitor_function
-from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.shortest_words import shortest_word
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_PREMISES = 6
@@ -29,34 +24,7 @@ def can_be_violated(analyzed: AnalyzedRule) -> bool:
 
 def can_be_kept(analyzed: AnalyzedRule) -> bool:
     """Whether some trace, with objects for the rule, keeps it. Raises UndecidedError."""
-    objects = {variable.name: variable.type for variable in analyzed.rule.variables}
-    vocabulary = analyzed.rulebook.vocabulary
-    problem: UndecidedError | None = None
-    for _, answer in answers_for_types(
-        objects,
-        [analyzed],
-        vocabulary,
-        lambda own: _can_be_kept(analyzed, ObjectUniverse(own, vocabulary, analyzed.axioms)),
-    ):
-        if isinstance(answer, UndecidedError):
-            problem = problem or answer
-        elif answer:
-            return True
-    if problem is not None:
-        raise problem
-    return False
-
-
-def _can_be_kept(analyzed: AnalyzedRule, universe: ObjectUniverse) -> bool:
-    """The same, for objects of these types."""
-    bindings = universe.bindings(analyzed.rule.variables)
-    machine = analyzed.rule.machine
-    alphabet = JointAlphabet(universe, [monitor_function(machine, own) for own in bindings])
-    machines, verdicts = [machine] * len(bindings), [True] * len(bindings)
-    word = shortest_word(machines, verdicts, alphabet.candidates, alphabet.can_be_read)
-    if word is None:
-        alphabet.require_complete()
-    return word is not None
+    return counterexample(forbidding_all(analyzed), [analyzed]) is not None
 
 
 def implied_by(analyzed: AnalyzedRule, others: Sequence[AnalyzedRule]) -> tuple[AnalyzedRule, ...]:
