@@ -116,9 +116,8 @@ class Contest:
     ) -> None:
         self.forbidding, self._allowing, self._given = forbidding, allowing, tuple(given)
         self._believed, self._broken = believed, broken
-        self.names = frozenset[str]().union(
-            *(declarations_read(analyzed.rule) for analyzed in (forbidding, *allowing))
-        )
+        self._rules = [analyzed.rule for analyzed in (forbidding, *allowing)]
+        self.names = frozenset[str]().union(*map(declarations_read, self._rules))
         self._universe = universe or _universe(forbidding, allowing, given)
         self.vocabulary = self._universe.vocabulary
         own = {variable.name: variable.name for variable in forbidding.rule.variables}
@@ -174,51 +173,40 @@ class Contest:
         If nobody could believe it, numbers are at least plausible if a trace as short as the
         ``first`` has them.
         """
-        rules = [analyzed.rule for analyzed in (self.forbidding, *self._allowing)]
-        vocabulary = self.vocabulary
-        belief, numbers = believed(self.names, vocabulary), plausible_numbers(rules, vocabulary)
+        belief = believed(self.names, self.vocabulary)
+        numbers = plausible_numbers(self._rules, self.vocabulary)
         facts, alone = (*belief.facts, *numbers), replace(self._universe, axioms=())
         untrue = [
             fact for fact in belief.facts if not is_possible(first, replace(alone, axioms=(fact,)))
         ]
-        stages: list[tuple[list[Sequence[Axiom]], Sequence[AnalyzedRule]]] = [
-            ([(*facts, *belief.wishes), facts], belief.rules),
-            ([[fact for fact in facts if fact is not one] for one in untrue], belief.rules),
-            ([facts], ()),
+        # What is only a wish, or only about numbers, is not worth a longer trace.
+        attempts: list[tuple[Sequence[Axiom], Sequence[AnalyzedRule], bool]] = [
+            ((*facts, *belief.wishes), belief.rules, False),
+            (facts, belief.rules, True),
+            *(([fact for fact in facts if fact is not one], belief.rules, True) for one in untrue),
+            (facts, (), True),
         ]
-        for every, rules_kept in stages if any(belief) else ():
-            found: list[tuple[Contest, Trace]] = []
-            for axioms in every:
-                found += self._traced(axioms, rules_kept)
-                if found and len(found[-1][1].states) == len(first.states):
-                    break
-            if found:
-                return min(found, key=lambda pair: len(pair[1].states))
-        plain = [
-            (contest, trace)
-            for contest, trace in self._traced(numbers, ())
-            if len(trace.states) == len(first.states)
-        ]
-        return plain[0] if plain else (self, first)
-
-    def _traced(
-        self, axioms: Sequence[Axiom], rules: Sequence[AnalyzedRule]
-    ) -> list[tuple[Contest, Trace]]:
-        """The same contest with further axioms and rules believed, and its trace, if any."""
-        with suppress(UndecidedError):
-            contest = self._given_also(axioms, believed=rules)
-            trace = contest.trace()
-            return [] if trace is None else [(contest, trace)]
-        return []
+        wished: list[tuple[Contest, Trace]] = []
+        for axioms, kept, may_be_longer in (
+            *(attempts if any(belief) else ()),
+            (numbers, (), False),
+        ):
+            with suppress(UndecidedError):
+                contest = self._given_also(axioms, believed=kept)
+                trace = contest.trace()
+                if trace and (may_be_longer or len(trace.states) == len(first.states)):
+                    found = [*wished, (contest, trace)]
+                    return min(found, key=lambda pair: len(pair[1].states))
+                wished += [(contest, trace)] if trace else []
+        return self, first
 
     def within_limits(self, trace: Trace) -> Iterator[Contest]:
         """The same contest without what is beyond a limit in a trace, for each number in turn.
 
         The number then stays on the default's side of the last limit that it has passed.
         """
-        rules = [analyzed.rule for analyzed in (self.forbidding, *self._allowing)]
         declared = self.vocabulary.declarations
-        for name, limits in sorted(limits_of(rules).items()):
+        for name, limits in sorted(limits_of(self._rules).items()):
             item = declared[name]
             if not isinstance(item, Quantity) or item.default is None:
                 continue

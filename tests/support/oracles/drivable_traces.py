@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
-MOST_MPS2 = 12.0
-"""No car brakes or speeds up harder."""
+MOST_MPS2, MOST_FASTER_MPS2 = 12.0, 7.0
+"""No car brakes harder, or speeds up harder."""
 
 MOST_MPS = 70.0
 NEAR_M = 10.0
@@ -169,7 +169,8 @@ def _of_motion(before, after, step_s) -> Iterator[str]:
     speeds = [words("speed") for words in (before, after)]
     low, high = 0.0, MOST_MPS * step_s
     if None not in speeds:
-        if abs(speeds[1] - speeds[0]) / 3.6 > MOST_MPS2 * step_s:
+        faster = (speeds[1] - speeds[0]) / 3.6
+        if not -MOST_MPS2 * step_s <= faster <= MOST_FASTER_MPS2 * step_s:
             yield f"from {speeds[0]} to {speeds[1]} km/h"
         low, high = (step_s * speed / 3.6 for speed in sorted(speeds))
     for name in DISTANCES:
