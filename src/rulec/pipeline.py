@@ -13,13 +13,14 @@ from fractions import Fraction
 from pathlib import Path
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.automata.compiled_cache import CompiledQuestion, remembered
+from rulec.automata.compiled_cache import remembered
 from rulec.automata.compiler import lower
 from rulec.automata.step_compilation import StepCompiler, build_automata
 from rulec.book_tests.example_runs import example_warnings
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.rulebook.loader import find, parse_all
 from rulec.rulebook.loader import resolve_trees as resolve
+from rulec.rulebook.reading.reading_cache import BookQuestion
 
 
 def compile_source(
@@ -29,7 +30,7 @@ def compile_source(
     step_s: Fraction | None = None,
     *,
     on_warning: Callable[[Sequence[Diagnostic]], object],
-    question: CompiledQuestion | None = None,
+    question: BookQuestion | None = None,
 ) -> CompiledRulebook:
     """Compile a rulebook, given by name or by its source's path.
 

@@ -18,11 +18,10 @@ from rulec.analysis.audit.rulebook_audit import (
     audit_changes,
     compare_audits,
 )
-from rulec.analysis.lineage.book_lineage import book_lineage_of
+from rulec.analysis.lineage.book_lineage import read_with_lineage
 from rulec.analysis.lineage.rule_lineage import BookHeader, BookLineage, LineageStep, RuleHistory
 from rulec.diagnostics import Source
 from rulec.logic.formula import Constant
-from rulec.rulebook.loader import read_rulebook
 from rulec.rulebook.rulebook_model import Rule
 from support.builders import rulebook_family as island
 
@@ -33,8 +32,8 @@ def path(tmp_path_factory):
 
 
 def audited(path, at, failing=(), **laws):
-    loaded = read_rulebook(path, at=at)
-    return audit(loaded.rulebook, book_lineage_of(loaded.books, at), failing, **laws)
+    loaded, lineage, _ = read_with_lineage(path, at=at)
+    return audit(loaded.rulebook, lineage, failing, **laws)
 
 
 def found(one, kind):

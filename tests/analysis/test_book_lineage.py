@@ -4,9 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.analysis.lineage.book_lineage import book_lineage_of
+from rulec.analysis.lineage.book_lineage import book_lineage_of, read_with_lineage
 from rulec.analysis.lineage.rule_lineage import ConstantValue
-from rulec.rulebook.loader import read_rulebook
 from rulec.syntax import decode, parse
 from support.builders import rulebook_family as island
 
@@ -18,8 +17,7 @@ def path(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def village(path):
-    loaded = read_rulebook(path, at="2024-01-01")
-    return book_lineage_of(loaded.books, loaded.rulebook.at)
+    return read_with_lineage(path, at="2024-01-01")[1]
 
 
 def steps(found, name):
@@ -124,8 +122,7 @@ def test_options_and_definitions(village):
     ],
 )
 def test_the_value_that_counts_on_a_day(path, book, at, current):
-    loaded = read_rulebook(path.with_stem(book), at=at)
-    found = settings(book_lineage_of(loaded.books, at), "pace")
+    found = settings(read_with_lineage(path.with_stem(book), at=at)[1], "pace")
     assert [one.text for one in found if one.current] == [current]
 
 

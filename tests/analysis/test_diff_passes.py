@@ -35,7 +35,8 @@ from rulec.analysis.shared_compilation import compile_shared
 from rulec.analysis.stated_axioms import said_as_usual
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import Atom, Binary, BinaryOperator
-from rulec.rulebook.loader import load_rulebook, parse_rulebook
+from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.trace import Trace
 from rulec.witnesses.object_universe import Itself

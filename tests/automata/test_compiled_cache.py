@@ -12,9 +12,10 @@ from rulec import pipeline
 from rulec.api import rulebook_compilation
 from rulec.api.rulebook_compilation import machines
 from rulec.automata import compiled_cache, compiler, prefix_machines
-from rulec.automata.bundle.mapped_tables import MappedTables, TableWriter, mapped
 from rulec.cache.cache_folder import cache_folder
+from rulec.cache.mapped_tables import MappedTables, TableWriter, mapped
 from rulec.diagnostics import RulecError
+from rulec.rulebook.reading import reading_cache
 from support.builders.rulebook_projects import project_in
 
 WORDS = "vocabulary words {\n  signal p, q \n}\n"
@@ -170,12 +171,12 @@ def test_a_file_that_comes_before_another_counts(folder, made):
 
 def test_the_day_counts_where_the_rulebook_says_none(folder, made, monkeypatch):
     compiled()
-    monkeypatch.setattr(compiled_cache, "_today", lambda: "2020-01-01")
+    monkeypatch.setattr(reading_cache, "_today", lambda: "2020-01-01")
     compiled()
     assert len(made) == 2
-    monkeypatch.setattr(compiled_cache, "_today", lambda: "2020-01-02")
+    monkeypatch.setattr(reading_cache, "_today", lambda: "2020-01-02")
     compiled(at="2020-01-01")
-    monkeypatch.setattr(compiled_cache, "_today", lambda: "2020-01-03")
+    monkeypatch.setattr(reading_cache, "_today", lambda: "2020-01-03")
     compiled(at="2020-01-01")
     assert len(made) == 3
 

@@ -24,7 +24,7 @@ from rulec.logic.formula import (
 from rulec.logic.past_registers import eliminate_past
 from rulec.logic.printing import formula_text
 from rulec.resource_limits import in_force
-from rulec.rulebook.loader import load_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.vocabulary import Enumeration, Signal, Vocabulary
 from support.builders.rulebooks import P, Q, always, book, eventually, far, implies, near, rule

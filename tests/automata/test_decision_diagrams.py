@@ -21,7 +21,7 @@ from rulec.automata.worker.job_answers import answer_to
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
 from rulec.logic.semantics import holds
-from rulec.rulebook.loader import read_rulebook
+from rulec.rulebook.reading.rulebook_reader import read_rulebook
 from rulec.rulebook.rulebook_model import Axiom
 from rulec.rulebook.rules.axiom_instances import AxiomInstance
 from support.builders.rulebooks import P, Q, always, book, eventually, implies, rule

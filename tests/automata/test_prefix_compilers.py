@@ -12,7 +12,8 @@ from rulec.automata.worker import compiler_choice
 from rulec.automata.worker.job_answers import answer_to
 from rulec.resource_limits import BudgetSpentError
 from rulec.rulebook.files.search_path import available_rulebooks
-from rulec.rulebook.loader import load_rulebook, parse_rulebook
+from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from support.builders.rulebooks import compile_here
 from support.remembered_machines import ASKED
 

@@ -10,7 +10,8 @@ from rulec.automata.alphabet import reads_of
 from rulec.automata.compiler import compile_rulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE, stutter_invariant
 from rulec.monitoring.uncertainty.known_words import run
-from rulec.rulebook.loader import load_rulebook, parse_rulebook
+from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from support.generators.random_formulas import ATOMS, VOCABULARY, formulas
 from support.oracles.installed_spot import machine_of, spot, spot_bridge
 from support.oracles.past_in_spot import in_spot, spot_automaton

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from rulec.resource_limits import VARIABLE
-from rulec.rulebook.loader import read_rulebook
+from rulec.rulebook.reading.rulebook_reader import read_rulebook
 from support.builders.recorded_data import DATA
 
 SAMPLE = Path(__file__).parents[2] / "docs" / "samples" / "following.xml"

@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 import pytest
 
 from rulec.cli.main import main
-from rulec.rulebook import loader
+from rulec.rulebook.reading import rulebook_reader
 
 OLD = """\
 rulebook old
@@ -379,13 +379,13 @@ def test_all_is_written_pair_by_pair(tmp_path, monkeypatch, capsys):
     """What the first two rulebooks share is written before the last one is read."""
     (tmp_path / "third.rules").write_text("rulebook third\nextends old\n")
     written = []
-    own = loader.read_rulebook
+    own = rulebook_reader.read_rulebook
 
     def read(reference, *more):
         written.append(("third" in reference, capsys.readouterr().out))
         return own(reference, *more)
 
-    monkeypatch.setattr(loader, "read_rulebook", read)
+    monkeypatch.setattr(rulebook_reader, "read_rulebook", read)
     assert main(["diff", "--all", "./new.rules", "./old.rules", "./third.rules"]) == 1
     assert [is_third for is_third, _ in written] == [False, False, True]
     assert written[-1][1].splitlines()[-1].split() == ["old", "new", "1=", "1+", "1-"]

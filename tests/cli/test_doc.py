@@ -12,7 +12,7 @@ from rulec.analysis.lineage.rule_lineage import ConstantKind
 from rulec.cli.main import main
 from rulec.report.rulebooks import rule_provenance
 from rulec.report.rulebooks.document_language import document_language
-from rulec.rulebook.loader import load_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from support.builders import rulebook_family as island
 
 SOURCES = Path(rule_provenance.__file__).parent

@@ -10,7 +10,7 @@ from rulec.cli.main import main
 from rulec.logic.free_names import names_in
 from rulec.report.findings.code_registry import all_codes
 from rulec.rulebook.files.words_in_files import rules_reading
-from rulec.rulebook.loader import load_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 
 
 def explain(capsys, *arguments):

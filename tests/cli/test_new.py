@@ -5,7 +5,7 @@ from datetime import date
 import pytest
 
 from rulec.cli.main import main
-from rulec.rulebook.loader import load_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from rulec.rulebook.template import new_rulebook
 
 

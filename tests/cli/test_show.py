@@ -9,7 +9,8 @@ import pytest
 from rulec import compile_rulebook
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.cli.main import main
-from rulec.rulebook.loader import load_rulebook, parse_rulebook
+from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from rulec.rulebook.vocabulary_phrases import topic_groups
 
 TWO = """\

@@ -13,7 +13,7 @@ from rulec.extraction.signals.participants.following_signals import following_si
 from rulec.extraction.signals.participants.participant_signals import participant_signals
 from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
 from rulec.extraction.traffic_thresholds import LEAST_S, USUAL
-from rulec.rulebook.loader import load_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from rulec.trace.vocabulary_projection import RECORDED_UNITS, UNTOLD_VALUES
 from rulec.vocabulary import Quantity
 from support.builders.drive_contexts import context_of

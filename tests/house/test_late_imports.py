@@ -27,7 +27,7 @@ LATE = {
     "automata/bundle/minisign.py": (2, OPTIONAL),
     "automata/bundle/required_signature.py": (2, "hashes take 6 ms, where a signature is required"),
     "automata/bundle/stored_prefixes.py": (1, NUMPY),
-    "automata/compiled_cache.py": (4, COMPILER),
+    "automata/compiled_cache.py": (3, COMPILER),
     "automata/outcome_machine.py": (1, NUMPY),
     "automata/step_compilation.py": (1, NUMPY),
     "automata/worker/confinement.py": (2, "ctypes, for the worker alone"),
@@ -78,10 +78,11 @@ LATE = {
     "report/text/console.py": (4, "rich takes 40 ms, only for a terminal"),
     "report/text/terminal_text.py": (2, "rich takes 40 ms, only for colours"),
     "report/verdicts/verdict_report.py": (1, EXPLAINED),
-    "rulebook/batch/batch_check.py": (1, PARSER),
     "rulebook/batch/batch_format.py": (2, PARSER),
-    "rulebook/batch/shipped_lock.py": (1, PARSER),
     "rulebook/names/word_meanings.py": (1, MESSAGE),
+    "rulebook/batch/shipped_lock.py": (1, "rulebooks take 50 ms, not for each check"),
+    "rulebook/reading/rulebook_reader.py": (1, PARSER),
+    "rulebook/reading/source_findings.py": (1, PARSER),
     "rulebook/vocabulary_phrases.py": (
         1,
         "patterns of sentences take 10 ms, not for phrases alone",
@@ -142,5 +143,5 @@ def test_other_names_are_not_there():
 def test_a_replaced_function_is_the_one_found(monkeypatch):
     lazy = import_module("rulec.cli.lazy_imports")
     assert lazy.read_rulebook("esterle2019").rulebook.name == "esterle2019"
-    monkeypatch.setattr("rulec.rulebook.loader.read_rulebook", str.upper)
+    monkeypatch.setattr("rulec.rulebook.reading.rulebook_reader.read_rulebook", str.upper)
     assert lazy.read_rulebook("name") == "NAME"

@@ -5,7 +5,7 @@ import pytest
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
-from rulec.rulebook.loader import read_rulebook
+from rulec.rulebook.reading.rulebook_reader import read_rulebook
 from support.builders.national_books import FOLDER, NATIONAL, compiled, read
 
 of_every_book = pytest.mark.parametrize("name", NATIONAL)

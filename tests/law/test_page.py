@@ -7,8 +7,9 @@ import pytest
 
 from rulec.automata.compiler import compile_rulebook
 from rulec.book_tests.example_runs import run_rulebook_examples
-from rulec.rulebook.loader import load_rulebook, parse_rulebook
+from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.names.referenced_names import parts_of
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from rulec.syntax import decode, parse, tree
 from support.builders.national_books import FOLDER, NATIONAL, read, rules_on
 

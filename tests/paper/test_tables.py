@@ -8,7 +8,7 @@ from rulec import compile_rulebook
 from rulec.book_tests.example_runs import example_trace
 from rulec.cli.main import main
 from rulec.monitoring.verify import verify
-from rulec.rulebook.loader import load_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from rulec.trace import Trace
 
 RULES = compile_rulebook("esterle2019")

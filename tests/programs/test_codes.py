@@ -6,7 +6,7 @@ import pytest
 
 from rulec.diagnostics import RulecError
 from rulec.report.findings.code_registry import all_codes
-from rulec.rulebook.loader import load_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 
 BAD = Path(__file__).parent / "bad"
 START = b"rulebook a\nsignal p\nhard rule r { "

@@ -16,7 +16,7 @@ from rulec.automata.compiler import compile_rulebook
 from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.report.findings.diagnostics_text import render_diagnostics
-from rulec.rulebook.loader import read_rulebook
+from rulec.rulebook.reading.rulebook_reader import read_rulebook
 from rulec.syntax import decode, parse
 from support.builders.printed_files import print_file
 

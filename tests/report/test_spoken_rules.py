@@ -15,7 +15,8 @@ from rulec.logic.sentences.sentence_layout import lines
 from rulec.logic.sentences.spoken_words import spoken_formula
 from rulec.report.rulebooks.spoken_rules import MOST_LEVELS, atoms_in, counted_in, sentences_of
 from rulec.rulebook.files.search_path import available_rulebooks
-from rulec.rulebook.loader import load_rulebook, parse_rulebook
+from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from rulec.rulebook.vocabulary_phrases import phrases_of
 
 NAMED = re.compile(r"“([^”]+)” holds(?: of (.+?))? if and only if ")

@@ -4,7 +4,7 @@ import pytest
 
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.batch.bare_rules import bare_rules
-from rulec.rulebook.loader import read_rulebook
+from rulec.rulebook.reading.rulebook_reader import read_rulebook
 
 
 def test_what_is_bare_is_named():

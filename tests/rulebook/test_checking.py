@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from rulec.diagnostics import RulecError
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.batch.batch_check import check, find_sources
-from rulec.rulebook.loader import diagnose, read_rulebook
+from rulec.rulebook.loader import diagnose
+from rulec.rulebook.reading.rulebook_reader import read_rulebook
 from rulec.syntax import decode, parse
 
 PROGRAMS = Path(__file__).resolve().parents[1] / "programs"

@@ -3,7 +3,7 @@
 import pytest
 
 from rulec.diagnostics import RulecError
-from rulec.rulebook.loader import load_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 
 BASE = 'rulebook base\nsignal p\nhard rule r {\n  cite "§ 1"\n  require always p\n}\n'
 

@@ -7,8 +7,9 @@ import pytest
 from rulec.diagnostics import RulecError
 from rulec.resource_limits import in_force
 from rulec.rulebook.files.referenced_files import MOST_BASES
-from rulec.rulebook.loader import diagnose, load_rulebook
+from rulec.rulebook.loader import diagnose
 from rulec.rulebook.names.atom_messages import MOST_SEARCHED
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 
 START = """rulebook r
 type car

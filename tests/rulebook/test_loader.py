@@ -10,11 +10,8 @@ from rulec.diagnostics import RulecError, named
 from rulec.logic.printing import formula_text
 from rulec.resources import rulebooks_folder
 from rulec.rulebook.files.search_path import available_rulebooks
-from rulec.rulebook.loader import (
-    load_rulebook,
-    load_vocabulary,
-    parse_rulebook,
-)
+from rulec.rulebook.loader import load_vocabulary, parse_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 
 MINE = "rulebook mine\nuse words\nhard rule r { require always p }\n"
 WORDS = "vocabulary words { signal p }\n"

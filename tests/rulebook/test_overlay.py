@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
-from rulec.rulebook.loader import diagnose, load_rulebook, parse_rulebook
+from rulec.rulebook.loader import diagnose, parse_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 
 DAYS = ["2000-01-01", "2010-01-01", "2020-01-01"]
 WORDS = """

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rulec.logic.formula import Comparison, Unary
-from rulec.rulebook.loader import load_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 
 TEXTS = {
     "general": """rulebook general

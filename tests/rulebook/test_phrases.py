@@ -10,7 +10,8 @@ from rulec.logic.sentences.english import ENGLISH
 from rulec.logic.sentences.language import LANGUAGES
 from rulec.logic.sentences.spoken_words import forms, spoken_formula
 from rulec.logic.sentences.wording import atom_clause, comparison_clause
-from rulec.rulebook.loader import load_rulebook, load_vocabulary
+from rulec.rulebook.loader import load_vocabulary
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from rulec.rulebook.vocabulary_phrases import phrases_in, phrases_of
 from rulec.vocabulary import Enumeration, Quantity
 

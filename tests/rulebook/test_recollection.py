@@ -3,20 +3,29 @@
 import os
 import subprocess
 import sys
+from datetime import date
 from pathlib import Path
 
 import pytest
 
 from rulec.cache import cache_folder as cache_folder_module
 from rulec.cache.cache_folder import cache_folder, program_digest
+from rulec.cache.keeping import keeping
 from rulec.rulebook import loader
-from rulec.rulebook.batch import batch_check, check_cache
-from rulec.rulebook.batch.check_cache import CheckQuestion, recall, remember
+from rulec.rulebook.batch import batch_check
+from rulec.rulebook.reading import reading_cache
+from rulec.rulebook.reading.reading_cache import BookQuestion, recalled, remember_findings
 from support.builders.rulebook_projects import project_in
 
 WORDS = "vocabulary words {\n  signal p, q \n}\n"
 BASE = "rulebook base\nuse words\nhard rule first { require always p }\n"
 BOOK = "rulebook book\nextends base\nhard rule second { require always q }\n"
+
+
+class Tomorrow(date):
+    @classmethod
+    def today(cls):
+        return cls(2030, 1, 1)
 
 
 @pytest.fixture
@@ -39,7 +48,8 @@ def made(monkeypatch):
 
 
 def check(reference="book.rules", at="", search_path=(), data=b""):
-    done = batch_check.check([reference], lambda: data, search_path, at, recalls=True)
+    with keeping():
+        done = batch_check.check([reference], lambda: data, search_path, at)
     assert not done.unread
     return [(one.code, one.place.file, one.message) for one in done.findings]
 
@@ -65,7 +75,8 @@ def test_a_change_anywhere_counts(folder, made, name):
 def test_a_mistake_is_recalled_in_every_detail(folder, made, formula):
     """Errors; and a warning."""
     (folder / "book.rules").write_text(BOOK.replace("always q", formula))
-    found = [batch_check.check(["book.rules"], bytes, recalls=True).findings for _ in range(2)]
+    with keeping():
+        found = [batch_check.check(["book.rules"], bytes).findings for _ in range(2)]
     assert found[0] == found[1] != ()
     assert made == ["book.rules"]
 
@@ -107,12 +118,19 @@ def test_the_day_counts(folder, made):
     assert len(made) == 3
 
 
-def test_a_rulebook_is_asked_again_on_another_day(folder):
-    question = CheckQuestion("a.rules", "a.rules", b"x", (), "", "2026-01-01")
-    remember(question, (), ())
-    assert recall(question) == ()
-    tomorrow = CheckQuestion("a.rules", "a.rules", b"x", (), "", "2026-01-02")
-    assert recall(tomorrow) is None
+@pytest.mark.parametrize(
+    ("at", "as_of", "is_known"),
+    [("", "", False), ("2026-01-01", "", True), ("", "2022-01-28", True)],
+)
+def test_a_rulebook_without_a_day_is_asked_again_on_another_day(
+    folder, monkeypatch, at, as_of, is_known
+):
+    question = BookQuestion("a.rules", b"x", at=at)
+    with keeping():
+        remember_findings(question, (), (), as_of)
+        assert recalled(question)[0].findings == ()
+        monkeypatch.setattr(reading_cache, "date", Tomorrow)
+        assert (recalled(question)[0] is not None) == is_known
 
 
 def test_the_search_path_counts(folder, made, tmp_path):
@@ -152,7 +170,7 @@ def test_standard_input_is_recalled_by_its_text(folder, made):
 @pytest.mark.parametrize(
     ("module", "name", "value"),
     [
-        (check_cache, "__version__", "0.0.0"),
+        (cache_folder_module, "__version__", "0.0.0"),
         (cache_folder_module, "package_files", lambda: [("wei\udcdf/a.py", Path(__file__).stat())]),
     ],
 )
@@ -173,16 +191,13 @@ def test_another_rulec_checks_anew(folder, made, monkeypatch, module, name, valu
         lambda path: path.write_bytes(b""),
         lambda path: path.write_bytes(path.read_bytes()[:-9]),
         lambda path: path.write_bytes(b"\xff\xfe{}"),
-        lambda path: path.write_text("[]"),
-        lambda path: path.write_text("[" * 100_000),
         lambda path: path.write_bytes(path.read_bytes()[:-1] + b" "),
-        lambda path: path.write_text(path.read_text().replace('"findings": []', '"findings": [5]')),
-        lambda path: path.write_text(path.read_text().split("\n")[1]),
+        lambda path: path.write_bytes(path.read_bytes()[32:]),
     ],
 )
 def test_damage_costs_time_only(folder, made, damage):
     check()
-    (kept,) = cache_folder().glob("*.json")
+    (kept,) = cache_folder().glob("*.reading")
     damage(kept)
     assert check() == []
     assert len(made) == 2
@@ -193,7 +208,7 @@ def test_damage_costs_time_only(folder, made, damage):
 @pytest.mark.parametrize("mode", [0o660, 0o606])
 def test_what_others_may_write_to_is_not_trusted(folder, made, mode):
     check()
-    (kept,) = cache_folder().glob("*.json")
+    (kept,) = cache_folder().glob("*.reading")
     assert kept.stat().st_mode & 0o777 == 0o600
     kept.chmod(mode)
     assert check() == []
@@ -227,18 +242,20 @@ def test_no_place_to_keep_it_costs_time_only(folder, made, tmp_path, monkeypatch
     assert len(made) == 2
 
 
-def test_mistakes_that_quote_a_long_line_again_and_again_are_not_kept(folder, made):
+def test_a_long_line_that_is_quoted_again_and_again_is_kept_once(folder, made):
     rules = "".join(f"hard rule r{number} {{ require q{number} }} " for number in range(300))
-    for name, text in (("few", rules[:1000]), ("many", rules)):
-        (folder / f"{name}.rules").write_text(f"rulebook {name}\n{text}\n")
-        assert check(f"{name}.rules") == check(f"{name}.rules")
-    assert made == ["few.rules", "many.rules", "many.rules"]
+    (folder / "many.rules").write_text(f"rulebook many\n{rules}\n")
+    first = check("many.rules")
+    assert check("many.rules") == first
+    assert len(first) >= 300
+    assert made == ["many.rules"]
+    assert sum(path.stat().st_size for path in cache_folder().iterdir()) < 10 * len(rules)
 
 
 def test_mistakes_in_one_line_share_its_text(folder):
     rules = "hard rule r { require always q } hard rule s { require always t }"
     (folder / "two.rules").write_text(f"rulebook two\n{rules}\n")
-    found = batch_check.check(["two.rules"], lambda: b"", (), "", recalls=False).findings
+    found = batch_check.check(["two.rules"], lambda: b"").findings
     first, second = [one.place.excerpt for one in found if one.code == "R0202"]
     assert first is second
     assert first == rules
@@ -251,20 +268,6 @@ def test_the_folder_is_the_users_own(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CACHE_HOME", "not/absolute")
     monkeypatch.setenv("HOME", str(tmp_path))
     assert cache_folder() == tmp_path / ".cache" / "rulec"
-
-
-@pytest.mark.parametrize(("used", "left"), [(None, {2, 3}), (0, {0, 3})])
-def test_the_longest_unused_go_first(folder, monkeypatch, used, left):
-    """Half of them, once there are too many; recalling is using."""
-    monkeypatch.setattr(check_cache, "MOST_FILES", 3)
-    questions = [CheckQuestion(f"{n}.rules", "", b"", (), "", "2026-01-01") for n in range(4)]
-    for age, question in enumerate(questions[:3]):
-        remember(question, (), ())
-        os.utime(cache_folder() / f"{question.place()}.json", (age, age))
-    if used is not None:
-        recall(questions[used])
-    remember(questions[3], (), ())
-    assert {n for n, question in enumerate(questions) if recall(question) is not None} == left
 
 
 def test_recalling_imports_neither_the_parser_nor_the_language(folder):

@@ -4,7 +4,8 @@ import pytest
 
 from rulec.diagnostics import RulecError, Source
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Constant, Unary, UnaryOperator
-from rulec.rulebook.loader import load_rulebook, parse_rulebook, read_rulebook
+from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook, read_rulebook
 from rulec.rulebook.resolve import resolve
 from rulec.rulebook.rulebook_model import Variable
 from rulec.syntax import parse

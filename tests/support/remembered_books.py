@@ -14,13 +14,13 @@ from typing import Any
 from rulec import pipeline
 from rulec.automata import compiled_cache, compiler
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.automata.compiled_cache import CompiledQuestion
 from rulec.automata.worker import compiler_choice
 from rulec.cache.keeping import is_keeping, keeping
 from rulec.diagnostics import Diagnostic, Source
 from rulec.resources import rulebooks_folder
 from rulec.rulebook import loader
 from rulec.rulebook.files import referenced_files
+from rulec.rulebook.reading.reading_cache import BookQuestion
 from rulec.syntax import tree
 
 _PARSED, _COMPILED, _RECALLED = loader.parsed, pipeline.compile_source, compiled_cache.recalled
@@ -33,12 +33,12 @@ def remember_books() -> None:
     shipped, cache = str(rulebooks_folder()), os.environ["RULEC_CACHE_DIR"]
     trees: dict[tuple[str, str], tuple[tree.File, tuple[Diagnostic, ...]]] = {}
     books: dict[tuple[object, ...], tuple[CompiledRulebook, Sequence[Diagnostic]]] = {}
-    recalls: dict[CompiledQuestion, Recalled] = {}
+    recalls: dict[BookQuestion, Recalled] = {}
     machines_are_remembered = compiler.answers_to
 
-    def parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
+    def parsed(source: Source, *, keeps: bool = True) -> tuple[tree.File, tuple[Diagnostic, ...]]:
         if is_keeping() or not source.name.startswith(shipped):
-            return _PARSED(source)
+            return _PARSED(source, keeps=keeps)
         key = source.name, source.text
         if key not in trees:
             with keeping():
@@ -50,7 +50,7 @@ def remember_books() -> None:
         search_path: Sequence[str | Path] = (),
         *place: Any,
         on_warning: Callable[[Sequence[Diagnostic]], object],
-        question: CompiledQuestion | None = None,
+        question: BookQuestion | None = None,
         **options: bool,
     ) -> CompiledRulebook:
         file = loader.find(reference, search_path)
@@ -78,8 +78,8 @@ def remember_books() -> None:
             books[key] = compiled, heard
         return compiled
 
-    def recalled(question: CompiledQuestion) -> Recalled | None:
-        is_usual = question.source.startswith(shipped) and question.file.startswith(cache)
+    def recalled(question: BookQuestion) -> Recalled | None:
+        is_usual = question.name.startswith(shipped) and os.environ.get("RULEC_CACHE_DIR") == cache
         if not is_usual or question.search_path:
             return _RECALLED(question)
         if question not in recalls:

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from rulec.automata import compiled_cache, compiler, second_compiler
     from rulec.automata.bundle.bundle_file import read_compiled, write_compiled
     from rulec.automata.bundle.bundle_proof import proofs_of_file
-    from rulec.automata.compiled_cache import question_of
     from rulec.automata.prefix_machines import prefix_machines
     from rulec.automata.second_compiler import with_automata
     from rulec.automata.step_compilation import StepCompiler, build_automata
@@ -76,8 +75,14 @@ if TYPE_CHECKING:
     from rulec.rulebook.allowances import without_allowed
     from rulec.rulebook.batch import batch_check, batch_format
     from rulec.rulebook.files.catalogue import list_rulebooks, list_vocabularies
-    from rulec.rulebook.loader import load_vocabulary, parse_rulebook, read_rulebook
+    from rulec.rulebook.loader import (
+        load_vocabulary,
+        parse_rulebook,
+        read_trees,
+        resolve_trees,
+    )
     from rulec.rulebook.query_reader import read_query
+    from rulec.rulebook.reading.rulebook_reader import question_of, read_rulebook
     from rulec.scenario import Choice, available_scenarios, load_scenario
     from rulec.scenario.scenario_files import scene_of
     from rulec.scoring import score

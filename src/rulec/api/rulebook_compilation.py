@@ -61,7 +61,7 @@ def _of_source(
     question = None
     if recalls:
         question = lazy.question_of(reference, search_path, at)
-        known = None if question is None else lazy.compiled_cache.recalled(question)
+        known = lazy.compiled_cache.recalled(question)
         if known is not None:
             warn(known[1])
             return known[0] if step is None else replace(known[0].at_step(step), recompile=None)

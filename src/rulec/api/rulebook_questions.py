@@ -95,8 +95,8 @@ class RulebookQuestions(RulebookVerbs):
         RulecError.
         """
         finite("step_s", step_s)
-        book, lineage = lazy.read_with_lineage(first, self.search_path, self.at)
-        second_book, second_lineage = lazy.read_with_lineage(second, self.search_path, self.at)
+        book, lineage, _ = lazy.read_with_lineage(first, self.search_path, self.at)
+        second_book, second_lineage, _ = lazy.read_with_lineage(second, self.search_path, self.at)
         self._warn(list(dict.fromkeys((*book.warnings, *second_book.warnings))))
         diff = lazy.diff_rulebooks(
             first=book.rulebook,
@@ -109,7 +109,7 @@ class RulebookQuestions(RulebookVerbs):
         )
         # With patterns no settings are compared, since other rules may depend on them.
         settings = () if patterns else lazy.setting_pairs(lineage, second_lineage)
-        return replace(diff, settings=settings, files=(*book.paths, *second_book.paths))
+        return replace(diff, settings=settings, files=(*book.sources, *second_book.sources))
 
     def analyze(
         self,
@@ -123,9 +123,9 @@ class RulebookQuestions(RulebookVerbs):
         ``on_progress`` is called with the number of questions answered so far. ``spread`` answers
         them in advance, as the command does in several processes.
         """
-        loaded = lazy.read_rulebook(reference, self.search_path, self.at)
-        book, extends = loaded.rulebook, loaded.books[-1].extends
-        above = [Path(file.span.source.name) for file in loaded.books[-2:-1]]
+        trees = lazy.read_trees(reference, self.search_path)
+        book, extends = lazy.resolve_trees(trees, self.at).rulebook, trees.books[-1].extends
+        above = [Path(file.span.source.name) for file in trees.books[-2:-1]]
         # Compared for the same side of traffic: a treaty's near side is that of the party.
         bases = [
             lazy.read_rulebook(name, self.search_path, book.at, book.traffic) for name in above
@@ -136,7 +136,7 @@ class RulebookQuestions(RulebookVerbs):
             on_progress,
             extends=extends.span if extends else None,
             spread=spread,
-            changes=lazy.changing_lines(loaded.books),
+            changes=lazy.changing_lines(trees.books),
         )
         return lazy.without_allowed(findings)
 
@@ -154,7 +154,7 @@ class RulebookQuestions(RulebookVerbs):
         the text of its law, in which the cited provisions are looked up; ``law_now`` is the present
         version of that law, to find changes in what rules rest on.
         """
-        loaded, inherited = lazy.read_with_lineage(reference, self.search_path, self.at)
+        loaded, inherited, _ = lazy.read_with_lineage(reference, self.search_path, self.at)
         self._warn(loaded.warnings)
         outcomes = self.test(reference).outcomes if run_examples else ()
         failing = [(outcome.rule.name, outcome.name) for outcome in outcomes if not outcome.passed]
@@ -221,13 +221,13 @@ class RulebookQuestions(RulebookVerbs):
             raise ValueError(
                 f"the language is one of {', '.join(lazy.LANGUAGES)}, not {language!r}"
             )
-        loaded, lineage = lazy.read_with_lineage(reference, self.search_path, self.at)
+        loaded, lineage, trees = lazy.read_with_lineage(reference, self.search_path, self.at)
         self._warn(loaded.warnings)
         words = lazy.document_language(loaded.rulebook, language)
         if form == "markdown":
-            return lazy.book_document.as_markdown(loaded, lineage, words)
+            return lazy.book_document.as_markdown(loaded.rulebook, lineage, trees, words)
         figures = lazy.ExampleFigures(loaded.rulebook.vocabulary)
-        text = lazy.book_document.as_markdown(loaded, lineage, words, figures.add)
+        text = lazy.book_document.as_markdown(loaded.rulebook, lineage, trees, words, figures.add)
         page = lazy.PageTexts(
             lazy.title_of(loaded.rulebook), lazy.contents_heading(words), language, is_closed=True
         )

@@ -10,7 +10,6 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from datetime import date
 from fractions import Fraction
 from hashlib import sha256
 from pathlib import Path
@@ -18,14 +17,14 @@ from typing import TYPE_CHECKING, TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.bundle.mapped_rulebook import Compilation, compilation_in, written
-from rulec.automata.bundle.mapped_tables import mapped
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
-from rulec.automata.worker import compiler_choice
-from rulec.cache.cache_folder import program_digest, tidy, usable_folder, write_own
+from rulec.cache.cache_folder import tidy, usable_folder, write_own
+from rulec.cache.mapped_tables import mapped
+from rulec.cache.stored_objects import DAMAGED
 from rulec.diagnostics import Diagnostic, RulecError
-from rulec.rulebook.batch.check_cache import is_as_it_was
-from rulec.rulebook.files.search_path import Dependency, find_rulebook, read_bytes
-from rulec.version import __version__
+from rulec.rulebook.files.search_path import Dependency
+from rulec.rulebook.reading.reading_cache import BookQuestion, basis_of
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 
 if TYPE_CHECKING:
     from rulec.automata.compiler import CompilerTime
@@ -43,50 +42,13 @@ _OWN = "own"
 """In place of a step: the steps of the rules' own examples."""
 
 
-@dataclass(frozen=True, slots=True)
-class CompiledQuestion:
-    """The key of a compilation: where its source is, and what it contains.
-
-    ``file`` is the common start of the paths of the cache's files, ``stamp`` a digest of the source
-    and of rulec itself.
-    """
-
-    source: str
-    search_path: tuple[str, ...]
-    at: str
-    file: str
-    stamp: str
-
-
-def question_of(
-    reference: str | Path, search_path: Sequence[str | Path], at: str
-) -> CompiledQuestion | None:
-    """The cache key of a rulebook; None if there is no cache.
-
-    Raises RulecError as reading the rulebook does: R0703 for an unknown name, R0701.
-    """
-    folder = usable_folder()
-    if folder is None:
-        return None
-    folders = tuple([str(path) for path in search_path])
-    path = str(find_rulebook(reference, [Path(path) for path in folders]))
-    compiler = os.environ.get(compiler_choice.VARIABLE, "")
-    seen = sha256(f"{__version__}\0{program_digest()}\0{compiler}\0".encode())
-    seen.update(read_bytes(Path(path)))
-    # Messages show the path as it was given, so the same file under another path has another key.
-    parts = (path, at, *folders)
-    here = "" if all(map(os.path.isabs, (path, *folders))) else str(Path.cwd())
-    name = sha256("\0".join((here, *parts)).encode("utf-8", "surrogatepass")).hexdigest()[:40]
-    return CompiledQuestion(path, folders, at, str(folder / name), seen.hexdigest())
-
-
 def recalled(
-    question: CompiledQuestion,
+    question: BookQuestion,
 ) -> tuple[CompiledRulebook, tuple[Diagnostic, ...]] | None:
     """The cached rulebook with its warnings; None if it has to be compiled."""
     file = _File(question, _OWN)
     known = file.read()
-    if known is None or not _is_valid(known, question) or known.rulebook is None:
+    if known is None or known.rulebook is None or known.basis.texts(question) is None:
         return None
     text = replace(known, rulebook=None)
     compiled = replace(known.rulebook, origin=_ReadAgain(question))
@@ -94,50 +56,41 @@ def recalled(
 
 
 def remembered(
-    question: CompiledQuestion,
+    question: BookQuestion,
     compiled: CompiledRulebook,
     steps: StepCompiler,
     warnings: Sequence[Diagnostic],
     dependencies: Sequence[Dependency],
 ) -> CompiledRulebook:
     """Cache a newly compiled rulebook; what is later compiled from it is cached, too."""
-    day = "" if question.at or compiled.as_of else _today()
-    depends_on = tuple(dependencies)
-    text = Compilation(question.stamp, day, depends_on, warnings=tuple(warnings))
+    basis = basis_of(question, dependencies, compiled.as_of)
+    text = Compilation(basis, warnings=tuple(warnings))
     file = _File(question, _OWN)
     file.write(text, compiled)
     return _cached(compiled, CachedSteps(question, text, compiled, steps), file)
-
-
-def _today() -> str:
-    return date.today().isoformat()  # noqa: DTZ011 - today in the user's time zone
-
-
-def _is_valid(text: Compilation, question: CompiledQuestion) -> bool:
-    folders = [Path(folder) for folder in question.search_path]
-    return (
-        text.stamp == question.stamp
-        and text.day in ("", _today())
-        and all(is_as_it_was(dependency, folders) for dependency in text.dependencies)
-    )
 
 
 @dataclass(frozen=True, slots=True)
 class _File:
     """A file of the cache. Objects in ``given`` are not stored in it and are needed to read it."""
 
-    question: CompiledQuestion
+    question: BookQuestion
     step: str
     given: tuple[object, ...] = ()
 
     @property
     def path(self) -> Path:
-        return Path(f"{self.question.file}-{self.step}{_ENDING}")
+        folder = usable_folder()
+        if folder is None:
+            raise OSError("there is no cache")
+        place = "\0".join(self.question.place()).encode("utf-8", "surrogatepass")
+        return folder / f"{sha256(place).hexdigest()[:40]}-{self.step}{_ENDING}"
 
     def read(self) -> Compilation | None:
-        with suppress(OSError, ValueError, TypeError, LookupError):
-            compilation = compilation_in(mapped(self.path), self.given)
-            os.utime(self.path)
+        with suppress(OSError, *DAMAGED):
+            path = self.path
+            compilation = compilation_in(mapped(path), self.given)
+            os.utime(path)
             return compilation
         return None
 
@@ -146,8 +99,9 @@ class _File:
             prefixes = compiled.prefixes if isinstance(compiled.prefixes, StoredPrefixes) else None
             compiled = replace(compiled, origin=None, recompile=None, prefixes=prefixes)
         with suppress(OSError, ValueError):
-            write_own(self.path, written(replace(text, rulebook=compiled), self.given))
-            tidy(self.path.parent, _ENDING, MOST_FILES)
+            path = self.path
+            write_own(path, written(replace(text, rulebook=compiled), self.given))
+            tidy(path.parent, _ENDING, MOST_FILES)
 
 
 def _cached(compiled: CompiledRulebook, steps: CachedSteps, file: _File) -> CompiledRulebook:
@@ -159,14 +113,12 @@ def _cached(compiled: CompiledRulebook, steps: CachedSteps, file: _File) -> Comp
 class _ReadAgain:
     """The ``Origin`` of a cached rulebook."""
 
-    question: CompiledQuestion
+    question: BookQuestion
 
     def __call__(self) -> Rulebook:
         """The rulebook, read from its source. Raises RulecError."""
-        from rulec.rulebook.loader import read_rulebook  # the parser takes 60 ms to import
-
         question = self.question
-        return read_rulebook(question.source, question.search_path, question.at).rulebook
+        return load_rulebook(question.name, question.search_path, question.at)
 
 
 class CachedSteps:
@@ -177,7 +129,7 @@ class CachedSteps:
 
     def __init__(
         self,
-        question: CompiledQuestion,
+        question: BookQuestion,
         text: Compilation,
         own: CompiledRulebook,
         steps: StepCompiler | None = None,
@@ -217,7 +169,7 @@ class CachedSteps:
     ) -> CompiledRulebook | RulecError:
         text = self._text
         known = file.read()
-        if known and known.rulebook and _depends_on(known) == _depends_on(text):
+        if known and known.rulebook and known.basis == text.basis:
             return _cached(replace(known.rulebook, origin=self._own.origin), self, file)
         try:
             compiled = _sharing(compile_it(), self._own)
@@ -266,10 +218,6 @@ def _one_of(this: _Part, other: _Part) -> _Part:
 
 def _one_rule(this: CompiledRule, other: CompiledRule) -> CompiledRule:
     return _one_of(this, other) if this.certificate == other.certificate else this
-
-
-def _depends_on(text: Compilation) -> tuple[object, ...]:
-    return text.stamp, text.day, text.dependencies
 
 
 def _name(step_s: Fraction) -> str:

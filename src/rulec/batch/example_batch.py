@@ -14,7 +14,7 @@ from rulec.book_tests.example_coverage import RuleCoverage, coverage
 from rulec.book_tests.example_runs import ExampleRun, is_chosen, run_rulebook_examples
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.fault_messages import contained
-from rulec.rulebook.loader import read_rulebook
+from rulec.rulebook.reading.rulebook_reader import read_rulebook
 
 
 @dataclass(frozen=True, slots=True)

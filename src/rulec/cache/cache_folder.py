@@ -10,6 +10,7 @@ from pathlib import Path
 
 from rulec.files.written_files import OF_OTHERS, is_own, private
 from rulec.resources import package_files
+from rulec.version import __version__
 
 
 def cache_folder() -> Path | None:
@@ -63,11 +64,17 @@ def write_own(path: Path, data: bytes) -> None:
 
 @cache
 def program_digest() -> str:
-    """A digest of the times and sizes of rulec's own files, as they were at the first call."""
-    seen = sha256()
+    """A digest of the version, and the times and sizes of rulec's own files, at the first call."""
+    seen = sha256(__version__.encode())
     for path, status in package_files():
         seen.update(os.fsencode(f"{path}\0{status.st_mtime_ns}\0{status.st_size}\n"))
     return seen.hexdigest()
+
+
+def program_stamp() -> str:
+    """``program_digest``, with the compiler and the limits that this call asks for."""
+    variables = (os.environ.get(name, "") for name in ("RULEC_COMPILER", "RULEC_LIMITS"))
+    return "\0".join((program_digest(), *variables))
 
 
 def tidy(folder: Path, ending: str, most: int) -> None:

@@ -1,4 +1,4 @@
-"""Whether trees and machines are cached, which only the command line does."""
+"""Whether trees, rulebooks, machines and answers are kept, which only the command line does."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ _is_keeping: ContextVar[bool] = ContextVar("_is_keeping", default=False)
 
 
 def is_keeping() -> bool:
-    """Whether trees and machines are read from the cache and written to it."""
+    """Whether they are read from the cache and written to it."""
     return _is_keeping.get()
 
 
 @contextmanager
 def keeping(*, on: bool = True) -> Iterator[None]:
-    """Let trees and machines be cached in the block, or not."""
+    """Let them be kept in the block, or not."""
     token = _is_keeping.set(on)
     try:
         yield

@@ -17,7 +17,6 @@ from pathlib import Path
 from rulec.cache.cache_folder import program_digest, tidy, usable_folder, write_own
 from rulec.cache.keeping import is_keeping
 from rulec.files.written_files import is_own
-from rulec.version import __version__
 
 _QUICKLY = 1
 """The compression level of zlib: fast rather than small."""
@@ -37,7 +36,7 @@ class KeptBytes:
 
     def key(self, *parts: str) -> str:
         """The name of the entry made from these texts by this version of rulec."""
-        seen = sha256(f"{__version__}\0{program_digest()}\0{self.kind}".encode())
+        seen = sha256(f"{program_digest()}\0{self.kind}".encode())
         for part in parts:
             data = part.encode("utf-8", "surrogatepass")
             seen.update(f"\0{len(data)}\0".encode())

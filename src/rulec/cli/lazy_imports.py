@@ -125,9 +125,9 @@ if TYPE_CHECKING:
     from rulec.rulebook.files.catalogue import named_by_heads, rulebook_heads, rulebooks_with_rule
     from rulec.rulebook.files.search_path import available_rulebooks
     from rulec.rulebook.files.words_in_files import definitions_of_rulebooks
-    from rulec.rulebook.loader import load_rulebook, read_rulebook
     from rulec.rulebook.names import word_meanings
     from rulec.rulebook.query_reader import read_query
+    from rulec.rulebook.reading.rulebook_reader import load_rulebook, read_rulebook
     from rulec.rulebook.rulebook_model import Rule, Rulebook
     from rulec.rulebook.rules.rule_topics import on_topic
     from rulec.rulebook.word_search import FoundWord, find_word

@@ -17,7 +17,7 @@ from rulec.language_server.lenses.rule_answers import (
 )
 from rulec.language_server.names.document_names import DocumentNames
 from rulec.language_server.names.renaming import workspace_edit
-from rulec.rulebook.loader import read_rulebook
+from rulec.rulebook.reading.rulebook_reader import read_rulebook
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 
 

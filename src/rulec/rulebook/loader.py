@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, Source, SourceLocation, Span
-from rulec.garbage_collection import no_garbage_collection
 from rulec.rulebook.allowances import judged_allowances
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import vocabulary_for_rulebook
 from rulec.rulebook.files.referenced_files import Book, ReferencedFiles, source_file
 from rulec.rulebook.overlay.rulebook_overlay import law_line
 from rulec.rulebook.resolve import resolve, resolve_vocabulary
-from rulec.rulebook.rulebook_model import Rulebook, SourceFile, Traffic
+from rulec.rulebook.rulebook_model import Loaded, Rulebook, SourceFile, Traffic
 from rulec.rulebook.rules.cited_rules import with_provisions
 from rulec.rulebook.words_elsewhere import with_words_elsewhere
 from rulec.syntax import decode, parse, tree
@@ -51,21 +50,6 @@ class Trees:
 
 
 @dataclass(frozen=True, slots=True)
-class Loaded:
-    """A rulebook without errors, with its warnings and the syntax trees as in ``Trees``."""
-
-    rulebook: Rulebook
-    warnings: tuple[Diagnostic, ...] = ()
-    books: tuple[tree.File, ...] = field(default=(), compare=False, repr=False)
-    vocabularies: tuple[tree.File, ...] = field(default=(), compare=False, repr=False)
-
-    @property
-    def paths(self) -> list[str]:
-        """The files that it was read from."""
-        return [file.span.source.name for file in (*self.books, *self.vocabularies)]
-
-
-@dataclass(frozen=True, slots=True)
 class Diagnosis:
     """All diagnostics about a file, and the other files that it depends on.
 
@@ -76,51 +60,31 @@ class Diagnosis:
     dependencies: tuple[search.Dependency, ...] | None = ()
 
 
-def load_rulebook(
-    reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
-) -> Rulebook:
-    """A resolved rulebook: ``read_rulebook`` without its warnings."""
-    return read_rulebook(reference, search_path, at).rulebook
-
-
-@no_garbage_collection()
-def read_rulebook(
-    reference: str | Path,
-    search_path: Sequence[str | Path] = (),
-    at: str = "",
-    traffic: Traffic = "",
-) -> Loaded:
-    """Load a rulebook, with its warnings.
-
-    Args:
-        reference: a name, looked for as NAME.rules and NAME/NAME.rules in the folders of
-            ``search_path`` and then among the rulebooks that ship with rulec; or a path, which
-            contains a ``/`` or ends in ``.rules``.
-        search_path: folders of rulebooks and vocabularies.
-        at: the day (ISO) whose law it is; if empty, that of its law or else today.
-        traffic: read it as one for this side, whatever it says itself.
-
-    Raises RulecError: with every mistake in the rulebook, in those that it extends, and in the
-    vocabularies that they use.
-    """
-    return resolve_trees(parse_all(find(reference, search_path)), at, traffic)
+def read_trees(reference: str | Path, search_path: Sequence[str | Path] = ()) -> Trees:
+    """``parse_all`` of what ``find`` finds. Raises RulecError."""
+    return parse_all(find(reference, search_path))
 
 
 def find(reference: str | Path, search_path: Sequence[str | Path] = ()) -> RulebookFile:
     """Find a rulebook by name or path, and read it. Raises RulecError."""
     folders = tuple(Path(folder) for folder in search_path)
     path = search.find_rulebook(reference, folders)
-    data = search.read_bytes(path)
-    return RulebookFile(decode(str(path), data), data, path, folders)
+    return file_of(path, search.read_bytes(path), folders)
 
 
-def parse_all(file: RulebookFile) -> Trees:
+def file_of(path: Path, data: bytes, search_path: Sequence[Path] = ()) -> RulebookFile:
+    """A rulebook's file that has been read. Raises RulecError if it is not a text."""
+    return RulebookFile(decode(str(path), data), data, path, tuple(search_path))
+
+
+def parse_all(file: RulebookFile, *, keeps: bool = True) -> Trees:
     """Parse a rulebook, its bases, and the vocabularies that they use.
 
-    Mistakes of spelling are in the result. Raises RulecError R0206 for a vocabulary.
+    Mistakes of spelling are in the result. The cache ``keeps`` the rulebook's own tree, or not.
+    Raises RulecError R0206 for a vocabulary.
     """
     # What somebody is typing has no path: it is another text each time.
-    own, mistakes = parse(file.source) if file.path is None else parsed(file.source)
+    own, mistakes = parse(file.source) if file.path is None else parsed(file.source, keeps=keeps)
     if own.kind == "vocabulary" and own.name is not None:
         expected = "expected `rulebook NAME`"
         raise RulecError(vocabulary_for_rulebook(own.name, expected=expected))
@@ -187,7 +151,7 @@ def diagnose(
     """
     try:
         source = decode(name, data)
-        file, mistakes = parse(source) if path is None else parsed(source)
+        file, mistakes = parse(source) if path is None else parsed(source, keeps=False)
         if file.kind == "rulebook":
             text = RulebookFile(source, data, path, tuple(search_path))
             return _resolved(trees_of(text, file, mistakes), at)[1]
@@ -236,7 +200,8 @@ def _resolved(trees: Trees, at: str, traffic: Traffic = "") -> tuple[Loaded | No
     diagnosis = Diagnosis(findings, trees.dependencies)
     if rulebook is None or any(finding.severity == "error" for finding in findings):
         return None, diagnosis
-    return Loaded(rulebook, findings, trees.books, trees.vocabularies), diagnosis
+    sources = (file.span.source for file in (*trees.books, *trees.vocabularies))
+    return Loaded(rulebook, findings, {source.name: source for source in sources}), diagnosis
 
 
 def _distinct(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:

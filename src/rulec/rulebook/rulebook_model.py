@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Literal
 
-from rulec.diagnostics import Span
+from rulec.diagnostics import Diagnostic, Source, Span
 from rulec.logic.formula import Atom, Formula
 from rulec.value_display import Rows, short_repr
 from rulec.vocabulary import Vocabulary
@@ -220,6 +220,15 @@ class Rulebook(Rows):
     def rows(self) -> list[dict[str, Any]]:
         """One row per rule."""
         return rule_rows(self.rules)
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """A rulebook without errors, with its warnings, and the files that it was read from by name."""
+
+    rulebook: Rulebook
+    warnings: tuple[Diagnostic, ...] = ()
+    sources: Mapping[str, Source] = field(default_factory=dict, compare=False, repr=False)
 
 
 def rule_rows(rules: Iterable[Any]) -> list[dict[str, Any]]:

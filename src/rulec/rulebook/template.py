@@ -8,9 +8,9 @@ from pathlib import Path
 from textwrap import wrap
 
 from rulec.diagnostics import RulecError
-from rulec.rulebook.loader import Loaded, parse_rulebook, read_rulebook
+from rulec.rulebook.loader import parse_rulebook, read_trees, resolve_trees
 from rulec.rulebook.names.doc_comments import description
-from rulec.rulebook.rulebook_model import Rule
+from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.rulebook.rules.rule_topics import by_group
 from rulec.rulebook.template_messages import no_name
 from rulec.syntax import decode, parse, tree
@@ -82,9 +82,10 @@ def new_rulebook_upon(name: str, base: str, today: date, search_path: Sequence[P
     Raises RulecError if a rulebook cannot have this name (R0738), or if the base cannot be read.
     """
     _refuse(name)
-    inherited = read_rulebook(base, search_path)
+    trees = read_trees(base, search_path)
+    inherited = resolve_trees(trees).rulebook
     head = _UPON.format(name=name, base=base, today=today.isoformat())
-    text = "\n".join([head, *_changes(inherited)])
+    text = "\n".join([head, *_changes(inherited, trees.books)])
     parse_rulebook(text, f"{name}.rules", search_path)
     return text
 
@@ -102,13 +103,12 @@ def _refuse(name: str) -> None:
 _ANY = "signal p\nhard rule r { require p }\n"
 
 
-def _changes(loaded: Loaded) -> Iterator[str]:
-    base = loaded.rulebook
+def _changes(base: Rulebook, books: Sequence[tree.File]) -> Iterator[str]:
     if base.traffic:
         other = "left" if base.traffic == "right" else "right"
         yield f"# traffic {other}   # belongs into the header; `{base.name}` says {base.traffic}"
         yield ""
-    options = _options(loaded)
+    options = _options(books)
     if options:
         more = f"`rulec show --tree {base.name} --all` has numbers to set, too."
         yield f"# What laws differ in; {more}"
@@ -130,10 +130,10 @@ def _changes(loaded: Loaded) -> Iterator[str]:
     yield ""
 
 
-def _options(loaded: Loaded) -> list[str]:
+def _options(books: Sequence[tree.File]) -> list[str]:
     """The options as they are set, each with what is said about it."""
     values: dict[str, tuple[bool, str]] = {}
-    for item in (item for book in loaded.books for item in book.items):
+    for item in (item for book in books for item in book.items):
         if isinstance(item, tree.OptionItem | tree.SetItem) and isinstance(item.value, bool):
             _, known = values.get(item.name.text, (False, ""))
             values[item.name.text] = item.value, description(item.span) or known

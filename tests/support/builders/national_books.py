@@ -8,8 +8,8 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import Source
 from rulec.resources import rulebooks_folder
-from rulec.rulebook.loader import Loaded, read_rulebook
-from rulec.rulebook.rulebook_model import Rule
+from rulec.rulebook.reading.rulebook_reader import read_rulebook
+from rulec.rulebook.rulebook_model import Loaded, Rule
 from rulec.toml import parsed_toml
 from rulec.trace import Trace
 

@@ -11,11 +11,12 @@ from dataclasses import replace
 from pathlib import Path, PurePath
 
 from rulec.analysis.lineage import rule_lineage
-from rulec.rulebook.loader import Loaded, read_rulebook
+from rulec.rulebook.loader import Trees, read_trees, resolve_trees
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.names.referenced_names import names_used
 from rulec.rulebook.overlay.rule_override import lost_exceptions, merged
 from rulec.rulebook.overlay.rulebook_overlay import in_force
+from rulec.rulebook.rulebook_model import Loaded
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula, print_parameters
 
@@ -58,10 +59,11 @@ def book_lineage_of(chain: Sequence[tree.File], at: str) -> rule_lineage.BookLin
 
 def read_with_lineage(
     reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
-) -> tuple[Loaded, rule_lineage.BookLineage]:
-    """A rulebook and its lineage. Arguments and errors as for ``load_rulebook``."""
-    loaded = read_rulebook(reference, search_path, at)
-    return loaded, book_lineage_of(loaded.books, loaded.rulebook.at)
+) -> tuple[Loaded, rule_lineage.BookLineage, Trees]:
+    """A rulebook, its lineage and its trees. Arguments and errors as for ``load_rulebook``."""
+    trees = read_trees(reference, search_path)
+    loaded = resolve_trees(trees, at)
+    return loaded, book_lineage_of(trees.books, loaded.rulebook.at), trees
 
 
 def book_header(file: tree.File) -> rule_lineage.BookHeader:

@@ -8,86 +8,70 @@ refusals that the job alone decides: neither time, nor memory, nor an error of t
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import suppress
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-import msgspec
-
-from rulec.automata.compiler_jobs import Done, Failed, FailedWhy, Job
-from rulec.automata.mealy_monitor import MealyMonitor
+from rulec.automata.bundle.mapped_rulebook import MACHINE_KINDS
+from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.worker import compiler_choice
 from rulec.cache.kept_bytes import KeptBytes
+from rulec.cache.stored_objects import KeptObjects, ObjectCodec, kinds_of_fields
 
 MOST_MACHINES = 6000
 """The greatest number kept; the longest unused go first. A large rulebook has 200 for one step."""
 
-
 _DECIDED = ("letters", "steps", "size", "sets", "reach")
 
 
-class KeptMachine(msgspec.Struct, array_like=True):
-    """A job's machine without its reads, its automaton as text, and Spot's version."""
+@dataclass(frozen=True, slots=True)
+class KeptJob:
+    """The answer to a job, and Spot's version."""
 
     spot: str
-    letters: tuple[int, ...]
-    successors: tuple[tuple[int, ...], ...]
-    outputs: tuple[tuple[bool, ...], ...]
-    rejecting_sink: int | None
-    accepting_sink: int | None
-    hoa: str
+    answer: Done | Failed
 
 
-class KeptRefusal(msgspec.Struct, array_like=True):
-    """Why a job has no machine, and Spot's version."""
-
-    spot: str
-    why: FailedWhy
+_MACHINES = KeptObjects(
+    KeptBytes("machine", MOST_MACHINES),
+    ObjectCodec({**MACHINE_KINDS, **kinds_of_fields((KeptJob, Done, Failed))}),
+)
 
 
 class MachineCache:
     """The known answers to jobs of one compiler."""
 
     def __init__(self, choice: str) -> None:
-        self._kept = KeptBytes("machine", MOST_MACHINES)
-        self._compiler = f"{choice} {_installed()}" if self._kept.can_be else None
+        self._compiler = f"{choice} {_installed()}" if _MACHINES.files.can_be else None
 
     def recalled(self, jobs: Sequence[Job]) -> tuple[list[Done | Failed | None], str | None]:
         """The answer to each job, and Spot's version; each None if unknown."""
-        answers: list[Done | Failed | None] = []
-        spot = None
-        for job in jobs:
-            kept = self._recalled(job)
-            spot = spot if kept is None else kept.spot
-            answer = Failed(kept.why) if isinstance(kept, KeptRefusal) else None
-            answers.append(_done(job, kept) if isinstance(kept, KeptMachine) else answer)
-        return answers, spot
+        known = [self._recalled(job) for job in jobs]
+        spots = [kept.spot for kept in known if kept is not None]
+        answers = [None if kept is None else kept.answer for kept in known]
+        return answers, spots[-1] if spots else None
 
-    def _recalled(self, job: Job) -> KeptMachine | KeptRefusal | None:
-        data = None if self._compiler is None else self._kept.recall(self._key(job))
-        if data is not None:
-            with suppress(ValueError):  # the base class of msgspec's errors
-                return msgspec.msgpack.decode(data, type=KeptMachine)
-            with suppress(ValueError):
-                refusal = msgspec.msgpack.decode(data, type=KeptRefusal)
-                return refusal if refusal.why in _DECIDED else None
-        return None
+    def _recalled(self, job: Job) -> KeptJob | None:
+        if self._compiler is None:
+            return None
+        kept = _MACHINES.recall(self._key(job))
+        return kept if isinstance(kept, KeptJob) else None
 
     def keep(self, jobs: Sequence[Job], answers: Sequence[Done | Failed | None], spot: str) -> None:
         """Keep the machines among the answers to some jobs, and the refusals."""
         if self._compiler is None:
             return
-        contents = {}
+        contents: dict[str, object] = {}
         for job, answer in zip(jobs, answers, strict=True):
             if isinstance(answer, Done) and answer.machine.reads == job.reads:
-                contents[self._key(job)] = msgspec.msgpack.encode(_kept(answer, spot))
+                contents[self._key(job)] = KeptJob(spot, answer)
             elif isinstance(answer, Failed) and answer.why in _DECIDED:
-                contents[self._key(job)] = msgspec.msgpack.encode(KeptRefusal(spot, answer.why))
-        self._kept.keep(contents)
+                contents[self._key(job)] = KeptJob(spot, Failed(answer.why))
+        _MACHINES.keep(contents)
 
     def _key(self, job: Job) -> str:
         # The repr of a job shows everything except places in files.
-        return self._kept.key(str(self._compiler), repr(job))
+        return _MACHINES.files.key(str(self._compiler), repr(job))
 
 
 def _installed() -> str:
@@ -100,21 +84,3 @@ def _installed() -> str:
     except OSError:
         return spec.origin
     return f"{spec.origin} {status.st_mtime_ns} {status.st_size}"
-
-
-def _kept(answer: Done, spot: str) -> KeptMachine:
-    machine = answer.machine
-    tables = machine.letters, machine.successors, machine.outputs
-    return KeptMachine(spot, *tables, machine.rejecting_sink, machine.accepting_sink, answer.hoa)
-
-
-def _done(job: Job, kept: KeptMachine) -> Done:
-    machine = MealyMonitor(
-        job.reads,
-        kept.letters,
-        kept.successors,
-        kept.outputs,
-        rejecting_sink=kept.rejecting_sink,
-        accepting_sink=kept.accepting_sink,
-    )
-    return Done(machine, kept.hoa)

@@ -298,15 +298,15 @@ at_option = click.option(
 )
 
 
-def _without_cache(context: click.Context, _: click.Parameter, value: bool) -> bool:
+def _without_cache(context: click.Context, _: click.Parameter, value: bool) -> None:
     if value:
         context.with_resource(keeping(on=False))
-    return value
 
 
 no_cache_option = click.option(
     "--no-cache",
     is_flag=True,
+    expose_value=False,
     callback=_without_cache,
     help="Do not reuse earlier answers; compute everything again.",
 )

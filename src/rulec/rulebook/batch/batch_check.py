@@ -6,7 +6,6 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from datetime import date
 from glob import glob, has_magic
 from pathlib import Path
 from typing import Any
@@ -17,10 +16,11 @@ from rulec.diagnostics.fault_messages import contained
 from rulec.files.file_messages import NOTHING_LEFT
 from rulec.files.source_detection import beginning_of, first_word_at
 from rulec.rulebook.batch.bare_rules import bare_rules
-from rulec.rulebook.batch.check_cache import CheckQuestion, recall, remember
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import EXTENDS_CIRCLE, NAME_NOT_FOUND
 from rulec.rulebook.files.source_walk import SUFFIX, FoundSources, LeftAlone, sources_below
+from rulec.rulebook.reading.reading_cache import BookQuestion
+from rulec.rulebook.reading.source_findings import findings_of
 from rulec.settings import Exclusion
 from rulec.value_display import Rows, short_repr
 
@@ -54,8 +54,6 @@ def check(
     standard_input: Callable[[], bytes],
     search_path: Sequence[Path] = (),
     at: str = "",
-    *,
-    recalls: bool = False,
     excluded: Exclusion | None = None,
 ) -> Checked:
     """Check the files that references name; report each finding once.
@@ -65,9 +63,9 @@ def check(
         standard_input: the text that ``-`` stands for, as of a file of the working directory.
         search_path: folders of rulebooks and vocabularies.
         at: the day (ISO) whose law it is; if empty, that of each `law` line or else today.
-        recalls: may findings come from the cache where nothing has changed, and go there?
         excluded: what is left alone in folders.
     """
+    folders = tuple(map(str, search_path))
     files: dict[str, str] = {}
     findings: dict[tuple[object, ...], Diagnostic] = {}
     sources = FoundSources()
@@ -90,7 +88,10 @@ def check(
                     (uncited, untested), bare_rules(data.decode(errors="replace")), strict=True
                 ):
                     names += bare
-                for finding in _findings(path, data, search_path, at, recalls=recalls):
+                question = BookQuestion(
+                    str(path), data, folders, at, has_path=path is not _STANDARD_INPUT
+                )
+                for finding in findings_of(question):
                     findings.setdefault(_identity(finding), finding)
         except RulecError as error:
             unread += error.diagnostics
@@ -102,26 +103,6 @@ def check(
         uncited=tuple(uncited),
         untested=tuple(untested),
     )
-
-
-def _findings(
-    path: Path, data: bytes, search_path: Sequence[Path], at: str, *, recalls: bool
-) -> tuple[Diagnostic, ...]:
-    place = "" if path is _STANDARD_INPUT else str(path)
-    folders = tuple(str(folder) for folder in search_path)
-    today = date.today().isoformat()  # noqa: DTZ011 - the reader's own day
-    question = CheckQuestion(
-        name=str(path), path=place, data=data, search_path=folders, at=at, day=today
-    )
-    known = recall(question) if recalls else None
-    if known is not None:
-        return known
-    from rulec.rulebook.loader import diagnose  # takes longer than to recall
-
-    diagnosis = diagnose(str(path), data, path, search_path, at)
-    if recalls and diagnosis.dependencies is not None:
-        remember(question, diagnosis.findings, diagnosis.dependencies)
-    return diagnosis.findings
 
 
 def _named_sources(

@@ -45,16 +45,13 @@ def format_files(
     references: Iterable[str],
     search_path: Sequence[Path] = (),
     excluded: Exclusion | None = None,
-    *,
-    recalls: bool = False,
 ) -> FormattedFiles:
     """Format the files at the paths, each once, and collect errors; nothing is written.
 
-    ``search_path`` is used for help when a name is given, ``excluded`` is skipped in folders. With
-    ``recalls``, the cache of formatted texts is used and updated. Raises FormattingError for a bug
-    in rulec.
+    ``search_path`` is used for help when a name is given, ``excluded`` is skipped in folders.
+    Raises FormattingError for a bug in rulec.
     """
-    known = KnownForms.read() if recalls else KnownForms()
+    known = KnownForms.read()
     done: dict[str, Formatted] = {}
     refused: list[Diagnostic] = []
     left_alone: list[LeftAlone] = []
@@ -79,8 +76,7 @@ def format_files(
                 known.add(done[identity].after)
             except RulecError as error:
                 refused += error.diagnostics
-    if recalls:
-        known.write()
+    known.write()
     return FormattedFiles(tuple(done.values()), tuple(refused), tuple(left_alone))
 
 

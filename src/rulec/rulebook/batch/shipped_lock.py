@@ -35,15 +35,14 @@ def write_lock(files: Iterable[str], search_path: Sequence[Path], at: str) -> tu
 
     Raises RulecError: R0702, and for mistakes in the files.
     """
-    # Rulebooks, 100 ms: not for `check` alone.
-    from rulec.rulebook.loader import read_rulebook
+    from rulec.rulebook.reading.rulebook_reader import read_rulebook  # 50 ms, not for each check
 
     shipped = rulebooks_folder().resolve()
     hashes: dict[str, str] = {}
     for file in files:
         read = [file]
         if not is_vocabulary(Path(file)):
-            read = read_rulebook(file if "/" in file else f"./{file}", search_path, at).paths
+            read = [*read_rulebook(file if "/" in file else f"./{file}", search_path, at).sources]
         for path in map(Path, read):
             with suppress(ValueError):  # what does not ship is the project's own
                 name = path.resolve().relative_to(shipped).as_posix()

@@ -1,43 +1,41 @@
-"""A cache of syntax trees by their text.
-
-If anything is wrong with a cache file, the text is parsed again.
-"""
+"""A cache of syntax trees by their text."""
 
 from __future__ import annotations
 
-import json
-from contextlib import suppress
+from dataclasses import is_dataclass
+from typing import Any
 
 from rulec.cache.kept_bytes import KeptBytes
-from rulec.diagnostics import Diagnostic, Source
-from rulec.garbage_collection import no_garbage_collection
+from rulec.cache.stored_objects import KeptObjects, ObjectCodec, kinds_of_fields
+from rulec.diagnostics import Diagnostic, Source, Span
 from rulec.syntax import tree
-from rulec.syntax.caching.tree_codec import decoded, encoded
 from rulec.syntax.parser import parse
 
 MOST_TREES = 200
 """How many trees are kept; the longest unused ones are removed first."""
 
+_NODES: list[type[Any]] = [
+    kind
+    for _, kind in sorted(vars(tree).items())
+    if isinstance(kind, type) and is_dataclass(kind) and kind.__module__ == tree.__name__
+]
+TREES = ObjectCodec(kinds_of_fields([*_NODES, Span]))
+"""A tree is written with its source and ``NOWHERE`` as given objects."""
 
-def parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
-    """The result of ``parse`` for a text, from the cache if possible; otherwise it is added."""
-    kept = KeptBytes("tree", MOST_TREES)
-    if not kept.can_be:
+
+def parsed(source: Source, *, keeps: bool = True) -> tuple[tree.File, tuple[Diagnostic, ...]]:
+    """The result of ``parse`` for a text, from the cache if possible; otherwise it is added.
+
+    Unless ``keeps``, it is not added: what is made from the tree is kept instead.
+    """
+    kept = KeptObjects(KeptBytes("tree", MOST_TREES), TREES)
+    if not kept.files.can_be:
         return parse(source)
-    key = kept.key(source.text)
-    known = _recalled(kept.recall(key), source)
-    if known is not None:
+    key, given = kept.files.key(source.text), (source, tree.NOWHERE)
+    known = kept.recall(key, given)
+    if isinstance(known, tree.File):
         return known, ()
     file, mistakes = parse(source)
-    if not mistakes:
-        with suppress(ValueError, TypeError, RecursionError):
-            text = json.dumps(encoded(file, source), separators=(",", ":"))
-            kept.keep({key: text.encode()})
+    if keeps and not mistakes:
+        kept.keep({key: file}, given)
     return file, mistakes
-
-
-def _recalled(data: bytes | None, source: Source) -> tree.File | None:
-    if data is not None:
-        with suppress(ValueError, TypeError, LookupError, RecursionError), no_garbage_collection():
-            return decoded(json.loads(data), source)
-    return None

@@ -94,7 +94,6 @@ def command(
     n_witnesses: int,
     to: Output,
     witness: str | None,
-    no_cache: bool,
     at: str,
 ) -> int:
     """Compare two RULEBOOKs: which rules of the first are stricter or laxer than the second's.
@@ -121,7 +120,7 @@ def command(
         asked = ("diff", "on", topic, at, str((to.form, width, verbose)), *rulebooks)
         question = AnswerQuestion(asked, search_path())
         on_topic = partial(_on_topic, rulebooks, (topic, at), to, in_full=verbose)
-        put_answer(on_topic()[0] if no_cache else question.answer(on_topic), to)
+        put_answer(question.answer(on_topic), to)
         return ExitStatus.OK
     if every:
         if paired:
@@ -129,7 +128,7 @@ def command(
         if witness is not None:
             raise click.UsageError("--witness is for two rulebooks, not for --all")
         pairs = AllPairs(tuple(patterns), step_s, at, to.form, width_of(to))
-        return _compared(rulebooks, pairs, to, recalls=not no_cache)
+        return _compared(rulebooks, pairs, to)
     if len(rulebooks) != 2:
         books = " ".join(rulebooks)
         raise click.UsageError(
@@ -143,7 +142,7 @@ def command(
     shown = (to.form, width_of(to), in_full, wants_color(sys.stdout))
     question_words = ("diff", at, *map(str, (*two, *shown)), *rulebooks)
     question = AnswerQuestion(question_words, search_path())
-    known = question.recall() if witness is None and not no_cache else None
+    known = question.recall() if witness is None else None
     if known is None:
         warned: list[Diagnostic] = []
         difference = _difference(rulebooks, two, at, warned)
@@ -195,7 +194,7 @@ def _on_topic(
     read = [lazy.read_rulebook(name, search_path(), at) for name in rulebooks]
     books = rules_on_topic([loaded.rulebook for loaded in read], topic)
     text = lazy.topic_report.render(books, topic, to.form, width_of(to), in_full=in_full)
-    return text, [path for loaded in read for path in loaded.paths]
+    return text, [path for loaded in read for path in loaded.sources]
 
 
 def _write_witnesses(difference: lazy.RulebookDiff, path: str) -> None:
@@ -223,13 +222,13 @@ class AllPairs(NamedTuple):
     width: int
 
 
-def _compared(rulebooks: Sequence[str], pairs: AllPairs, to: Output, *, recalls: bool) -> int:
+def _compared(rulebooks: Sequence[str], pairs: AllPairs, to: Output) -> int:
     """Write the overview of these rulebooks, or of all, and return the status."""
     folders = search_path()
     names = list(dict.fromkeys(rulebooks or available_rulebooks(folders)))
     every = "" if rulebooks else "all"
     question = AnswerQuestion(("diff", every, *map(str, pairs), "", *names), folders)
-    known = question.recall() if recalls else None
+    known = question.recall()
     if known is None:
         with answer_lines(to) as write:
             text, alone, is_complete, is_uniform, paths = _matrix(
@@ -252,7 +251,7 @@ def _compared(rulebooks: Sequence[str], pairs: AllPairs, to: Output, *, recalls:
 
 def _matrix(
     names: Sequence[str], pairs: AllPairs, write: Callable[[str], object], *, is_all: bool
-) -> tuple[str, list[str], bool, bool, list[str]]:
+) -> tuple[str, tuple[str, ...], bool, bool, list[str]]:
     """The overview, the rulebooks left out, whether it is complete and uniform, and the files read.
 
     It is written as it is made; for fewer than two rulebooks it is empty.
@@ -267,7 +266,7 @@ def _matrix(
             with errors_told():
                 loaded = lazy.read_rulebook(reference, search_path(), pairs.at)
             if loaded is not None:
-                paths.extend(loaded.paths)
+                paths.extend(loaded.sources)
                 yield replace(loaded.rulebook, name=name)
 
     def put(text: str) -> None:
@@ -286,11 +285,11 @@ def _matrix(
     refuse_unmatched(pairs.patterns, matrix.books)
     is_read = len(matrix.books) == len(names)
     uses = Counter(rule.name for book in matrix.books for rule in book.rules)
-    alone = [
+    alone = tuple(
         book.name
         for book in matrix.books
         if is_all and all(uses[rule.name] == 1 for rule in book.rules)
-    ]
+    )
     matrix = matrix.without(alone)
     if len(matrix.books) > 1:
         put(lazy.matrix_report.render(matrix, pairs.form, pairs.width))

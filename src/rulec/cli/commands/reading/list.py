@@ -84,5 +84,5 @@ def _rules(
     books = [loaded.rulebook for loaded in read if loaded.rulebook.rules]
     books = books if topic is None else [*rules_on_topic(books, topic)]
     text = lazy.rule_list.as_text(books, width, "") if width else lazy.rule_list.as_json(books)
-    paths = [path for loaded in read for path in loaded.paths] if is_complete else []
+    paths = [path for loaded in read for path in loaded.sources] if is_complete else []
     return (text, is_complete), paths

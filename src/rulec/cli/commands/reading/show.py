@@ -188,7 +188,7 @@ def _read(
     if Path(reference).suffix != ".json":
         refuse_source(reference)
         loaded = lazy.read_rulebook(reference, search_path(), at)
-        return loaded.rulebook, None, loaded.paths
+        return loaded.rulebook, None, [*loaded.sources]
     compiled = lazy.read_compiled(Path(reference), at)
     # The other fields of a compiled rule are its compiled form.
     names = {field.name for field in fields(lazy.CompiledRule)} & {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 import click
 
@@ -42,16 +42,16 @@ def command(
     width, color = width_of(to), wants_color(sys.stdout)
     words = ("tree", *rulebooks, repr((patterns, every, to.form, width, color, at)))
 
-    def made() -> tuple[str, Sequence[str]]:
+    def made() -> tuple[str, Iterable[str]]:
         """What to show, and its sources; none with warnings, or of several rulebooks."""
         if len(rulebooks) == 1:
-            loaded, lineage = lazy.read_with_lineage(rulebooks[0], search_path(), at)
+            loaded, lineage, _ = lazy.read_with_lineage(rulebooks[0], search_path(), at)
             if loaded.warnings:
                 print_diagnostics(loaded.warnings)
             inherited = lazy.lineage_tree.chosen(lineage, patterns)
             if patterns and not inherited.rules:
                 raise click.UsageError(f"{inherited.book} has no rule like {named(patterns)}")
-            sources = () if loaded.warnings else loaded.paths
+            sources = () if loaded.warnings else loaded.sources
             if to.form == "text" and not every and not patterns:
                 return lazy.lineage_tree.as_overview(inherited, width), sources
             if to.form == "text":

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from functools import partial
 
 import click
@@ -25,7 +24,6 @@ from rulec.diagnostics import Diagnostic
 from rulec.report.text.console import progress
 from rulec.report.text.terminal_text import counted
 from rulec.rulebook.batch.answer_cache import AnswerQuestion
-from rulec.rulebook.batch.check_cache import diagnostic_of
 from rulec.settings import search_path
 
 
@@ -41,7 +39,6 @@ def command(
     *,
     fail_on: str,
     jobs: Jobs,
-    no_cache: bool,
     at: str,
 ) -> int:
     """Analyze the automata of RULEBOOKs (names, or paths of sources) for mistakes.
@@ -58,9 +55,9 @@ def command(
     for rulebook in dict.fromkeys(rulebooks):
         with errors_told(unread.extend):
             question = AnswerQuestion(("analyze", rulebook, at), search_path())
-            known = None if no_cache else question.recall()
+            known = question.recall()
             if known is not None:
-                findings += map(diagnostic_of, known)
+                findings += known
                 continue
             with progress(f"analyzing {rulebook}", None) as tell:
                 spread = lazy.spreading.spreading(
@@ -69,7 +66,7 @@ def command(
                 diagnostics = open_session(at).analyze(rulebook, on_progress=tell, spread=spread)
             findings += diagnostics
             read = lazy.read_rulebook(rulebook, search_path(), at)
-            question.remember([asdict(finding) for finding in diagnostics], read.paths)
+            question.remember(diagnostics, read.sources)
     status = print_findings(
         list(dict.fromkeys(findings)),
         unread,

@@ -51,7 +51,6 @@ def command(
     *,
     fail_on: str,
     at: str,
-    no_cache: bool,
     fix: bool,
     lock: bool,
     verbose: bool,
@@ -72,11 +71,11 @@ def command(
         raise click.UsageError("`-` is standard input; a lock is of files")
 
     def run() -> int:
-        done = _checked(sources, at, recalls=not no_cache)
+        done = _checked(sources, at)
         if fix and any(finding.fix for finding in done.findings):
             number, changed = lazy.write_fixes(done.files, done.findings)
             print_remark(f"{counted(number, 'fix', 'fixes')} written to {', '.join(changed)}")
-            done = _checked(sources, at, recalls=not no_cache)
+            done = _checked(sources, at)
         if lock and not done.unread:
             path, number = write_lock(done.files, search_path(), at)
             print_remark(f"rulec: wrote {path}: {counted(number, 'file')} that rulec ships")
@@ -109,8 +108,8 @@ def _nothing_found(done: Checked, width: int) -> str:
     return "\n".join(part for line in lines for part in broken(line, width, later="  "))
 
 
-def _checked(sources: tuple[str, ...], at: str, *, recalls: bool) -> Checked:
-    return check(sources, _standard_input, search_path(), at, recalls=recalls, excluded=exclusion())
+def _checked(sources: tuple[str, ...], at: str) -> Checked:
+    return check(sources, _standard_input, search_path(), at, exclusion())
 
 
 def _standard_input() -> bytes:

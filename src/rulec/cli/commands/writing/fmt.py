@@ -51,7 +51,7 @@ def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -
             return ExitStatus.OK
         _show([file] if file.changed else [], diff=diff)
         return ExitStatus.after(failed=file.changed)
-    done = format_files(paths or ["."], search_path(), exclusion(), recalls=True)
+    done = format_files(paths or ["."], search_path(), exclusion())
     files, refused = done.files, done.refused
     changed = [file for file in files if file.changed]
     in_form = len(files) - len(changed)

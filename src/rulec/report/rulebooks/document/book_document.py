@@ -23,7 +23,7 @@ from rulec.report.rulebooks.document_language import IN_ENGLISH, DocumentLanguag
 from rulec.report.text import markdown
 from rulec.report.text.formula_lines import formula_lines
 from rulec.report.text.markdown import Block, Heading, code, escaped, fenced, linked, table
-from rulec.rulebook.loader import Loaded
+from rulec.rulebook.loader import Trees
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.overlay.rulebook_overlay import in_force
 from rulec.rulebook.rulebook_model import Rulebook
@@ -64,16 +64,16 @@ def contents_heading(words: DocumentLanguage) -> str:
 
 
 def as_markdown(
-    loaded: Loaded,
+    rulebook: Rulebook,
     inherited: BookLineage,
+    trees: Trees,
     words: DocumentLanguage = IN_ENGLISH,
     picture: ExamplePicture | None = None,
 ) -> str:
     """The whole document; ``picture`` gives for an example the address of its image."""
-    rulebook = loaded.rulebook
     top: list[Block] = [Heading(1, title_of(rulebook)), *_top(rulebook, words)]
     contents = contents_heading(words)
-    body = list(_body(loaded, inherited, words, picture))
+    body = list(_body(rulebook, inherited, trees, words, picture))
     index = Heading(2, words.say("Index of provisions"))
     headings = markdown.placed([*top, Heading(2, contents), *body])
     rules = {heading.text: place for heading, place in headings if heading.level == 3}
@@ -111,12 +111,12 @@ def _top(rulebook: Rulebook, words: DocumentLanguage) -> Iterator[Block]:
 
 
 def _body(
-    loaded: Loaded,
+    rulebook: Rulebook,
     inherited: BookLineage,
+    trees: Trees,
     words: DocumentLanguage,
     picture: ExamplePicture | None,
 ) -> Iterator[Block]:
-    rulebook = loaded.rulebook
     yield Heading(2, words.say("Rules"))
     yield words.say(ABOUT_RULES if rulebook.rules else "None.")
     own = [rule for rule in rulebook.rules if not rule.inherited_from]
@@ -130,7 +130,7 @@ def _body(
     yield from _values_section(inherited, rulebook.at, words)
     yield from _definitions_section(inherited, words)
     yield from _left_out_section(inherited, rulebook.at, words)
-    yield from _words_section(loaded, words)
+    yield from _words_section(rulebook, trees, words)
     yield from _articles_section(rulebook, words)
 
 
@@ -249,10 +249,10 @@ def _left_out(inherited: BookLineage, at: str, words: DocumentLanguage) -> Itera
             yield [code(rule.name), say("not in force on {}", at), when]
 
 
-def _words_section(loaded: Loaded, words: DocumentLanguage) -> Iterator[Block]:
-    rulebook, say = loaded.rulebook, words.say
+def _words_section(rulebook: Rulebook, trees: Trees, words: DocumentLanguage) -> Iterator[Block]:
+    say = words.say
     used = used_declarations(rulebook)
-    described = _descriptions(loaded)
+    described = _descriptions(trees)
     rows = [
         [code(name), _about(item, words), _kind(item, words), escaped(described.get(name, ""))]
         for name, item in rulebook.vocabulary.declarations.items()
@@ -269,9 +269,9 @@ def _words_section(loaded: Loaded, words: DocumentLanguage) -> Iterator[Block]:
         yield fenced("\n".join(axioms), "rulec")
 
 
-def _descriptions(loaded: Loaded) -> Mapping[str, str]:
+def _descriptions(trees: Trees) -> Mapping[str, str]:
     result: dict[str, str] = {}
-    for file in (*loaded.vocabularies, *loaded.books):
+    for file in (*trees.vocabularies, *trees.books):
         for item in file.items:
             match item:
                 case tree.SignalItem(signals=signals):
