@@ -103,6 +103,23 @@ def test_editions_of_one_rulebook_have_columns_of_their_own(tmp_path, monkeypatc
     assert "slow                              1               kept" in table
 
 
+def test_what_was_left_alone_in_a_folder_is_named(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("one.rules").write_text(
+        "rulebook one\nuse road\nhard rule r { require always built_up }\n"
+    )
+    Path("drives").mkdir()
+    Path("t.jsonl").write_text(json.dumps({"id": "a", "states": [{"built_up": True}]}) + "\n")
+    rulec.write_traces(rulec.read_traces("t.jsonl"), "drives/t.parquet")
+    Path("t.jsonl").rename("drives/t.jsonl")
+    Path("drives/notes.txt").write_text("no traffic")
+    assert main(["fleet", "drives", "-r", "./one.rules", "-o", "f"]) == 0
+    assert (
+        "left alone  1 no recorded traffic (drives/notes.txt); "
+        "1 a file of rulec's own (drives/t.jsonl)" in capsys.readouterr().out.splitlines()
+    )
+
+
 @pytest.fixture(scope="module")
 def traces():
     return trace_table(range(DRIVES))

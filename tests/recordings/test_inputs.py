@@ -2,10 +2,11 @@
 
 import gzip
 import os
+from pathlib import Path
 
 import pytest
 
-from rulec.recordings.recording_inputs import SearchedFolder, input_files
+from rulec.recordings.recording_inputs import input_files
 from support.builders.recordings import ROAD_XML
 from support.mutations.format_samples import RECORDINGS
 
@@ -20,6 +21,7 @@ def folder(tmp_path, monkeypatch):
     (tmp_path / "drives" / "deep" / "a.xml.gz").write_bytes(gzip.compress(ROAD_XML.encode()))
     (tmp_path / "drives" / "road.net.xml").write_text("<net/>")
     (tmp_path / "drives" / "notes.txt").write_text("no traffic")
+    (tmp_path / "drives" / "traces.jsonl").write_text('{"states": []}')
     (tmp_path / "drives" / ".git" / "c.xml").write_text(ROAD_XML)
     (tmp_path / "drives" / ".d.xml").write_text(ROAD_XML)
     return tmp_path
@@ -29,7 +31,16 @@ def test_a_folder_stands_for_the_recordings_in_and_below_it(folder):
     found = input_files(["drives"])
     assert found.paths == ("drives/b.xml", "drives/deep/a.xml.gz")
     (searched,) = found.searched
-    assert (searched.path, searched.recordings, searched.others) == ("drives", 2, 2)
+    assert (searched.path, searched.recordings) == ("drives", 2)
+    assert {file.path: file.why for file in searched.left_alone} == {
+        "drives/notes.txt": "no recorded traffic",
+        "drives/road.net.xml": "no recorded traffic",
+        "drives/traces.jsonl": "a file of rulec's own",
+    }
+    assert searched.in_words == (
+        "2 recordings in drives; left alone: 2 no recorded traffic (drives/notes.txt, "
+        "drives/road.net.xml); 1 a file of rulec's own (drives/traces.jsonl)"
+    )
     assert found.problems == ()
 
 
@@ -115,6 +126,9 @@ def test_what_lies_beside_a_recording_is_passed_over(tmp_path, name):
             # A map or problems in a file of its own name the others, and may be asked for
             (path,) = found.paths
             assert path == str(folder / sample.entry.replace("-SC.pb", ".pb"))
-            assert found.searched == (SearchedFolder(str(folder), 1, len(files) - 1),)
+            (searched,) = found.searched
+            assert (searched.path, searched.recordings) == (str(folder), 1)
+            beside = {folder / key for key in files} - {Path(path)}
+            assert {Path(file.path) for file in searched.left_alone} == beside
         else:
             assert found.paths == (str(folder),)

@@ -20,6 +20,7 @@ from rulec.cli.options.output_options import Output
 from rulec.cli.options.shared_options import only_sources
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.fault_messages import fault_of
+from rulec.files.left_alone import LeftAlone, in_words
 from rulec.files.written_files import written_whole
 from rulec.report.findings.diagnostics_text import message_width, print_diagnostics
 from rulec.report.findings.finding_formats import render
@@ -33,7 +34,6 @@ from rulec.report.text.console import (
 from rulec.report.text.outgoing import OutgoingLines, outgoing
 from rulec.report.text.terminal_text import wants_color
 from rulec.rulebook.files.search_path import available_rulebooks
-from rulec.rulebook.files.source_walk import LeftAlone, in_words
 from rulec.settings import exclusion, search_path
 
 _REPORTS = ("html", "junit", "sarif", "svg")

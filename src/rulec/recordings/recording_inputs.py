@@ -10,6 +10,8 @@ from pathlib import Path
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.files.file_messages import UNREADABLE_FILE
+from rulec.files.left_alone import LeftAlone, in_words
+from rulec.files.own_kinds import what_reads
 from rulec.files.read_files import is_folder
 from rulec.files.work_trees import refuse_link_out, tree_of
 from rulec.recordings.encodings.csv_head import PARQUET
@@ -22,19 +24,18 @@ STANDARD_INPUT = "-"
 
 @dataclass(frozen=True, slots=True)
 class SearchedFolder:
-    """A searched folder: how many recordings it has, and how many other files."""
+    """A searched folder: how many recordings it has, and its other files."""
 
     path: str
     recordings: int
-    others: int
+    left_alone: tuple[LeftAlone, ...] = ()
 
     @property
     def in_words(self) -> str:
-        """Such as ``3 recordings in drives, 1 other file passed over``."""
+        """Such as ``3 recordings in drives; left alone: 1 no recorded traffic (drives/a.txt)``."""
         plural = "" if self.recordings == 1 else "s"
-        recordings = f"{self.recordings:,} recording{plural} in {self.path}"
-        others = f"{self.others:,} other file{'' if self.others == 1 else 's'}"
-        return f"{recordings}, {others} passed over" if self.others else recordings
+        others = f"; left alone: {in_words(self.left_alone)}" if self.left_alone else ""
+        return f"{self.recordings:,} recording{plural} in {self.path}{others}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,13 +63,13 @@ def input_files(arguments: Sequence[str]) -> InputFiles:
             if path == STANDARD_INPUT or not is_folder(Path(path)) or _is_recording(Path(path)):
                 paths[path] = None
                 continue
-            recordings, others, refused = _recordings_below(path)
+            recordings, left_alone, refused = _recordings_below(path)
             problems += refused
             if not recordings and not refused:
                 why = "there is no recorded traffic in this folder, nor below it"
                 problems.append(RECORDING.refused(Path(path), why, help_text=_as_traces(path)))
             paths |= dict.fromkeys(recordings)
-            searched.append(SearchedFolder(path, len(recordings), others))
+            searched.append(SearchedFolder(path, len(recordings), left_alone))
     return InputFiles(tuple(paths), tuple(searched), tuple(problems))
 
 
@@ -108,11 +109,11 @@ def _matching(argument: str, problems: list[RulecError]) -> Sequence[str]:
     return files or [path for path in paths if Path(path).is_dir()]
 
 
-def _recordings_below(folder: str) -> tuple[list[str], int, list[RulecError]]:
-    """The recordings in a folder at any depth, the number of other files, and links out of it."""
+def _recordings_below(folder: str) -> tuple[list[str], tuple[LeftAlone, ...], list[RulecError]]:
+    """The recordings in a folder at any depth, other files, and links out of it."""
     recordings: list[str] = []
     refused: list[RulecError] = []
-    others = 0
+    left_alone: list[LeftAlone] = []
     tree = tree_of(Path(folder))
     for path in _walk(folder):
         try:
@@ -126,8 +127,16 @@ def _recordings_below(folder: str) -> tuple[list[str], int, list[RulecError]]:
         except RulecError as error:
             refused.append(error)
             continue
-        others += 1
-    return recordings, others, refused
+        left_alone.append(LeftAlone(str(path), _why_left(path)))
+    return recordings, tuple(left_alone), refused
+
+
+def _why_left(path: Path) -> str:
+    """Why a file is no recording by itself."""
+    glance = Glance(path)
+    if any(form.recognises(glance) for form in FORMATS):
+        return "read along with others"
+    return "a file of rulec's own" if what_reads(str(path)) else "no recorded traffic"
 
 
 DEEPEST_FOLDER = 200

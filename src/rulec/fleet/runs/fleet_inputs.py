@@ -9,6 +9,7 @@ from pathlib import Path
 
 from rulec.diagnostics import RulecError
 from rulec.files.file_messages import LINK_OUT
+from rulec.files.left_alone import LeftAlone
 from rulec.files.read_files import is_folder, opened
 from rulec.files.work_trees import leads_out, refuse_no_file, tree_of
 from rulec.fleet.fleet_messages import no_fleet_input
@@ -22,11 +23,12 @@ from rulec.trace.formats.table_reader import STEP, TRACE
 
 @dataclass(frozen=True, slots=True)
 class FleetInputs:
-    """Tables and recordings, each once and in order, and why other arguments are neither."""
+    """Tables and recordings, each once and in order, and why other files are neither."""
 
     tables: tuple[str, ...]
     recordings: tuple[str, ...]
     problems: tuple[RulecError, ...] = ()
+    left_alone: tuple[LeftAlone, ...] = ()
 
     @property
     def paths(self) -> tuple[str, ...]:
@@ -42,6 +44,7 @@ def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
     tables: dict[str, None] = {}
     recordings: dict[str, None] = {}
     problems: list[RulecError] = []
+    left_alone: dict[str, LeftAlone] = {}
     for argument in arguments:
         below = list(_tables_below(argument))
         tables |= dict.fromkeys(below)
@@ -50,6 +53,8 @@ def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
         problems += (
             problem for problem in files.problems if not below or not _is_about(argument, problem)
         )
+        others = [file for searched in files.searched for file in searched.left_alone]
+        left_alone |= {file.path: file for file in others if file.path not in below}
         for path in files.paths:
             try:
                 # Each file is read by any free process, perhaps on another machine.
@@ -63,7 +68,12 @@ def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
                 recordings[path] = None
             else:
                 problems.append(_why_not(path))
-    return FleetInputs(_distinct_files(tables), _distinct_files(recordings), tuple(problems))
+    return FleetInputs(
+        _distinct_files(tables),
+        _distinct_files(recordings),
+        tuple(problems),
+        tuple(left_alone.values()),
+    )
 
 
 def _distinct_files(paths: Iterable[str]) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from typing import Literal
 from rulec.batch.jobs import Jobs
 from rulec.diagnostics import RulecError
 from rulec.extraction.selection import RequestedDrives
+from rulec.files.left_alone import LeftAlone
 from rulec.fleet.carried_rulebook import CompiledRules, carried
 from rulec.fleet.judged_by import JudgedBy, judged_by
 from rulec.fleet.runs.drive_keys import memory_given_back
@@ -58,7 +59,8 @@ class FleetRun:
     """The result of a run: the number of ``units``, and how many were done ``before``.
 
     ``by`` is what drives were judged by, ``findings`` the folder of the part files, ``tally`` their
-    sums; ``problems`` are inputs that could not be read, ``leftovers`` files of no unit.
+    sums; ``problems`` are inputs that could not be read, ``left_alone`` other files in
+    searched folders, ``leftovers`` files of no unit.
     """
 
     __repr__ = short_repr
@@ -70,6 +72,7 @@ class FleetRun:
     tally: FleetTally
     problems: tuple[RulecError, ...] = ()
     leftovers: tuple[Path, ...] = ()
+    left_alone: tuple[LeftAlone, ...] = ()
 
     @property
     def is_complete(self) -> bool:
@@ -134,4 +137,5 @@ def run_fleet(
             tally=tally,
             problems=tuple(problems),
             leftovers=tuple(kept.leftovers(units)),
+            left_alone=inputs.left_alone,
         )

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.files.left_alone import in_words
 from rulec.fleet.runs.fleet_run import FleetRun
 from rulec.fleet.runs.fleet_tally import FleetTally
 from rulec.monitoring.verdict import VerdictOutcome
@@ -96,6 +97,8 @@ def _files(run: FleetRun) -> Iterator[str]:
         yield f"fault       and {len(run.tally.faults) - _MOST_REASONS:,} more"
     for lost in run.tally.lost:
         yield f"lost        {lost}: its process was stopped twice, perhaps for lack of memory"
+    if run.left_alone:
+        yield f"left alone  {in_words(run.left_alone)}"
     for path in run.leftovers:
         yield f"left over   {path}: it belongs to no input of this run"
     written = run.units - run.before - len(run.tally.lost)

@@ -14,11 +14,12 @@ from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import diagnostic_rows
 from rulec.diagnostics.fault_messages import contained
 from rulec.files.file_messages import NOTHING_LEFT
+from rulec.files.left_alone import LeftAlone
 from rulec.files.source_detection import beginning_of, first_word_at
 from rulec.rulebook.batch.bare_rules import bare_rules
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import EXTENDS_CIRCLE, NAME_NOT_FOUND
-from rulec.rulebook.files.source_walk import SUFFIX, FoundSources, LeftAlone, sources_below
+from rulec.rulebook.files.source_walk import SUFFIX, FoundSources, sources_below
 from rulec.rulebook.reading.reading_cache import BookQuestion
 from rulec.rulebook.reading.source_findings import findings_of
 from rulec.settings import Exclusion

@@ -9,11 +9,12 @@ from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.files.file_messages import UNREADABLE_FILE, UNWRITABLE_FILE
+from rulec.files.left_alone import LeftAlone
 from rulec.files.written_files import written_whole
 from rulec.rulebook.batch.batch_check import find_sources
 from rulec.rulebook.batch.form_cache import KnownForms
 from rulec.rulebook.files.search_path import read_bytes
-from rulec.rulebook.files.source_walk import FoundSources, LeftAlone
+from rulec.rulebook.files.source_walk import FoundSources
 from rulec.settings import Exclusion
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -12,6 +11,7 @@ from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.files.file_messages import NOTHING_LEFT, UNREADABLE_FILE
+from rulec.files.left_alone import LeftAlone, in_words
 from rulec.files.source_detection import LEAD_BYTES, beginning_of, is_foreign
 from rulec.files.work_trees import is_ordinary, refuse_no_source, tree_of
 from rulec.rulebook.files.git_ignores import (
@@ -33,14 +33,6 @@ DEEPEST_FOLDER = 200
 
 _MARKS = ("pyvenv.cfg", "conda-meta")
 """A folder with one of these is a Python environment, whatever its name."""
-
-
-@dataclass(frozen=True, slots=True)
-class LeftAlone:
-    """A file or folder that was skipped, and why."""
-
-    path: str
-    why: str
 
 
 @dataclass(slots=True)
@@ -138,19 +130,6 @@ def is_other_file(path: Path) -> bool:
     except (OSError, ValueError):
         return False
     return is_foreign(beginning_of(data))
-
-
-def in_words(left_alone: Sequence[LeftAlone], most: int = 3) -> str:
-    """How much was skipped, and why, with the first names of each kind; empty for nothing."""
-    kinds = Counter(file.why for file in left_alone)
-    return "; ".join(
-        f"{count:,} {why} ({_first([file.path for file in left_alone if file.why == why], most)})"
-        for why, count in kinds.items()
-    )
-
-
-def _first(names: Sequence[str], most: int) -> str:
-    return ", ".join([*names[:most], *(["…"] if len(names) > most else [])])
 
 
 def _nothing_left(folder: str, left_alone: Sequence[LeftAlone]) -> Diagnostic:
