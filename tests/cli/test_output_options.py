@@ -348,3 +348,28 @@ def test_a_file_that_cannot_be_written_is_refused_before_anything_is_read(
     assert err.startswith("error[R0702]: the file cannot be written: ")
     assert why in err
     assert "missing.xml" not in err
+
+
+BROKEN = "rulebook broken\nuse road\nhard rule r { require always buit_up }\n"
+
+
+def test_an_old_file_is_not_taken_for_the_answer_of_a_failed_call(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("whole.rules").write_text(BROKEN.replace("buit", "built").replace("broken", "whole"))
+    Path("broken.rules").write_text(BROKEN)
+    Path("t.jsonl").write_text('{"states": [{"built_up": true}]}\n')
+    outputs = ["-o", "new.jsonl", "-o", "old.json"]
+    assert main(["verify", "t.jsonl", "-r", "./whole.rules", *outputs]) == 0
+    assert "earlier" not in capsys.readouterr().err
+    Path("new.jsonl").unlink()
+    before = Path("old.json").read_bytes(), Path("old.json").stat().st_mtime_ns
+    assert main(["verify", "t.jsonl", "-r", "./broken.rules", *outputs]) == 2
+    err = capsys.readouterr().err
+    assert err.startswith("rulec: old.json was not written; it is that of an earlier call\n")
+    assert err.count("earlier") == 1
+    assert (Path("old.json").read_bytes(), Path("old.json").stat().st_mtime_ns) == before
+    assert not Path("new.jsonl").exists()
+    # A file that says what is wrong is an answer; so is one that says the same as before.
+    for _ in range(2):
+        assert main(["check", "broken.rules", "-o", "found.json"]) == 1
+        assert "earlier" not in capsys.readouterr().err

@@ -1,5 +1,7 @@
 """Penalties, places, the guard, the reward and margins of candidates, and what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,7 @@ from rulec.api.rulebook_compilation import machines
 from rulec.diagnostics import RulecError
 from rulec.extraction.tracks import tracks
 from rulec.extraction.tracks.matching import lanelet_graph
-from rulec.monitoring.verdict import OpenVerdict, Violation
+from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged, Violation
 from rulec.scoring.judged_anew import verdicts_of
 from rulec.scoring.score import score
 from rulec.scoring.scores import CandidateScore, Scores
@@ -48,6 +50,22 @@ ORDERED = scores(
     candidate(6, "speed_limit"),
     candidate(7, "red_light", off_road=1),
 )
+
+
+def test_printed_scores_say_in_a_line_what_was_not_judged():
+    assert repr(ORDERED) == "Scores(de: 1 of 8 allowed)"
+    wanting = {"a": ("wet", "lane_kind"), "b": ("lane_kind",), "c": ("lamps",), "d": ("fog",)}
+    untold = [RuleNotJudged(rule, "hard", words) for rule, words in wanting.items()]
+    faulty = RuleNotJudged("e", "soft", (), why="it is too large")
+    one = replace(candidate(0), not_judged=(*untold[:2], faulty))
+    other = replace(candidate(1), not_judged=tuple(untold[1:]))
+    n_rules = len(GERMAN.rules)
+    assert repr(scores(one, other)) == (
+        f"Scores(de: 2 of 2 allowed; 5 of {n_rules} rules not judged for lack of "
+        "lane_kind (2), fog (1), lamps (1), and 1 more)"
+    )
+    (silent,) = scores(replace(candidate(0), not_judged=(faulty,))).candidates
+    assert repr(scores(silent)) == f"Scores(de: 1 of 1 allowed; 1 of {n_rules} rules not judged)"
 
 
 def test_the_order_of_candidates():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -15,6 +16,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import did_you_mean
 from rulec.diagnostics.argument_kinds import expected, finite
 from rulec.diagnostics.fault_messages import contained
+from rulec.diagnostics.phrases import first_of
 from rulec.monitoring.verdict import Violation
 from rulec.planning.ranking.penalties import PenaltyOrder, PenaltyRank, ranks_of
 from rulec.scoring.candidate_score import CandidateScore
@@ -23,6 +25,7 @@ from rulec.scoring.score_margins import RuleMargin, margins_of
 from rulec.value_display import Rows
 
 _MOST_WORTH = 1_000_000
+_MOST_WORDS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +44,15 @@ class Scores(Rows):
     _first: int = field(repr=False)
 
     def __repr__(self) -> str:
-        return f"Scores({self.rules.name}: {int(self.allowed.sum())} of {len(self)} allowed)"
+        said = f"{self.rules.name}: {int(self.allowed.sum())} of {len(self)} allowed"
+        untold = {rule.rule: rule.untold for score in self.candidates for rule in score.not_judged}
+        if untold:
+            said += f"; {len(untold)} of {len(self.rules.rules)} rules not judged"
+            wanting = Counter(word for words in untold.values() for word in words)
+            words = sorted(wanting, key=lambda word: (-wanting[word], word))
+            lack = first_of([f"{word} ({wanting[word]})" for word in words], _MOST_WORDS)
+            said += f" for lack of {lack}" if lack else ""
+        return f"Scores({said})"
 
     def __len__(self) -> int:
         return len(self.candidates)

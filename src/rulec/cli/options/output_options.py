@@ -10,6 +10,7 @@ import os
 import stat
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, fields, is_dataclass
 from functools import wraps
 from pathlib import Path
@@ -24,6 +25,7 @@ from rulec.files.read_files import from_here
 from rulec.files.work_trees import is_ordinary
 from rulec.files.written_files import refuse_unwritable
 from rulec.report.findings.finding_writers import ENDINGS
+from rulec.report.text.console import print_remark
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -189,7 +191,8 @@ def output_options(
                 for path in outputs or (STANDARD_OUTPUT,)
             )
             _refuse_doubtful(to, values)
-            return function(**values, to=to if multiple else to[0])
+            with _old_files_told(to):
+                return function(**values, to=to if multiple else to[0])
 
         decorated = cast("Decorated", called)
         for option in reversed(options):
@@ -240,6 +243,26 @@ def _one_format(named: Mapping[str, str]) -> str | None:
     if len(set(named.values())) > 1:
         raise click.UsageError(f"{' and '.join(named)} contradict each other.")
     return next(iter(named.values()), None)
+
+
+@contextmanager
+def _old_files_told(to: Sequence[Output]) -> Iterator[None]:
+    """Say afterwards which files are still those of an earlier call, since none was written."""
+    before = {output.path: _version(output.path) for output in to if output.is_file}
+    try:
+        yield
+    finally:
+        for path, version in before.items():
+            if version is not None and version == _version(path):
+                print_remark(f"rulec: {path} was not written; it is that of an earlier call")
+
+
+def _version(path: str) -> tuple[int, int] | None:
+    """What a file has that replaces another one; None if there is no ordinary file."""
+    with suppress(OSError, ValueError):
+        status = os.stat(path)  # noqa: PTH116 - Path raises on a null character
+        return (status.st_ino, status.st_mtime_ns) if stat.S_ISREG(status.st_mode) else None
+    return None
 
 
 def _refuse_doubtful(to: Sequence[Output], values: Mapping[str, Any]) -> None:

@@ -44,7 +44,7 @@ _BOOKS = KeptObjects(KeptBytes("book", MOST_BOOKS), ObjectCodec(RULE_KINDS))
 def recalled_rulebook(question: BookQuestion) -> model.Loaded | None:
     """The cached rulebook of a source; None if it is unknown."""
     reading, texts = recalled(question)
-    if reading is None:
+    if reading is None or any(finding.severity == "error" for finding in reading.findings):
         return None
     sources = {name: decoded(name, data) for name, data in texts.items()}
     rulebook = _BOOKS.recall(_key(question, reading.basis), list(sources.values()))
