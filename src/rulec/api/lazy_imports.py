@@ -75,12 +75,7 @@ if TYPE_CHECKING:
     from rulec.rulebook.allowances import without_allowed
     from rulec.rulebook.batch import batch_check, batch_format
     from rulec.rulebook.files.catalogue import list_rulebooks, list_vocabularies
-    from rulec.rulebook.loader import (
-        load_vocabulary,
-        parse_rulebook,
-        read_trees,
-        resolve_trees,
-    )
+    from rulec.rulebook.loader import load_vocabulary, parse_rulebook, read_trees, resolve_trees
     from rulec.rulebook.query_reader import read_query
     from rulec.rulebook.reading.rulebook_reader import question_of, read_rulebook
     from rulec.scenario import Choice, available_scenarios, load_scenario

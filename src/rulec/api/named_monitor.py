@@ -40,4 +40,4 @@ class Monitor(running_monitor.RunningMonitor):
         told: Iterable[str] | None = None,
         cut: bool = False,
     ) -> None:
-        super().__init__(machines(rulebook, recalls=True), step_s, told=told, cut=cut)
+        super().__init__(machines(rulebook), step_s, told=told, cut=cut)

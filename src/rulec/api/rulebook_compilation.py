@@ -32,20 +32,18 @@ def machines(
     search_path: Sequence[str | Path] = (),
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
     at: str = "",
-    *,
-    recalls: bool = False,
 ) -> CompiledRulebook:
     """Compile rules into automata that adapt to any trace's step.
 
     ``warn`` is called with warnings about a source, such as an example whose verdict is not the
     stated one. ``at`` is the day (ISO) whose law applies; if empty, that of the rulebook's `law`
-    line or else today. ``recalls``: a source's automata may be taken from the cache if nothing has
-    changed, and are stored there.
+    line or else today. A source's automata are taken from the cache if nothing has changed, and are
+    stored there.
     """
     # Called for every trace, so the fast case of a compiled rulebook comes first.
     if isinstance(rules, CompiledRulebook):
         return rules
-    return compile_rulebook(rules, search_path, warn, at=at, recalls=recalls)
+    return compile_rulebook(rules, search_path, warn, at=at)
 
 
 def _of_source(
@@ -55,16 +53,13 @@ def _of_source(
     step: Fraction | None,
     *,
     at: str,
-    recalls: bool,
 ) -> CompiledRulebook:
     refuse_source(reference)
-    question = None
-    if recalls:
-        question = lazy.question_of(reference, search_path, at)
-        known = lazy.compiled_cache.recalled(question)
-        if known is not None:
-            warn(known[1])
-            return known[0] if step is None else replace(known[0].at_step(step), recompile=None)
+    question = lazy.question_of(reference, search_path, at)
+    known = lazy.compiled_cache.recalled(question)
+    if known is not None:
+        warn(known[1])
+        return known[0] if step is None else replace(known[0].at_step(step), recompile=None)
     return lazy.compile_source(reference, search_path, at, step, on_warning=warn, question=question)
 
 
@@ -79,14 +74,12 @@ def compile_rulebook(
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
     step_s: Fraction | float | Sequence[Fraction | float] | None = None,
     at: str = "",
-    *,
-    recalls: bool = False,
 ) -> CompiledRulebook:
     """Compile rules for one step, for several, or for that of their examples.
 
     ``step_s`` (above 0, a float meaning its decimal notation) is that step; with several, each
     trace is judged by its own. Without it, rules with bounds in seconds are compiled for the step
-    of their own examples; ``recalls`` as in ``machines``. R0507 if the rules have been compiled for
+    of their own examples. R0507 if the rules have been compiled for
     another one.
     """
     if isinstance(step_s, Sequence):
@@ -96,13 +89,13 @@ def compile_rulebook(
             )
         if len(step_s) != 1:
             steps = list(map(exact_step, step_s))
-            return _for_steps(reference, search_path, warn, steps, at=at, recalls=recalls)
+            return _for_steps(reference, search_path, warn, steps, at=at)
         (step_s,) = step_s
     finite("step_s", step_s)
     step = None if step_s is None else exact_step(step_s)
     if isinstance(reference, str | Path):
         if Path(reference).suffix != ".json":
-            return _of_source(reference, search_path, warn, step, at=at, recalls=recalls)
+            return _of_source(reference, search_path, warn, step, at=at)
         reference = lazy.read_compiled(Path(reference), at)
         if reference.prefixes is None:
             reference = replace(reference, prefixes=_prefixes)
@@ -123,9 +116,8 @@ def _for_steps(
     steps: Sequence[Fraction],
     *,
     at: str,
-    recalls: bool,
 ) -> CompiledRulebook:
     if not steps:
         raise ValueError("`step_s` has no step: give one, or None")
-    compiled = machines(reference, search_path, warn, at, recalls=recalls)
+    compiled = machines(reference, search_path, warn, at)
     return for_steps([compiled.at_step(step) for step in steps], steps)

@@ -59,9 +59,7 @@ class RulebookVerbs(SessionSettings):
             RulecError: mistakes in the source; R0401 to R0403 if there is no automaton, R0507 if it
                 was compiled for another step.
         """
-        return lazy.compile_rulebook(
-            reference, self.search_path, self._warn, step_s, self.at, recalls=True
-        )
+        return lazy.compile_rulebook(reference, self.search_path, self._warn, step_s, self.at)
 
     compile = compile_rulebook
 

@@ -65,4 +65,4 @@ class SessionSettings:
         return tuple(Path(folder) for folder in self.search_path)
 
     def _compiled(self, rules: Rules) -> CompiledRulebook:
-        return lazy.machines(rules, self.search_path, self._warn, self.at, recalls=True)
+        return lazy.machines(rules, self.search_path, self._warn, self.at)

@@ -50,7 +50,7 @@ def open_session(at: str = "") -> rulec.Session:
 
 def read_machines(rulebook: str, at: str = "") -> lazy.CompiledRulebook:
     """Compile a rulebook for any step; print warnings. Raises RulecError."""
-    return lazy.machines(rulebook, search_path(), print_diagnostics, at, recalls=True)
+    return lazy.machines(rulebook, search_path(), print_diagnostics, at)
 
 
 @contextmanager

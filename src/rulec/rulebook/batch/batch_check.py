@@ -20,8 +20,7 @@ from rulec.rulebook.batch.bare_rules import bare_rules
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import EXTENDS_CIRCLE, NAME_NOT_FOUND
 from rulec.rulebook.files.source_walk import SUFFIX, FoundSources, sources_below
-from rulec.rulebook.reading.reading_cache import BookQuestion
-from rulec.rulebook.reading.source_findings import findings_of
+from rulec.rulebook.reading.reading_cache import BookQuestion, recalled, remember_findings
 from rulec.settings import Exclusion
 from rulec.value_display import Rows, short_repr
 
@@ -66,7 +65,6 @@ def check(
         at: the day (ISO) whose law it is; if empty, that of each `law` line or else today.
         excluded: what is left alone in folders.
     """
-    folders = tuple(map(str, search_path))
     files: dict[str, str] = {}
     findings: dict[tuple[object, ...], Diagnostic] = {}
     sources = FoundSources()
@@ -90,9 +88,9 @@ def check(
                 ):
                     names += bare
                 question = BookQuestion(
-                    str(path), data, folders, at, has_path=path is not _STANDARD_INPUT
+                    str(path), data, tuple(search_path), at, has_path=path is not _STANDARD_INPUT
                 )
-                for finding in findings_of(question):
+                for finding in _findings(question):
                     findings.setdefault(_identity(finding), finding)
         except RulecError as error:
             unread += error.diagnostics
@@ -104,6 +102,20 @@ def check(
         uncited=tuple(uncited),
         untested=tuple(untested),
     )
+
+
+def _findings(question: BookQuestion) -> tuple[Diagnostic, ...]:
+    """All errors and warnings about a rulebook or a vocabulary."""
+    reading, _ = recalled(question)
+    if reading is not None:
+        return reading.findings
+    from rulec.rulebook import loader  # the parser takes 60 ms, and what is known needs none
+
+    name, folders = question.name, question.search_path
+    diagnosis = loader.diagnose(name, question.data, Path(name), folders, question.at)
+    if diagnosis.dependencies is not None:
+        remember_findings(question, diagnosis.findings, diagnosis.dependencies)
+    return diagnosis.findings
 
 
 def _named_sources(

@@ -5,17 +5,21 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 
+from rulec.cache.kept_bytes import KeptBytes
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.files.file_messages import UNREADABLE_FILE, UNWRITABLE_FILE
 from rulec.files.left_alone import LeftAlone
 from rulec.files.written_files import written_whole
 from rulec.rulebook.batch.batch_check import find_sources
-from rulec.rulebook.batch.form_cache import KnownForms
 from rulec.rulebook.files.search_path import read_bytes
 from rulec.rulebook.files.source_walk import FoundSources
 from rulec.settings import Exclusion
+
+_IN_FORM = KeptBytes("form", 10_000)
+"""Empty files, named by texts that are formatted: they are not parsed again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +56,7 @@ def format_files(
     ``search_path`` is used for help when a name is given, ``excluded`` is skipped in folders.
     Raises FormattingError for a bug in rulec.
     """
-    known = KnownForms.read()
+    known: dict[str, bytes] = {}
     done: dict[str, Formatted] = {}
     refused: list[Diagnostic] = []
     left_alone: list[LeftAlone] = []
@@ -70,14 +74,15 @@ def format_files(
                 continue
             try:
                 data = read_bytes(path)
-                if known.has(data):
+                key = _IN_FORM.key(sha256(data).hexdigest())
+                if key in known or _IN_FORM.recall(key) is not None:
                     done[identity] = Formatted(str(path), path, data, data)
                     continue
                 done[identity] = formatted(str(path), path, data)
-                known.add(done[identity].after)
+                known[_IN_FORM.key(sha256(done[identity].after).hexdigest())] = b""
             except RulecError as error:
                 refused += error.diagnostics
-    known.write()
+    _IN_FORM.keep(known)
     return FormattedFiles(tuple(done.values()), tuple(refused), tuple(left_alone))
 
 

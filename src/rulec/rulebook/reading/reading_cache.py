@@ -34,7 +34,7 @@ class BookQuestion:
 
     name: str
     data: bytes
-    search_path: tuple[str, ...] = ()
+    search_path: tuple[Path, ...] = ()
     at: str = ""
     traffic: str = ""
     has_path: bool = True
@@ -42,9 +42,9 @@ class BookQuestion:
     def place(self) -> tuple[str, ...]:
         """The question without the content of the source."""
         # Messages show paths as they were given; relative ones lead elsewhere from elsewhere.
-        here = "" if all(map(os.path.isabs, (self.name, *self.search_path))) else str(Path.cwd())
-        kind = "a file" if self.has_path else "a text"
-        return here, self.name, kind, self.at, self.traffic, *self.search_path
+        parts = self.name, *map(str, self.search_path)
+        here = "" if all(map(os.path.isabs, parts)) else str(Path.cwd())
+        return here, "a file" if self.has_path else "a text", self.at, self.traffic, *parts
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ class Basis:
             return None
         texts = {question.name: question.data}
         for dependency in self.dependencies:
-            data = _unchanged(dependency, list(map(Path, question.search_path)))
+            data = _unchanged(dependency, question.search_path)
             if data is None:
                 return None
             texts[dependency.path] = data

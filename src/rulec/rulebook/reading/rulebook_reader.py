@@ -45,8 +45,7 @@ def read_rulebook(
         return known
     from rulec.rulebook import loader  # the parser takes 60 ms, and what is known needs none
 
-    folders = list(map(Path, question.search_path))
-    file = loader.file_of(Path(question.name), question.data, folders)
+    file = loader.file_of(Path(question.name), question.data, question.search_path)
     trees = loader.parse_all(file, keeps=False)
     loaded = loader.resolve_trees(trees, at, traffic)
     if trees.dependencies is not None:
@@ -61,6 +60,6 @@ def question_of(
     traffic: Traffic = "",
 ) -> BookQuestion:
     """The question for a rulebook, by name or path; arguments and errors as ``read_rulebook``."""
-    folders = tuple(map(str, search_path))
-    path = find_rulebook(reference, list(map(Path, folders)))
+    folders = tuple(map(Path, search_path))
+    path = find_rulebook(reference, folders)
     return BookQuestion(str(path), read_bytes(path), folders, at, traffic)
