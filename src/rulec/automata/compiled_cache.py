@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.bundle.mapped_rulebook import Compilation, compilation_in, written
+from rulec.automata.bundle.mapped_rulebook import COMPILATIONS, Compilation
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
 from rulec.cache.cache_folder import tidy, usable_folder, write_own
 from rulec.cache.mapped_tables import mapped
@@ -89,9 +89,10 @@ class _File:
     def read(self) -> Compilation | None:
         with suppress(OSError, *DAMAGED):
             path = self.path
-            compilation = compilation_in(mapped(path), self.given)
-            os.utime(path)
-            return compilation
+            compilation = COMPILATIONS.read(mapped(path), self.given)
+            if isinstance(compilation, Compilation):
+                os.utime(path)
+                return compilation
         return None
 
     def write(self, text: Compilation, compiled: CompiledRulebook | None) -> None:
@@ -100,7 +101,8 @@ class _File:
             compiled = replace(compiled, origin=None, recompile=None, prefixes=prefixes)
         with suppress(OSError, ValueError):
             path = self.path
-            write_own(path, written(replace(text, rulebook=compiled), self.given))
+            content = replace(text, rulebook=compiled)
+            write_own(path, COMPILATIONS.written(content, self.given))
             tidy(path.parent, _ENDING, MOST_FILES)
 
 

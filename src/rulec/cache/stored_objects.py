@@ -1,6 +1,7 @@
 """Serialisation of frozen objects: JSON with rows of integers beside it.
 
 A file is a list of parts, each after the parts that it consists of; equal parts are stored once.
+Plain values are apart from them, and have negative numbers.
 Reading makes objects of the listed kinds and nothing else, and checks no more than their number of
 parts: what is read has to be what this rulec wrote.
 """
@@ -11,7 +12,6 @@ import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields
-from enum import Enum
 from fractions import Fraction
 from operator import attrgetter
 from types import MappingProxyType
@@ -54,11 +54,6 @@ def kinds_of_fields(classes: Iterable[type]) -> dict[type, ObjectKind]:
     return {cls: kind_of_fields(cls) for cls in classes}
 
 
-def kind_of_values(cls: type[Enum]) -> ObjectKind:
-    """The kind of an enumeration."""
-    return ObjectKind(lambda item: (item.value,), cls)
-
-
 _BUILT_IN: dict[type, ObjectKind] = {
     tuple: ObjectKind(tuple, lambda *items: items),
     dict: ObjectKind(
@@ -89,24 +84,25 @@ class ObjectCodec:
 
         Raises TypeError for an object of another kind.
         """
-        return _Writer(self._kinds, given).file(item)
+        with no_garbage_collection():
+            return _Writer(self._kinds, given).file(item)
 
     def read(self, tables: MappedTables, given: Sequence[object] = ()) -> Any:
         """The object in a file. Raises one of ``DAMAGED`` if there is none."""
         text = json.loads(tables.text)
-        if text["given"] != len(given):
+        first, n_made, numbers = len(given), text["made"], tables.row(tuple(text["parts"]))
+        if text["given"] != first or not 0 < n_made <= len(numbers):
             raise ValueError("it was written with other objects")
-        made = [*given, *[_value(value, tables) for value in text["values"]]]
-        numbers, part, place = tables.row(tuple(text["parts"])), made.__getitem__, 0
+        values = [_value(value, tables) for value in text["values"]]
+        made = [*given, *[None] * n_made, *values[::-1]]
+        part, place = made.__getitem__, 0
         with no_garbage_collection():
-            while place < len(numbers):
+            for number in range(first, first + n_made):
                 end = place + numbers[place]
-                if end <= place:
-                    raise ValueError("a part has no end")
                 make = self._make[numbers[place + 1]]
-                made.append(make(*map(part, numbers[place + 2 : end])))
+                made[number] = make(*map(part, numbers[place + 2 : end]))
                 place = end
-        return made[-1]
+        return made[first + n_made - 1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +138,7 @@ def _value(value: Any, tables: MappedTables) -> object:
 
 
 class _Writer:
-    """The parts placed so far: plain values, which come first, and objects built from parts."""
+    """The parts placed so far: plain values, and objects built from parts."""
 
     def __init__(
         self,
@@ -153,7 +149,7 @@ class _Writer:
         self._n_given = len(given)
         self._given = {id(part): number for number, part in enumerate(given)}
         self._tables = TableWriter()
-        # Values have negative numbers until their total count is known.
+        # Values are numbered from the end, by negative numbers.
         self._values: dict[tuple[type, object], int] = {}
         self._parts: dict[tuple[int, ...], int] = {}
 
@@ -161,20 +157,16 @@ class _Writer:
         """The whole file."""
         if self._number(item) < 0:
             raise TypeError("a plain value")
-        n_values = len(self._values)
         numbers: list[int] = []
-        for kind, *parts in self._parts:
-            own = [self._n_given + ~n if n < 0 else self._behind(n, n_values) for n in parts]
-            numbers += [len(own) + 2, kind, *own]
+        for part in self._parts:
+            numbers += (len(part) + 1, *part)
         text = {
             "given": self._n_given,
+            "made": len(self._parts),
             "values": [value for _, value in self._values],
             "parts": self._tables.place(numbers),
         }
         return self._tables.file(json.dumps(text, separators=(",", ":")).encode())
-
-    def _behind(self, number: int, n_values: int) -> int:
-        return number if number < self._n_given else number + n_values
 
     def _number(self, item: Any) -> int:
         cls = type(item)
@@ -184,11 +176,20 @@ class _Writer:
             return self._given[id(item)]
         if cls is tuple and (rows := self._rows(item)) is not None:
             return self._value(tuple, rows)
-        kind = self._kinds.get(cls)
-        if kind is None:
+        known = self._kinds.get(cls)
+        if known is None:
             raise TypeError(f"a {cls.__name__}")
-        part = (kind[0], *map(self._number, kind[1](item)))
-        return self._parts.setdefault(part, self._n_given + len(self._parts))
+        number, parts = known
+        values, own = self._values, [number]
+        for part in parts(item):
+            kind = type(part)
+            # As ``_value``, without a call for each of many thousands.
+            own.append(
+                values.setdefault((kind, part), ~len(values))
+                if kind in _PLAIN
+                else self._number(part)
+            )
+        return self._parts.setdefault(tuple(own), self._n_given + len(self._parts))
 
     def _value(self, cls: type, value: object) -> int:
         return self._values.setdefault((cls, value), ~len(self._values))

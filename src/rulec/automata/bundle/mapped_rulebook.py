@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.bundle.stored_prefixes import CutTables, StoredPrefixes
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read, Threshold
-from rulec.cache.mapped_tables import MappedTables
 from rulec.cache.stored_objects import ObjectCodec, ObjectKind, kind_of_fields, kinds_of_fields
 from rulec.diagnostics import Diagnostic
 from rulec.logic import formula as ltl
@@ -33,7 +31,7 @@ def _rulebook(*parts: Any) -> CompiledRulebook:
 
 _RULEBOOK = kind_of_fields(CompiledRulebook, ["origin", "recompile", "too_large"])
 MACHINE_KINDS = {**RULE_KINDS, **kinds_of_fields((Read, Threshold, NumberRead, MealyMonitor))}
-_CODEC = ObjectCodec(
+COMPILATIONS = ObjectCodec(
     {
         **READING_KINDS,
         **MACHINE_KINDS,
@@ -44,16 +42,3 @@ _CODEC = ObjectCodec(
         ),
     }
 )
-
-
-def written(known: Compilation, given: Sequence[object] = ()) -> bytes:
-    """The file of a compilation. It must be read with equal ``given`` objects."""
-    return _CODEC.written(known, given)
-
-
-def compilation_in(tables: MappedTables, given: Sequence[object] = ()) -> Compilation:
-    """The compilation in a file. Raises one of ``DAMAGED`` if there is none."""
-    compilation = _CODEC.read(tables, given)
-    if not isinstance(compilation, Compilation):
-        raise ValueError("it says nothing of a rulebook")
-    return compilation

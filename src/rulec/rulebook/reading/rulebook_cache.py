@@ -5,13 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rulec.cache.kept_bytes import KeptBytes
-from rulec.cache.stored_objects import (
-    KeptObjects,
-    ObjectCodec,
-    ObjectKind,
-    kind_of_values,
-    kinds_of_fields,
-)
+from rulec.cache.stored_objects import KeptObjects, ObjectCodec, ObjectKind, kinds_of_fields
 from rulec.diagnostics import Source, Span
 from rulec.files.read_files import decoded
 from rulec.logic import formula as ltl
@@ -24,8 +18,8 @@ MOST_BOOKS = 200
 """How many rulebooks are kept; the longest unused ones are removed first."""
 
 RULE_KINDS: dict[type, ObjectKind] = {
-    ltl.UnaryOperator: kind_of_values(ltl.UnaryOperator),
-    ltl.BinaryOperator: kind_of_values(ltl.BinaryOperator),
+    ltl.UnaryOperator: ObjectKind(lambda item: (item.value,), ltl.UnaryOperator),
+    ltl.BinaryOperator: ObjectKind(lambda item: (item.value,), ltl.BinaryOperator),
     Source: ObjectKind(lambda source: (source.name, source.text), Source),
     **kinds_of_fields(
         (
