@@ -10,7 +10,7 @@ from rulec.analysis.diff import comparison_matrix
 from rulec.analysis.lineage import book_lineage
 from rulec.cache import kept_bytes
 from rulec.cache.cache_folder import cache_folder
-from rulec.cli.commands.reading import show
+from rulec.cli.commands.reading import explain, show
 from rulec.cli.main import main
 from rulec.rulebook.batch import answer_cache
 from support.builders.rulebook_projects import project_in
@@ -47,6 +47,7 @@ def answered(monkeypatch):
 
     monkeypatch.setattr(Session, "analyze", counting(Session.analyze))
     monkeypatch.setattr(show, "_shown", counting(show._shown))
+    monkeypatch.setattr(explain, "_explained", counting(explain._explained))
     monkeypatch.setattr(book_lineage, "read_with_lineage", counting(book_lineage.read_with_lineage))
     matrices = comparison_matrix.growing_matrices
     monkeypatch.setattr(comparison_matrix, "growing_matrices", counting(matrices))
@@ -118,6 +119,24 @@ def test_every_change_counts(folder, answered, ask, monkeypatch, change):
     again = ask()
     assert ask() == again
     assert len(answered) == 2
+
+
+@pytest.mark.parametrize("change", ["the book", "the vocabulary", "rulec"])
+def test_a_word_is_explained_once(folder, answered, monkeypatch, capsys, change):
+    def said(word="p"):
+        assert main(["explain", word]) == 0
+        return capsys.readouterr().out
+
+    first = said()
+    assert said() == first != said("q")
+    assert len(answered) == 2
+    CHANGES[change](folder, monkeypatch)
+    again = said()
+    assert said() == again
+    assert len(answered) == 3
+    (folder / "more.rules").write_text("rulebook more\nuse words\nhard rule new { require p }\n")
+    assert "more" in said()
+    assert len(answered) == 4
 
 
 def test_another_question_is_answered_anew(answered, ask):

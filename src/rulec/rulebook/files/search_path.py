@@ -122,6 +122,12 @@ def available_vocabularies(
     return tuple(first[name] for name in sorted(first))
 
 
+def available_files(search_path: Sequence[Path] = ()) -> tuple[str, ...]:
+    """The files of all available rulebooks and vocabularies."""
+    books = [find_rulebook(name, search_path) for name in available_rulebooks(search_path)]
+    return tuple(map(str, (*books, *available_vocabularies(search_path))))
+
+
 def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequence[Path]) -> Path:
     """The file of a vocabulary: beside its user, on the search path, or rulec's own.
 

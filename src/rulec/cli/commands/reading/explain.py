@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 import click
@@ -18,7 +19,8 @@ from rulec.diagnostics import any_of, first_of, nearest_name
 from rulec.diagnostics.code import Code
 from rulec.report.findings import code_registry
 from rulec.report.text.console import print_remark
-from rulec.rulebook.files.search_path import available_rulebooks
+from rulec.rulebook.batch.answer_cache import AnswerQuestion
+from rulec.rulebook.files.search_path import available_files, available_rulebooks
 from rulec.rulebook.files.source_walk import SUFFIX
 from rulec.settings import search_path
 
@@ -45,15 +47,28 @@ def command(names: tuple[str, ...], every: bool, to: Output) -> int:
     """
     if every == bool(names):
         raise click.UsageError("give a code or a word, such as `R0104` or `gap`, or --all")
+    question = ("explain", *names, repr((every, to.form, width_of(to))))
+    explained = partial(_explained, names, to.form, width_of(to), every=every)
+    text, unknown = AnswerQuestion(question, _places()).answer(explained)
+    put_answer(text, to)
+    for name in unknown:
+        print_remark(f"rulec: {_unknown(name)}")
+    return ExitStatus.after(answered=not unknown, failed=False)
+
+
+def _explained(
+    names: Sequence[str], form: str, width: int, *, every: bool
+) -> tuple[tuple[str, tuple[str, ...]], Sequence[str]]:
+    """The explanation and the unknown names, and the files that words were searched in."""
     by_name = {name: code_registry.code_named(name.upper()) for name in names}
     words = {name: _words(name) for name, code in by_name.items() if code is None}
-    unknown = [name for name, found in words.items() if not found]
+    unknown = tuple(name for name, found in words.items() if not found)
     if unknown and len(unknown) == len(by_name):
         raise click.UsageError("\n".join(map(_unknown, unknown)))
     codes = [code for code in by_name.values() if code is not None]
     codes = list(dict.fromkeys(codes)) if names else [*code_registry.all_codes().values()]
     found_words = [word for words_of_name in words.values() for word in words_of_name]
-    match to.form:
+    match form:
         case "json":
             text = _as_json(codes, found_words)
         case "markdown" if every:
@@ -65,13 +80,9 @@ def command(names: tuple[str, ...], every: bool, to: Output) -> int:
             ]
             text = "\n\n".join([*pages, *_texts(found_words, None)])
         case _:
-            width = width_of(to)
             pages = [code_registry.as_text(code, width) for code in codes]
             text = "\n\n\n".join([*pages, *_texts(found_words, width)])
-    put_answer(text, to)
-    for name in unknown:
-        print_remark(f"rulec: {_unknown(name)}")
-    return ExitStatus.after(answered=not unknown, failed=False)
+    return (text, unknown), available_files(_places()) if words else ()
 
 
 def _words(name: str) -> Sequence[lazy.FoundWord]:
