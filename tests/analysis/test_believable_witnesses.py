@@ -7,7 +7,8 @@ import pytest
 from rulec import Session
 from rulec.analysis.believable_states import declarations_read
 from rulec.analysis.shared_vocabulary import shared_vocabulary
-from rulec.rulebook.loader import load_rulebook, parse_rulebook
+from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from rulec.rulebook.rules.rule_topics import on_topic
 from rulec.trace import Trace
 from support.oracles.drivable_traces import doubts

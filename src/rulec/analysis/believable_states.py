@@ -19,7 +19,7 @@ from rulec.automata.mealy_monitor import NumberRead
 from rulec.logic.formula import QuantityTerm, Unary
 from rulec.logic.free_names import names_in
 from rulec.resources import rulebooks_folder
-from rulec.rulebook.loader import load_rulebook
+from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook
 from rulec.vocabulary import Quantity, Vocabulary
 from rulec.witnesses.object_universe import Itself

@@ -116,9 +116,11 @@ NOT_A_MULTIPLE = Code(
     "apart, therefore judge it by another bound than the one that is written. Choose a bound that "
     "is a multiple of the step, or a finer step.",
     bad="rulebook example\nsignal wet default false\n"
-    "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) accept { } }\n",
+    "hard rule r {\n  require always (wet implies eventually[<= 1.5 s] not wet)\n"
+    "  accept { not wet }\n}\n",
     good="rulebook example\nstep 0.5 s\nsignal wet default false\n"
-    "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) accept { } }\n",
+    "hard rule r {\n  require always (wet implies eventually[<= 1.5 s] not wet)\n"
+    "  accept { not wet }\n}\n",
     kind="compiled",
 )
 
