@@ -38,7 +38,7 @@ def test_what_python_finds(chance):
     assert engine.verify(replace(given[0], ends="cut")) is None
 
 
-def test_whole_traces_are_judged_in_c_and_unknown_values_and_odd_steps_are_not():
+def test_whole_traces_are_judged_in_c_at_any_step_and_unknown_values_are_not():
     book = rulec.compile_rulebook(
         rulec.parse_rulebook(
             "rulebook a signal p default false hard rule r { require always eventually[<= 1 s] p }"
@@ -48,5 +48,8 @@ def test_whole_traces_are_judged_in_c_and_unknown_values_and_odd_steps_are_not()
     kept, lost = ({"p": True},), ({"p": False},) * 4
     assert engine.verify(rulec.Trace("t", 0.5, {}, kept)).satisfied is True
     assert engine.verify(rulec.Trace("t", 0.5, {}, lost)).satisfied is False
-    assert engine.verify(rulec.Trace("t", 0.3, {}, kept)) is None
+    late = [{"p": False}] * 3 + [{"p": True}]
+    for step_s, satisfied in ((0.3, True), (0.4, False)):  # after 0.9 s, and after 1.2 s
+        trace = rulec.Trace("t", step_s, {}, tuple(late))
+        assert engine.verify(trace).satisfied is satisfied
     assert engine.verify(rulec.Trace("t", 0.5, {}, ({"p": rulec.UNKNOWN},))) is None
