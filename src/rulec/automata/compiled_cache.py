@@ -1,6 +1,6 @@
 """Cache of compiled rulebooks, valid while everything that they were compiled from is unchanged.
 
-One file for each rulebook and step, in the folder of the cache of checks. If a file is unusable,
+One file for each rulebook and step, beside all else that is cached. If a file is unusable,
 the rulebook is compiled again. Machines for cut traces are added to the file once made.
 """
 
@@ -95,10 +95,9 @@ class _File:
                 return compilation
         return None
 
-    def write(self, text: Compilation, compiled: CompiledRulebook | None) -> None:
-        if compiled is not None:
-            prefixes = compiled.prefixes if isinstance(compiled.prefixes, StoredPrefixes) else None
-            compiled = replace(compiled, origin=None, recompile=None, prefixes=prefixes)
+    def write(self, text: Compilation, compiled: CompiledRulebook) -> None:
+        prefixes = compiled.prefixes if isinstance(compiled.prefixes, StoredPrefixes) else None
+        compiled = replace(compiled, origin=None, recompile=None, prefixes=prefixes)
         with suppress(OSError, ValueError):
             path = self.path
             content = replace(text, rulebook=compiled)

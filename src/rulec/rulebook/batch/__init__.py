@@ -1,1 +1,1 @@
-"""Many files checked or formatted at once, and the cache of checks."""
+"""Many files checked or formatted at once, and answers that are kept."""
