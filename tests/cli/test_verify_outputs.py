@@ -66,7 +66,7 @@ def test_a_folder_is_a_line_for_each_recording_and_one_table(verify):
     status, out, err = verify("drives")
     assert (status, out) == (2, TABLE)
     assert err.startswith(
-        "rulec: 3 recordings in drives; left alone: 1 no recorded traffic (drives/notes.txt)\n"
+        "rulec: 3 recordings in drives; left alone: 1 without recorded traffic (drives/notes.txt)\n"
     )
     assert "error[R0610]" in err
     assert "drives/broken.xml" in err

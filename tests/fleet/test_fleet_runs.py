@@ -115,8 +115,8 @@ def test_what_was_left_alone_in_a_folder_is_named(tmp_path, monkeypatch, capsys)
     Path("drives/notes.txt").write_text("no traffic")
     assert main(["fleet", "drives", "-r", "./one.rules", "-o", "f"]) == 0
     assert (
-        "left alone  1 no recorded traffic (drives/notes.txt); "
-        "1 a file of rulec's own (drives/t.jsonl)" in capsys.readouterr().out.splitlines()
+        "left alone  1 without recorded traffic (drives/notes.txt); "
+        "1 of rulec's own (drives/t.jsonl)" in capsys.readouterr().out.splitlines()
     )
 
 

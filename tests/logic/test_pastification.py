@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.automata.compiler_jobs import Job
+from rulec.automata.compiler_jobs import Job, SizeError
 from rulec.automata.mealy_monitor import Read
+from rulec.automata.worker import job_answers
 from rulec.automata.worker.job_answers import answer_to
 from rulec.logic.bounds import operations_of, total_bound
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator, atoms_of
@@ -139,6 +140,26 @@ def test_the_machine_is_that_of_the_whole_formula(shape, semantics):
         asked = Job("rule", formula, reads, (), semantics, ())
         whole = answer_to(replace(asked, remarks=("as text",)), spot_bridge.COMPILER)
         assert answer_to(asked, spot_bridge.COMPILER).machine == whole.machine
+
+
+@pytest.mark.spot
+def test_duties_whose_registers_have_too_many_states_are_translated_with_their_steps(monkeypatch):
+    formula = SHAPES["a duty that another one fills"](3)
+    reads = tuple(Read(atom.name, ()) for atom in dict.fromkeys(atoms_of(formula)))
+    asked = Job("rule", formula, reads, (), "stutter", ())
+    usual = answer_to(asked, spot_bridge.COMPILER)
+    tried = []
+
+    def too_large(small, skeleton, *, ends):
+        tried.append(len(skeleton.registers))
+        if skeleton.registers:
+            raise SizeError
+        return with_registers(small, skeleton, ends=ends)
+
+    with_registers = job_answers.with_registers
+    monkeypatch.setattr(job_answers, "with_registers", too_large)
+    assert answer_to(asked, spot_bridge.COMPILER) == usual
+    assert tried == [2, 0]
 
 
 @pytest.mark.parametrize(

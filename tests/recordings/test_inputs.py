@@ -33,13 +33,13 @@ def test_a_folder_stands_for_the_recordings_in_and_below_it(folder):
     (searched,) = found.searched
     assert (searched.path, searched.recordings) == ("drives", 2)
     assert {file.path: file.why for file in searched.left_alone} == {
-        "drives/notes.txt": "no recorded traffic",
-        "drives/road.net.xml": "no recorded traffic",
-        "drives/traces.jsonl": "a file of rulec's own",
+        "drives/notes.txt": "without recorded traffic",
+        "drives/road.net.xml": "without recorded traffic",
+        "drives/traces.jsonl": "of rulec's own",
     }
     assert searched.in_words == (
-        "2 recordings in drives; left alone: 2 no recorded traffic (drives/notes.txt, "
-        "drives/road.net.xml); 1 a file of rulec's own (drives/traces.jsonl)"
+        "2 recordings in drives; left alone: 2 without recorded traffic (drives/notes.txt, "
+        "drives/road.net.xml); 1 of rulec's own (drives/traces.jsonl)"
     )
     assert found.problems == ()
 

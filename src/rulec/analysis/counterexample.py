@@ -32,9 +32,7 @@ from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
 from rulec.rulebook.rulebook_model import Axiom
 from rulec.trace import Trace
-from rulec.vocabulary import (
-    Quantity,
-)
+from rulec.vocabulary import Quantity
 from rulec.witnesses.joint_alphabet import JointAlphabet, JointLetter
 from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import Itself, ObjectUniverse

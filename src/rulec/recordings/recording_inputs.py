@@ -32,7 +32,7 @@ class SearchedFolder:
 
     @property
     def in_words(self) -> str:
-        """Such as ``3 recordings in drives; left alone: 1 no recorded traffic (drives/a.txt)``."""
+        """Such as ``3 recordings in drives; left alone: 1 of rulec's own (drives/a.rules)``."""
         plural = "" if self.recordings == 1 else "s"
         others = f"; left alone: {in_words(self.left_alone)}" if self.left_alone else ""
         return f"{self.recordings:,} recording{plural} in {self.path}{others}"
@@ -136,7 +136,7 @@ def _why_left(path: Path) -> str:
     glance = Glance(path)
     if any(form.recognises(glance) for form in FORMATS):
         return "read along with others"
-    return "a file of rulec's own" if what_reads(str(path)) else "no recorded traffic"
+    return "of rulec's own" if what_reads(str(path)) else "without recorded traffic"
 
 
 DEEPEST_FOLDER = 200

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -86,16 +87,24 @@ def _whole(job: Job, compiler: Compiler) -> Done:
 def _by_registers(job: Job, compiler: Compiler) -> Done | None:
     """The answer by translating what remains of a formula once its past is in registers.
 
-    So are bounded duties, as conditions on the past. None if the compiler does not do so, the
-    automaton's text is wanted, or there is no such rest.
+    So are bounded duties, as conditions on the past, unless their registers have too many states
+    together. None if the compiler does not do so, the automaton's text is wanted, or there is no
+    such rest.
     """
     if compiler.rest is None or job.remarks:
         return None
     past, possible = pastified(job.formula, job.semantics), compiler.possible(job)
-    skeleton = _skeleton(past, job, possible) if past is not None else None
-    skeleton = skeleton or _skeleton(job.formula, job, possible)
-    if skeleton is None:
-        return None
+    skeleton = None if past is None else _skeleton(past, job, possible)
+    if skeleton is not None:
+        with suppress(SizeError):
+            return _beside_registers(skeleton, job, compiler)
+    skeleton = _skeleton(job.formula, job, possible)
+    return None if skeleton is None else _beside_registers(skeleton, job, compiler)
+
+
+def _beside_registers(skeleton: Skeleton, job: Job, compiler: Compiler) -> Done:
+    """The answer by the small table of a skeleton, which runs beside its registers."""
+    assert compiler.rest is not None, "it has been asked whether there is one"
     letters = skeleton.letters_with
     translated = compiler.rest(job, skeleton.rest, letters, skeleton.n_letters)
     small = build_machine(rows_of(translated.automaton, skeleton.possible), (), skeleton.n_letters)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import partial
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
@@ -93,17 +92,14 @@ def verify_contained(
         if isinstance(problem, RulecError) or not isinstance(trace, Trace):
             raise
         check_frame(trace)  # a trace of wrong kinds is the caller's fault, and is said again
-        each = partial(_each_verified, judge)
-        (answer,) = judged_apart(each, [trace], rulebook.fitted_to(trace.step_s))
+        (answer,) = judged_apart(
+            lambda traces, rules: [judge(one, rules) for one in traces],
+            [trace],
+            rulebook.fitted_to(trace.step_s),
+        )
     if isinstance(answer, NotJudged):
         raise answer.error
     return answer
-
-
-def _each_verified(
-    judge: TraceJudge, traces: Sequence[Trace], rulebook: CompiledRulebook
-) -> list[Verdict]:
-    return [judge(trace, rulebook) for trace in traces]
 
 
 def verify_or_reason(

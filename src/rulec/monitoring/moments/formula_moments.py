@@ -13,10 +13,7 @@ from rulec.automata.thresholds import exact_step
 from rulec.logic.bounds import in_steps
 from rulec.monitoring.moments.name_tables import tables_of
 from rulec.monitoring.moments.stretches import stretches_of
-from rulec.monitoring.moments.trace_truth import (
-    ReadyFormula,
-    TraceTruth,
-)
+from rulec.monitoring.moments.trace_truth import ReadyFormula, TraceTruth
 from rulec.rulebook.query_model import FormulaQuery
 from rulec.trace import Trace
 from rulec.trace.partly_known.partly_known_values import Truth
