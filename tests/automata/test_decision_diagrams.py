@@ -17,13 +17,13 @@ from rulec.automata.decision_diagrams.diagram_compiler import COMPILER
 from rulec.automata.decision_diagrams.diagrams import TRUE, Diagrams
 from rulec.automata.decision_diagrams.symbolic_automaton import SymbolicAutomaton, merged
 from rulec.automata.mealy_monitor import IMPOSSIBLE, Read
-from rulec.automata.worker.job_answers import answer_to
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
 from rulec.logic.semantics import holds
 from rulec.rulebook.reading.rulebook_reader import read_rulebook
 from rulec.rulebook.rulebook_model import Axiom
 from rulec.rulebook.rules.axiom_instances import AxiomInstance
+from support.asked_compilers import machine_by
 from support.builders.rulebooks import P, Q, always, book, eventually, implies, rule
 from support.generators.random_formulas import ATOMS
 from support.generators.timed_formulas import (
@@ -44,7 +44,7 @@ def job(formula, semantics="stutter"):
 
 
 def in_reach(formula, semantics):
-    answer = answer_to(job(formula, semantics), COMPILER)
+    answer = machine_by(job(formula, semantics), COMPILER)
     assume(answer != Failed("reach"))
     assert isinstance(answer, Done)
     return answer
@@ -64,7 +64,7 @@ def test_its_verdict_is_that_of_the_definitions(semantics, formula, word):
 def the_same_as_spots(formula, semantics):
     spot_bridge = pytest.importorskip("rulec.automata.spot_bridge")
     own = in_reach(formula, semantics)
-    other = answer_to(job(formula, semantics), spot_bridge.COMPILER)
+    other = machine_by(job(formula, semantics), spot_bridge.COMPILER)
     assert own.machine == other.machine
     return own, other
 
@@ -98,7 +98,7 @@ def test_shipped_rules_have_the_monitors_and_languages_of_spot(name, step_s):
     jobs = [compiler._job(rulebook, each, with_texts=True) for each in lowered.rules]
     answers, _ = compiler.answers_to(jobs)
     for each, other in zip(jobs, answers, strict=True):
-        own = answer_to(each, COMPILER)
+        own = machine_by(each, COMPILER)
         assert own.machine == other.machine, each.name
         automata = (spot.automaton(one.hoa) for one in (own, other))
         assert spot.are_equivalent(*automata), each.name
@@ -114,7 +114,7 @@ def test_letters_that_facts_exclude_have_no_class():
         [AxiomInstance(fact, (), fact.formula) for fact in facts],
         TIMED_VOCABULARY,
     )
-    machine = answer_to(replace(job(formula), groups=groups), COMPILER).machine
+    machine = machine_by(replace(job(formula), groups=groups), COMPILER).machine
     excluded = [number for number, symbol in enumerate(machine.letters) if symbol == IMPOSSIBLE]
     assert machine.reads == (Read("p", ()), Read("place", ("x",), ("near",), others=True))
     assert excluded == [1]  # p and near

@@ -7,9 +7,9 @@ import pytest
 from rulec.automata.alphabet import reads_of
 from rulec.automata.compiler_jobs import CheckError, Compiler, Done, Failed, Job
 from rulec.automata.decision_diagrams.diagram_compiler import COMPILER
-from rulec.automata.worker.job_answers import answer_to
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Unary, UnaryOperator
 from rulec.validation import table_proof
+from support.asked_compilers import machine_by
 from support.builders.rulebooks import P, Q, always, eventually, implies
 from support.generators.timed_formulas import TIMED_VOCABULARY
 
@@ -30,7 +30,7 @@ def answer(formula, other, semantics="stutter", **more):
         found = COMPILER.translate(replace(asked, formula=other))
         return replace(found, **more)
 
-    return answer_to(job(formula, semantics), Compiler("", translated, COMPILER.contradicts))
+    return machine_by(job(formula, semantics), Compiler("", translated, COMPILER.contradicts))
 
 
 ALIKE = always(implies(Q, once(3)))

@@ -16,6 +16,7 @@ from rulec.cache import kept_bytes
 from rulec.cache.cache_folder import cache_folder
 from rulec.cache.keeping import keeping
 from rulec.rulebook.loader import parse_rulebook
+from support.asked_compilers import machine_by
 from support.remembered_machines import ASKED
 
 BOOK = """\
@@ -28,7 +29,7 @@ hard rule second { require never (speed > 30 km/h and built_up) }
 
 def jobs_of(text):
     book = parse_rulebook(text)
-    return [compiler._job(book, one) for one in compiler.lower(book).rules]
+    return [compiler._job(book, one, with_texts=True) for one in compiler.lower(book).rules]
 
 
 @pytest.fixture
@@ -59,7 +60,7 @@ def test_what_is_recalled_is_what_was_answered(asked):
     assert (
         ASKED(jobs_of(BOOK))
         == first
-        == ([answer_to(j, diagram_compiler.COMPILER) for j in jobs], "2.13")
+        == ([machine_by(j, diagram_compiler.COMPILER) for j in jobs], "2.13")
     )
     assert asked == jobs
 
@@ -70,7 +71,7 @@ def test_only_the_rule_that_was_changed_is_compiled(asked):
     jobs = jobs_of(BOOK.replace("30 km/h", "50 km/h"))
     answers, _ = ASKED(jobs)
     assert [job.name for job in asked] == ["second"]
-    assert answers == [answer_to(job, diagram_compiler.COMPILER) for job in jobs]
+    assert answers == [machine_by(job, diagram_compiler.COMPILER) for job in jobs]
 
 
 @cache
@@ -88,6 +89,7 @@ def changed(name):
         "semantics": "finite",
         "groups": job().groups[1:],
         "most_letters": 1 << 17,
+        "registers": (),
     }[name]
     assert value != getattr(job(), name)
     return replace(job(), **{name: value})
@@ -95,8 +97,9 @@ def changed(name):
 
 @pytest.mark.parametrize("name", [one.name for one in fields(Job)])
 def test_another_job_is_asked_anew(asked, name):
-    ASKED([job()])
-    ASKED([changed(name)])
+    questions = compiler._Asked(None, more_will_come=False, time=compiler.CompilerTime())
+    questions.answers([job()])
+    questions.answers([changed(name)])
     assert len(asked) == 2
 
 
@@ -134,7 +137,7 @@ def test_what_another_machine_might_answer_otherwise_is_not_kept(asked, monkeypa
     assert not cache_folder().exists()
 
 
-@pytest.mark.parametrize("why", ["letters", "steps", "size", "sets", "reach"])
+@pytest.mark.parametrize("why", ["letters", "size", "sets", "reach"])
 def test_a_refusal_that_the_job_decides_is_kept(asked, monkeypatch, why):
     monkeypatch.setattr(compiler, "_ask", lambda _, one, __: (asked.append(one) or Failed(why), 0))
     assert ASKED([job()]) == ASKED([job()]) == ([Failed(why)], "2.13")

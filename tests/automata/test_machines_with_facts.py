@@ -16,7 +16,6 @@ from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRulebook
 from rulec.automata.compiler_jobs import Failed
 from rulec.automata.mealy_monitor import IMPOSSIBLE
-from rulec.automata.worker.job_answers import answer_to
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import (
     Atom,
@@ -36,6 +35,7 @@ from rulec.rulebook.rules.implied_signals import with_implied
 from rulec.trace import Trace
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.vocabulary import Vocabulary
+from support.asked_compilers import machine_by
 from support.generators.random_formulas import ATOMS, VOCABULARY, formulas, letters, words
 from support.oracles.installed_spot import spot, spot_bridge
 from support.oracles.past_in_spot import in_spot, spot_automaton
@@ -73,7 +73,7 @@ def book_of(formula, axioms, vocabulary=VOCABULARY, semantics="stutter"):
 
 def answer(book, *, with_texts=False):
     job = compiler._job(book, compiler.lower(book).rules[0], with_texts=with_texts)
-    return answer_to(job, spot_bridge.COMPILER)
+    return machine_by(job, spot_bridge.COMPILER)
 
 
 def compiled(book):

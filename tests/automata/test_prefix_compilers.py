@@ -9,11 +9,11 @@ from rulec.automata.compiler_jobs import Done, Failed
 from rulec.automata.decision_diagrams import diagram_compiler
 from rulec.automata.step_compilation import StepCompiler
 from rulec.automata.worker import compiler_choice
-from rulec.automata.worker.job_answers import answer_to
 from rulec.resource_limits import BudgetSpentError
 from rulec.rulebook.files.search_path import available_rulebooks
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.reading.rulebook_reader import load_rulebook
+from support.asked_compilers import machine_by
 from support.builders.rulebooks import compile_here
 from support.remembered_machines import ASKED
 
@@ -32,7 +32,7 @@ def test_one_compiler_is_asked_once_for_all_rules(monkeypatch):
 
     def answers_to(jobs, *, time):
         asked.append([job.name for job in jobs])
-        return [answer_to(job, diagram_compiler.COMPILER) for job in jobs], ""
+        return [machine_by(job, diagram_compiler.COMPILER) for job in jobs], ""
 
     monkeypatch.setattr(prefix_machines, "_KNOWN", {})
     monkeypatch.setattr(prefix_machines, "answers_to", answers_to)

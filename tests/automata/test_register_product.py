@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.automata.alphabet import reads_of
+from rulec.automata.clocks import clocked_jobs
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.tables import minimise
-from rulec.automata.worker import job_answers
-from rulec.automata.worker.job_answers import answer_to
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Unary, UnaryOperator
+from support.asked_compilers import machine_by
 from support.builders.rulebooks import P, Q, always, implies
 from support.generators.timed_formulas import TIMED_VOCABULARY, formulas_in
 from support.oracles.installed_spot import spot_bridge
@@ -32,14 +32,14 @@ def once(steps, of=P):
 
 def in_one_piece(asked):
     """The machine by translating the whole formula."""
-    return answer_to(replace(asked, remarks=("as text",)), spot_bridge.COMPILER)
+    return machine_by(replace(asked, remarks=("as text",)), spot_bridge.COMPILER)
 
 
 @pytest.mark.spot
 @given(formula=formulas_in(max_leaves=4), semantics=st.sampled_from(MEANINGS))
 def test_both_ways_make_one_table(formula, semantics):
     asked = job(formula, semantics)
-    whole, found = in_one_piece(asked), answer_to(asked, spot_bridge.COMPILER)
+    whole, found = in_one_piece(asked), machine_by(asked, spot_bridge.COMPILER)
     assert getattr(found, "machine", found) == getattr(whole, "machine", whole)
 
 
@@ -50,7 +50,7 @@ def test_bounds_of_any_length(steps, semantics):
     """Two bounds multiply: the table has a state for each pair of counts that matters."""
     both = Binary(BinaryOperator.AND, once(steps), once(steps, Q))
     asked = job(always(implies(Unary(UnaryOperator.NOT, P), both)), semantics)
-    assert answer_to(asked, spot_bridge.COMPILER).machine == in_one_piece(asked).machine
+    assert machine_by(asked, spot_bridge.COMPILER).machine == in_one_piece(asked).machine
 
 
 @pytest.mark.spot
@@ -66,7 +66,7 @@ def test_the_automaton_is_the_same_for_all_bounds():
     compiler = replace(spot_bridge.COMPILER, rest=rest)
     for steps in (1, 10, 100):
         both = Binary(BinaryOperator.AND, once(steps), once(steps, Q))
-        assert isinstance(answer_to(job(always(implies(P, both))), compiler), Done)
+        assert isinstance(machine_by(job(always(implies(P, both))), compiler), Done)
     assert len({*seen}) == 1
 
 
@@ -78,14 +78,14 @@ def test_a_wrong_small_table_is_refused():
         return spot_bridge.COMPILER.rest(asked, always(P), *more)
 
     compiler = replace(spot_bridge.COMPILER, rest=rest)
-    assert answer_to(asked, compiler) == Failed("check")
+    assert machine_by(asked, compiler) == Failed("check")
 
 
 @pytest.mark.spot
 def test_too_many_registers_are_no_obstacle(monkeypatch):
-    monkeypatch.setattr(job_answers, "MOST_REGISTERS", 1)
+    monkeypatch.setattr(clocked_jobs, "MOST_CLOCKS", 1)
     asked = job(always(implies(once(2), once(3, Q))))
-    assert answer_to(asked, spot_bridge.COMPILER).machine == in_one_piece(asked).machine
+    assert machine_by(asked, spot_bridge.COMPILER).machine == in_one_piece(asked).machine
 
 
 def distinguished(successors, outputs, one, other):

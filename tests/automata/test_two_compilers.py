@@ -10,8 +10,8 @@ from rulec.automata.alphabet import count_letters, reads_of
 from rulec.automata.compiler_jobs import BeyondReachError, Job
 from rulec.automata.decision_diagrams.diagram_compiler import COMPILER
 from rulec.automata.tables import build_machine, rows_of
-from rulec.automata.worker.job_answers import answer_to
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Unary, UnaryOperator
+from support.asked_compilers import machine_by
 from support.generators.timed_formulas import (
     ATOMS,
     BOOLEAN,
@@ -74,5 +74,5 @@ def test_ten_thousand_formulas_have_one_table(seed, record_property):
             continue
         n += 1
         assert own == machine_of(spot_bridge.COMPILER, job), one
-        assert own == answer_to(replace(job, remarks=()), spot_bridge.COMPILER).machine, one
+        assert own == machine_by(replace(job, remarks=()), spot_bridge.COMPILER).machine, one
     record_property("beyond_reach", beyond)

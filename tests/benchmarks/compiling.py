@@ -18,7 +18,6 @@ from rulec.automata.alphabet import reads_of
 from rulec.automata.compiler import compile_rulebook
 from rulec.automata.compiler_jobs import Failed, Job
 from rulec.automata.spot_bridge import COMPILER
-from rulec.automata.worker.job_answers import answer_to
 from rulec.logic.formula import (
     Atom,
     Binary,
@@ -31,6 +30,7 @@ from rulec.logic.formula import (
 )
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.vocabulary import Signal, Vocabulary
+from support.asked_compilers import machine_by
 
 FAMILIES = {
     "dac": gen.LTL_DAC_PATTERNS,
@@ -94,7 +94,7 @@ def compiled(formulas: list[Formula]) -> Callable[[], None]:
     def work() -> None:
         for formula in formulas:
             job = Job("pattern", formula, reads_of(formula, vocabulary), (), "stutter", ())
-            if isinstance(answer_to(job, COMPILER), Failed):
+            if isinstance(machine_by(job, COMPILER), Failed):
                 raise RuntimeError(f"there is no machine of {formula}")
 
     return work

@@ -8,16 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rulec.automata.clocks.clocked_machine import ClockedMachine
 from rulec.automata.compiler_jobs import Job, SizeError
 from rulec.automata.mealy_monitor import Read
-from rulec.automata.worker import job_answers
-from rulec.automata.worker.job_answers import answer_to
 from rulec.logic.bounds import operations_of, total_bound
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator, atoms_of
 from rulec.logic.past_registers import eliminate_past
 from rulec.logic.pastification import pastified
 from rulec.logic.printing import formula_text
 from rulec.logic.semantics import holds
+from support.asked_compilers import machine_by
 from support.builders.rulebooks import P, Q, always, implies
 from support.generators.timed_formulas import timed_formulas
 from support.oracles.installed_spot import spot_bridge
@@ -138,8 +138,8 @@ def test_the_machine_is_that_of_the_whole_formula(shape, semantics):
     for formula in (SHAPES[shape](4), from_begin(SHAPES[shape](3))):
         reads = tuple(Read(atom.name, ()) for atom in dict.fromkeys(atoms_of(formula)))
         asked = Job("rule", formula, reads, (), semantics, ())
-        whole = answer_to(replace(asked, remarks=("as text",)), spot_bridge.COMPILER)
-        assert answer_to(asked, spot_bridge.COMPILER).machine == whole.machine
+        whole = machine_by(replace(asked, remarks=("as text",)), spot_bridge.COMPILER)
+        assert machine_by(asked, spot_bridge.COMPILER).machine == whole.machine
 
 
 @pytest.mark.spot
@@ -147,18 +147,18 @@ def test_duties_whose_registers_have_too_many_states_are_translated_with_their_s
     formula = SHAPES["a duty that another one fills"](3)
     reads = tuple(Read(atom.name, ()) for atom in dict.fromkeys(atoms_of(formula)))
     asked = Job("rule", formula, reads, (), "stutter", ())
-    usual = answer_to(asked, spot_bridge.COMPILER)
+    usual = machine_by(asked, spot_bridge.COMPILER)
     tried = []
 
-    def too_large(small, skeleton, *, ends):
-        tried.append(len(skeleton.registers))
-        if skeleton.registers:
+    def too_large(machine, registers, *, ends):
+        tried.append(len(registers))
+        if registers:
             raise SizeError
-        return with_registers(small, skeleton, ends=ends)
+        return unrolled(machine, registers, ends=ends)
 
-    with_registers = job_answers.with_registers
-    monkeypatch.setattr(job_answers, "with_registers", too_large)
-    assert answer_to(asked, spot_bridge.COMPILER) == usual
+    unrolled = ClockedMachine.unrolled
+    monkeypatch.setattr(ClockedMachine, "unrolled", too_large)
+    assert machine_by(asked, spot_bridge.COMPILER) == usual
     assert tried == [2, 0]
 
 

@@ -10,8 +10,8 @@ from rulec.automata import compiler
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.decision_diagrams import diagram_compiler
 from rulec.automata.worker import compiler_choice
-from rulec.automata.worker.job_answers import answer_to
 from rulec.automata.worker.machine_cache import MachineCache
+from support.asked_compilers import machine_by
 
 Answers = tuple[list[Done | Failed | None], str]
 
@@ -47,7 +47,7 @@ def remembering(folder: Path) -> Callable[[Sequence[Job]], Answers]:
         if choice == compiler_choice.DIAGRAMS:
             shipped, _ = MachineCache(choice).recalled(unknown)
             pairs = zip(unknown, shipped, strict=True)
-            asked = [found or answer_to(job, diagram_compiler.COMPILER) for job, found in pairs]
+            asked = [found or machine_by(job, diagram_compiler.COMPILER) for job, found in pairs]
             spot = ""
         else:
             asked, spot = ASKED(unknown, more_will_come=True, time=time) if unknown else ([], "")

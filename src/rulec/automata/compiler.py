@@ -14,7 +14,7 @@ import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from typing import TypeAlias
 
@@ -27,6 +27,7 @@ from rulec.automata.bundle.compiled_rulebook import (
     GivenRulebook,
     alike,
 )
+from rulec.automata.clocks.clocked_jobs import Answer, machines
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.compiler_messages import no_machine, no_spot, no_time, not_confined
 from rulec.automata.worker import compiler_choice
@@ -195,33 +196,48 @@ def answers_to(
     ``choice`` is the compiler, None for the one that the environment chooses. Raises RulecError
     R0403 if Spot is requested but not installed.
     """
-    if not HAS_PROCESSES:
-        return [*answered_here(jobs)], ""
-    if choice is None:
-        choice = compiler_choice.choice()
-    # A command ends soon, and may first need another rulebook, step, or machines for cut words.
-    more_will_come = more_will_come or is_keeping()
-    time = time or CompilerTime()
-    cache = MachineCache(choice)
-    known, spot = cache.recalled(jobs)
-    missing = [job for job, answer in zip(jobs, known, strict=True) if answer is None]
-    answers: list[Done | Failed | None] = []
-    while len(answers) < len(missing) or spot is None:
-        # A worker lives until it is done or a job kills it; a new one takes the remaining jobs.
-        with _worker(choice, more_will_come=more_will_come) as (process, spot):
-            for job in missing[len(answers) :]:
-                if time.left_s <= 0:
-                    answers.append(Failed("time"))
-                    continue
-                answer, seconds = _ask(process, job, time.left_s)
-                answers.append(answer)
-                time.taken_s += seconds
-                if answer in (None, Failed("time")):
-                    _end(process)
-                    break
-    cache.keep(missing, answers, spot)
-    new = iter(answers)
-    return [next(new) if answer is None else answer for answer in known], spot
+    asked = _Asked(choice, more_will_come=more_will_come, time=time or CompilerTime())
+    return machines(jobs, asked.answers), asked.spot or ""
+
+
+@dataclass(slots=True)
+class _Asked:
+    """Questions to a compiler; ``spot`` is Spot's version once it is known."""
+
+    choice: str | None
+    _: KW_ONLY
+    more_will_come: bool
+    time: CompilerTime
+    spot: str | None = None
+
+    def answers(self, jobs: Sequence[Job]) -> list[Answer]:
+        """The answers to jobs, from the cache or from a worker."""
+        if not HAS_PROCESSES:
+            return [*answered_here(jobs)]
+        choice = compiler_choice.choice() if self.choice is None else self.choice
+        # A command ends soon, and may first need another rulebook, or machines for cut words.
+        more_will_come = self.more_will_come or is_keeping()
+        cache = MachineCache(choice)
+        known, spot = cache.recalled(jobs)
+        self.spot = spot if self.spot is None else self.spot
+        missing = [job for job, answer in zip(jobs, known, strict=True) if answer is None]
+        answers: list[Answer] = []
+        while len(answers) < len(missing) or self.spot is None:
+            # A worker lives until it is done or a job kills it; a new one takes the remaining jobs.
+            with _worker(choice, more_will_come=more_will_come) as (process, self.spot):
+                for job in missing[len(answers) :]:
+                    if self.time.left_s <= 0:
+                        answers.append(Failed("time"))
+                        continue
+                    answer, seconds = _ask(process, job, self.time.left_s)
+                    answers.append(answer)
+                    self.time.taken_s += seconds
+                    if answer in (None, Failed("time")):
+                        _end(process)
+                        break
+        cache.keep(missing, answers, self.spot)
+        new = iter(answers)
+        return [next(new) if answer is None else answer for answer in known]
 
 
 _Started: TypeAlias = "tuple[subprocess.Popen[bytes], str]"
@@ -284,9 +300,7 @@ def _started(choice: str) -> _Started:
     return process, ready.spot
 
 
-def _ask(
-    process: subprocess.Popen[bytes], job: Job, most_s: float
-) -> tuple[Done | Failed | None, float]:
+def _ask(process: subprocess.Popen[bytes], job: Job, most_s: float) -> tuple[Answer, float]:
     """The worker's answer, None if the job killed it, and the time that it took (s).
 
     It is stopped after ``most_s`` seconds of processor time.
@@ -296,7 +310,7 @@ def _ask(
     try:
         pickle.dump((job, most_s), process.stdin)
         process.stdin.flush()
-        answer: tuple[Done | Failed, float] = pickle.load(process.stdout)
+        answer: tuple[Answer, float] = pickle.load(process.stdout)
     except (EOFError, BrokenPipeError, pickle.UnpicklingError):
         before_s = _children_s()
         is_late = process.wait() == -signal.SIGXCPU

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import chain
 from typing import Literal, TypeAlias
 
 from rulec.automata.axiom_groups import AxiomGroup
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
 from rulec.automata.tables import DeterministicAutomaton
-from rulec.logic.formula import Formula, Proposition
+from rulec.logic.formula import Formula, Proposition, atoms_of
+from rulec.logic.past_registers import Register
 from rulec.logic.semantics import Semantics
 from rulec.rulebook.rules.axiom_instances import AxiomInstance
 
@@ -30,7 +32,8 @@ class Job:
     """One rule to translate, with its bounds in steps.
 
     ``groups`` are the axioms about its variables. Without ``remarks`` no text of the automaton is
-    wanted.
+    wanted. With ``registers``, which have no bounds, the formula speaks of them, and of the present
+    and the future only; None if it is translated as a whole.
     """
 
     name: str
@@ -40,6 +43,15 @@ class Job:
     semantics: Semantics
     groups: tuple[AxiomGroup, ...]
     most_letters: int = MOST_LETTERS
+    registers: tuple[Register, ...] | None = None
+
+    @property
+    def propositions(self) -> tuple[Proposition, ...]:
+        """The propositions that are read, also by registers."""
+        registers = self.registers or ()
+        parts = [side for own in registers for side in (own.left, own.right)]
+        named = dict.fromkeys(chain.from_iterable(map(atoms_of, (self.formula, *parts))))
+        return tuple([each for each in named if each not in {own.atom for own in registers}])
 
     def remarks_on(self, alive: str | None) -> tuple[str, ...]:
         """The remarks for the automaton's text; a finite word ends when ``alive`` is false."""
@@ -57,7 +69,7 @@ class Done:
 
 
 FailedWhy: TypeAlias = Literal[
-    "letters", "steps", "size", "sets", "memory", "check", "facts", "reach", "time", "bug"
+    "letters", "steps", "size", "sets", "memory", "check", "facts", "reach", "apart", "time", "bug"
 ]
 
 
@@ -67,9 +79,9 @@ class Failed:
 
     ``letters``, ``steps``, ``size`` (states, edges, operators), ``sets`` (of acceptance) or
     ``memory``: too many or too much is needed. ``check``: the result was wrong. ``facts``: those
-    in ``contradiction`` cannot hold together.
-    ``reach``: Spot is needed. ``time``: the rulebook's time is used up. ``bug``: any unforeseen
-    error, with its traceback.
+    in ``contradiction`` cannot hold together. ``reach``: Spot is needed. ``apart``: it has to be
+    translated as a whole. ``time``: the rulebook's time is used up. ``bug``: any unforeseen error,
+    with its traceback.
     """
 
     why: FailedWhy

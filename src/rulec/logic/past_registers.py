@@ -10,7 +10,9 @@ to the present and the future only.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
 
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, PAST, Range, range_of
@@ -46,6 +48,31 @@ class Register:
         low, high = self.span
         reached = -1 << low
         return reached if high is None else reached & ((1 << (high + 1)) - 1)
+
+
+def without_bounds(registers: Iterable[Register]) -> tuple[Register, ...]:
+    """The registers with no more of their bounds than whether the present instant counts.
+
+    More is not needed to know which of them can hold together at one instant.
+    """
+    return tuple([replace(own, span=Range(min(own.span.low, 1), None)) for own in registers])
+
+
+def restored(formula: ltl.Formula, registers: Iterable[Register]) -> ltl.Formula:
+    """A formula with past operators again in place of the registers' atoms."""
+    known: dict[ltl.Formula, ltl.Formula] = {}
+
+    def written(part: ltl.Formula) -> ltl.Formula:
+        if isinstance(part, ltl.Unary | ltl.Binary):
+            return ltl.with_operands(part, written)
+        return known.get(part, part)
+
+    for own in registers:
+        high = None if own.span.high is None else Fraction(own.span.high)
+        bound = ltl.Bound(Fraction(own.span.low), high, "steps")
+        sides = written(own.left), written(own.right)
+        known[own.atom] = ltl.Binary(ltl.BinaryOperator.SINCE, *sides, bound)
+    return written(formula)
 
 
 @dataclass(frozen=True, slots=True)

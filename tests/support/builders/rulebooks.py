@@ -60,14 +60,14 @@ def compile_here(rulebook, step_s=None, *, with_texts=False):
     from rulec.automata.compiler_jobs import Failed
     from rulec.automata.worker.compiler_choice import choice
     from rulec.automata.worker.compiler_worker import chosen
-    from rulec.automata.worker.job_answers import answer_to
+    from support.asked_compilers import machine_by
 
     usual = chosen(choice())
 
     compiled = []
     for formula in compiler.lower(rulebook, step_s).rules:
         job = compiler._job(rulebook, formula, with_texts=with_texts)
-        answer = answer_to(job, usual)
+        answer = machine_by(job, usual)
         if answer in (Failed("reach"), Failed("sets")):
             reject()
         compiled.append(compiler._compiled(formula.rule, formula.step_s, answer))

@@ -19,7 +19,7 @@ _NO_SETS = "Too many acceptance sets"
 
 
 def _translated(job: Job) -> Translated:
-    axioms = _facts(job, job.formula)
+    axioms = _facts(job, job.propositions)
     translation = _translation(job.formula, job.semantics, job.reads, axioms)
     letters = letters_with(job.reads, translation.names)
     return Translated(
@@ -36,9 +36,10 @@ def _translated(job: Job) -> Translated:
 def _rest(
     job: Job, rest: Formula, letters: Mapping[Proposition, int], n_letters: int
 ) -> Translated:
-    mentioned = [_mentioned(read, propositions_of(rest)) for read in job.reads]
+    propositions = propositions_of(rest)
+    mentioned = [_mentioned(read, propositions) for read in job.reads]
     reads = [read for read in mentioned if read is not None]
-    translation = _translation(rest, job.semantics, reads, _facts(job, rest))
+    translation = _translation(rest, job.semantics, reads, _facts(job, propositions))
     automaton = explore(translation, letters, n_letters)
     return Translated(automaton, None, "", translation.is_checked, translation.compare)
 
@@ -70,15 +71,14 @@ def _translation(
         raise
 
 
-def _facts(job: Job, formula: Formula) -> list[Formula]:
-    """What the facts say about a formula's propositions."""
-    propositions = propositions_of(formula)
+def _facts(job: Job, propositions: Sequence[Proposition]) -> list[Formula]:
+    """What the facts say about some propositions."""
     facts = [projected(group.known, propositions) for group in job.groups]
     return [fact for fact in facts if fact != Constant(True)]
 
 
 def _possible(job: Job) -> int | None:
-    return _letters_where(_facts(job, job.formula), job)
+    return _letters_where(_facts(job, job.propositions), job)
 
 
 def _letters_where(axioms: Sequence[Formula], job: Job) -> int | None:

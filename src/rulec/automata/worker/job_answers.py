@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
-from fractions import Fraction
+from itertools import product
 
-from rulec.automata.alphabet import count_letters, letters_with, propositions_of
+from rulec.automata.alphabet import count_letters, letters_with
 from rulec.automata.axiom_groups import AxiomGroup
+from rulec.automata.clocks.clocked_machine import ClockedMachine, ClockLetters
 from rulec.automata.compiler_jobs import (
     MOST_LETTERS,
     MOST_OPERATORS,
-    MOST_STEPS_AHEAD,
     AcceptanceError,
     BeyondReachError,
     CheckError,
@@ -23,43 +22,30 @@ from rulec.automata.compiler_jobs import (
     SizeError,
     Translated,
 )
-from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
-from rulec.automata.tables import build_machine, rows_of
-from rulec.automata.worker.random_words import agrees, outlined
-from rulec.automata.worker.register_product import MOST_REGISTERS, Skeleton, with_registers
-from rulec.logic.bounds import operations_of
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
+from rulec.automata.tables import build_machine, places_of, rows_of
+from rulec.automata.worker.random_words import agrees, outline, outlined
 from rulec.logic.codec import from_data, to_data
 from rulec.logic.fold import bit_sets, fold
-from rulec.logic.formula import (
-    Atom,
-    Binary,
-    BinaryOperator,
-    Formula,
-    Proposition,
-    Unary,
-    with_operands,
-)
-from rulec.logic.past_registers import eliminate_past
-from rulec.logic.pastification import pastified
+from rulec.logic.formula import Atom, Binary, BinaryOperator, Formula, Proposition, Unary
+from rulec.logic.past_registers import restored
 from rulec.logic.semantics import Semantics
 from rulec.rulebook.rules.axiom_instances import AxiomInstance
 from rulec.validation.table_proof import prove_words
 from rulec.validation.unprovable import UnprovableError
 
 
-def answer_to(job: Job, compiler: Compiler) -> Done | Failed:
-    """The machine of a job, or the reason why there is none."""
+def answer_to(job: Job, compiler: Compiler) -> Done | ClockedMachine | Failed:
+    """The machine of a job, beside the registers that it has, or the reason why there is none."""
     if count_letters(job.reads) > job.most_letters:
         return Failed("letters")
-    if _farthest_step(job.formula) > MOST_STEPS_AHEAD:
-        return Failed("steps")
     if _written_out(job.formula) > MOST_OPERATORS:
         return Failed("size")
     for group in job.groups:
         if compiler.contradicts(group.known):
             return Failed("facts", contradiction=_contradiction(group, compiler))
     try:
-        return _by_registers(job, compiler) or _whole(job, compiler)
+        return _whole(job, compiler) if job.registers is None else _apart(job, compiler)
     except CheckError:
         return Failed("check")
     except BeyondReachError:
@@ -76,72 +62,86 @@ def _whole(job: Job, compiler: Compiler) -> Done:
     every = (1 << count_letters(job.reads)) - 1
     possible = every if translated.possible is None else translated.possible
     machine = build_machine(rows_of(translated.automaton, possible), job.reads)
-    outline, parts = outlined(job.formula)
-    propositions = letters_with(job.reads, propositions_of(job.formula))
-    claim = _Claim(machine, outline, _letters_of(parts, propositions, every), job.semantics)
+    timed, parts = outlined(job.formula)
+    propositions = letters_with(job.reads, job.propositions)
+    claim = _Claim(machine, timed, _letters_of(parts, propositions, every), job.semantics)
     if not _is_right(claim, translated, lambda: agrees(machine, job.formula, job.semantics)):
         raise CheckError
     return Done(machine, translated.hoa)
 
 
-def _by_registers(job: Job, compiler: Compiler) -> Done | None:
-    """The answer by translating what remains of a formula once its past is in registers.
-
-    So are bounded duties, as conditions on the past, unless their registers have too many states
-    together. None if the compiler does not do so, the automaton's text is wanted, or there is no
-    such rest.
-    """
-    if compiler.rest is None or job.remarks:
-        return None
-    past, possible = pastified(job.formula, job.semantics), compiler.possible(job)
-    skeleton = None if past is None else _skeleton(past, job, possible)
-    if skeleton is not None:
-        with suppress(SizeError):
-            return _beside_registers(skeleton, job, compiler)
-    skeleton = _skeleton(job.formula, job, possible)
-    return None if skeleton is None else _beside_registers(skeleton, job, compiler)
-
-
-def _beside_registers(skeleton: Skeleton, job: Job, compiler: Compiler) -> Done:
-    """The answer by the small table of a skeleton, which runs beside its registers."""
-    assert compiler.rest is not None, "it has been asked whether there is one"
-    letters = skeleton.letters_with
-    translated = compiler.rest(job, skeleton.rest, letters, skeleton.n_letters)
-    small = build_machine(rows_of(translated.automaton, skeleton.possible), (), skeleton.n_letters)
-    rows = with_registers(small, skeleton, ends=job.semantics == "finite")
-    machine = build_machine(rows, job.reads)
-    claim = _Claim(small, skeleton.present, letters, job.semantics)
-    if not _is_right(claim, translated, lambda: agrees(machine, job.formula, job.semantics)):
-        raise CheckError
-    return Done(machine, "")
-
-
-def _skeleton(formula: Formula, job: Job, possible: int | None) -> Skeleton | None:
-    outline, parts = outlined(formula)
-    past = eliminate_past(outline)
-    if past.memories or len(past.registers) > MOST_REGISTERS:
-        return None
-    every = (1 << count_letters(job.reads)) - 1
-    propositions = letters_with(job.reads, propositions_of(job.formula))
+def _apart(job: Job, compiler: Compiler) -> ClockedMachine | Failed:
+    """The answer by translating what remains of a formula once its past is in registers."""
+    registers = job.registers or ()
+    if compiler.rest is None:
+        return Failed("apart")
+    parts: dict[Formula, Atom] = {}
+    atoms = frozenset([own.atom for own in registers])
+    present = outline(job.formula, parts, atoms)
+    sides = [
+        (outline(own.left, parts, atoms), outline(own.right, parts, atoms)) for own in registers
+    ]
+    every, possible = (1 << count_letters(job.reads)) - 1, compiler.possible(job)
+    propositions = letters_with(job.reads, job.propositions)
     true_in = _letters_of(parts, propositions, every)
     groups = _split([every if possible is None else possible], true_in.values())
     groups.sort(key=lambda letters: letters & -letters)
-    if len(groups) << len(past.registers) > MOST_LETTERS:
-        return None
+    n_groups, n_values = len(groups), 1 << len(registers)
+    n_letters = n_groups * n_values
+    if n_letters > MOST_LETTERS:
+        return Failed("apart")
+    # A letter of the table is a group and a value of each register, as bits.
     firsts = [letters & -letters for letters in groups]
-    holds = {
-        part: sum([1 << place for place, first in enumerate(firsts) if first & letters])
-        for part, letters in (true_in | propositions).items()
+    held_in: dict[Proposition, tuple[int, Sequence[int]]] = {
+        part: (sum([1 << n for n, first in enumerate(firsts) if first & own]), range(n_values))
+        for part, own in (true_in | propositions).items()
     }
-    rest = _with_parts(past.present, {atom: part for part, atom in parts.items()})
-    return Skeleton(past.present, rest, past.registers, tuple(groups), holds)
+    for place, register in enumerate(registers):
+        held = [values for values in range(n_values) if values >> place & 1]
+        held_in[register.atom] = (1 << n_groups) - 1, held
+    letters = {
+        part: sum([own << n_groups * values for values in each])
+        for part, (own, each) in held_in.items()
+    }
+    algebra = bit_sets(letters, (1 << n_letters) - 1)
+    clocks = ClockLetters(
+        n_groups,
+        tuple(
+            [_codes(fold(left, algebra), fold(right, algebra), n_letters) for left, right in sides]
+        ),
+    )
+    met = {
+        clocks.read(group, due, registers)[0]
+        for due in product((0, 1), repeat=len(registers))
+        for group in range(n_groups)
+    }
+    translated = compiler.rest(job, job.formula, letters, n_letters)
+    rows = rows_of(translated.automaton, sum([1 << letter for letter in met]))
+    table = build_machine(rows, (), n_letters)
+    machine = ClockedMachine(job.reads, _numbered(groups, job.reads), clocks, table)
+    claim = _Claim(table, present, letters, job.semantics)
+
+    def agree() -> bool:
+        unrolled = machine.unrolled(registers, ends=job.semantics == "finite")
+        return agrees(unrolled, restored(job.formula, registers), job.semantics)
+
+    if not _is_right(claim, translated, agree):
+        raise CheckError
+    return machine
 
 
-def _with_parts(outline: Formula, parts: Mapping[Atom, Formula]) -> Formula:
-    """An outline with its parts in place of their atoms."""
-    if isinstance(outline, Unary | Binary):
-        return with_operands(outline, lambda operand: _with_parts(operand, parts))
-    return parts.get(outline, outline) if isinstance(outline, Atom) else outline
+def _codes(left: int, right: int, n_letters: int) -> tuple[int, ...]:
+    """For each letter 1 if it is among the first ones, plus 2 if among the others, as bits."""
+    return tuple([(left >> n & 1) + 2 * (right >> n & 1) for n in range(n_letters)])
+
+
+def _numbered(groups: Sequence[int], reads: Sequence[Read | NumberRead]) -> tuple[int, ...]:
+    """For each letter the number of its group, ``IMPOSSIBLE`` for those in none."""
+    numbers = [IMPOSSIBLE] * count_letters(reads)
+    for number, letters in enumerate(groups):
+        for letter in places_of(letters):
+            numbers[letter] = number
+    return tuple(numbers)
 
 
 def _letters_of(
@@ -159,13 +159,6 @@ def _split(groups: Iterable[int], sets: Iterable[int]) -> list[int]:
         halves = [half for group in apart for half in (group & members, group & ~members)]
         apart = [half for half in halves if half]
     return apart
-
-
-def _farthest_step(formula: Formula) -> Fraction:
-    """The greatest step number in any bound of a formula in steps."""
-    bounds = [operation.bound for operation in operations_of(formula)]
-    ends = [bound.high or bound.low for bound in bounds if bound is not None]
-    return max(ends, default=Fraction(0))
 
 
 def _written_out(formula: Formula) -> int:

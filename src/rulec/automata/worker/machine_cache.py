@@ -13,7 +13,10 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from rulec.automata.bundle.mapped_rulebook import MACHINE_KINDS
+from rulec.automata.clocks.clocked_jobs import Answer
+from rulec.automata.clocks.clocked_machine import ClockedMachine, ClockLetters
 from rulec.automata.compiler_jobs import Done, Failed, Job
+from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.worker import compiler_choice
 from rulec.cache.kept_bytes import KeptBytes
 from rulec.cache.stored_objects import KeptObjects, ObjectCodec, kinds_of_fields
@@ -21,7 +24,7 @@ from rulec.cache.stored_objects import KeptObjects, ObjectCodec, kinds_of_fields
 MOST_MACHINES = 6000
 """The greatest number kept; the longest unused go first. A large rulebook has 200 for one step."""
 
-_DECIDED = ("letters", "steps", "size", "sets", "reach")
+_DECIDED = ("letters", "size", "sets", "reach", "apart")
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,12 +32,14 @@ class KeptJob:
     """The answer to a job, and Spot's version."""
 
     spot: str
-    answer: Done | Failed
+    answer: Done | ClockedMachine | Failed
 
 
 _MACHINES = KeptObjects(
     KeptBytes("machine", MOST_MACHINES),
-    ObjectCodec({**MACHINE_KINDS, **kinds_of_fields((KeptJob, Done, Failed))}),
+    ObjectCodec(
+        {**MACHINE_KINDS, **kinds_of_fields((KeptJob, Done, ClockedMachine, ClockLetters, Failed))}
+    ),
 )
 
 
@@ -44,11 +49,11 @@ class MachineCache:
     def __init__(self, choice: str) -> None:
         self._compiler = f"{choice} {_installed()}" if _MACHINES.files.can_be else None
 
-    def recalled(self, jobs: Sequence[Job]) -> tuple[list[Done | Failed | None], str | None]:
+    def recalled(self, jobs: Sequence[Job]) -> tuple[list[Answer], str | None]:
         """The answer to each job, and Spot's version; each None if unknown."""
         known = [self._recalled(job) for job in jobs]
         spots = [kept.spot for kept in known if kept is not None]
-        answers = [None if kept is None else kept.answer for kept in known]
+        answers: list[Answer] = [None if kept is None else kept.answer for kept in known]
         return answers, spots[-1] if spots else None
 
     def _recalled(self, job: Job) -> KeptJob | None:
@@ -57,13 +62,13 @@ class MachineCache:
         kept = _MACHINES.recall(self._key(job))
         return kept if isinstance(kept, KeptJob) else None
 
-    def keep(self, jobs: Sequence[Job], answers: Sequence[Done | Failed | None], spot: str) -> None:
+    def keep(self, jobs: Sequence[Job], answers: Sequence[Answer], spot: str) -> None:
         """Keep the machines among the answers to some jobs, and the refusals."""
         if self._compiler is None:
             return
         contents: dict[str, object] = {}
         for job, answer in zip(jobs, answers, strict=True):
-            if isinstance(answer, Done) and answer.machine.reads == job.reads:
+            if isinstance(answer, Done | ClockedMachine) and _reads(answer) == job.reads:
                 contents[self._key(job)] = KeptJob(spot, answer)
             elif isinstance(answer, Failed) and answer.why in _DECIDED:
                 contents[self._key(job)] = KeptJob(spot, Failed(answer.why))
@@ -72,6 +77,10 @@ class MachineCache:
     def _key(self, job: Job) -> str:
         # The repr of a job shows everything except places in files.
         return _MACHINES.files.key(str(self._compiler), repr(job))
+
+
+def _reads(answer: Done | ClockedMachine) -> tuple[Read | NumberRead, ...]:
+    return answer.machine.reads if isinstance(answer, Done) else answer.reads
 
 
 def _installed() -> str:

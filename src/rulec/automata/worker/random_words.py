@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from itertools import repeat
 
 from rulec.automata.alphabet import letters_with, propositions_of
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
 from rulec.logic.bounds import BOOLEAN, operations_of, range_of
-from rulec.logic.formula import Atom, Binary, Constant, Formula, Unary, with_operands
+from rulec.logic.formula import Atom, Binary, Constant, Formula, Unary, atoms_of, with_operands
 from rulec.logic.semantics import Semantics, holds, truth_values
 
 MOST_WORDS, FEWEST_WORDS = 300, 40
@@ -34,7 +34,7 @@ def agrees(machine: MealyMonitor, formula: Formula, semantics: Semantics) -> boo
         number: frozenset([each for each, true_in in sets.items() if true_in >> number & 1])
         for number in {number for word in words for number in word}
     }
-    outline, parts = outlined(formula)
+    timed, parts = outlined(formula)
     phases: dict[int, set[Atom]] = {number: set() for number in letters}
     for part, atom in parts.items():
         values = truth_values(part, list(letters.values()))
@@ -42,24 +42,38 @@ def agrees(machine: MealyMonitor, formula: Formula, semantics: Semantics) -> boo
             true.update([atom] if value else [])
     return all(
         verdict(machine, word)
-        == holds(outline, [frozenset(phases[number]) for number in word], semantics)
+        == holds(timed, [frozenset(phases[number]) for number in word], semantics)
         for word in words
     )
 
 
 def outlined(formula: Formula) -> tuple[Formula, Mapping[Formula, Atom]]:
     """The formula with each part about the present state alone replaced by an atom, and these."""
-    atoms: dict[Formula, Atom] = {}
+    parts: dict[Formula, Atom] = {}
+    return outline(formula, parts), parts
 
-    def outline(part: Formula) -> Formula:
-        if isinstance(part, Constant):
+
+def outline(
+    formula: Formula, parts: dict[Formula, Atom], apart: Container[Formula] = ()
+) -> Formula:
+    """The formula with each part about the present state alone replaced by its atom in ``parts``.
+
+    New ones are added there. Atoms kept ``apart`` stay, and are in no part.
+    """
+
+    def written(part: Formula) -> Formula:
+        if isinstance(part, Constant) or part in apart:
             return part
-        is_timed = any(operation.operator not in BOOLEAN for operation in operations_of(part))
-        if is_timed and isinstance(part, Unary | Binary):
-            return with_operands(part, outline)
-        return atoms.setdefault(part, Atom(f"part {len(atoms)}"))
+        if isinstance(part, Unary | Binary) and not _is_plain(part, apart):
+            return with_operands(part, written)
+        return parts.setdefault(part, Atom(f"part {len(parts)}"))
 
-    return outline(formula), atoms
+    return written(formula)
+
+
+def _is_plain(formula: Formula, apart: Container[Formula]) -> bool:
+    is_timed = any(operation.operator not in BOOLEAN for operation in operations_of(formula))
+    return not is_timed and not any(atom in apart for atom in atoms_of(formula))
 
 
 def _bounds(formula: Formula) -> list[int]:

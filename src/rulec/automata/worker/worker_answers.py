@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 
+from rulec.automata.clocks.clocked_machine import ClockedMachine
 from rulec.automata.compiler_jobs import MOST_STEPS_AHEAD, Compiler, Done, Failed, Job
 from rulec.automata.worker import compiler_choice
 from rulec.automata.worker.confinement import Confinement
@@ -52,7 +53,7 @@ def chosen(choice: str) -> Compiler:
     return diagram_compiler.COMPILER
 
 
-def answered(job: Job, compiler: Compiler) -> Done | Failed:
+def answered(job: Job, compiler: Compiler) -> Done | ClockedMachine | Failed:
     """The answer to a job, whatever happens."""
     try:
         return answer_to(job, compiler)
@@ -62,7 +63,7 @@ def answered(job: Job, compiler: Compiler) -> Done | Failed:
         return Failed("bug", traceback.format_exc())
 
 
-def answered_here(jobs: Iterable[Job]) -> list[Done | Failed]:
+def answered_here(jobs: Iterable[Job]) -> list[Done | ClockedMachine | Failed]:
     """Answers of decision diagrams in this process, without limits on time or memory.
 
     An editor asks for all rules of a rulebook again and again, so answers are remembered.
@@ -71,5 +72,5 @@ def answered_here(jobs: Iterable[Job]) -> list[Done | Failed]:
 
 
 @lru_cache(maxsize=_MOST_REMEMBERED)
-def _remembered(job: Job) -> Done | Failed:
+def _remembered(job: Job) -> Done | ClockedMachine | Failed:
     return answered(job, chosen(compiler_choice.DIAGRAMS))

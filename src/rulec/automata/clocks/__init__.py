@@ -1,0 +1,1 @@
+"""Machines that read clocks: the same for bounds of any length."""

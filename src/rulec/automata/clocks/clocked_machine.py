@@ -1,0 +1,144 @@
+"""A rule's machine beside the clocks that it reads, and the table of both for certain bounds.
+
+What a past operator remembers is a clock (``logic.past_registers``). The machine reads whether each
+holds, so it is the same for bounds of any length. For bounds in steps both run side by side, which
+gives a table for letters alone: a bound costs states there, but no formula is looked at again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import TypeAlias
+
+from rulec.automata.compiler_jobs import MOST_EDGES, MOST_STATES, SizeError
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
+from rulec.automata.tables import VerdictTable, build_machine, loop_verdicts
+from rulec.logic.past_registers import Register
+
+_SIDES = ((False, False), (True, False), (False, True), (True, True))
+"""The values of a clock's left and right operand, by their code."""
+
+Due: TypeAlias = tuple[int, ...]
+"""For each clock whether it holds its proposition true, if its left operand is."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClockLetters:
+    """What clocks make of a group of letters: a letter of the table that reads them.
+
+    That letter is ``group + n_groups * values``, the clocks' values as bits. ``operands`` has for
+    each clock, and each letter of the table, 1 if its left operand holds there, plus 2 if its right
+    one does; a clock's operands may read earlier clocks.
+    """
+
+    n_groups: int
+    operands: tuple[tuple[int, ...], ...]
+
+    def read(self, group: int, due: Due, clocks: Sequence[Register]) -> tuple[int, Due]:
+        """The letter of the table, and for each clock the code of its operands."""
+        letter, codes = group, []
+        weight = self.n_groups
+        for codes_of, is_due, clock in zip(self.operands, due, clocks, strict=True):
+            code = codes_of[letter]
+            codes.append(code)
+            letter += weight * (clock.after(is_due << 1, *_SIDES[code]) & 1)
+            weight *= 2
+        return letter, tuple(codes)
+
+
+@dataclass(frozen=True, slots=True)
+class ClockedMachine:
+    """A machine over what it ``reads`` and over clocks.
+
+    ``groups``: for each letter the number of its group, ``IMPOSSIBLE`` for those that axioms
+    exclude; letters of one group are the same for the ``table`` and for the clocks. ``clocks`` say
+    which letters of the table these make of groups.
+    """
+
+    reads: tuple[Read | NumberRead, ...]
+    groups: tuple[int, ...]
+    clocks: ClockLetters
+    table: MealyMonitor
+
+    def unrolled(self, clocks: Sequence[Register], *, ends: bool) -> MealyMonitor:
+        """The machine over letters alone, for clocks with these bounds; it is minimal.
+
+        ``ends`` if nothing follows a word. Raises SizeError.
+        """
+        n_groups = self.clocks.n_groups
+        machine = build_machine(_side_by_side(self, clocks, ends=ends), (), n_groups)
+        numbers = (*machine.letters, IMPOSSIBLE)
+        letters = tuple([numbers[group] for group in self.groups])
+        return replace(machine, reads=self.reads, letters=letters)
+
+
+@dataclass(frozen=True, slots=True)
+class _Moves:
+    """The different moves where certain clocks are due, and for each group the place of its own.
+
+    A move is the class of letters that the table reads, and the codes of the clocks' operands.
+    """
+
+    moves: tuple[tuple[int, Due], ...]
+    of_group: tuple[int, ...]
+
+
+def _side_by_side(
+    machine: ClockedMachine, clocks: Sequence[Register], *, ends: bool
+) -> VerdictTable:
+    """The table for groups: its states are pairs of a state of the table and what clocks hold."""
+    table = machine.table
+    at_first = tuple([clock.at_first for clock in clocks])
+    sinks = {table.rejecting_sink, table.accepting_sink}
+    after = [cache(clock.after) for clock in clocks]
+    met: dict[Due, _Moves] = {}
+    numbers = {(0, at_first): 0}
+    rows: list[tuple[int, Due, list[int]]] = []
+    n_edges = 0
+    for state, held in (reached := list(numbers)):
+        due = tuple([value >> 1 & 1 for value in held])
+        if due not in met:
+            met[due] = _moves(machine, due, clocks)
+        row = []
+        for symbol, codes in met[due].moves:
+            target, later = table.successors[state][symbol], at_first
+            if target not in sinks:
+                # In a sink the past makes no difference.
+                each = zip(after, held, codes, strict=True)
+                later = tuple([advance(value, *_SIDES[code]) for advance, value, code in each])
+            pair = target, later
+            if pair not in numbers:
+                numbers[pair] = len(reached)
+                reached.append(pair)
+            row.append(numbers[pair])
+        rows.append((state, due, row))
+        n_edges += len(row)
+        if len(reached) > MOST_STATES or n_edges > MOST_EDGES:
+            raise SizeError
+    # Groups that are told apart nowhere form a class.
+    members: dict[tuple[int, ...], int] = {}
+    for group, key in enumerate(zip(*[own.of_group for own in met.values()], strict=True)):
+        members[key] = members.get(key, 0) | 1 << group
+    place_of = {due: [key[place] for key in members] for place, due in enumerate(met)}
+    successors = [[row[place] for place in place_of[due]] for _, due, row in rows]
+    verdicts = [
+        [table.outputs[state][met[due].moves[place][0]] for place in place_of[due]]
+        for state, due, _ in rows
+    ]
+    if not ends:
+        # A letter that is repeated settles the clocks sooner or later.
+        columns = zip(zip(*successors, strict=True), zip(*verdicts, strict=True), strict=True)
+        settled = [loop_verdicts(list(zip(*column, strict=True)), bool) for column in columns]
+        verdicts = [list(row) for row in zip(*settled, strict=True)]
+    return VerdictTable(list(members.values()), successors, verdicts)
+
+
+def _moves(machine: ClockedMachine, due: Due, clocks: Sequence[Register]) -> _Moves:
+    places: dict[tuple[int, Due], int] = {}
+    of_group = []
+    for group in range(machine.clocks.n_groups):
+        letter, codes = machine.clocks.read(group, due, clocks)
+        of_group.append(places.setdefault((machine.table.letters[letter], codes), len(places)))
+    return _Moves(tuple(places), tuple(of_group))
