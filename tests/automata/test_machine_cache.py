@@ -2,6 +2,7 @@
 
 from contextlib import contextmanager
 from dataclasses import fields, replace
+from fractions import Fraction
 from functools import cache
 from importlib.machinery import ModuleSpec
 
@@ -89,7 +90,9 @@ def changed(name):
         "semantics": "finite",
         "groups": job().groups[1:],
         "most_letters": 1 << 17,
-        "registers": (),
+        "clocks": (),
+        "named": job().propositions,
+        "step_s": Fraction(2),
     }[name]
     assert value != getattr(job(), name)
     return replace(job(), **{name: value})

@@ -156,16 +156,16 @@ def build_all(
 
 def job_of(rule: CompiledRule, rulebook: CompiledRulebook) -> Job:
     """The job that a compiled rule came from, without remarks."""
-    formula = rule.formula if rule.step_s is None else in_steps(rule.formula, rule.step_s)
     facts = [Axiom(axiom.variables, axiom.formula) for axiom in rulebook.axioms]
     instances = axiom_instances(rule.variables, facts, rulebook.vocabulary)
     return Job(
         rule.name,
-        formula,
+        rule.formula,
         rule.machine.reads,
         remarks=(),
         semantics=rulebook.semantics,
-        groups=axiom_groups(propositions_of(formula), instances, rulebook.vocabulary),
+        groups=axiom_groups(propositions_of(rule.formula), instances, rulebook.vocabulary),
+        step_s=rule.step_s,
     )
 
 
@@ -335,7 +335,7 @@ def remarks_on(
 
 
 def _job(rulebook: Rulebook, lowered: RuleFormula, *, with_texts: bool = False) -> Job:
-    rule, formula = lowered.rule, lowered.formula
+    rule, formula = lowered.rule, lowered.rule.formula
     vocabulary = rulebook.vocabulary
     instances = axiom_instances(rule.variables, rulebook.axioms, vocabulary)
     return Job(
@@ -345,6 +345,7 @@ def _job(rulebook: Rulebook, lowered: RuleFormula, *, with_texts: bool = False) 
         remarks=remarks_on(rule, rulebook.name, lowered.step_s) if with_texts else (),
         semantics=rulebook.semantics,
         groups=axiom_groups(propositions_of(formula), instances, vocabulary),
+        step_s=lowered.step_s,
     )
 
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from itertools import chain
+from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from rulec.automata.axiom_groups import AxiomGroup
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
 from rulec.automata.tables import DeterministicAutomaton
+from rulec.logic.bounds import in_steps
 from rulec.logic.formula import Formula, Proposition, atoms_of
-from rulec.logic.past_registers import Register
+from rulec.logic.past_registers import Clock
 from rulec.logic.semantics import Semantics
 from rulec.rulebook.rules.axiom_instances import AxiomInstance
 
@@ -29,11 +30,12 @@ MOST_OPERATORS = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """One rule to translate, with its bounds in steps.
+    """One rule to translate, for steps of ``step_s`` seconds if it has bounds in seconds.
 
     ``groups`` are the axioms about its variables. Without ``remarks`` no text of the automaton is
-    wanted. With ``registers``, which have no bounds, the formula speaks of them, and of the present
-    and the future only; None if it is translated as a whole.
+    wanted. With ``clocks``, which have no bounds, the formula speaks of them, and of the present
+    and the future only, and ``named`` are the rule's propositions; None if it is translated as a
+    whole.
     """
 
     name: str
@@ -43,15 +45,19 @@ class Job:
     semantics: Semantics
     groups: tuple[AxiomGroup, ...]
     most_letters: int = MOST_LETTERS
-    registers: tuple[Register, ...] | None = None
+    step_s: Fraction | None = None
+    clocks: tuple[Clock, ...] | None = None
+    named: tuple[Proposition, ...] = ()
+
+    @property
+    def in_steps(self) -> Formula:
+        """The formula with its bounds in steps."""
+        return self.formula if self.step_s is None else in_steps(self.formula, self.step_s)
 
     @property
     def propositions(self) -> tuple[Proposition, ...]:
-        """The propositions that are read, also by registers."""
-        registers = self.registers or ()
-        parts = [side for own in registers for side in (own.left, own.right)]
-        named = dict.fromkeys(chain.from_iterable(map(atoms_of, (self.formula, *parts))))
-        return tuple([each for each in named if each not in {own.atom for own in registers}])
+        """The propositions of the rule."""
+        return self.named or tuple(dict.fromkeys(atoms_of(self.formula)))
 
     def remarks_on(self, alive: str | None) -> tuple[str, ...]:
         """The remarks for the automaton's text; a finite word ends when ``alive`` is false."""

@@ -45,6 +45,12 @@ DISTANCE: frozenset[ltl.UnaryOperator | ltl.BinaryOperator] = frozenset(
 """The operators that refer to a single instant: without a bound, to the adjacent one."""
 
 
+_LATER = frozenset({ltl.BinaryOperator.THEN})
+_UNBOUNDED, _LATER_ON = (ltl.Bound(Fraction(low), None, "steps") for low in (0, 1))
+PREVIOUS = ltl.Bound(Fraction(1), Fraction(1), "steps")
+"""The bound of what is about the adjacent instant."""
+
+
 class Range(NamedTuple):
     """The instants from ``low`` to ``high`` steps away, both included.
 
@@ -55,20 +61,32 @@ class Range(NamedTuple):
     high: int | None
 
 
-def range_of(formula: ltl.Unary | ltl.Binary) -> Range:
-    """The range of the formula's operator.
+def bound_of(formula: ltl.Unary | ltl.Binary) -> ltl.Bound:
+    """The bound of the formula's operator, also where none is written.
 
-    For ``then`` it is the range of its ``until``: the first phase lasts at least one instant.
-    Raises ValueError for a bound in seconds, or in fractions of a step.
+    For ``then`` it is that of its ``until``: the first phase lasts at least one instant.
     """
     bound, operator = formula.bound, formula.operator
-    least = int(operator is ltl.BinaryOperator.THEN)
     if bound is None:
-        return Range(1, 1) if operator in DISTANCE else Range(least, None)
+        later = _LATER_ON if operator in _LATER else _UNBOUNDED
+        return PREVIOUS if operator in DISTANCE else later
+    return replace(bound, span=None, least=max(bound.least, int(operator in _LATER)))
+
+
+def range_of(formula: ltl.Unary | ltl.Binary) -> Range:
+    """The range of ``bound_of`` the formula.
+
+    Raises ValueError for a bound in seconds, or in fractions of a step.
+    """
+    return range_of_bound(bound_of(formula))
+
+
+def range_of_bound(bound: ltl.Bound) -> Range:
+    """The range of a bound in steps. Raises ValueError for any other."""
     if bound.unit == "s":
         raise ValueError("a bound in seconds has no meaning without the step of a trace")
     low, high = _whole(bound.low), None if bound.high is None else _whole(bound.high)
-    return Range(max(low, least), high)
+    return Range(max(low, bound.least), high)
 
 
 def _whole(steps: Fraction) -> int:
@@ -133,22 +151,25 @@ def in_steps(formula: ltl.Formula, step_s: Fraction) -> ltl.Formula:
         raise ValueError("a step lasts more than 0 s")
     match formula:
         case ltl.Unary(operator, operand, bound):
-            return ltl.Unary(operator, in_steps(operand, step_s), _steps(bound, step_s))
+            return ltl.Unary(operator, in_steps(operand, step_s), _own_in_steps(bound, step_s))
         case ltl.Binary(operator, left, right, bound):
-            steps = _steps(bound, step_s)
+            steps = _own_in_steps(bound, step_s)
             return ltl.Binary(operator, in_steps(left, step_s), in_steps(right, step_s), steps)
         case ltl.Atom() | ltl.Comparison() | ltl.Same() | ltl.Constant():
             return formula
 
 
-def _steps(bound: ltl.Bound | None, step_s: Fraction) -> ltl.Bound | None:
-    if bound is None:
-        return None
+def _own_in_steps(bound: ltl.Bound | None, step_s: Fraction) -> ltl.Bound | None:
+    return None if bound is None else bound_in_steps(bound, step_s)
+
+
+def bound_in_steps(bound: ltl.Bound, step_s: Fraction) -> ltl.Bound:
+    """A bound in steps of so many seconds, as ``in_steps``."""
     if bound.unit == "steps":
         return replace(bound, span=None)
-    low = Fraction(ceil(bound.low / step_s))
+    low = Fraction((floor if bound.early else ceil)(bound.low / step_s))
     high = None if bound.high is None else Fraction(floor(bound.high / step_s))
-    return replace(bound, low=low, high=high, unit="steps", span=None)
+    return ltl.Bound(low, high, "steps", least=bound.least)
 
 
 def total_bound(formula: ltl.Formula) -> int:

@@ -129,13 +129,17 @@ class Bound:
     It counts forward or backward, depending on the operator.
 
     The unit is seconds or steps of the trace; ``high`` is None if there is no upper end. For
-    ``next`` and ``previously`` both are the distance. ``span`` is its place in the source.
+    ``next`` and ``previously`` both are the distance. ``span`` is its place in the source. No
+    source has ``early`` bounds, whose lower end is the last instant before ``low`` if there is none
+    at it, nor any that are at least some steps away (``least``).
     """
 
     low: Fraction
     high: Fraction | None
     unit: Literal["s", "steps"]
     span: Span | None = field(default=None, compare=False, repr=False)
+    early: bool = False
+    least: int = 0
 
 
 class _Hashed:

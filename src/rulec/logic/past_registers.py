@@ -13,9 +13,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from typing import Literal
 
 from rulec.logic import formula as ltl
-from rulec.logic.bounds import BOOLEAN, PAST, Range, range_of
+from rulec.logic.bounds import (
+    BOOLEAN,
+    PAST,
+    PREVIOUS,
+    Range,
+    bound_in_steps,
+    bound_of,
+    range_of_bound,
+)
 
 NOT, AND, OR = ltl.UnaryOperator.NOT, ltl.BinaryOperator.AND, ltl.BinaryOperator.OR
 
@@ -50,29 +59,36 @@ class Register:
         return reached if high is None else reached & ((1 << (high + 1)) - 1)
 
 
-def without_bounds(registers: Iterable[Register]) -> tuple[Register, ...]:
-    """The registers with no more of their bounds than whether the present instant counts.
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """A register whose bound may be in seconds: with a step of traces it is one."""
 
-    More is not needed to know which of them can hold together at one instant.
-    """
-    return tuple([replace(own, span=Range(min(own.span.low, 1), None)) for own in registers])
+    atom: ltl.Atom
+    left: ltl.Formula
+    right: ltl.Formula
+    bound: ltl.Bound
 
+    def register(self, step_s: Fraction | None) -> Register:
+        """The register at steps of so many seconds; without a step the bound has to be in steps."""
+        bound = self.bound if step_s is None else bound_in_steps(self.bound, step_s)
+        return Register(self.atom, self.left, self.right, range_of_bound(bound))
 
-def restored(formula: ltl.Formula, registers: Iterable[Register]) -> ltl.Formula:
-    """A formula with past operators again in place of the registers' atoms."""
-    known: dict[ltl.Formula, ltl.Formula] = {}
+    @property
+    def begins_at(self) -> frozenset[int]:
+        """Whether the bound begins at the present instant: 0 if so, 1 if not, or both by step."""
+        bound = self.bound
+        if bound.early and bound.unit == "s":
+            return frozenset({0, 1})
+        return frozenset({int(bound.low > 0 or bound.least > 0)})
 
-    def written(part: ltl.Formula) -> ltl.Formula:
-        if isinstance(part, ltl.Unary | ltl.Binary):
-            return ltl.with_operands(part, written)
-        return known.get(part, part)
+    def unbounded(self) -> Clock:
+        """The clock with no more of its bound than where that begins, as far as that is known.
 
-    for own in registers:
-        high = None if own.span.high is None else Fraction(own.span.high)
-        bound = ltl.Bound(Fraction(own.span.low), high, "steps")
-        sides = written(own.left), written(own.right)
-        known[own.atom] = ltl.Binary(ltl.BinaryOperator.SINCE, *sides, bound)
-    return written(formula)
+        More is not needed to know which clocks can hold together at one instant.
+        """
+        low, *others = sorted(self.begins_at, reverse=True)
+        unit: Literal["s", "steps"] = "s" if others else "steps"
+        return replace(self, bound=ltl.Bound(Fraction(low), None, unit, early=bool(others)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,26 +122,57 @@ def eliminate_past(formula: ltl.Formula, *, registers: bool = True) -> WithoutPa
 
     Its bounds must be in steps; else raises ValueError.
     """
-    result = _PastParts(registers)
+    present, clocks, memories = _eliminated(formula, with_registers=registers)
+    return WithoutPast(present, tuple([clock.register(None) for clock in clocks]), memories)
+
+
+def with_clocks(formula: ltl.Formula) -> tuple[ltl.Formula, tuple[Clock, ...]] | None:
+    """The formula with clocks in place of its past operators, and these, each after those it needs.
+
+    None if the past depends on the future, which clocks cannot tell.
+    """
+    try:
+        present, clocks, memories = _eliminated(formula, with_registers=True)
+    except ValueError:
+        return None  # a bound in seconds would have to be written out
+    return None if memories else (present, clocks)
+
+
+def _eliminated(
+    formula: ltl.Formula, *, with_registers: bool
+) -> tuple[ltl.Formula, tuple[Clock, ...], tuple[Memory, ...]]:
+    result = _PastParts(with_registers)
     present = _present(formula, result)
-    fresh: list[Register | Memory] = [*result.registers.values(), *result.memories.values()]
-    needed: list[Register | Memory] = []
+    fresh: list[Clock | Memory] = [*result.clocks.values(), *result.memories.values()]
+    needed: list[Clock | Memory] = []
     spoken_of = set(ltl.atoms_of(present))
     # Each refers only to earlier ones.
-    for register in sorted(fresh, key=lambda proxy: result.order[proxy.atom], reverse=True):
-        if register.atom in spoken_of:
-            needed.insert(0, register)
-            for part in (
-                (register.left, register.right)
-                if isinstance(register, Register)
-                else (register.formula,)
-            ):
+    for own in sorted(fresh, key=lambda proxy: result.order[proxy.atom], reverse=True):
+        if own.atom in spoken_of:
+            needed.insert(0, own)
+            parts = (own.left, own.right) if isinstance(own, Clock) else (own.formula,)
+            for part in parts:
                 spoken_of.update(ltl.atoms_of(part))
-    return WithoutPast(
+    return (
         present,
-        tuple(register for register in needed if isinstance(register, Register)),
-        tuple(memory for memory in needed if isinstance(memory, Memory)),
+        tuple([own for own in needed if isinstance(own, Clock)]),
+        tuple([own for own in needed if isinstance(own, Memory)]),
     )
+
+
+def without_clocks(formula: ltl.Formula, clocks: Iterable[Clock]) -> ltl.Formula:
+    """A formula with past operators again in place of the atoms of clocks."""
+    known: dict[ltl.Formula, ltl.Formula] = {}
+
+    def written(part: ltl.Formula) -> ltl.Formula:
+        if isinstance(part, ltl.Unary | ltl.Binary):
+            return ltl.with_operands(part, written)
+        return known.get(part, part)
+
+    for own in clocks:
+        sides = written(own.left), written(own.right)
+        known[own.atom] = ltl.Binary(ltl.BinaryOperator.SINCE, *sides, own.bound)
+    return written(formula)
 
 
 def definition(memory: Memory) -> ltl.Formula:
@@ -148,7 +195,7 @@ class _PastParts:
     """The registers and memories of a formula so far, by content."""
 
     with_registers: bool
-    registers: dict[tuple[ltl.Formula, ltl.Formula, Range], Register] = field(default_factory=dict)
+    clocks: dict[tuple[ltl.Formula, ltl.Formula, ltl.Bound], Clock] = field(default_factory=dict)
     memories: dict[ltl.Formula, Memory] = field(default_factory=dict)
     sinces: dict[tuple[ltl.Formula, ltl.Formula, Range], ltl.Formula] = field(default_factory=dict)
     order: dict[ltl.Formula, int] = field(default_factory=dict)
@@ -173,7 +220,7 @@ def _present(formula: ltl.Formula, past: _PastParts) -> ltl.Formula:
     operation = ltl.with_operands(formula, lambda operand: _present(operand, past))
     if operation.operator not in PAST:
         return operation
-    span = range_of(operation)
+    span = bound_of(operation)
     if isinstance(operation, ltl.Binary):
         return _since(operation.left, operation.right, span, past)
     inner = operation.operand
@@ -182,14 +229,16 @@ def _present(formula: ltl.Formula, past: _PastParts) -> ltl.Formula:
     return _since(ltl.Constant(True), inner, span, past)
 
 
-def _since(left: ltl.Formula, right: ltl.Formula, span: Range, past: _PastParts) -> ltl.Formula:
+def _since(
+    left: ltl.Formula, right: ltl.Formula, bound: ltl.Bound, past: _PastParts
+) -> ltl.Formula:
     if past.is_settled(left) and past.is_settled(right):
         # The same operator on the same operands needs no second register.
-        key = (left, right, span)
-        if key not in past.registers:
-            past.registers[key] = Register(past.fresh("register"), left, right, span)
-        return past.registers[key].atom
-    return _unfolded(left, right, span, past)
+        key = (left, right, bound)
+        if key not in past.clocks:
+            past.clocks[key] = Clock(past.fresh("register"), left, right, bound)
+        return past.clocks[key].atom
+    return _unfolded(left, right, range_of_bound(bound), past)
 
 
 def _unfolded(left: ltl.Formula, right: ltl.Formula, span: Range, past: _PastParts) -> ltl.Formula:
@@ -218,7 +267,7 @@ def _unfolded(left: ltl.Formula, right: ltl.Formula, span: Range, past: _PastPar
 
 def _one_ago(formula: ltl.Formula, past: _PastParts) -> ltl.Formula:
     if past.is_settled(formula):
-        return _since(ltl.Constant(True), formula, Range(1, 1), past)
+        return _since(ltl.Constant(True), formula, PREVIOUS, past)
     if formula not in past.memories:
         past.memories[formula] = Memory(past.fresh("memory"), formula)
     return past.memories[formula].atom

@@ -9,10 +9,9 @@ that is left: the duty that has waited longest decides.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from fractions import Fraction
 
 from rulec.logic import formula as ltl
-from rulec.logic.bounds import BOOLEAN, PAST, Range, operations_of, range_of
+from rulec.logic.bounds import BOOLEAN, PAST, bound_of, operations_of
 from rulec.logic.fold import fold_constants
 from rulec.logic.semantics import Semantics
 
@@ -29,7 +28,8 @@ class _NoDutyError(Exception):
 def pastified(formula: ltl.Formula, semantics: Semantics) -> ltl.Formula | None:
     """An equivalent formula whose bounded duties are conditions on the past; None if it has none.
 
-    Bounds are in steps. Both hold for the same words, but not at the same places in them.
+    Both hold for the same words, but not at the same places in them, whatever the step of traces
+    is if bounds are in seconds.
     """
     found = _pastified(formula, _TRUE, semantics)
     return None if found == formula else found
@@ -104,7 +104,7 @@ def _timed(
     when: ltl.Formula, formula: ltl.Unary | ltl.Binary, is_wanted: bool, semantics: Semantics
 ) -> Iterator[ltl.Formula]:
     """``_demands`` of a temporal operator: an until, or a release of what must hold so long."""
-    span = range_of(formula)
+    bound = bound_of(formula)
     left: ltl.Formula
     right: ltl.Formula
     match formula:
@@ -126,48 +126,44 @@ def _timed(
         # A release of the opposites is wanted in place of an until, and the other way round
         left, right = _not(left), _not(right)
     if is_until is is_wanted:
-        yield from _deadline(when, left, right, span, semantics)
+        yield from _deadline(when, left, right, bound, semantics)
     else:
-        yield from _demands(_still_held(when, left, span), right, True, semantics)
+        yield from _demands(_still_held(when, left, bound), right, True, semantics)
 
 
 def _deadline(
-    when: ltl.Formula, left: ltl.Formula, right: ltl.Formula, span: Range, semantics: Semantics
+    when: ltl.Formula,
+    left: ltl.Formula,
+    right: ltl.Formula,
+    bound: ltl.Bound,
+    semantics: Semantics,
 ) -> Iterator[ltl.Formula]:
-    """What holds if ``left until[span] right`` does wherever ``when`` holds."""
-    if span.low or span.high is None or not _is_past(right):
+    """What holds if ``left until[bound] right`` does wherever ``when`` holds."""
+    if bound.low or bound.least or bound.high is None or not _is_past(right):
         raise _NoDutyError
     missing = _not(right)
     asked = _and(when, missing)
-    yield _not(_since(missing, asked, Range(span.high, None)))
-    waits = _since(missing, asked, Range(0, None))
+    # What has not come at the last instant that there is within the bound comes too late.
+    late = ltl.Bound(bound.high, None, bound.unit, early=bound.unit == "s")
+    yield _not(_since(missing, asked, late))
+    waits = _since(missing, asked, None)
     if left != _TRUE:
         yield _not(_and(waits, _not(left)))
     if semantics == "finite":
         yield _implies(_LAST, _not(waits))
 
 
-def _still_held(when: ltl.Formula, left: ltl.Formula, span: Range) -> ltl.Formula:
-    """Where ``left release[span] right`` still asks for ``right`` because ``when`` has held."""
-    low, high = span
-    if high is not None and high < low:
-        return _FALSE
-    if when == _TRUE and left == _FALSE and low == 0:
+def _still_held(when: ltl.Formula, left: ltl.Formula, bound: ltl.Bound) -> ltl.Formula:
+    """Where ``left release[bound] right`` still asks for ``right`` because ``when`` has held."""
+    if when == _TRUE and left == _FALSE and not (bound.low or bound.least):
         return _TRUE
     if left == _FALSE:
-        return _since(_TRUE, when, span)
-    earlier: ltl.Formula = _FALSE
-    if high is None or high > 0:
-        # From the state before: ``left`` has released nothing up to there
-        before = Range(max(low, 1) - 1, None if high is None else high - 1)
-        kept = _since(_not(left), _and(when, _not(left)), before)
-        earlier = ltl.Unary(ltl.UnaryOperator.PREVIOUSLY, kept)
-    return earlier if low else fold_constants(ltl.Binary(_OR, when, earlier))
+        return _since(_TRUE, when, bound)
+    # ``left`` has released nothing before the present state
+    return _since(ltl.Unary(ltl.UnaryOperator.PREVIOUSLY, _not(left)), when, bound)
 
 
-def _since(left: ltl.Formula, right: ltl.Formula, span: Range) -> ltl.Formula:
-    high = None if span.high is None else Fraction(span.high)
-    bound = None if span == Range(0, None) else ltl.Bound(Fraction(span.low), high, "steps")
+def _since(left: ltl.Formula, right: ltl.Formula, bound: ltl.Bound | None) -> ltl.Formula:
     return ltl.Binary(ltl.BinaryOperator.SINCE, left, right, bound)
 
 

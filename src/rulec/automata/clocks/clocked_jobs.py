@@ -14,9 +14,9 @@ from typing import TypeAlias
 
 from rulec.automata.clocks.clocked_machine import ClockedMachine
 from rulec.automata.compiler_jobs import MOST_STEPS_AHEAD, Done, Failed, Job, SizeError
-from rulec.logic.bounds import operations_of
+from rulec.logic.bounds import has_seconds, operations_of
 from rulec.logic.formula import Formula
-from rulec.logic.past_registers import Register, eliminate_past, without_bounds
+from rulec.logic.past_registers import Clock, with_clocks
 from rulec.logic.pastification import pastified
 
 MOST_CLOCKS = 8
@@ -30,22 +30,23 @@ Ask: TypeAlias = Callable[[Sequence[Job]], Sequence[Answer]]
 
 @dataclass(frozen=True, slots=True)
 class _Question:
-    """What a compiler is asked, and the registers with their bounds.
+    """What a compiler is asked, and the clocks with their bounds, for steps of so many seconds.
 
     If the machine gets too large, another question is only of use with ``or_else``.
     """
 
     job: Job
-    registers: tuple[Register, ...] = ()
+    clocks: tuple[Clock, ...] = ()
+    step_s: Fraction | None = None
     or_else: bool = False
 
     def machine(self, answer: Answer) -> Done | Failed | None:
-        """The machine for the registers' bounds."""
+        """The machine for the clocks' bounds."""
         if not isinstance(answer, ClockedMachine):
             return answer
+        registers = [clock.register(self.step_s) for clock in self.clocks]
         try:
-            ends = self.job.semantics == "finite"
-            return Done(answer.unrolled(self.registers, ends=ends), "")
+            return Done(answer.unrolled(registers, ends=self.job.semantics == "finite"), "")
         except SizeError:
             return Failed("size")
 
@@ -56,7 +57,7 @@ def machines(jobs: Sequence[Job], ask: Ask) -> list[Done | Failed | None]:
     ways = {
         number: _ways(job)
         for number, job in enumerate(jobs)
-        if _farthest_step(job.formula) <= MOST_STEPS_AHEAD
+        if _farthest_step(job) <= MOST_STEPS_AHEAD
     }
     waiting = {number: next(own) for number, own in ways.items()}
     while True:
@@ -78,19 +79,23 @@ def _ways(job: Job) -> Iterator[_Question]:
         yield from _apart(job, past, or_else=True)
     if not job.remarks:
         yield from _apart(job, job.formula)
-    yield _Question(job)
+    yield _Question(replace(job, formula=job.in_steps, step_s=None))
 
 
 def _apart(job: Job, formula: Formula, *, or_else: bool = False) -> Iterator[_Question]:
-    parts = eliminate_past(formula)
-    if not parts.memories and len(parts.registers) <= MOST_CLOCKS:
-        unbounded = without_bounds(parts.registers)
-        asked = replace(job, formula=parts.present, registers=unbounded)
-        yield _Question(asked, parts.registers, or_else)
+    apart = with_clocks(formula)
+    if apart is None or has_seconds(apart[0]) or len(apart[1]) > MOST_CLOCKS:
+        return
+    present, clocks = apart
+    unbounded = tuple([clock.unbounded() for clock in clocks])
+    # What a formula no longer mentions may still be what facts are about.
+    named = job.propositions
+    asked = replace(job, formula=present, clocks=unbounded, named=named, step_s=None)
+    yield _Question(asked, clocks, job.step_s, or_else)
 
 
-def _farthest_step(formula: Formula) -> Fraction:
-    """The greatest step number in any bound of a formula in steps."""
-    bounds = [operation.bound for operation in operations_of(formula)]
+def _farthest_step(job: Job) -> Fraction:
+    """The greatest step number in any bound of a job's formula."""
+    bounds = [operation.bound for operation in operations_of(job.in_steps)]
     ends = [bound.high or bound.low for bound in bounds if bound is not None]
     return max(ends, default=Fraction(0))

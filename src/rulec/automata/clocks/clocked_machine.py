@@ -7,7 +7,7 @@ gives a table for letters alone: a bound costs states there, but no formula is l
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import TypeAlias
@@ -46,6 +46,21 @@ class ClockLetters:
             letter += weight * (clock.after(is_due << 1, *_SIDES[code]) & 1)
             weight *= 2
         return letter, tuple(codes)
+
+    def possible(self, begins_at: Sequence[Container[int]]) -> frozenset[int]:
+        """The letters of the table that can come, by where the clocks' bounds begin."""
+        letters, weight = frozenset(range(self.n_groups)), self.n_groups
+        for codes_of, begins in zip(self.operands, begins_at, strict=True):
+            now = [low == 0 for low in (0, 1) if low in begins]
+            values_of = [
+                {int((left and due) or (right and at_once)) for due in (0, 1) for at_once in now}
+                for left, right in _SIDES
+            ]
+            letters = frozenset(
+                [x + weight * value for x in letters for value in values_of[codes_of[x]]]
+            )
+            weight *= 2
+        return letters
 
 
 @dataclass(frozen=True, slots=True)

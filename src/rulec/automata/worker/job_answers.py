@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from fractions import Fraction
 
 from rulec.automata.alphabet import count_letters, letters_with
 from rulec.automata.axiom_groups import AxiomGroup
@@ -25,10 +25,11 @@ from rulec.automata.compiler_jobs import (
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
 from rulec.automata.tables import build_machine, places_of, rows_of
 from rulec.automata.worker.random_words import agrees, outline, outlined
+from rulec.logic.bounds import in_steps
 from rulec.logic.codec import from_data, to_data
 from rulec.logic.fold import bit_sets, fold
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Formula, Proposition, Unary
-from rulec.logic.past_registers import restored
+from rulec.logic.past_registers import without_clocks
 from rulec.logic.semantics import Semantics
 from rulec.rulebook.rules.axiom_instances import AxiomInstance
 from rulec.validation.table_proof import prove_words
@@ -36,7 +37,7 @@ from rulec.validation.unprovable import UnprovableError
 
 
 def answer_to(job: Job, compiler: Compiler) -> Done | ClockedMachine | Failed:
-    """The machine of a job, beside the registers that it has, or the reason why there is none."""
+    """The machine of a job, beside the clocks that it has, or the reason why there is none."""
     if count_letters(job.reads) > job.most_letters:
         return Failed("letters")
     if _written_out(job.formula) > MOST_OPERATORS:
@@ -45,7 +46,7 @@ def answer_to(job: Job, compiler: Compiler) -> Done | ClockedMachine | Failed:
         if compiler.contradicts(group.known):
             return Failed("facts", contradiction=_contradiction(group, compiler))
     try:
-        return _whole(job, compiler) if job.registers is None else _apart(job, compiler)
+        return _whole(job, compiler) if job.clocks is None else _apart(job, compiler)
     except CheckError:
         return Failed("check")
     except BeyondReachError:
@@ -71,34 +72,32 @@ def _whole(job: Job, compiler: Compiler) -> Done:
 
 
 def _apart(job: Job, compiler: Compiler) -> ClockedMachine | Failed:
-    """The answer by translating what remains of a formula once its past is in registers."""
-    registers = job.registers or ()
+    """The answer by translating what remains of a formula once its past is in clocks."""
+    asked = job.clocks or ()
     if compiler.rest is None:
         return Failed("apart")
     parts: dict[Formula, Atom] = {}
-    atoms = frozenset([own.atom for own in registers])
+    atoms = frozenset([own.atom for own in asked])
     present = outline(job.formula, parts, atoms)
-    sides = [
-        (outline(own.left, parts, atoms), outline(own.right, parts, atoms)) for own in registers
-    ]
+    sides = [(outline(own.left, parts, atoms), outline(own.right, parts, atoms)) for own in asked]
     every, possible = (1 << count_letters(job.reads)) - 1, compiler.possible(job)
     propositions = letters_with(job.reads, job.propositions)
     true_in = _letters_of(parts, propositions, every)
     groups = _split([every if possible is None else possible], true_in.values())
     groups.sort(key=lambda letters: letters & -letters)
-    n_groups, n_values = len(groups), 1 << len(registers)
+    n_groups, n_values = len(groups), 1 << len(asked)
     n_letters = n_groups * n_values
     if n_letters > MOST_LETTERS:
         return Failed("apart")
-    # A letter of the table is a group and a value of each register, as bits.
+    # A letter of the table is a group and a value of each clock, as bits.
     firsts = [letters & -letters for letters in groups]
     held_in: dict[Proposition, tuple[int, Sequence[int]]] = {
         part: (sum([1 << n for n, first in enumerate(firsts) if first & own]), range(n_values))
         for part, own in (true_in | propositions).items()
     }
-    for place, register in enumerate(registers):
+    for place, clock in enumerate(asked):
         held = [values for values in range(n_values) if values >> place & 1]
-        held_in[register.atom] = (1 << n_groups) - 1, held
+        held_in[clock.atom] = (1 << n_groups) - 1, held
     letters = {
         part: sum([own << n_groups * values for values in each])
         for part, (own, each) in held_in.items()
@@ -110,11 +109,7 @@ def _apart(job: Job, compiler: Compiler) -> ClockedMachine | Failed:
             [_codes(fold(left, algebra), fold(right, algebra), n_letters) for left, right in sides]
         ),
     )
-    met = {
-        clocks.read(group, due, registers)[0]
-        for due in product((0, 1), repeat=len(registers))
-        for group in range(n_groups)
-    }
+    met = clocks.possible([clock.begins_at for clock in asked])
     translated = compiler.rest(job, job.formula, letters, n_letters)
     rows = rows_of(translated.automaton, sum([1 << letter for letter in met]))
     table = build_machine(rows, (), n_letters)
@@ -122,8 +117,11 @@ def _apart(job: Job, compiler: Compiler) -> ClockedMachine | Failed:
     claim = _Claim(table, present, letters, job.semantics)
 
     def agree() -> bool:
+        # With any bounds, such as two steps for what begins at the present instant or later.
+        registers = [clock.register(Fraction(2)) for clock in asked]
         unrolled = machine.unrolled(registers, ends=job.semantics == "finite")
-        return agrees(unrolled, restored(job.formula, registers), job.semantics)
+        whole = in_steps(without_clocks(job.formula, asked), Fraction(2))
+        return agrees(unrolled, whole, job.semantics)
 
     if not _is_right(claim, translated, agree):
         raise CheckError
