@@ -126,7 +126,7 @@ def test_a_row_of_a_table_stands_on_one_line():
 def test_the_documented_parts_are_there():
     data = json.loads(TEXT)
     assert data["format"] == "rulec compiled rulebook"
-    assert data["version"] == 6
+    assert data["version"] == 7
     assert data["spot"].startswith("2.") == hidden_spot.is_there()
     assert [rule["strength"] for rule in data["rules"]] == ["hard", "soft", "hard"]
     assert data["rules"][0]["cite"] == "Art. A"
@@ -167,8 +167,8 @@ def test_numbers_are_written_exactly():
         (b"[" * 100_000, "not a compiled rulebook"),
         (b'{"format": "something else", "version": 1}', "not a compiled rulebook"),
         (b'{"format": "rulec compiled rulebook", "version": 1}', "of version 1"),
-        (b'{"format": "rulec compiled rulebook", "version": 7}', "of version 7"),
-        (sealed({"format": "rulec compiled rulebook", "version": 6}), "damaged"),
+        (b'{"format": "rulec compiled rulebook", "version": 8}', "of version 8"),
+        (sealed({"format": "rulec compiled rulebook", "version": 7}), "damaged"),
     ],
 )
 def test_what_is_no_compiled_rulebook_is_refused(data, words):

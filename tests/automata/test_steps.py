@@ -22,7 +22,7 @@ from rulec.resource_limits import COMPILING, in_force
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Signal, Vocabulary
-from support.builders.rulebooks import P, Q, always, book, implies, rule
+from support.builders.rulebooks import P, Q, always, book, both, eventually, implies, rule
 from support.remembered_machines import ASKED
 
 HALF, ONE = Fraction(1, 2), Fraction(1)
@@ -228,20 +228,24 @@ def compiled(monkeypatch):
     return calls
 
 
-def test_only_what_is_needed_is_compiled(compiled):
-    every = StepCompiler(BOOK)
+SOME_TIME = rule("some_time", eventually(both(P, within(1, Q))))
+"""Clocks do not tell it: what it asks for may begin at any instant."""
+
+
+def test_only_what_clocks_do_not_tell_is_compiled_for_another_step(compiled):
+    every = StepCompiler(book(ANSWERED, rule("plain", always(Q)), SOME_TIME))
     for step in (HALF, ONE, HALF, ONE):
         rules = every(step).rules
-        assert [one.name for one in rules] == ["answered", "plain"]
-        assert [one.step_s for one in rules] == [step, None]
-    assert compiled == [(["answered", "plain"], HALF), (["answered"], ONE)]
+        assert [one.name for one in rules] == ["answered", "plain", "some_time"]
+        assert [one.step_s for one in rules] == [step, None, step]
+    assert compiled == [(["answered", "plain", "some_time"], HALF), (["some_time"], ONE)]
 
 
 def test_each_rule_at_the_step_of_its_own_examples(compiled):
     every = StepCompiler(book(replace(ANSWERED, step_s=HALF), ANSWERED_TOO))
     assert [one.step_s for one in every.at_own_steps().rules] == [HALF, ONE]
     assert [one.step_s for one in every(HALF).rules] == [HALF, HALF]
-    assert [names for names, _ in compiled] == [["answered", "too"], ["too"]]
+    assert [names for names, _ in compiled] == [["answered", "too"]]
 
 
 ANSWERED_TOO = rule("too", always(implies(P, within(2, Q))))
@@ -313,7 +317,7 @@ def test_there_is_a_limit_on_the_time_that_all_rules_take(monkeypatch, tmp_path)
     monkeypatch.setenv("RULEC_CACHE_DIR", str(tmp_path))
     monkeypatch.setattr(compiler, "answers_to", ASKED)
     monkeypatch.setattr(compiler, "_ask", slowly)
-    every = StepCompiler(book(ANSWERED))
+    every = StepCompiler(book(SOME_TIME))
     every(ONE)
     every(HALF)
     with pytest.raises(RulecError, match=r"120 seconds.*R0718"):
@@ -330,7 +334,7 @@ def test_steps_that_hardly_differ_are_compiled_together(compiled):
 
 
 def test_there_is_a_limit_on_the_steps_that_are_compiled_for(compiled):
-    every = StepCompiler(book(ANSWERED))
+    every = StepCompiler(book(SOME_TIME))
     with in_force(["steps=2"]):
         for number in (1, 2, 4):
             every(Fraction(1, number))
@@ -344,7 +348,7 @@ def test_there_is_a_limit_on_the_steps_that_are_compiled_for(compiled):
 def test_a_step_that_is_met_again_does_not_count_again(compiled, monkeypatch):
     """Also if others, of which many may be refused, have come in between."""
     monkeypatch.setattr(step_compilation, "MOST_STEPS", 2)
-    every = StepCompiler(book(ANSWERED))
+    every = StepCompiler(book(SOME_TIME))
     with in_force(["steps=2"]):
         for number in (1, 2, 4, 1, 2, 4):
             every(Fraction(1, number))
@@ -365,7 +369,7 @@ def test_one_process_builds_the_machines_of_many_steps(compiled_anew, monkeypatc
         return started[-1]
 
     monkeypatch.setattr(compiler, "_started", starting)
-    every = StepCompiler(book(ANSWERED))
+    every = StepCompiler(book(SOME_TIME))
     for number in range(1, 6):
         every(Fraction(1, number))
     assert len(started) == 2, "the first, and one that waits for more"

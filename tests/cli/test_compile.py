@@ -56,7 +56,6 @@ def test_an_heir_of_another_step_is_compiled_for_one_step(tmp_path, capsys, monk
         (["--prove"], "--prove is about monitors in C and Rust: add `--emit c`"),
         (["--emit", "ltl", "--objects", "vehicle=4"], "--objects is about monitors in C and Rust"),
         (["--emit", "c", "--no-certificate"], "--no-certificate is about the compiled rulebook"),
-        (["--emit", "c", "--step", "1", "--step", "2"], "C or Rust is for one step: give --step"),
     ],
 )
 def test_an_option_without_effect_is_refused(options, why, tmp_path, capsys):

@@ -47,12 +47,12 @@ FIELDS = {
     "--list": "maneuvers can list none, envelopes has one at least",
     "--output": "a file of an answer, several of these, or a folder",
     "--rulebook": "one, or several side by side",
-    "--step": "one, or several",
     "--ego": "one, or several",
 }
 """Names that programs know by several words, with the reason."""
 
 KINDS = FIELDS | {
+    "--step": "bounds in seconds are exact, times of predicted drives are not",
     "--input-format": "traces have other formats than recordings",
     "--output-format": "each verb has its formats",
     "--format": "each verb has its formats",

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.automata.clocks.clocked_machine import ClockedMachine
-from rulec.automata.compiler_jobs import Job, SizeError
+from rulec.automata.automaton_sizes import SizeError
+from rulec.automata.clocks.clocked_machine import TimedMachine
+from rulec.automata.compiler_jobs import Job
 from rulec.automata.mealy_monitor import Read
 from rulec.logic.bounds import operations_of, total_bound
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator, atoms_of
@@ -150,14 +151,14 @@ def test_duties_whose_registers_have_too_many_states_are_translated_with_their_s
     usual = machine_by(asked, spot_bridge.COMPILER)
     tried = []
 
-    def too_large(machine, registers, *, ends):
-        tried.append(len(registers))
-        if registers:
+    def too_large(timed, step_s):
+        tried.append(len(timed.bounds))
+        if timed.bounds:
             raise SizeError
-        return unrolled(machine, registers, ends=ends)
+        return at(timed, step_s)
 
-    unrolled = ClockedMachine.unrolled
-    monkeypatch.setattr(ClockedMachine, "unrolled", too_large)
+    at = TimedMachine.at
+    monkeypatch.setattr(TimedMachine, "at", too_large)
     assert machine_by(asked, spot_bridge.COMPILER) == usual
     assert tried == [2, 0]
 

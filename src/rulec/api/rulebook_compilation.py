@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, TypeAlias
 from rulec.api import lazy_imports as lazy
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.bundle.required_signature import refuse_source
-from rulec.automata.bundle.stored_steps import for_steps
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.argument_kinds import finite
@@ -22,9 +21,6 @@ if TYPE_CHECKING:
 
     Rules: TypeAlias = str | Path | Rulebook | CompiledRulebook
     """A name, the path of a source or compiled file (.json), or a rulebook, compiled or not."""
-
-MOST_STEPS = 1000
-"""The most steps a compiled rulebook may be for: each costs time, and space in its file."""
 
 
 def machines(
@@ -72,25 +68,15 @@ def compile_rulebook(
     reference: Rules,
     search_path: Sequence[str | Path] = (),
     warn: Callable[[Sequence[Diagnostic]], object] = lambda _: None,
-    step_s: Fraction | float | Sequence[Fraction | float] | None = None,
+    step_s: Fraction | float | None = None,
     at: str = "",
 ) -> CompiledRulebook:
-    """Compile rules for one step, for several, or for that of their examples.
+    """Compile rules for one step, or for any.
 
-    ``step_s`` (above 0, a float meaning its decimal notation) is that step; with several, each
-    trace is judged by its own. Without it, rules with bounds in seconds are compiled for the step
-    of their own examples. R0507 if the rules have been compiled for
-    another one.
+    ``step_s`` (above 0, a float meaning its decimal notation) is that step. Without it the rules,
+    compiled for the steps of their own examples, adapt to any trace's step. R0507 if the rules have
+    been compiled for another step alone.
     """
-    if isinstance(step_s, Sequence):
-        if step_s[MOST_STEPS:]:
-            raise ValueError(
-                f"`step_s` has more than {MOST_STEPS:,} steps: give those that traces have"
-            )
-        if len(step_s) != 1:
-            steps = list(map(exact_step, step_s))
-            return _for_steps(reference, search_path, warn, steps, at=at)
-        (step_s,) = step_s
     finite("step_s", step_s)
     step = None if step_s is None else exact_step(step_s)
     if isinstance(reference, str | Path):
@@ -99,6 +85,7 @@ def compile_rulebook(
         reference = lazy.read_compiled(Path(reference), at)
         if reference.prefixes is None:
             reference = replace(reference, prefixes=_prefixes)
+        return reference if step is None else replace(reference.at_step(step), recompile=None)
     if isinstance(reference, CompiledRulebook):
         return reference if step is None else reference.at_step(step)
     if not isinstance(reference, Rulebook):
@@ -107,17 +94,3 @@ def compile_rulebook(
         )
 
     return lazy.build_automata(lazy.compiler.lower(reference, step), lazy.StepCompiler(reference))
-
-
-def _for_steps(
-    reference: Rules,
-    search_path: Sequence[str | Path],
-    warn: Callable[[Sequence[Diagnostic]], object],
-    steps: Sequence[Fraction],
-    *,
-    at: str,
-) -> CompiledRulebook:
-    if not steps:
-        raise ValueError("`step_s` has no step: give one, or None")
-    compiled = machines(reference, search_path, warn, at)
-    return for_steps([compiled.at_step(step) for step in steps], steps)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -48,12 +48,12 @@ class RulebookVerbs(SessionSettings):
         self,
         reference: Rules,
         *,
-        step_s: Fraction | float | Sequence[Fraction | float] | None = None,
+        step_s: Fraction | float | None = None,
     ) -> CompiledRulebook:
         """Compile a rulebook: name, path of source or compiled file, or Rulebook.
 
         Without ``step_s`` it adapts to the step of the traces to judge; with it, it is for this
-        step (s) alone, or for several; a float means its decimal notation.
+        step (s) alone; a float means its decimal notation.
 
         Raises:
             RulecError: mistakes in the source; R0401 to R0403 if there is no automaton, R0507 if it

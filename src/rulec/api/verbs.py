@@ -37,7 +37,7 @@ def compile_rulebook(
     reference: Rules,
     search_path: Sequence[str | Path] = (),
     warn: Callable[[Sequence[Diagnostic]], object] = ignore,
-    step_s: Fraction | float | Sequence[Fraction | float] | None = None,
+    step_s: Fraction | float | None = None,
     at: str = "",
 ) -> CompiledRulebook:
     """Compile a rulebook: name, path of source or compiled file, or Rulebook.

@@ -240,14 +240,16 @@ class CachedPrefixes:
         if not rules:
             return known(rulebook)
         # The compiler takes 30 ms to import: only where the cache has no machines.
-        from rulec.automata.prefix_machines import prefix_machines
+        from rulec.automata.prefix_machines import prefix_machines, timed_cuts
 
         machines = prefix_machines(replace(rulebook, rules=rules), self._steps.time)
-        added = stored(replace(rulebook, rules=rules, prefixes=lambda _: machines))
+        added = stored(replace(rulebook, rules=rules, prefixes=lambda _: machines), timed_cuts)
         whole = self._file.read()
         if added is not None and whole is not None and whole.rulebook is not None:
             self._stored = known = StoredPrefixes(
-                {**known.entries, **added.entries}, {**known.orders, **added.orders}
+                {**known.entries, **added.entries},
+                {**known.orders, **added.orders},
+                {**known.timed, **added.timed},
             )
             if {rule.name for rule in whole.rulebook.rules}.issuperset(known.entries):
                 self._file.write(whole, replace(whole.rulebook, prefixes=known))

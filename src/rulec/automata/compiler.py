@@ -357,6 +357,7 @@ def _compiled(rule: Rule, step: Fraction | None, done: Done) -> CompiledRule:
         machine=done.machine,
         hoa=done.hoa,
         step_s=step,
+        timed=done.timed,
         weight=rule.weight,
         trigger=rule_trigger(rule),
         parts=parts_of(rule),

@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
+from rulec.automata.alphabet import propositions_of
 from rulec.automata.axiom_groups import AxiomGroup
+from rulec.automata.clocks.clocked_machine import TimedMachine
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
 from rulec.automata.tables import DeterministicAutomaton
 from rulec.logic.bounds import in_steps
-from rulec.logic.formula import Formula, Proposition, atoms_of
+from rulec.logic.formula import Formula, Proposition
 from rulec.logic.past_registers import Clock
 from rulec.logic.semantics import Semantics
 from rulec.rulebook.rules.axiom_instances import AxiomInstance
 
 MOST_LETTERS = 1 << 16
-MOST_STEPS_AHEAD = 10_000
-"""An automaton has at least one state per step of a bound; more steps cannot be built in time."""
-
-MOST_STATES, MOST_EDGES = 20_000, 1_000_000
-"""The most of an automaton while it is built, whatever it is reduced to: sizes, not times, so that
-the same rules can be compiled on every machine."""
 
 MOST_OPERATORS = 1_000_000
 """The most of a formula in which each `then` is written out, which says its left operand twice."""
@@ -47,7 +43,7 @@ class Job:
     most_letters: int = MOST_LETTERS
     step_s: Fraction | None = None
     clocks: tuple[Clock, ...] | None = None
-    named: tuple[Proposition, ...] = ()
+    named: tuple[Proposition, ...] | None = None
 
     @property
     def in_steps(self) -> Formula:
@@ -57,7 +53,7 @@ class Job:
     @property
     def propositions(self) -> tuple[Proposition, ...]:
         """The propositions of the rule."""
-        return self.named or tuple(dict.fromkeys(atoms_of(self.formula)))
+        return propositions_of(self.formula) if self.named is None else self.named
 
     def remarks_on(self, alive: str | None) -> tuple[str, ...]:
         """The remarks for the automaton's text; a finite word ends when ``alive`` is false."""
@@ -68,10 +64,14 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class Done:
-    """A rule's machine, and its automaton in HOA if that is wanted."""
+    """A rule's machine, and its automaton in HOA if that is wanted.
+
+    ``timed`` is the machine for any step, if there is one.
+    """
 
     machine: MealyMonitor
     hoa: str
+    timed: TimedMachine | None = field(default=None, compare=False)
 
 
 FailedWhy: TypeAlias = Literal[
@@ -117,10 +117,6 @@ class CheckError(Exception):
 
 class BeyondReachError(Exception):
     """A formula that a compiler cannot translate."""
-
-
-class SizeError(Exception):
-    """An automaton gets more than ``MOST_STATES`` or ``MOST_EDGES``."""
 
 
 class AcceptanceError(Exception):

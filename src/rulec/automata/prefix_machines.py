@@ -10,23 +10,29 @@ objects begin when these appear: otherwise, in some possible past, ego passed th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
+from rulec.automata.automaton_sizes import SizeError
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.compiler import CompilerTime, answers_to, job_of
 from rulec.automata.compiler_jobs import MOST_LETTERS, Done, Failed, Job
 from rulec.automata.compiler_messages import no_time
-from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, Read
-from rulec.automata.outcome_machine import OutcomeMachine, of_prefixes
+from rulec.automata.cut_machines import (
+    BEGUN,
+    TimedCut,
+    cut_machine,
+    goes_on_from_before,
+    looks_back,
+)
+from rulec.automata.mealy_monitor import MealyMonitor, Read
+from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.logic import formula as ltl
-from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.semantics import Semantics
 
-_BEGUN = ltl.Atom("word has begun")
-"""No name in a rulebook contains a space."""
-
 _KNOWN: dict[tuple[object, ...], OutcomeMachine | None] = {}
+_TIMED: dict[tuple[object, ...], TimedCut] = {}
 _MOST_KNOWN = 1 << 10
 
 
@@ -35,51 +41,67 @@ def prefix_machines(
 ) -> Mapping[str, OutcomeMachine | None]:
     """The machine of each rule for prefixes, by the rule's name; None if it gets too large.
 
-    They are compiled on first use. Raises RulecError R0403 if Spot is requested but not installed,
-    BudgetSpentError (R0718) if no ``time`` is left.
+    They are compiled on first use, if possible for all steps. Raises RulecError R0403 if Spot is
+    requested but not installed, BudgetSpentError (R0718) if no ``time`` is left.
     """
-    keys = {rule.name: _key(rule, rulebook) for rule in rulebook.rules}
-    missing = [rule for rule in rulebook.rules if keys[rule.name] not in _KNOWN]
-    if missing and len(_KNOWN) + len(missing) > _MOST_KNOWN:
+    keys = {rule.name: (_key(rule, rulebook), rule.step_s) for rule in rulebook.rules}
+    if len(_KNOWN) + len(keys) > _MOST_KNOWN:
         _KNOWN.clear()
-        missing = list(rulebook.rules)
+        _TIMED.clear()
+    missing = []
+    for rule in rulebook.rules:
+        key = keys[rule.name]
+        timed = _TIMED.get(key[0])
+        if key not in _KNOWN and timed is not None:
+            # If it is too large, a compiler may know a smaller way.
+            with suppress(SizeError):
+                _KNOWN[key] = timed.at(rule)
+        missing += [] if key in _KNOWN else [rule]
     jobs = [job for rule in missing for job in _jobs(rule, rulebook)]
     answers = iter(answers_to(jobs, time=time)[0] if jobs else ())
     for rule in missing:
         mine = [next(answers) for _ in _jobs(rule, rulebook)]
         if Failed("time") in mine:
             raise no_time(rule.name, rulebook.place_of(rule.name), rule.step_s)
-        tables = [_table(answer) for answer in mine]
-        own = tables[0] if _looks_back(rule) else rule.machine
-        finite = own if rulebook.semantics == "finite" else tables[-1]
-        machine = None
-        if own is not None and finite is not None:
-            machine = _machine(own, finite, goes_on=_goes_on(rule))
-        _KNOWN[keys[rule.name]] = machine
+        key = keys[rule.name]
+        _KNOWN[key] = _machine(rule, mine, rulebook.semantics)
+        timed = _timed(rule, mine, rulebook.semantics)
+        if timed is not None:
+            _TIMED[key[0]] = timed
     return {name: _KNOWN[key] for name, key in keys.items()}
+
+
+def timed_cuts(rulebook: CompiledRulebook) -> Mapping[str, TimedCut]:
+    """What the machines that this process has made are made of at any step, by the rule's name."""
+    known = {rule.name: _TIMED.get(_key(rule, rulebook)) for rule in rulebook.rules}
+    return {name: timed for name, timed in known.items() if timed is not None}
+
+
+def _machine(
+    rule: CompiledRule, answers: Sequence[Done | Failed | None], semantics: Semantics
+) -> OutcomeMachine | None:
+    tables = [_table(answer) for answer in answers]
+    own = tables[0] if looks_back(rule) else rule.machine
+    alone = own if semantics == "finite" else tables[-1]
+    if own is None or alone is None:
+        return None
+    return cut_machine(own, alone, goes_on=goes_on_from_before(rule))
+
+
+def _timed(
+    rule: CompiledRule, answers: Sequence[Done | Failed | None], semantics: Semantics
+) -> TimedCut | None:
+    tables = [answer.timed if isinstance(answer, Done) else None for answer in answers]
+    if None in tables:
+        return None
+    own = tables[0] if looks_back(rule) else None
+    return TimedCut(own, None if semantics == "finite" else tables[-1])
 
 
 def _key(rule: CompiledRule, rulebook: CompiledRulebook) -> tuple[object, ...]:
     axioms = tuple([(axiom.variables, axiom.formula) for axiom in rulebook.axioms])
-    formula = rule.formula, _goes_on(rule)
-    return formula, rule.machine.reads, rule.step_s, rule.variables, rulebook.semantics, axioms
-
-
-def _goes_on(rule: CompiledRule) -> bool:
-    """Whether a rule, kept before a cut word began, may have a sequence under way there.
-
-    Exceptions and a condition do not change that, though the whole formula may have no `then`.
-    """
-    formula = rule.formula if rule.parts is None else rule.parts.required
-    always = ltl.UnaryOperator.ALWAYS, ltl.UnaryOperator.NEVER
-    if not isinstance(formula, ltl.Unary) or formula.operator not in always or rule.variables:
-        return False
-    then = ltl.BinaryOperator.THEN
-    return formula.bound is None and any(x.operator is then for x in operations_of(formula))
-
-
-def _looks_back(rule: CompiledRule) -> bool:
-    return any(operation.operator in PAST for operation in operations_of(rule.formula))
+    formula = rule.formula, goes_on_from_before(rule)
+    return formula, rule.machine.reads, rule.variables, rulebook.semantics, axioms
 
 
 def _jobs(rule: CompiledRule, rulebook: CompiledRulebook) -> Iterator[Job]:
@@ -90,12 +112,12 @@ def _jobs(rule: CompiledRule, rulebook: CompiledRulebook) -> Iterator[Job]:
     """
     job = job_of(rule, rulebook)
     wanted: list[Semantics] = [] if rulebook.semantics == "finite" else ["finite"]
-    if _looks_back(rule):
+    if looks_back(rule):
         wanted.insert(0, rulebook.semantics)
-        before = ltl.Unary(ltl.UnaryOperator.NOT, _BEGUN)
-        begun = ltl.Binary(ltl.BinaryOperator.AND, _BEGUN, job.formula)
+        before = ltl.Unary(ltl.UnaryOperator.NOT, BEGUN)
+        begun = ltl.Binary(ltl.BinaryOperator.AND, BEGUN, job.formula)
         formula = ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, before, begun)
-        job = replace(job, formula=formula, reads=(*job.reads, Read(_BEGUN.name, ())))
+        job = replace(job, formula=formula, reads=(*job.reads, Read(BEGUN.name, ())))
     for semantics in wanted:
         # The signal that the word has begun is added to what a rule may read.
         yield replace(job, semantics=semantics, most_letters=2 * MOST_LETTERS)
@@ -103,31 +125,3 @@ def _jobs(rule: CompiledRule, rulebook: CompiledRulebook) -> Iterator[Job]:
 
 def _table(answer: Done | Failed | None) -> MealyMonitor | None:
     return answer.machine if isinstance(answer, Done) else None
-
-
-def _machine(own: MealyMonitor, finite: MealyMonitor, *, goes_on: bool) -> OutcomeMachine:
-    looks_back = own.reads[-1:] == (Read(_BEGUN.name, ()),)
-    half = len(own.letters) // 2 if looks_back else 0
-    before, begun = (
-        dict.fromkeys(
-            pair
-            for pair in zip(own.letters[letters], finite.letters[letters], strict=True)
-            if IMPOSSIBLE not in pair
-        )
-        for letters in (slice(half), slice(half, None))
-    )
-    starts = {(0, 0): None}
-    for symbols in (before, begun) if goes_on else (before,):
-        for state, other in (waiting := list(starts)):
-            for symbol, finite_symbol in symbols:
-                pair = own.successors[state][symbol], finite.successors[other][finite_symbol]
-                lost = pair[0] == own.rejecting_sink and not own.outputs[state][symbol]
-                if pair not in starts and not (lost and symbols is begun):
-                    starts[pair] = None
-                    waiting.append(pair)
-    if looks_back:
-        own, finite = (
-            replace(machine, reads=machine.reads[:-1], letters=machine.letters[half:])
-            for machine in (own, finite)
-        )
-    return of_prefixes(own, finite, starts)

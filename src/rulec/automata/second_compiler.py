@@ -8,14 +8,11 @@ the tables must be equal number for number.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from rulec.automata import compiler
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes
-from rulec.automata.bundle.stored_steps import StoredSteps, for_steps
 from rulec.automata.compiler_jobs import Done, Failed
 from rulec.automata.compiler_messages import COMPILERS_DISAGREE, no_machine, no_time
 from rulec.automata.worker.compiler_choice import DIAGRAMS
@@ -23,7 +20,7 @@ from rulec.diagnostics import RulecError
 from rulec.validation.file_proof import table_digest
 
 if TYPE_CHECKING:
-    from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.automata.mealy_monitor import MealyMonitor
 
 
@@ -35,24 +32,18 @@ def certified(rulebook: CompiledRulebook) -> CompiledRulebook:
     """
     if not rulebook.spot:
         return rulebook
-    steps = rulebook.recompile
-    if isinstance(steps, StoredSteps):
-        books = _with_certificates(steps.books)
-        return replace(rulebook, recompile=replace(steps, books=tuple(books)))
     if rulebook.prefixes is None or isinstance(rulebook.prefixes, StoredPrefixes):
         return rulebook
-    return _with_certificates([rulebook])[0]
+    return _with_certificates(rulebook)
 
 
-def _with_certificates(books: Sequence[CompiledRulebook]) -> list[CompiledRulebook]:
-    # Rules without bounds in seconds are the same for all steps.
-    rules = {(rule.name, rule.step_s): (rule, book) for book in books for rule in book.rules}
-    jobs = [compiler.job_of(rule, book) for rule, book in rules.values()]
+def _with_certificates(rulebook: CompiledRulebook) -> CompiledRulebook:
+    jobs = [compiler.job_of(rule, rulebook) for rule in rulebook.rules]
     answers, _ = compiler.answers_to(jobs, choice=DIAGRAMS)
-    pairs = list(zip(rules.items(), answers, strict=True))
+    pairs = list(zip(rulebook.rules, answers, strict=True))
     different = [
         rule.name
-        for (_, (rule, _)), answer in pairs
+        for rule, answer in pairs
         if answer == Failed("check")
         or (isinstance(answer, Done) and answer.machine != rule.machine)
     ]
@@ -60,24 +51,18 @@ def _with_certificates(books: Sequence[CompiledRulebook]) -> list[CompiledRulebo
         raise RulecError(
             [
                 COMPILERS_DISAGREE.at(
-                    books[0].place_of(name),
+                    rulebook.place_of(name),
                     f"Spot and rulec's own compiler make different tables for rule `{name}`",
                     help="this is a bug in one of them, not in the rulebook: please report it",
                 )
                 for name in different
             ]
         )
-    known = {key: _digest(rule.machine) for (key, (rule, _)), job in pairs if isinstance(job, Done)}
-    return [
-        replace(book, rules=tuple([_with_certificate(rule, known) for rule in book.rules]))
-        for book in books
+    rules = [
+        replace(rule, certificate=_digest(rule.machine) if isinstance(answer, Done) else "")
+        for rule, answer in pairs
     ]
-
-
-def _with_certificate(
-    rule: CompiledRule, known: dict[tuple[str, Fraction | None], str]
-) -> CompiledRule:
-    return replace(rule, certificate=known.get((rule.name, rule.step_s), ""))
+    return replace(rulebook, rules=tuple(rules))
 
 
 def _digest(machine: MealyMonitor) -> str:
@@ -85,14 +70,11 @@ def _digest(machine: MealyMonitor) -> str:
 
 
 def with_automata(rulebook: CompiledRulebook) -> CompiledRulebook:
-    """The rulebook, or its books for several steps, with the automaton of every rule as text.
+    """The rulebook with the automaton of every rule as text.
 
     Each is translated anew, as a whole: the table had a way of its own, with the past in registers.
     Raises RulecError R0402 where both differ, else as ``build_all``.
     """
-    if isinstance(rulebook.recompile, StoredSteps):
-        steps, books = rulebook.recompile.steps, rulebook.recompile.books
-        return for_steps([with_automata(book) for book in books], steps)
     lacking = [rule for rule in rulebook.rules if not rule.hoa]
     if not lacking:
         return rulebook

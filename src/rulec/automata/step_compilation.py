@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from rulec.automata.automaton_sizes import SizeError
 from rulec.automata.bundle.compiled_rulebook import (
     CompiledRule,
     CompiledRulebook,
-    TooLargeRule,
     is_too_large,
+    too_large_rule,
 )
 from rulec.automata.compiler import CompilerTime, RulebookFormulas, build_all, lower
 from rulec.diagnostics import RulecError
 from rulec.logic.bounds import has_seconds
 from rulec.logic.formula import Formula
-from rulec.logic.printing import number_in_words
 from rulec.resource_limits import STEPS
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 
@@ -31,13 +32,14 @@ MOST_STEPS = 100
 class StepCompiler:
     """The compiler of a rulebook: call it with a step (s).
 
-    The number of steps in a bound in seconds depends on the step, so a rule with such bounds needs
-    a machine for each step; a rule without is compiled once. Pickling keeps only the rulebook.
+    A rule is compiled once: its clocks make its machine for any step. Only a rule with bounds in
+    seconds that no clocks tell is compiled for each step. Pickling keeps only the rulebook.
     """
 
     def __init__(self, rulebook: Rulebook, time: CompilerTime | None = None) -> None:
         self.rulebook = rulebook
         self._machines: dict[tuple[str, Formula], CompiledRule] = {}
+        self._timed: dict[str, CompiledRule] = {}
         self._answers: dict[Fraction, CompiledRulebook | RulecError] = {}
         self._header: CompiledRulebook | None = None
         self._judgeable: dict[Fraction, CompiledRulebook] = {}
@@ -83,8 +85,7 @@ class StepCompiler:
             if not (is_too_large(error) and rules):
                 raise
             kept = tuple(rule for rule in self.rulebook.rules if rule not in rules)
-            why = f"its automaton is too large for steps of {number_in_words(step_s)} s"
-            left_out = [TooLargeRule(rule.name, rule.strength, why) for rule in rules]
+            left_out = [too_large_rule(rule, step_s) for rule in rules]
             smaller = StepCompiler(replace(self.rulebook, rules=kept), self.time)
             book = smaller.judgeable_at(step_s)
             return replace(book, too_large=(*left_out, *book.too_large))
@@ -96,17 +97,25 @@ class StepCompiler:
     def built(self, formulas: RulebookFormulas) -> CompiledRulebook:
         """The rulebook with the automata of these formulas. Raises RulecError as ``build_all``."""
         machines = self._machines
-        missing = tuple([rule for rule in formulas.rules if rule.key not in machines])
+        fresh = [rule for rule in formulas.rules if rule.key not in machines]
+        if fresh and self._header is not None:
+            _check_steps(self._built, self.rulebook)
+            self._built += 1
+        for rule in fresh:
+            timed = self._timed.get(rule.rule.name)
+            if timed is not None and rule.step_s is not None:
+                # If it is too large, a compiler may know a smaller way.
+                with suppress(SizeError):
+                    machines[rule.key] = timed.at(rule.step_s)
+        missing = tuple([rule for rule in fresh if rule.key not in machines])
         if missing or self._header is None:
-            if missing and self._header is not None:
-                _check_steps(self._built, self.rulebook)
-                self._built += 1
             # A caller that needs a second step will probably need more.
             more_will_come = self._header is not None
             lacking = replace(formulas, rules=missing)
             built = build_all(self.rulebook, lacking, more_will_come=more_will_come, time=self.time)
             self._header = replace(built, recompile=self, prefixes=self._prefixes)
             machines.update(zip([rule.key for rule in missing], built.rules, strict=True))
+            self._timed.update({rule.name: rule for rule in built.rules if rule.timed is not None})
         # Steps that hardly differ, such as those of an unsteady clock, have the same formulas.
         rules = [replace(machines[rule.key], step_s=rule.step_s) for rule in formulas.rules]
         return replace(self._header, rules=tuple(rules))

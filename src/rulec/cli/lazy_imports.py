@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from rulec.automata.bundle.bundle_proof import compiled_files, proofs_of_file
     from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
     from rulec.automata.bundle.required_signature import in_force as signature_in_force
-    from rulec.automata.bundle.stored_steps import StoredSteps
     from rulec.batch import spreading
     from rulec.batch.drive_batch import WrittenDrives, in_vehicle_order
     from rulec.batch.example_batch import ExampleRequest, measured_runs

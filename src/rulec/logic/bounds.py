@@ -172,6 +172,13 @@ def bound_in_steps(bound: ltl.Bound, step_s: Fraction) -> ltl.Bound:
     return ltl.Bound(low, high, "steps", least=bound.least)
 
 
+def begins_at(bound: ltl.Bound) -> frozenset[int]:
+    """Where a bound begins: 0 if now, 1 if at another instant, both if that depends on the step."""
+    if bound.early and bound.unit == "s" and not bound.least:
+        return frozenset({0, 1} if bound.low else {0})
+    return frozenset({int(bound.low > 0 or bound.least > 0)})
+
+
 def total_bound(formula: ltl.Formula) -> int:
     """The sum of all bounds of a formula in steps: their upper ends, or lower ones if unbounded.
 

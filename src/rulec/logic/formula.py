@@ -138,8 +138,8 @@ class Bound:
     high: Fraction | None
     unit: Literal["s", "steps"]
     span: Span | None = field(default=None, compare=False, repr=False)
-    early: bool = False
-    least: int = 0
+    early: bool = field(default=False, kw_only=True)
+    least: int = field(default=0, kw_only=True)
 
 
 class _Hashed:

@@ -21,7 +21,7 @@ from rulec.logic.bounds import (
     PAST,
     PREVIOUS,
     Range,
-    bound_in_steps,
+    begins_at,
     bound_of,
     range_of_bound,
 )
@@ -49,14 +49,17 @@ class Register:
 
     def after(self, state: int, left: bool, right: bool) -> int:
         """The state after a letter for which the operands have these values."""
-        due = state >> 1 if left else 0
-        return due | self._ahead if right else due
+        return register_after(self.span, state, left, right)
 
-    @property
-    def _ahead(self) -> int:
-        low, high = self.span
-        reached = -1 << low
-        return reached if high is None else reached & ((1 << (high + 1)) - 1)
+
+def register_after(span: Range, state: int, left: bool, right: bool) -> int:
+    """The state of a register of this range, as ``Register.after``."""
+    due = state >> 1 if left else 0
+    if not right:
+        return due
+    low, high = span
+    reached = -1 << low
+    return due | (reached if high is None else reached & ((1 << (high + 1)) - 1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,25 +71,16 @@ class Clock:
     right: ltl.Formula
     bound: ltl.Bound
 
-    def register(self, step_s: Fraction | None) -> Register:
-        """The register at steps of so many seconds; without a step the bound has to be in steps."""
-        bound = self.bound if step_s is None else bound_in_steps(self.bound, step_s)
-        return Register(self.atom, self.left, self.right, range_of_bound(bound))
-
-    @property
-    def begins_at(self) -> frozenset[int]:
-        """Whether the bound begins at the present instant: 0 if so, 1 if not, or both by step."""
-        bound = self.bound
-        if bound.early and bound.unit == "s":
-            return frozenset({0, 1})
-        return frozenset({int(bound.low > 0 or bound.least > 0)})
+    def register(self) -> Register:
+        """The register, if the bound is in steps."""
+        return Register(self.atom, self.left, self.right, range_of_bound(self.bound))
 
     def unbounded(self) -> Clock:
         """The clock with no more of its bound than where that begins, as far as that is known.
 
         More is not needed to know which clocks can hold together at one instant.
         """
-        low, *others = sorted(self.begins_at, reverse=True)
+        low, *others = sorted(begins_at(self.bound), reverse=True)
         unit: Literal["s", "steps"] = "s" if others else "steps"
         return replace(self, bound=ltl.Bound(Fraction(low), None, unit, early=bool(others)))
 
@@ -123,7 +117,7 @@ def eliminate_past(formula: ltl.Formula, *, registers: bool = True) -> WithoutPa
     Its bounds must be in steps; else raises ValueError.
     """
     present, clocks, memories = _eliminated(formula, with_registers=registers)
-    return WithoutPast(present, tuple([clock.register(None) for clock in clocks]), memories)
+    return WithoutPast(present, tuple([clock.register() for clock in clocks]), memories)
 
 
 def with_clocks(formula: ltl.Formula) -> tuple[ltl.Formula, tuple[Clock, ...]] | None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 from typing import Any, Literal
 
+from rulec.validation.clock_proof import prove_clocks
 from rulec.validation.comparison_words import check_comparison
 from rulec.validation.cut_proof import prove_cut_table
 from rulec.validation.demands import Demands
@@ -20,7 +21,7 @@ from rulec.validation.parts_proof import prove_parts
 from rulec.validation.table_proof import FormulaMachine, prove_table
 from rulec.validation.unprovable import UnprovableError, exact, require
 
-VERSION = 6
+VERSION = 7
 
 
 class UnreadableError(Exception):
@@ -123,6 +124,8 @@ def _prove(rule: Mapping[str, Any], book: Mapping[str, Any]) -> None:
     prove_parts(rule)
     if rule.get("cut") is not None:
         prove_cut_table(formula, rule["cut"], letters, goes_on=_goes_on(rule))
+    if rule.get("clocked") is not None:
+        prove_clocks(rule["clocked"], machine, step, ends=book["semantics"] == "finite")
     prove_hoa(formula, rule["hoa"], tree, letters, ends=book["semantics"] == "finite")
 
 

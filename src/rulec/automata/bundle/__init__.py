@@ -1,1 +1,1 @@
-"""The compiled rulebook as data and as a file: JSON, version 6."""
+"""The compiled rulebook as data and as a file: JSON, version 7."""

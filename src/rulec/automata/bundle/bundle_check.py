@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Container, Set
 from dataclasses import replace
-from itertools import chain
 from math import prod
 
 from msgspec import UNSET
@@ -13,6 +12,13 @@ from msgspec.structs import astuple
 from rulec.automata import mealy_monitor as monitors
 from rulec.automata.alphabet import reads_of
 from rulec.automata.bundle import bundle_schema as schema
+from rulec.automata.bundle.any_step import AnyStep
+from rulec.automata.bundle.clocked_entries import (
+    check_sinks,
+    check_table,
+    require,
+    timed_machine,
+)
 from rulec.automata.bundle.compiled_rulebook import (
     CompiledAxiom,
     CompiledRule,
@@ -20,7 +26,7 @@ from rulec.automata.bundle.compiled_rulebook import (
     alike,
 )
 from rulec.automata.bundle.stored_prefixes import CutTables, StoredPrefixes
-from rulec.automata.bundle.stored_steps import for_steps
+from rulec.automata.cut_machines import BEGUN, TimedCut, looks_back
 from rulec.diagnostics import SourceLocation
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, has_seconds, in_steps, operations_of
@@ -52,24 +58,22 @@ def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
     for name in (read.name, *[rule.name for rule in read.rules]):
         # Names become file names.
         plain = name and not name.startswith(".") and not set(name) & set("/\\\0")
-        _require(bool(plain), f"{name!a} is not a name")
+        require(bool(plain), f"{name!a} is not a name")
     rulebook = CompiledRulebook(
         **alike(Rulebook, read),
         rulec=read.rulec,
         spot=read.spot,
         vocabulary=vocabulary,
-        rules=tuple(_rule(rule, vocabulary, read.levels) for rule in read.rules),
+        rules=tuple(_rule(rule, vocabulary, read) for rule in read.rules),
         sources=tuple(SourceFile(source.name, source.sha256) for source in read.sources),
         priorities=_priorities(read),
         axioms=tuple(_axiom(fact, vocabulary) for fact in read.facts),
     )
     known = with_implied(vocabulary, [axiom.formula for axiom in rulebook.axioms])
     rulebook = replace(rulebook, vocabulary=known)
-    prefixes = _prefixes(read)
-    if read.steps is not UNSET:
-        return _with_steps(rulebook, read)
     _check_names(rulebook)
-    return replace(rulebook, prefixes=prefixes)
+    rulebook = replace(rulebook, prefixes=_prefixes(rulebook, read))
+    return replace(rulebook, recompile=AnyStep(rulebook))
 
 
 def _check_visible(read: schema.BundleFile) -> None:
@@ -87,52 +91,49 @@ def _check_visible(read: schema.BundleFile) -> None:
         *[name for variables in bound for pair in variables for name in pair],
     ]
     for name in names:
-        _require(name.isprintable(), f"the name {name!a} has a character that is not visible")
+        require(name.isprintable(), f"the name {name!a} has a character that is not visible")
 
 
 def _check_names(rulebook: CompiledRulebook) -> None:
     names = {rule.name for rule in rulebook.rules}
-    _require(len(names) == len(rulebook.rules), "two rules have the same name")
+    require(len(names) == len(rulebook.rules), "two rules have the same name")
 
 
-def _with_steps(rulebook: CompiledRulebook, read: schema.BundleFile) -> CompiledRulebook:
-    """The rulebook for a file's steps; each of its rules is for one of the steps or for all."""
-    steps = [number_from_data(step) for step in read.steps or ()]
-    _require(len(set(steps)) == len(steps) > 0, "it has no steps, or one of them twice")
-    pairs = list(zip(rulebook.rules, read.rules, strict=True))
-    known = all(rule.step_s in (None, *steps) for rule in rulebook.rules)
-    _require(known, "a rule is for a step that the file does not have")
-    books = []
-    for step in steps:
-        own = [(rule, entry) for rule, entry in pairs if rule.step_s in (None, step)]
-        prefixes = StoredPrefixes({entry.name: _cut_tables(entry) for _, entry in own})
-        books.append(replace(rulebook, rules=tuple([rule for rule, _ in own]), prefixes=prefixes))
-        _check_names(books[-1])
-        same = list(map(_timeless, books[0].rules)) == list(map(_timeless, books[-1].rules))
-        _require(same, "its steps have different rules")
-    return for_steps(books, steps)
-
-
-def _timeless(rule: CompiledRule) -> CompiledRule:
-    """A rule without the parts that depend on the step."""
-    nothing = monitors.MealyMonitor((), (), (), (), rejecting_sink=None, accepting_sink=None)
-    return replace(rule, machine=nothing, hoa="", step_s=None)
-
-
-def _prefixes(read: schema.BundleFile) -> StoredPrefixes | None:
+def _prefixes(rulebook: CompiledRulebook, read: schema.BundleFile) -> StoredPrefixes | None:
     """The machines for cut traces, checked; None if the file has none."""
     lacking = [rule.cut is UNSET for rule in read.rules]
     if any(lacking):
-        _require(all(lacking), "only some of its rules have machines for cut traces")
+        require(all(lacking), "only some of its rules have machines for cut traces")
         return None
     for rule in read.rules:
         if rule.cut:
-            _check_table(rule.cut, len(rule.machine.letters), rule.name)
+            check_table(rule.cut, len(rule.machine.letters), rule.name)
             known = len(rule.cut.starts) > 0 and set(rule.cut.starts) <= set(
                 range(len(rule.cut.successors))
             )
-            _require(known, f"the table of rule `{rule.name}` for cut traces has no valid start")
-    return StoredPrefixes({rule.name: _cut_tables(rule) for rule in read.rules})
+            require(known, f"the table of rule `{rule.name}` for cut traces has no valid start")
+    return StoredPrefixes(
+        {rule.name: _cut_tables(rule) for rule in read.rules},
+        timed={
+            rule.name: _timed_cut(rule, entry.cut_clocked, ends=read.semantics == "finite")
+            for rule, entry in zip(rulebook.rules, read.rules, strict=True)
+            if entry.cut_clocked is not None
+        },
+    )
+
+
+def _timed_cut(rule: CompiledRule, read: schema.CutClockedEntry, *, ends: bool) -> TimedCut:
+    fits = (read.continuing is not None) is looks_back(rule) and (read.alone is None) is ends
+    require(fits, f"the machines of rule `{rule.name}` for cut traces are not those it needs")
+    reads = rule.machine.reads
+    if looks_back(rule):
+        reads = (*reads, monitors.Read(BEGUN.name, ()))
+    return TimedCut(
+        None
+        if read.continuing is None
+        else timed_machine(read.continuing, reads, rule.name, ends=ends),
+        None if read.alone is None else timed_machine(read.alone, reads, rule.name, ends=True),
+    )
 
 
 def _cut_tables(rule: schema.BundleRule) -> CutTables | None:
@@ -141,16 +142,16 @@ def _cut_tables(rule: schema.BundleRule) -> CutTables | None:
 
 def _priorities(read: schema.BundleFile) -> frozenset[tuple[str, str]]:
     """The priorities, checked to be a pre-order of the levels."""
-    _require(len(set(read.levels)) == len(read.levels), "two levels have the same name")
+    require(len(set(read.levels)) == len(read.levels), "two levels have the same name")
     pairs = frozenset(read.priorities)
-    _require(len(pairs) == len(read.priorities), "a priority is listed twice")
+    require(len(pairs) == len(read.priorities), "a priority is listed twice")
     named = {level for pair in pairs for level in pair}
-    _require(named <= set(read.levels), "a priority is about an unknown level")
+    require(named <= set(read.levels), "a priority is about an unknown level")
     below: dict[str, set[str]] = {level: {level} for level in read.levels}
     for higher, lower in pairs:
         below[higher].add(lower)
     closed = all(below[lower] <= below[higher] for higher, lower in pairs)
-    _require(closed, "the priorities are not transitively closed")
+    require(closed, "the priorities are not transitively closed")
     return pairs
 
 
@@ -159,19 +160,19 @@ def _check_vocabulary(vocabulary: Vocabulary) -> None:
     for item in types.values():
         seen, parent = {item.name}, item.parent
         while parent is not None:
-            _require(parent in types and parent not in seen, f"type `{item.name}` has no root")
+            require(parent in types and parent not in seen, f"type `{item.name}` has no root")
             seen.add(parent)
             parent = types[parent].parent
     for declaration in vocabulary.declarations.values():
         for parameter in declaration.parameters:
-            _require(parameter in types, f"`{declaration.name}` is about an unknown type")
-        _require(
+            require(parameter in types, f"`{declaration.name}` is about an unknown type")
+        require(
             not declaration.presumed or declaration.default is not None,
             f"`{declaration.name}` is presumed, but has no default",
         )
         if isinstance(declaration, Enumeration) and declaration.default is not None:
             known = declaration.default in declaration.values
-            _require(known, f"the default of `{declaration.name}` is not one of its values")
+            require(known, f"the default of `{declaration.name}` is not one of its values")
 
 
 def _axiom(fact: schema.AxiomEntry, vocabulary: Vocabulary) -> CompiledAxiom:
@@ -182,7 +183,7 @@ def _axiom(fact: schema.AxiomEntry, vocabulary: Vocabulary) -> CompiledAxiom:
     )
     _check_parts(axiom, fact, vocabulary, "a fact")
     timeless = all(part.operator in BOOLEAN for part in operations_of(axiom.formula))
-    _require(timeless, "a fact is about more than one state")
+    require(timeless, "a fact is about more than one state")
     return axiom
 
 
@@ -194,12 +195,12 @@ def _check_parts(
 ) -> None:
     """Check the variables and the formula of a rule or axiom; ``of`` is its name in errors."""
     names = {variable.name for variable in compiled.variables}
-    _require(len(names) == len(compiled.variables), f"{of} names a variable twice")
+    require(len(names) == len(compiled.variables), f"{of} names a variable twice")
     for variable in compiled.variables:
-        _require(variable.type in vocabulary.types, f"{of} is about an unknown type")
+        require(variable.type in vocabulary.types, f"{of} is about an unknown type")
     _check_formula(compiled.formula, vocabulary, names, of, counted=False)
     same = formula_text(compiled.formula) == read.formula
-    _require(same, f"{of} has two different formulas")
+    require(same, f"{of} has two different formulas")
 
 
 def _check_formula(
@@ -211,20 +212,20 @@ def _check_formula(
         match waiting.pop():
             case ltl.Atom() as atom:
                 known = _is_known(atom, vocabulary, variables)
-                _require(known, f"{of} uses `{atom}`, which its vocabulary lacks")
+                require(known, f"{of} uses `{atom}`, which its vocabulary lacks")
             case ltl.Comparison(terms) as comparison:
                 normal = _is_normal(comparison)
-                _require(normal, f"{of} compares numbers that are not in their normal form")
+                require(normal, f"{of} compares numbers that are not in their normal form")
                 for _, term in terms:
                     _check_term(term, vocabulary, variables, of)
             case ltl.Same(left, right):
                 comparable = counted and {left, right} <= variables
-                _require(
+                require(
                     comparable, f"{of} compares unknown variables, or compares outside of a count"
                 )
             case ltl.Unary() | ltl.Binary() as operation:
                 now = not counted or operation.operator in BOOLEAN
-                _require(now, f"{of} counts objects by what holds at other instants")
+                require(now, f"{of} counts objects by what holds at other instants")
                 if isinstance(operation, ltl.Unary):
                     waiting.append(operation.operand)
                 else:
@@ -260,7 +261,7 @@ def _check_term(term: ltl.Term, vocabulary: Vocabulary, variables: Set[str], of:
     match term:
         case ltl.QuantityTerm(name, arguments):
             declared = vocabulary.declarations.get(name)
-            _require(
+            require(
                 isinstance(declared, Quantity)
                 and len(declared.parameters) == len(arguments)
                 and set(arguments) <= variables,
@@ -268,11 +269,11 @@ def _check_term(term: ltl.Term, vocabulary: Vocabulary, variables: Set[str], of:
             )
         case ltl.Count(variable, type_name, body):
             known = type_name in vocabulary.types
-            _require(known, f"{of} counts objects of the unknown type `{type_name}`")
+            require(known, f"{of} counts objects of the unknown type `{type_name}`")
             _check_formula(body, vocabulary, variables | {variable}, of, counted=True)
 
 
-def _rule(rule: schema.BundleRule, vocabulary: Vocabulary, levels: Container[str]) -> CompiledRule:
+def _rule(rule: schema.BundleRule, vocabulary: Vocabulary, read: schema.BundleFile) -> CompiledRule:
     reads = tuple([_read(item) for item in rule.machine.reads])
     formula = from_data(rule.tree)
     parts = None if rule.parts is None else _rule_parts(rule.parts)
@@ -288,8 +289,11 @@ def _rule(rule: schema.BundleRule, vocabulary: Vocabulary, levels: Container[str
         parts=parts,
         certificate=rule.certificate,
     )
-    _check_rule(compiled, rule, vocabulary, levels)
-    return compiled
+    _check_rule(compiled, rule, vocabulary, read.levels)
+    if rule.clocked is None:
+        return compiled
+    ends = read.semantics == "finite"
+    return replace(compiled, timed=timed_machine(rule.clocked, reads, rule.name, ends=ends))
 
 
 def _check_rule(
@@ -299,12 +303,12 @@ def _check_rule(
     _check_parts(rule, read, vocabulary, f"rule `{name}`")
     _check_machine(read.machine, name)
     same = rule.machine.reads == reads_of(formula, vocabulary)
-    _require(same, f"the table of rule `{name}` does not read the same as its formula")
+    require(same, f"the table of rule `{name}` does not read the same as its formula")
     known = not rule.level or rule.level in levels
-    _require(known, f"rule `{name}` has an unknown level")
-    _require(rule.weight > 0, f"rule `{name}` has no weight")
+    require(known, f"rule `{name}` has an unknown level")
+    require(rule.weight > 0, f"rule `{name}` has no weight")
     fits = has_seconds(formula) is (rule.step_s is not None)
-    _require(fits, f"rule `{name}` is for a wrong step")
+    require(fits, f"rule `{name}` is for a wrong step")
     if rule.step_s is not None:
         in_steps(formula, rule.step_s)
     if rule.parts is not None:
@@ -328,32 +332,8 @@ def _trigger_of(parts: RuleParts) -> ltl.Formula | None:
 
 
 def _check_machine(read: schema.MachineEntry, rule: str) -> None:
-    _check_table(read, prod(_read(item).size for item in read.reads), rule)
-    traps = [
-        monitors.sink_of(read.successors, read.outputs, verdict=verdict)
-        for verdict in (False, True)
-    ]
-    _require(
-        traps == [read.rejecting_sink, read.accepting_sink],
-        f"rule `{rule}` names a wrong dead or safe state",
-    )
-
-
-def _check_table(
-    read: schema.MachineEntry | schema.CutMachineEntry, n_letters: int, rule: str
-) -> None:
-    n_states = len(read.successors)
-    n_classes = len(read.successors[0]) if read.successors else 0
-    fits: list[bool] = [
-        n_states > 0,
-        len(read.letters) == n_letters,
-        all(monitors.IMPOSSIBLE <= letter < n_classes for letter in read.letters),
-        all(len(row) == n_classes for row in read.successors),
-        all(len(row) == n_classes for row in read.outputs),
-        len(read.outputs) == n_states,
-        all(0 <= state < n_states for state in chain.from_iterable(read.successors)),
-    ]
-    _require(all(fits), f"the table of rule `{rule}` has a row or number that does not fit")
+    check_table(read, prod(_read(item).size for item in read.reads), rule)
+    check_sinks(read, rule)
 
 
 def _read(read: schema.ReadEntry | schema.NumberReadEntry) -> monitors.Read | monitors.NumberRead:
@@ -366,8 +346,3 @@ def _read(read: schema.ReadEntry | schema.NumberReadEntry) -> monitors.Read | mo
             for item in read.thresholds
         ),
     )
-
-
-def _require(condition: bool, problem: str) -> None:
-    if not condition:
-        raise ValueError(problem)

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
-from msgspec import structs
 
 from rulec.automata.bundle import bundle_schema as schema
 from rulec.automata.bundle.bundle_check import rulebook_of
@@ -22,6 +21,7 @@ from rulec.automata.bundle.bundle_digest import (
     without_digest,
 )
 from rulec.automata.bundle.bundle_messages import DAMAGED_BUNDLE, other_day
+from rulec.automata.bundle.clocked_entries import clocked_entry
 from rulec.automata.bundle.compiled_rulebook import (
     CompiledAxiom,
     CompiledRule,
@@ -30,7 +30,7 @@ from rulec.automata.bundle.compiled_rulebook import (
 )
 from rulec.automata.bundle.required_signature import check_signed
 from rulec.automata.bundle.stored_prefixes import CutTables, StoredPrefixes, stored
-from rulec.automata.bundle.stored_steps import StoredSteps
+from rulec.automata.cut_machines import TimedCut
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
@@ -38,7 +38,7 @@ from rulec.files.file_sets import write_together
 from rulec.files.read_files import MAX_SAVED_BYTES, opened, read_whole
 from rulec.files.written_files import make_folder
 from rulec.logic.codec import terms_to_data, to_data
-from rulec.logic.printing import formula_text, number_in_words
+from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import Rule, Rulebook, RuleParts, Variable
 
 
@@ -53,13 +53,9 @@ def to_json(rulebook: CompiledRulebook) -> str:
 def entry_of(rulebook: CompiledRulebook) -> schema.BundleFile:
     """The content of a compiled rulebook's file.
 
-    Machines for cut traces are included if the rulebook has them stored or is for several steps.
+    Machines for cut traces are included if the rulebook has them stored.
     """
-    if isinstance(rulebook.recompile, StoredSteps):
-        return _entry_of_steps(rulebook.recompile)
-    stored_prefixes = isinstance(rulebook.prefixes, StoredPrefixes)
-    cut = rulebook.prefixes.entries if isinstance(rulebook.prefixes, StoredPrefixes) else {}
-    cut_of = _cut if stored_prefixes else lambda _: msgspec.UNSET
+    prefixes = rulebook.prefixes if isinstance(rulebook.prefixes, StoredPrefixes) else None
     vocabulary = rulebook.vocabulary
     return schema.BundleFile(
         **alike(Rulebook, rulebook),
@@ -76,20 +72,8 @@ def entry_of(rulebook: CompiledRulebook) -> schema.BundleFile:
             ],
         ),
         facts=[_axiom(axiom) for axiom in rulebook.axioms],
-        rules=[_rule(rule, cut_of(cut.get(rule.name))) for rule in rulebook.rules],
+        rules=[_rule(rule, prefixes) for rule in rulebook.rules],
     )
-
-
-def _entry_of_steps(stored_steps: StoredSteps) -> schema.BundleFile:
-    files = [entry_of(replace(book, prefixes=stored(book))) for book in stored_steps.books]
-    # Rules without bounds in seconds are the same for all steps.
-    rules = [
-        entry
-        for entries in zip(*[file.rules for file in files], strict=True)
-        for entry in (entries[:1] if entries[0].step_s is None else entries)
-    ]
-    steps = tuple(map(str, stored_steps.steps))
-    return structs.replace(files[0], steps=steps, rules=rules)
 
 
 _STRING_OR_ROW = re.compile(r'"(?:[^"\\]|\\.)*"|\[\s[^\[\]{}"]*\]')
@@ -116,14 +100,20 @@ def _variables(variables: Iterable[Variable]) -> list[tuple[str, str]]:
     return [(variable.name, variable.type) for variable in variables]
 
 
-def _rule(
-    rule: CompiledRule, cut: schema.CutMachineEntry | msgspec.UnsetType | None
-) -> schema.BundleRule:
+def _rule(rule: CompiledRule, prefixes: StoredPrefixes | None) -> schema.BundleRule:
     machine = rule.machine
+    is_timed = rule.step_s is not None
+    cut_clocked = prefixes.timed.get(rule.name) if prefixes is not None and is_timed else None
     return schema.BundleRule(
         **alike(Rule, rule),
         hoa=rule.hoa,
-        cut=cut,
+        cut=msgspec.UNSET if prefixes is None else _cut(prefixes.entries.get(rule.name)),
+        clocked=clocked_entry(rule.timed if is_timed else None),
+        cut_clocked=None
+        if cut_clocked is None
+        else schema.CutClockedEntry(
+            clocked_entry(cut_clocked.own), clocked_entry(cut_clocked.alone)
+        ),
         weight=str(rule.weight),
         variables=_variables(rule.variables),
         step_s=None if rule.step_s is None else str(rule.step_s),
@@ -140,6 +130,10 @@ def _rule(
             accepting_sink=machine.accepting_sink,
         ),
     )
+
+
+def _cut_clocked(timed: TimedCut) -> schema.CutClockedEntry:
+    return schema.CutClockedEntry(clocked_entry(timed.own), clocked_entry(timed.alone))
 
 
 def _cut(tables: CutTables | None) -> schema.CutMachineEntry | None:
@@ -243,20 +237,18 @@ def read_signed(path: Path) -> bytes:
 def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
     """Write ``RULE.hoa`` for every rule and ``RULEBOOK.json`` to a folder.
 
-    For several steps, rules with bounds in seconds have one file per step, such as
-    ``RULE-0.5s.hoa``. ``RULEBOOK.json`` contains machines for cut traces if they can be compiled.
-    All files are written completely before the first one appears, so that they are consistent.
-    Returns the files, the compiled rulebook last. Raises RulecError R0702, and R0403 if such
-    machines need Spot and it is not installed.
+    ``RULEBOOK.json`` contains machines for cut traces if they can be compiled. All files are
+    written completely before the first one appears, so that they are consistent. Returns the files,
+    the compiled rulebook last. Raises RulecError R0702, and R0403 if such machines need Spot and it
+    is not installed.
     """
-    several = rulebook.recompile if isinstance(rulebook.recompile, StoredSteps) else None
-    if several is None:
-        rulebook = replace(rulebook, prefixes=stored(rulebook))
+    # Processes, 30 ms: only where something is written.
+    from rulec.automata.prefix_machines import timed_cuts
+
+    rulebook = replace(rulebook, prefixes=stored(rulebook, timed_cuts))
     make_folder(folder)
     texts = {
-        folder / f"{rule.name}{_step_in_name(rule, several)}.hoa": _with_sources(rule.hoa, book)
-        for book in (several.books if several else (rulebook,))
-        for rule in book.rules
+        folder / f"{rule.name}.hoa": _with_sources(rule.hoa, rulebook) for rule in rulebook.rules
     }
     texts[folder / f"{rulebook.name}.json"] = to_json(rulebook)
     write_together(folder, {path.name: text.encode() for path, text in texts.items()})
@@ -273,9 +265,3 @@ def _with_sources(hoa: str, rulebook: CompiledRulebook) -> str:
 def _spelt(name: str) -> str:
     """A file name without characters that could end a comment or a line."""
     return "".join(sign if sign.isalnum() or sign in "._-" else "_" for sign in name)
-
-
-def _step_in_name(rule: CompiledRule, several: StoredSteps | None) -> str:
-    if several is None or rule.step_s is None:
-        return ""
-    return f"-{number_in_words(rule.step_s).replace('/', '_')}s"

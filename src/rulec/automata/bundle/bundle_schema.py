@@ -1,4 +1,4 @@
-"""The fields of a compiled rulebook's file, version 6 (see docs/compiled.md)."""
+"""The fields of a compiled rulebook's file, version 7 (see docs/compiled.md)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rulec.rulebook.rulebook_model import (
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 FORMAT = "rulec compiled rulebook"
-VERSION = 6
+VERSION = 7
 WITHOUT_DIGEST = range(3, VERSION)
 """Versions that earlier releases wrote without a digest, so that changes to them go unnoticed."""
 
@@ -134,6 +134,43 @@ class CutMachineEntry(_Strict, rename={"successors": "following", "outputs": "ou
     starts: tuple[int, ...]
 
 
+class ClockEntry(_Strict, omit_defaults=True, rename={"low": "from", "high": "to"}):
+    """A clock: its bound, and for each letter of the table what its operands are there.
+
+    That is 1 if the left one holds, plus 2 if the right one does.
+    """
+
+    low: str
+    high: str | None
+    unit: Literal["s", "steps"]
+    operands: tuple[Literal[0, 1, 2, 3], ...]
+    early: bool = False
+    least: Literal[0, 1] = 0
+
+
+class ClockedEntry(_Strict, rename=_WRITTEN_AS):
+    """A machine for any step: a Mealy monitor that also reads clocks.
+
+    ``groups`` has the group of each letter; a letter of the table is a group and the clocks'
+    values, as bits: ``group + n_groups * values``.
+    """
+
+    groups: tuple[int, ...]
+    clocks: list[ClockEntry]
+    letters: tuple[int, ...]
+    successors: tuple[tuple[int, ...], ...]
+    outputs: tuple[tuple[bool, ...], ...]
+    rejecting_sink: int | None
+    accepting_sink: int | None
+
+
+class CutClockedEntry(_Strict, omit_defaults=True):
+    """The machines of which that for cut traces is made at any step (``cut_machines.TimedCut``)."""
+
+    continuing: ClockedEntry | None = None
+    alone: ClockedEntry | None = None
+
+
 class PartsEntry(_Strict, omit_defaults=True):
     """What a rule requires, its exceptions with their scopes, and its condition, as trees."""
 
@@ -146,7 +183,8 @@ class BundleRule(_Strict, omit_defaults=True):
     """One rule; ``cut`` is null if that machine would be too large, and missing if none was made.
 
     Without ``parts`` the rule consists of its formula alone. ``certificate`` is the digest of the
-    table if two compilers agree on it.
+    table if two compilers agree on it. A rule with bounds in seconds has ``clocked`` machines for
+    any step, where clocks tell all of its bounds.
     """
 
     name: str
@@ -165,6 +203,8 @@ class BundleRule(_Strict, omit_defaults=True):
     machine: MachineEntry
     hoa: str
     cut: CutMachineEntry | msgspec.UnsetType | None = msgspec.UNSET
+    clocked: ClockedEntry | None = None
+    cut_clocked: CutClockedEntry | None = None
     parts: PartsEntry | None = None
     inherited_from: str = ""
     certificate: Annotated[str, msgspec.Meta(pattern="^([0-9a-f]{64})?$")] = ""
@@ -192,8 +232,7 @@ class BundleFile(_Strict, kw_only=True):
     """The whole file.
 
     Its first line is ``{``; its second is ``sha256``, the digest of all bytes from the third line
-    on, in hexadecimal (``bundle_digest``). If it is for several ``steps``, a rule with bounds in
-    seconds appears once for each.
+    on, in hexadecimal (``bundle_digest``).
     """
 
     sha256: str = ""
@@ -208,7 +247,6 @@ class BundleFile(_Strict, kw_only=True):
     sources: list[SourceEntry]
     semantics: Semantics
     traffic: Traffic = ""
-    steps: tuple[str, ...] | msgspec.UnsetType = msgspec.UNSET
     levels: tuple[str, ...]
     priorities: list[tuple[str, str]]
     extends: tuple[str, ...]

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
 
 from rulec.automata.bundle.bundle_messages import AUTOMATON_TOO_LARGE, OTHER_STEP
+from rulec.automata.clocks.clocked_machine import TimedMachine
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
@@ -30,7 +31,8 @@ class CompiledRule:
 
     ``hoa`` is its automaton in HOA v1, empty until a file is written (``second_compiler``).
     ``step_s`` is the step of the traces that the machine can judge; None for any step, because the
-    formula has no bounds in seconds. ``trigger`` is the condition under which the rule demands
+    formula has no bounds in seconds. ``timed`` is the machine for any step, if the rule has one.
+    ``trigger`` is the condition under which the rule demands
     anything, None if the formula's form does not show one (``logic.opportunities``); it is derived
     from ``parts``, or from the formula if those are None. ``certificate`` is the digest of the
     table if two compilers made the same one.
@@ -56,6 +58,20 @@ class CompiledRule:
     parts: model.RuleParts | None = None
     inherited_from: str = ""
     certificate: str = field(default="", compare=False)
+    timed: TimedMachine | None = field(default=None, compare=False)
+
+    def at(self, step_s: Fraction) -> CompiledRule:
+        """The rule for traces whose states are so many seconds apart.
+
+        Raises R0507 if it cannot be judged at this step without being compiled again, SizeError.
+        """
+        if self.step_s in (None, step_s):
+            return self
+        if self.timed is None:
+            check_step(self, step_s)
+            return self
+        machine = self.timed.at(step_s)
+        return replace(self, machine=machine, step_s=step_s, hoa="", certificate="")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +89,12 @@ class TooLargeRule(NamedTuple):
     name: str
     strength: model.Strength
     why: str
+
+
+def too_large_rule(rule: CompiledRule | model.Rule, step_s: Fraction) -> TooLargeRule:
+    """A rule that is left out for a step (s)."""
+    why = f"its automaton is too large for steps of {number_in_words(step_s)} s"
+    return TooLargeRule(rule.name, rule.strength, why)
 
 
 class Recompiler(Protocol):
@@ -117,7 +139,7 @@ class CompiledRulebook(Rows):
 
     ``rulec`` and ``spot`` are the versions that compiled it. ``origin`` gets the rulebook that it
     was compiled from, None if it was read from a compiled file. ``recompile`` compiles it for other
-    steps; None if it was read from a file, or compiled for one step. ``prefixes`` provides the
+    steps; None if it is for one step alone. ``prefixes`` provides the
     machines for cut traces; ``prepared`` holds data of the engines. ``too_large`` are the rules
     that were left out for the step of recorded traces.
     """

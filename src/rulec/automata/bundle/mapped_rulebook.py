@@ -7,6 +7,8 @@ from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.bundle.stored_prefixes import CutTables, StoredPrefixes
+from rulec.automata.clocks.clocked_machine import ClockedMachine, ClockLetters, TimedMachine
+from rulec.automata.cut_machines import TimedCut
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read, Threshold
 from rulec.cache.stored_objects import ObjectCodec, ObjectKind, kind_of_fields, kinds_of_fields
 from rulec.diagnostics import Diagnostic
@@ -30,7 +32,8 @@ def _rulebook(*parts: Any) -> CompiledRulebook:
 
 
 _RULEBOOK = kind_of_fields(CompiledRulebook, ["origin", "recompile", "too_large"])
-MACHINE_KINDS = {**RULE_KINDS, **kinds_of_fields((Read, Threshold, NumberRead, MealyMonitor))}
+_MACHINES = Read, Threshold, NumberRead, MealyMonitor, ClockLetters, ClockedMachine
+MACHINE_KINDS = {**RULE_KINDS, **kinds_of_fields(_MACHINES)}
 COMPILATIONS = ObjectCodec(
     {
         **READING_KINDS,
@@ -38,7 +41,10 @@ COMPILATIONS = ObjectCodec(
         ltl.Bound: kind_of_fields(ltl.Bound, ["span"]),
         CompiledRulebook: ObjectKind(_RULEBOOK.parts, _rulebook),
         **kinds_of_fields(
-            (*(CompiledRule, CompiledAxiom, CutTables, StoredPrefixes, Compilation),)
+            (
+                *(CompiledRule, CompiledAxiom, TimedMachine),
+                *(CutTables, TimedCut, StoredPrefixes, Compilation),
+            )
         ),
     }
 )

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-    from rulec.automata.mealy_monitor import MealyMonitor
-    from rulec.automata.outcome_machine import OutcomeMachine
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.cut_machines import TimedCut
+from rulec.automata.mealy_monitor import MealyMonitor
+from rulec.automata.outcome_machine import OutcomeMachine
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,44 +30,61 @@ class StoredPrefixes:
     """A ``PrefixCompiler`` of stored machines, by the rule's name.
 
     ``orders`` are the orders of their states (``OutcomeMachine.order``), where these are stored,
-    too.
+    too. ``timed`` says what the machines are made of at any step: where there is no entry.
     """
 
     entries: Mapping[str, CutTables | None]
     orders: Mapping[str, bytes] = field(default_factory=dict)
+    timed: Mapping[str, TimedCut] = field(default_factory=dict)
+    _made: dict[str, OutcomeMachine | None] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def __call__(self, rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
         """The machines of the rulebook's rules; None for each that would have been too large."""
-        # NumPy takes 0.1 s to import: only if a trace is cut.
-        from rulec.automata.outcome_machine import OutcomeMachine
+        return {rule.name: self._machine(rule) for rule in rulebook.rules}
 
-        machines: dict[str, OutcomeMachine | None] = {}
-        for rule in rulebook.rules:
-            entry = self.entries.get(rule.name)
-            machines[rule.name] = None
-            if entry is not None:
-                # Rules that read different signals may have the same tables.
-                key = id(entry), id(rule.machine)
-                known = _MADE.get(key)
-                if known is None or known[0] is not entry or known[1] is not rule.machine:
-                    if len(_MADE) >= _MOST_MADE:
-                        _MADE.clear()
-                    machine = OutcomeMachine(
-                        rule.machine.reads,
-                        entry.letters,
-                        entry.successors,
-                        entry.outputs,
-                        frozenset(entry.starts),
-                        order=self.orders.get(rule.name),
-                    )
-                    known = _MADE[key] = entry, rule.machine, machine
-                machines[rule.name] = known[2]
-        return machines
+    def at_other_steps(self, rules: Iterable[CompiledRule]) -> StoredPrefixes:
+        """The machines at other steps of some rules."""
+        gone = {rule.name for rule in rules}
+        entries = {name: entry for name, entry in self.entries.items() if name not in gone}
+        return StoredPrefixes(entries, self.orders, self.timed)
+
+    def _machine(self, rule: CompiledRule) -> OutcomeMachine | None:
+        entry, timed = self.entries.get(rule.name), self.timed.get(rule.name)
+        if rule.name in self.entries or timed is None:
+            return None if entry is None else _made(entry, rule, self.orders.get(rule.name))
+        if rule.name not in self._made:
+            self._made[rule.name] = timed.if_small(rule)
+        return self._made[rule.name]
 
 
-def stored(rulebook: CompiledRulebook) -> StoredPrefixes | None:
+def _made(entry: CutTables, rule: CompiledRule, order: bytes | None) -> OutcomeMachine:
+    # Rules that read different signals may have the same tables.
+    key = id(entry), id(rule.machine)
+    known = _MADE.get(key)
+    if known is None or known[0] is not entry or known[1] is not rule.machine:
+        if len(_MADE) >= _MOST_MADE:
+            _MADE.clear()
+        machine = OutcomeMachine(
+            rule.machine.reads,
+            entry.letters,
+            entry.successors,
+            entry.outputs,
+            frozenset(entry.starts),
+            order=order,
+        )
+        known = _MADE[key] = entry, rule.machine, machine
+    return known[2]
+
+
+def stored(
+    rulebook: CompiledRulebook,
+    timed: Callable[[CompiledRulebook], Mapping[str, TimedCut]] = lambda _: {},
+) -> StoredPrefixes | None:
     """The machines that a file can store; None if no compiler for cut traces is available.
 
+    Once they have been made, ``timed`` says what they are made of at any step.
     Raises RulecError R0403 if that needs Spot, and it is not installed.
     """
     if rulebook.prefixes is None or isinstance(rulebook.prefixes, StoredPrefixes):
@@ -76,7 +92,7 @@ def stored(rulebook: CompiledRulebook) -> StoredPrefixes | None:
     machines = rulebook.prefixes(rulebook)
     entries = {name: _entry(machine) for name, machine in machines.items()}
     orders = {name: _order(machine) for name, machine in machines.items() if machine is not None}
-    return StoredPrefixes(entries, orders)
+    return StoredPrefixes(entries, orders, timed(rulebook))
 
 
 def _order(machine: OutcomeMachine) -> bytes:

@@ -12,8 +12,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TypeAlias
 
-from rulec.automata.clocks.clocked_machine import ClockedMachine
-from rulec.automata.compiler_jobs import MOST_STEPS_AHEAD, Done, Failed, Job, SizeError
+from rulec.automata.automaton_sizes import MOST_STEPS_AHEAD, SizeError
+from rulec.automata.clocks.clocked_machine import ClockedMachine, TimedMachine
+from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.logic.bounds import has_seconds, operations_of
 from rulec.logic.formula import Formula
 from rulec.logic.past_registers import Clock, with_clocks
@@ -44,9 +45,10 @@ class _Question:
         """The machine for the clocks' bounds."""
         if not isinstance(answer, ClockedMachine):
             return answer
-        registers = [clock.register(self.step_s) for clock in self.clocks]
+        bounds = tuple([clock.bound for clock in self.clocks])
+        timed = TimedMachine(answer, bounds, ends=self.job.semantics == "finite")
         try:
-            return Done(answer.unrolled(registers, ends=self.job.semantics == "finite"), "")
+            return Done(timed.at(self.step_s), "", timed)
         except SizeError:
             return Failed("size")
 

@@ -7,15 +7,24 @@ gives a table for letters alone: a bound costs states there, but no formula is l
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from fractions import Fraction
+from functools import cache, partial
 from typing import TypeAlias
 
-from rulec.automata.compiler_jobs import MOST_EDGES, MOST_STATES, SizeError
+from rulec.automata.automaton_sizes import (
+    MOST_EDGES,
+    MOST_STATES,
+    MOST_STEPS_AHEAD,
+    SizeError,
+)
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
 from rulec.automata.tables import VerdictTable, build_machine, loop_verdicts
-from rulec.logic.past_registers import Register
+from rulec.logic.bounds import Range, begins_at, bound_in_steps, range_of_bound
+from rulec.logic.formula import Bound
+from rulec.logic.past_registers import Register, register_after
+from rulec.value_display import short_repr
 
 _SIDES = ((False, False), (True, False), (False, True), (True, True))
 """The values of a clock's left and right operand, by their code."""
@@ -36,22 +45,22 @@ class ClockLetters:
     n_groups: int
     operands: tuple[tuple[int, ...], ...]
 
-    def read(self, group: int, due: Due, clocks: Sequence[Register]) -> tuple[int, Due]:
+    def read(self, group: int, due: Due, spans: Sequence[Range]) -> tuple[int, Due]:
         """The letter of the table, and for each clock the code of its operands."""
         letter, codes = group, []
         weight = self.n_groups
-        for codes_of, is_due, clock in zip(self.operands, due, clocks, strict=True):
+        for codes_of, is_due, span in zip(self.operands, due, spans, strict=True):
             code = codes_of[letter]
             codes.append(code)
-            letter += weight * (clock.after(is_due << 1, *_SIDES[code]) & 1)
+            letter += weight * (register_after(span, is_due << 1, *_SIDES[code]) & 1)
             weight *= 2
         return letter, tuple(codes)
 
-    def possible(self, begins_at: Sequence[Container[int]]) -> frozenset[int]:
-        """The letters of the table that can come, by where the clocks' bounds begin."""
+    def possible(self, bounds: Sequence[Bound]) -> frozenset[int]:
+        """The letters of the table that can come with clocks of these bounds."""
         letters, weight = frozenset(range(self.n_groups)), self.n_groups
-        for codes_of, begins in zip(self.operands, begins_at, strict=True):
-            now = [low == 0 for low in (0, 1) if low in begins]
+        for codes_of, bound in zip(self.operands, bounds, strict=True):
+            now = [low == 0 for low in begins_at(bound)]
             values_of = [
                 {int((left and due) or (right and at_once)) for due in (0, 1) for at_once in now}
                 for left, right in _SIDES
@@ -77,16 +86,37 @@ class ClockedMachine:
     clocks: ClockLetters
     table: MealyMonitor
 
-    def unrolled(self, clocks: Sequence[Register], *, ends: bool) -> MealyMonitor:
-        """The machine over letters alone, for clocks with these bounds; it is minimal.
 
-        ``ends`` if nothing follows a word. Raises SizeError.
+@dataclass(frozen=True, slots=True)
+class TimedMachine:
+    """A rule's machine for any step of traces: its clocks have ``bounds``, in seconds or steps.
+
+    ``ends`` if nothing follows a word.
+    """
+
+    __repr__ = short_repr
+
+    clocked: ClockedMachine
+    bounds: tuple[Bound, ...]
+    ends: bool
+
+    def at(self, step_s: Fraction | None) -> MealyMonitor:
+        """The machine over letters alone for steps of so many seconds; it is minimal.
+
+        Without a step no bound may be in seconds. Raises SizeError.
         """
-        n_groups = self.clocks.n_groups
-        machine = build_machine(_side_by_side(self, clocks, ends=ends), (), n_groups)
+        spans = [
+            range_of_bound(bound if step_s is None else bound_in_steps(bound, step_s))
+            for bound in self.bounds
+        ]
+        if any((span.high or span.low) > MOST_STEPS_AHEAD for span in spans):
+            raise SizeError
+        clocked = self.clocked
+        rows = _side_by_side(clocked, spans, ends=self.ends)
+        machine = build_machine(rows, (), clocked.clocks.n_groups)
         numbers = (*machine.letters, IMPOSSIBLE)
-        letters = tuple([numbers[group] for group in self.groups])
-        return replace(machine, reads=self.reads, letters=letters)
+        letters = tuple([numbers[group] for group in clocked.groups])
+        return replace(machine, reads=clocked.reads, letters=letters)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,14 +130,12 @@ class _Moves:
     of_group: tuple[int, ...]
 
 
-def _side_by_side(
-    machine: ClockedMachine, clocks: Sequence[Register], *, ends: bool
-) -> VerdictTable:
+def _side_by_side(machine: ClockedMachine, spans: Sequence[Range], *, ends: bool) -> VerdictTable:
     """The table for groups: its states are pairs of a state of the table and what clocks hold."""
     table = machine.table
-    at_first = tuple([clock.at_first for clock in clocks])
+    at_first = (Register.at_first,) * len(spans)
     sinks = {table.rejecting_sink, table.accepting_sink}
-    after = [cache(clock.after) for clock in clocks]
+    after = [cache(partial(register_after, span)) for span in spans]
     met: dict[Due, _Moves] = {}
     numbers = {(0, at_first): 0}
     rows: list[tuple[int, Due, list[int]]] = []
@@ -115,7 +143,7 @@ def _side_by_side(
     for state, held in (reached := list(numbers)):
         due = tuple([value >> 1 & 1 for value in held])
         if due not in met:
-            met[due] = _moves(machine, due, clocks)
+            met[due] = _moves(machine, due, spans)
         row = []
         for symbol, codes in met[due].moves:
             target, later = table.successors[state][symbol], at_first
@@ -150,10 +178,10 @@ def _side_by_side(
     return VerdictTable(list(members.values()), successors, verdicts)
 
 
-def _moves(machine: ClockedMachine, due: Due, clocks: Sequence[Register]) -> _Moves:
+def _moves(machine: ClockedMachine, due: Due, spans: Sequence[Range]) -> _Moves:
     places: dict[tuple[int, Due], int] = {}
     of_group = []
     for group in range(machine.clocks.n_groups):
-        letter, codes = machine.clocks.read(group, due, clocks)
+        letter, codes = machine.clocks.read(group, due, spans)
         of_group.append(places.setdefault((machine.table.letters[letter], codes), len(places)))
     return _Moves(tuple(places), tuple(of_group))

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from rulec.automata.alphabet import count_letters, letters_with
+from rulec.automata.automaton_sizes import SizeError
 from rulec.automata.axiom_groups import AxiomGroup
-from rulec.automata.clocks.clocked_machine import ClockedMachine, ClockLetters
+from rulec.automata.clocks.clocked_machine import ClockedMachine, ClockLetters, TimedMachine
 from rulec.automata.compiler_jobs import (
     MOST_LETTERS,
     MOST_OPERATORS,
@@ -19,13 +20,12 @@ from rulec.automata.compiler_jobs import (
     Done,
     Failed,
     Job,
-    SizeError,
     Translated,
 )
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
 from rulec.automata.tables import build_machine, places_of, rows_of
 from rulec.automata.worker.random_words import agrees, outline, outlined
-from rulec.logic.bounds import in_steps
+from rulec.logic.bounds import bound_in_steps, in_steps
 from rulec.logic.codec import from_data, to_data
 from rulec.logic.fold import bit_sets, fold
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Formula, Proposition, Unary
@@ -109,7 +109,7 @@ def _apart(job: Job, compiler: Compiler) -> ClockedMachine | Failed:
             [_codes(fold(left, algebra), fold(right, algebra), n_letters) for left, right in sides]
         ),
     )
-    met = clocks.possible([clock.begins_at for clock in asked])
+    met = clocks.possible([clock.bound for clock in asked])
     translated = compiler.rest(job, job.formula, letters, n_letters)
     rows = rows_of(translated.automaton, sum([1 << letter for letter in met]))
     table = build_machine(rows, (), n_letters)
@@ -117,9 +117,9 @@ def _apart(job: Job, compiler: Compiler) -> ClockedMachine | Failed:
     claim = _Claim(table, present, letters, job.semantics)
 
     def agree() -> bool:
-        # With any bounds, such as two steps for what begins at the present instant or later.
-        registers = [clock.register(Fraction(2)) for clock in asked]
-        unrolled = machine.unrolled(registers, ends=job.semantics == "finite")
+        # With any bounds, such as these for what begins at the present instant or later
+        bounds = tuple([bound_in_steps(clock.bound, Fraction(2)) for clock in asked])
+        unrolled = TimedMachine(machine, bounds, ends=job.semantics == "finite").at(None)
         whole = in_steps(without_clocks(job.formula, asked), Fraction(2))
         return agrees(unrolled, whole, job.semantics)
 

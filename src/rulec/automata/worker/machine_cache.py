@@ -14,7 +14,7 @@ from pathlib import Path
 
 from rulec.automata.bundle.mapped_rulebook import MACHINE_KINDS
 from rulec.automata.clocks.clocked_jobs import Answer
-from rulec.automata.clocks.clocked_machine import ClockedMachine, ClockLetters
+from rulec.automata.clocks.clocked_machine import ClockedMachine
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.worker import compiler_choice
@@ -37,9 +37,7 @@ class KeptJob:
 
 _MACHINES = KeptObjects(
     KeptBytes("machine", MOST_MACHINES),
-    ObjectCodec(
-        {**MACHINE_KINDS, **kinds_of_fields((KeptJob, Done, ClockedMachine, ClockLetters, Failed))}
-    ),
+    ObjectCodec({**MACHINE_KINDS, **kinds_of_fields((KeptJob, Done, Failed))}),
 )
 
 

@@ -123,13 +123,6 @@ def _seconds(
     return step
 
 
-def _each_seconds(
-    context: click.Context, parameter: click.Parameter, values: Sequence[str]
-) -> list[Fraction]:
-    read = [_seconds(context, parameter, value) for value in values]
-    return [step for step in read if step is not None]
-
-
 def _day(context: click.Context, parameter: click.Parameter, value: str) -> str:
     """A date in ISO form; empty if none is given."""
     if not value:
@@ -217,13 +210,6 @@ def _rulebook_option(
 def step_option(help_text: str) -> Callable[[Decorated], Decorated]:
     """The option ``--step S``, read exactly, with the verb's own help text."""
     return click.option("--step", "step_s", callback=_seconds, metavar="S", help=help_text)
-
-
-def steps_option(help_text: str) -> Callable[[Decorated], Decorated]:
-    """The option ``--step S``, repeatable."""
-    return click.option(
-        "--step", "steps_s", multiple=True, callback=_each_seconds, metavar="S", help=help_text
-    )
 
 
 def rules_option(help_text: str, former: Sequence[str] = ()) -> Callable[[Decorated], Decorated]:

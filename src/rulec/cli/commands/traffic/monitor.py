@@ -22,8 +22,7 @@ from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.options.standard_input import STANDARD_INPUT, standard_input
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import answer_lines, open_session, print_written
-from rulec.diagnostics import RulecError, SourceLocation, named
-from rulec.logic.printing import number_in_words
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_remark, print_result
 from rulec.vocabulary.vocabulary_model import Vocabulary
@@ -87,13 +86,6 @@ def command(
     step_s = step_s or lazy.monitor_sources.step_of(saved)
     rules = open_session(at).compile_rulebook(rulebook, step_s=step_s)
     if restore is None:
-        if step_s is None and isinstance(rules.recompile, lazy.StoredSteps):
-            taken = number_in_words(rules.recompile.steps[0])
-            others = named([f"{number_in_words(step)} s" for step in rules.recompile.steps[1:]])
-            print_remark(
-                f"rulec: for states {taken} s apart; {rulebook} was also compiled for {others}, "
-                "which `--step` says"
-            )
         monitor = lazy.RunningMonitor(rules, step_s)
     else:
         place = "standard input" if restore == STANDARD_INPUT else restore

@@ -51,9 +51,9 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
 
 @click.command(cls=Verb)
 @shared.rulebooks_argument()
-@shared.steps_option(
-    "The time step of the traces to be judged, in s: a decimal, or a fraction such as 1/3. Give "
-    "it several times for several steps. It matters only for rules with bounds in seconds.  "
+@shared.step_option(
+    "The time step of the automata, in s: a decimal, or a fraction such as 1/3. It matters only "
+    "for rules with bounds in seconds; the compiled rulebook judges traces of any step.  "
     "[default: the step of their examples]",
 )
 @click.option(
@@ -94,7 +94,7 @@ def command(
     rulebooks: tuple[str, ...],
     *,
     output: str,
-    steps_s: Sequence[Fraction],
+    step_s: Fraction | None,
     emit: Literal["automata", "c", "rust", "ros2", "ltl"],
     objects: Mapping[str, int],
     prove: bool,
@@ -117,9 +117,6 @@ def command(
         raise click.UsageError(
             "--no-certificate is about the compiled rulebook: leave out `--emit`, or this option"
         )
-    if emit != "automata" and len(steps_s) > 1:
-        target = "LTL" if emit == "ltl" else "a monitor in C or Rust"
-        raise click.UsageError(f"{target} is for one step: give --step once")
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
     refuse_standard_output(output)
@@ -127,7 +124,6 @@ def command(
     # Checked first, since compiling may take minutes.
     refuse_unwritable(Path(output), is_folder=True)
     session = open_session(at)
-    step_s = steps_s[0] if steps_s else None
     books = rulebooks_named(rulebooks)
     # Several rulebooks may have rules of the same name.
     folders = {book: Path(output, name) for name, book in told_apart(books).items()}
@@ -145,7 +141,7 @@ def command(
             if emit == "ltl":
                 paths = session.write_ltl(book, folder, step_s)
             elif emit == "automata":
-                compiled = session.compile_rulebook(book, step_s=steps_s or None)
+                compiled = session.compile_rulebook(book, step_s=step_s)
                 several = len({rule.step_s for rule in compiled.rules} - {None}) > 1
                 compiled = compiled.at_one_step()
                 paths = session.write_compiled(compiled, folder, certificate=not no_certificate)
@@ -153,7 +149,7 @@ def command(
                     _tell_step(compiled)
                 _tell_others(folder, paths)
             else:
-                compiled = session.compile_rulebook(book, step_s=steps_s or None)
+                compiled = session.compile_rulebook(book, step_s=step_s)
                 with contained("no answer", SourceLocation(book)):
                     paths = session.write_monitor(
                         compiled, folder, objects, prove=prove, language=emit
