@@ -66,8 +66,12 @@ class _Clocked:
         self._letters, self._following = entry["letters"], entry["following"]
         self._accepting, self._ends = entry["accepting"], ends
         self.start: _State = 0, ((),) * len(self._clocks)
-        # In a state that is never left the past makes no difference.
-        self._sinks = {state for state, row in enumerate(self._following) if {*row} == {state}}
+        # Where every word has one verdict the past makes no difference.
+        self._sinks = {
+            state
+            for state, row in enumerate(self._following)
+            if {*row} == {state} and len({*self._accepting[state]}) == 1
+        }
         self._settled: dict[tuple[_State, int], bool] = {}
         self._known: dict[tuple[_State, int], tuple[_State, bool]] = {}
 
