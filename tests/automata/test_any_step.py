@@ -9,10 +9,10 @@ import pytest
 
 import rulec
 from rulec.automata import compiler
-from rulec.automata.automaton_sizes import SizeError
 from rulec.automata.bundle.bundle_file import from_json, read_compiled, to_json, write_compiled
 from rulec.automata.clocks.clocked_machine import TimedMachine
 from rulec.automata.second_compiler import with_automata
+from rulec.automata.tables import SizeError
 from rulec.cli.main import main
 from rulec.diagnostics import RulecError
 from support.builders.compiled_files import sealed

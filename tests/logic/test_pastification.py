@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.automata.automaton_sizes import SizeError
 from rulec.automata.clocks.clocked_machine import TimedMachine
 from rulec.automata.compiler_jobs import Job
 from rulec.automata.mealy_monitor import Read
+from rulec.automata.tables import SizeError
 from rulec.logic.bounds import operations_of, total_bound
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator, atoms_of
 from rulec.logic.past_registers import eliminate_past

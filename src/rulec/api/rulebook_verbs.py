@@ -64,18 +64,25 @@ class RulebookVerbs(SessionSettings):
     compile = compile_rulebook
 
     def write_compiled(
-        self, rulebook: CompiledRulebook, folder: str | Path, *, certificate: bool = True
+        self,
+        rulebook: CompiledRulebook,
+        folder: str | Path,
+        *,
+        certificate: bool = True,
+        clocks: bool = False,
     ) -> tuple[Path, ...]:
         """Write RULE.hoa for every rule and RULEBOOK.json; returns the paths.
 
-        With ``certificate`` rules compiled by Spot are also compiled by a second compiler, and the
-        file says which tables are equal. Raises RulecError, R0417 if some are not.
+        With ``clocks`` the automata are for any step: their bounds in seconds are clocks. With
+        ``certificate`` rules compiled by Spot are also compiled by a second compiler, and the file
+        says which tables are equal. Raises RulecError, R0417 if some are not.
         """
         # A rulebook with two steps could not judge any trace.
         rulebook = lazy.with_automata(rulebook.at_one_step())
         if certificate:
             rulebook = lazy.second_compiler.certified(rulebook)
-        return tuple(lazy.write_compiled(rulebook, Path(folder)))
+        texts_of = lazy.second_compiler.with_clocked_automata(rulebook) if clocks else None
+        return tuple(lazy.write_compiled(rulebook, Path(folder), texts_of))
 
     def write_monitor(
         self,

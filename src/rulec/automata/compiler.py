@@ -27,10 +27,10 @@ from rulec.automata.bundle.compiled_rulebook import (
     GivenRulebook,
     alike,
 )
-from rulec.automata.clocks.clocked_jobs import Answer, machines
+from rulec.automata.clocks.clocked_jobs import Answer, machines, texts_with_clocks
 from rulec.automata.compiler_jobs import Done, Failed, Job
-from rulec.automata.compiler_messages import no_machine, no_spot, no_time, not_confined
 from rulec.automata.worker import compiler_choice
+from rulec.automata.worker.compiler_messages import no_machine, no_spot, no_time, not_confined
 from rulec.automata.worker.machine_cache import MachineCache
 from rulec.automata.worker.worker_answers import HAS_PROCESSES, WorkerGreeting, answered_here
 from rulec.cache.keeping import is_keeping
@@ -198,6 +198,11 @@ def answers_to(
     """
     asked = _Asked(choice, more_will_come=more_will_come, time=time or CompilerTime())
     return machines(jobs, asked.answers), asked.spot or ""
+
+
+def clocked_texts(jobs: Sequence[Job]) -> list[str]:
+    """The automata of jobs with clocks, as ``texts_with_clocks``. Raises RulecError R0403."""
+    return texts_with_clocks(jobs, _Asked(None, more_will_come=False, time=CompilerTime()).answers)
 
 
 @dataclass(slots=True)

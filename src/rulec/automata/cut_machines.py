@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from rulec.automata.automaton_sizes import SizeError
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.clocks.clocked_machine import TimedMachine
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, Read
 from rulec.automata.outcome_machine import OutcomeMachine, of_prefixes
+from rulec.automata.tables import SizeError
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import PAST, operations_of
 

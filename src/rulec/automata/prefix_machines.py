@@ -14,11 +14,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
-from rulec.automata.automaton_sizes import SizeError
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.compiler import CompilerTime, answers_to, job_of
 from rulec.automata.compiler_jobs import MOST_LETTERS, Done, Failed, Job
-from rulec.automata.compiler_messages import no_time
 from rulec.automata.cut_machines import (
     BEGUN,
     TimedCut,
@@ -28,6 +26,8 @@ from rulec.automata.cut_machines import (
 )
 from rulec.automata.mealy_monitor import MealyMonitor, Read
 from rulec.automata.outcome_machine import OutcomeMachine
+from rulec.automata.tables import SizeError
+from rulec.automata.worker.compiler_messages import no_time
 from rulec.logic import formula as ltl
 from rulec.logic.semantics import Semantics
 

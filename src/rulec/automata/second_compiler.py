@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 from rulec.automata import compiler
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes
 from rulec.automata.compiler_jobs import Done, Failed
-from rulec.automata.compiler_messages import COMPILERS_DISAGREE, no_machine, no_time
 from rulec.automata.worker.compiler_choice import DIAGRAMS
+from rulec.automata.worker.compiler_messages import COMPILERS_DISAGREE, no_machine, no_time
 from rulec.diagnostics import RulecError
 from rulec.validation.file_proof import table_digest
 
@@ -98,4 +98,22 @@ def with_automata(rulebook: CompiledRulebook) -> CompiledRulebook:
     if problems:
         raise RulecError(problems)
     rules = [replace(rule, hoa=texts.get(rule.name, rule.hoa)) for rule in rulebook.rules]
+    return replace(rulebook, rules=tuple(rules))
+
+
+def with_clocked_automata(rulebook: CompiledRulebook) -> CompiledRulebook:
+    """The rulebook with automata for any step, as texts, of its rules with bounds in seconds.
+
+    Rules that no clocks tell keep the text that they have. Raises RulecError R0403.
+    """
+    timed = [rule for rule in rulebook.rules if rule.step_s is not None]
+    jobs = [
+        replace(
+            compiler.job_of(rule, rulebook), remarks=compiler.remarks_on(rule, rulebook.name, None)
+        )
+        for rule in timed
+    ]
+    names = [rule.name for rule in timed]
+    texts = dict(zip(names, compiler.clocked_texts(jobs), strict=True))
+    rules = [replace(rule, hoa=texts.get(rule.name) or rule.hoa) for rule in rulebook.rules]
     return replace(rulebook, rules=tuple(rules))

@@ -8,7 +8,6 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from rulec.automata.automaton_sizes import SizeError
 from rulec.automata.bundle.compiled_rulebook import (
     CompiledRule,
     CompiledRulebook,
@@ -16,6 +15,7 @@ from rulec.automata.bundle.compiled_rulebook import (
     too_large_rule,
 )
 from rulec.automata.compiler import CompilerTime, RulebookFormulas, build_all, lower
+from rulec.automata.tables import SizeError
 from rulec.diagnostics import RulecError
 from rulec.logic.bounds import has_seconds
 from rulec.logic.formula import Formula

@@ -9,9 +9,9 @@ from fractions import Fraction
 from itertools import count
 
 from rulec.automata.alphabet import knowledge, propositions_of, reads_of
-from rulec.automata.automaton_sizes import MOST_STEPS_AHEAD
 from rulec.automata.axiom_groups import axiom_groups
 from rulec.automata.compiler import RuleFormula
+from rulec.automata.tables import MOST_STEPS_AHEAD
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import total_bound
 from rulec.logic.fold import fold_constants

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from rulec.automata.automaton_sizes import SizeError
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, too_large_rule
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes
 from rulec.automata.compiler_jobs import Failed
-from rulec.automata.compiler_messages import no_machine
+from rulec.automata.tables import SizeError
+from rulec.automata.worker.compiler_messages import no_machine
 from rulec.diagnostics import RulecError
 
 MOST_STEPS = 100

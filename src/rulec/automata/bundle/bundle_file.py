@@ -234,13 +234,16 @@ def read_signed(path: Path) -> bytes:
     return data
 
 
-def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
+def write_compiled(
+    rulebook: CompiledRulebook, folder: Path, texts_of: CompiledRulebook | None = None
+) -> list[Path]:
     """Write ``RULE.hoa`` for every rule and ``RULEBOOK.json`` to a folder.
 
-    ``RULEBOOK.json`` contains machines for cut traces if they can be compiled. All files are
-    written completely before the first one appears, so that they are consistent. Returns the files,
-    the compiled rulebook last. Raises RulecError R0702, and R0403 if such machines need Spot and it
-    is not installed.
+    ``texts_of`` is the same rulebook with other automata as texts, which are written in place of
+    its own. ``RULEBOOK.json`` contains machines for cut traces if they can be compiled. All files
+    are written completely before the first one appears, so that they are consistent. Returns the
+    files, the compiled rulebook last. Raises RulecError R0702, and R0403 if such machines need Spot
+    and it is not installed.
     """
     # Processes, 30 ms: only where something is written.
     from rulec.automata.prefix_machines import timed_cuts
@@ -248,7 +251,8 @@ def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
     rulebook = replace(rulebook, prefixes=stored(rulebook, timed_cuts))
     make_folder(folder)
     texts = {
-        folder / f"{rule.name}.hoa": _with_sources(rule.hoa, rulebook) for rule in rulebook.rules
+        folder / f"{rule.name}.hoa": _with_sources(rule.hoa, rulebook)
+        for rule in (texts_of or rulebook).rules
     }
     texts[folder / f"{rulebook.name}.json"] = to_json(rulebook)
     write_together(folder, {path.name: text.encode() for path, text in texts.items()})

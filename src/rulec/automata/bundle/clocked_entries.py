@@ -26,23 +26,23 @@ def clocked_entry(timed: TimedMachine | None) -> schema.ClockedEntry | None:
     rows: Any = clocked.clocks.operands
     clocks = [
         schema.ClockEntry(
-            str(bound.low),
-            None if bound.high is None else str(bound.high),
-            bound.unit,
-            operands,
-            bound.early,
-            1 if bound.least else 0,
+            low=str(bound.low),
+            high=None if bound.high is None else str(bound.high),
+            unit=bound.unit,
+            operands=operands,
+            early=bound.early,
+            least=1 if bound.least else 0,
         )
         for bound, operands in zip(timed.bounds, rows, strict=True)
     ]
     return schema.ClockedEntry(
-        clocked.groups,
-        clocks,
-        table.letters,
-        table.successors,
-        table.outputs,
-        table.rejecting_sink,
-        table.accepting_sink,
+        groups=clocked.groups,
+        clocks=clocks,
+        letters=table.letters,
+        successors=table.successors,
+        outputs=table.outputs,
+        rejecting_sink=table.rejecting_sink,
+        accepting_sink=table.accepting_sink,
     )
 
 
@@ -65,7 +65,12 @@ def timed_machine(
     ]
     require(all(fits), f"the clocks of rule `{rule}` have a row or number that does not fit")
     table = monitors.MealyMonitor(
-        (), read.letters, read.successors, read.outputs, read.rejecting_sink, read.accepting_sink
+        (),
+        read.letters,
+        read.successors,
+        read.outputs,
+        rejecting_sink=read.rejecting_sink,
+        accepting_sink=read.accepting_sink,
     )
     clocks = ClockLetters(n_groups, tuple([clock.operands for clock in read.clocks]))
     met = [read.letters[letter] for letter in clocks.possible(bounds)]

@@ -12,13 +12,14 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TypeAlias
 
-from rulec.automata.automaton_sizes import MOST_STEPS_AHEAD, SizeError
 from rulec.automata.clocks.clocked_machine import ClockedMachine, TimedMachine
 from rulec.automata.compiler_jobs import Done, Failed, Job
+from rulec.automata.tables import MOST_STEPS_AHEAD, SizeError
 from rulec.logic.bounds import has_seconds, operations_of
-from rulec.logic.formula import Formula
+from rulec.logic.formula import Bound, Formula
 from rulec.logic.past_registers import Clock, with_clocks
 from rulec.logic.pastification import pastified
+from rulec.logic.printing import formula_text
 
 MOST_CLOCKS = 8
 """The table that reads them has a letter for each set of clocks that hold."""
@@ -74,14 +75,49 @@ def machines(jobs: Sequence[Job], ask: Ask) -> list[Done | Failed | None]:
         waiting = left
 
 
+def texts_with_clocks(jobs: Sequence[Job], ask: Ask) -> list[str]:
+    """The automaton of each job in HOA with clocks in its header; empty if it has none.
+
+    Each ``Rulec-Clock`` names a proposition of the automaton, its operands, and its bound with the
+    unit. By its capital letter, who does not know this header cannot read the automaton.
+    """
+    questions = [next(_timed_ways(job), None) for job in jobs]
+    asked = [question.job for question in questions if question is not None]
+    answers = iter(ask(asked))
+    return ["" if own is None else _with_header(own, next(answers)) for own in questions]
+
+
+def _with_header(question: _Question, answer: Answer) -> str:
+    if not isinstance(answer, ClockedMachine):
+        return ""
+    head, body = answer.hoa.split("--BODY--", 1)
+    clocks = [
+        f'Rulec-Clock: "{clock.atom}" "{formula_text(clock.left)}" "{formula_text(clock.right)}" '
+        f"{_bound_text(clock.bound)}\n"
+        for clock in question.clocks
+    ]
+    return "".join([head, *clocks, "--BODY--", body])
+
+
+def _bound_text(bound: Bound) -> str:
+    high = "" if bound.high is None else str(bound.high)
+    marks = [*["early"] * bound.early, *["later"] * bool(bound.least)]
+    return " ".join([f'"{bound.low}" "{high}" {bound.unit}', *marks])
+
+
 def _ways(job: Job) -> Iterator[_Question]:
     """The questions to ask for a job's machine, one after the other until one is answered."""
-    past = None if job.remarks else pastified(job.formula, job.semantics)
+    if not job.remarks:
+        yield from _timed_ways(job)
+    yield _Question(replace(job, formula=job.in_steps, step_s=None))
+
+
+def _timed_ways(job: Job) -> Iterator[_Question]:
+    """Those of them that leave bounds to clocks."""
+    past = pastified(job.formula, job.semantics)
     if past is not None:
         yield from _apart(job, past, or_else=True)
-    if not job.remarks:
-        yield from _apart(job, job.formula)
-    yield _Question(replace(job, formula=job.in_steps, step_s=None))
+    yield from _apart(job, job.formula)
 
 
 def _apart(job: Job, formula: Formula, *, or_else: bool = False) -> Iterator[_Question]:

@@ -8,19 +8,21 @@ gives a table for letters alone: a bound costs states there, but no formula is l
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, partial
 from typing import TypeAlias
 
-from rulec.automata.automaton_sizes import (
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
+from rulec.automata.tables import (
     MOST_EDGES,
     MOST_STATES,
     MOST_STEPS_AHEAD,
     SizeError,
+    VerdictTable,
+    build_machine,
+    loop_verdicts,
 )
-from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
-from rulec.automata.tables import VerdictTable, build_machine, loop_verdicts
 from rulec.logic.bounds import Range, begins_at, bound_in_steps, range_of_bound
 from rulec.logic.formula import Bound
 from rulec.logic.past_registers import Register, register_after
@@ -78,13 +80,15 @@ class ClockedMachine:
 
     ``groups``: for each letter the number of its group, ``IMPOSSIBLE`` for those that axioms
     exclude; letters of one group are the same for the ``table`` and for the clocks. ``clocks`` say
-    which letters of the table these make of groups.
+    which letters of the table these make of groups. ``hoa`` is the automaton that reads clocks, if
+    it is wanted.
     """
 
     reads: tuple[Read | NumberRead, ...]
     groups: tuple[int, ...]
     clocks: ClockLetters
     table: MealyMonitor
+    hoa: str = field(default="", compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

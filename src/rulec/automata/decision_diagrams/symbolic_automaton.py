@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias, TypeVar
 
-from rulec.automata.automaton_sizes import MOST_EDGES, MOST_STATES, SizeError
 from rulec.automata.compiler_jobs import BeyondReachError
 from rulec.automata.decision_diagrams.diagrams import FALSE, TRUE, Diagrams
+from rulec.automata.tables import MOST_EDGES, MOST_STATES, SizeError
 from rulec.logic.past_registers import Register
 
 Edges: TypeAlias = Mapping[tuple[int, int], int]

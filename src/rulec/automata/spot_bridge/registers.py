@@ -9,8 +9,8 @@ import spot
 
 import buddy  # isort: skip - only once spot has been imported
 
-from rulec.automata.automaton_sizes import MOST_EDGES, MOST_STATES, SizeError
 from rulec.automata.spot_bridge.spot_formulas import SpotFormulas
+from rulec.automata.tables import MOST_EDGES, MOST_STATES, SizeError
 from rulec.logic.formula import Formula, atoms_of
 from rulec.logic.past_registers import Register
 

@@ -25,9 +25,7 @@ def _translated(job: Job) -> Translated:
     return Translated(
         explore(translation, letters, count_letters(job.reads)),
         _letters_where(axioms, job),
-        in_hoa(translation.automaton, job.name, job.remarks_on(translation.alive))
-        if job.remarks
-        else "",
+        _text(translation, job),
         translation.is_checked,
         translation.compare,
     )
@@ -41,7 +39,14 @@ def _rest(
     reads = [read for read in mentioned if read is not None]
     translation = _translation(rest, job.semantics, reads, _facts(job, propositions))
     automaton = explore(translation, letters, n_letters)
-    return Translated(automaton, None, "", translation.is_checked, translation.compare)
+    text = _text(translation, job)
+    return Translated(automaton, None, text, translation.is_checked, translation.compare)
+
+
+def _text(translation: Translation, job: Job) -> str:
+    if not job.remarks:
+        return ""
+    return in_hoa(translation.automaton, job.name, job.remarks_on(translation.alive))
 
 
 def _mentioned(

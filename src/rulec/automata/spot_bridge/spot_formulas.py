@@ -10,7 +10,7 @@ import spot
 import buddy  # isort: skip - only once spot has been imported
 
 from rulec.automata.alphabet import AND, NOT, OR, joined, names_of, propositions_of
-from rulec.automata.automaton_sizes import MOST_EDGES, MOST_STATES, SizeError
+from rulec.automata.tables import MOST_EDGES, MOST_STATES, SizeError
 from rulec.logic.bounds import Range
 from rulec.logic.fold import Algebra, fold, temporal_operation
 from rulec.logic.formula import Constant, Formula, Proposition, Unary

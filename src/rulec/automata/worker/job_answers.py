@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from rulec.automata.alphabet import count_letters, letters_with
-from rulec.automata.automaton_sizes import SizeError
 from rulec.automata.axiom_groups import AxiomGroup
 from rulec.automata.clocks.clocked_machine import ClockedMachine, ClockLetters, TimedMachine
 from rulec.automata.compiler_jobs import (
@@ -23,7 +22,7 @@ from rulec.automata.compiler_jobs import (
     Translated,
 )
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
-from rulec.automata.tables import build_machine, places_of, rows_of
+from rulec.automata.tables import SizeError, build_machine, places_of, rows_of
 from rulec.automata.worker.random_words import agrees, outline, outlined
 from rulec.logic.bounds import bound_in_steps, in_steps
 from rulec.logic.codec import from_data, to_data
@@ -113,7 +112,8 @@ def _apart(job: Job, compiler: Compiler) -> ClockedMachine | Failed:
     translated = compiler.rest(job, job.formula, letters, n_letters)
     rows = rows_of(translated.automaton, sum([1 << letter for letter in met]))
     table = build_machine(rows, (), n_letters)
-    machine = ClockedMachine(job.reads, _numbered(groups, job.reads), clocks, table)
+    numbers = _numbered(groups, job.reads)
+    machine = ClockedMachine(job.reads, numbers, clocks, table, translated.hoa)
     claim = _Claim(table, present, letters, job.semantics)
 
     def agree() -> bool:

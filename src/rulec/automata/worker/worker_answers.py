@@ -11,9 +11,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 
-from rulec.automata.automaton_sizes import MOST_STEPS_AHEAD
 from rulec.automata.clocks.clocked_machine import ClockedMachine
 from rulec.automata.compiler_jobs import Compiler, Done, Failed, Job
+from rulec.automata.tables import MOST_STEPS_AHEAD
 from rulec.automata.worker import compiler_choice
 from rulec.automata.worker.confinement import Confinement
 from rulec.automata.worker.job_answers import answer_to

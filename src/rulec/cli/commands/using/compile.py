@@ -89,6 +89,12 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
     help="Skip the second, independent compilation that certifies the first; it takes about as "
     "long.",
 )
+@click.option(
+    "--clocks",
+    is_flag=True,
+    help="Write automata for any step: a bound in seconds is a clock, which their header defines. "
+    "A tool has to know it.",
+)
 @shared.at_option
 def command(
     rulebooks: tuple[str, ...],
@@ -99,6 +105,7 @@ def command(
     objects: Mapping[str, int],
     prove: bool,
     no_certificate: bool,
+    clocks: bool,
     at: str,
 ) -> int:
     """Compile each RULEBOOK: a name, or the path of a source.
@@ -117,6 +124,8 @@ def command(
         raise click.UsageError(
             "--no-certificate is about the compiled rulebook: leave out `--emit`, or this option"
         )
+    if clocks and emit != "automata":
+        raise click.UsageError("--clocks is about automata: leave out `--emit`, or this option")
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
     refuse_standard_output(output)
@@ -144,7 +153,9 @@ def command(
                 compiled = session.compile_rulebook(book, step_s=step_s)
                 several = len({rule.step_s for rule in compiled.rules} - {None}) > 1
                 compiled = compiled.at_one_step()
-                paths = session.write_compiled(compiled, folder, certificate=not no_certificate)
+                paths = session.write_compiled(
+                    compiled, folder, certificate=not no_certificate, clocks=clocks
+                )
                 if several:
                     _tell_step(compiled)
                 _tell_others(folder, paths)

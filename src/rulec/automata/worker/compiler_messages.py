@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from rulec.automata.automaton_sizes import MOST_EDGES, MOST_STATES
 from rulec.automata.bundle.bundle_messages import AUTOMATON_TOO_LARGE
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.compiler_jobs import MOST_OPERATORS, Failed
+from rulec.automata.tables import MOST_EDGES, MOST_STATES
 from rulec.automata.worker.confinement import Confinement
 from rulec.diagnostics import Diagnostic, SourceLocation
 from rulec.diagnostics.code import Code
