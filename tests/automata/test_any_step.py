@@ -114,6 +114,32 @@ def test_the_clocked_machine_is_as_large_for_any_bound(tmp_path):
     assert sizes == [(2, 2)] * 3
 
 
+@pytest.mark.spot
+def test_an_automaton_with_clocks_is_the_same_for_any_bound(tmp_path):
+    """A header, whose capital letter forbids tools to ignore it, has what clocks are."""
+    bodies = set()
+    for k in (1, 10, 1000):
+        path = tmp_path / "both.rules"
+        formula = f"always (s implies once[<= {k} s] p and once[<= {k} s] q)"
+        text = f"rulebook both\nsignal p, q, s\nhard rule r {{ require {formula} }}\n"
+        path.write_text(f"{text}hard rule plain {{ require always (s implies p) }}\n")
+        rules = rulec.compile_rulebook(path, step_s=k)
+        rulec.write_compiled(rules, tmp_path, clocks=True, certificate=False)
+        hoa = (tmp_path / "r.hoa").read_text()
+        clocks = [line for line in hoa.splitlines() if line.startswith("Rulec-Clock: ")]
+        assert clocks == [
+            f'Rulec-Clock: "register {n}" "true" "{name}" "0" "{k}" s'
+            for n, name in enumerate("pq")
+        ]
+        bodies.add(hoa.partition("--BODY--")[2])
+        with pytest.raises(SyntaxError, match="should not be ignored"):
+            pytest.importorskip("spot").automaton(hoa)
+        assert "Rulec-Clock" not in (tmp_path / "plain.hoa").read_text()
+        # In the compiled rulebook the automata are those of its step, which can be proved.
+        assert not any(proof.because for proof in rulec.verify_compiled(tmp_path / "both.json"))
+    assert len(bodies) == 1
+
+
 def test_a_rule_that_no_clock_tells_is_for_its_step_alone(tmp_path, capsys):
     (tmp_path / "soon.rules").write_text(UNTOLD)
     compiled = rulec.compile_rulebook(tmp_path / "soon.rules", step_s=0.5)

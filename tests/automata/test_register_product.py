@@ -10,12 +10,16 @@ from hypothesis import strategies as st
 
 from rulec.automata.alphabet import reads_of
 from rulec.automata.clocks import clocked_jobs
+from rulec.automata.clocks.clocked_jobs import machines
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.tables import minimise
+from rulec.automata.worker.job_answers import answer_to
+from rulec.logic.bounds import in_steps
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Unary, UnaryOperator
+from rulec.logic.pastification import pastified
 from support.asked_compilers import machine_by
 from support.builders.rulebooks import P, Q, always, implies
-from support.generators.timed_formulas import TIMED_VOCABULARY, formulas_in
+from support.generators.timed_formulas import TIMED_VOCABULARY, formulas_in, in_seconds
 from support.oracles.installed_spot import spot_bridge
 
 MEANINGS = ("stutter", "finite")
@@ -41,6 +45,30 @@ def test_both_ways_make_one_table(formula, semantics):
     asked = job(formula, semantics)
     whole, found = in_one_piece(asked), machine_by(asked, spot_bridge.COMPILER)
     assert getattr(found, "machine", found) == getattr(whole, "machine", whole)
+
+
+@pytest.mark.spot
+@given(
+    formula=formulas_in(max_leaves=4),
+    semantics=st.sampled_from(MEANINGS),
+    steps=st.lists(st.fractions(Fraction(1, 4), 3, max_denominator=4), min_size=3, max_size=3),
+)
+def test_one_question_is_enough_for_all_steps(formula, semantics, steps):
+    """If clocks tell it at all, at each step it is what the whole formula makes there."""
+    asked, questions = job(in_seconds(formula), semantics), set()
+
+    def ask(jobs):
+        questions.update([one for one in jobs if one.clocks is not None])
+        return [answer_to(each, spot_bridge.COMPILER) for each in jobs]
+
+    told = [machines([replace(asked, step_s=step)], ask)[0] for step in steps]
+    for step, found in zip(steps, told, strict=True):
+        whole = in_one_piece(replace(asked, formula=in_steps(asked.formula, step)))
+        assert getattr(found, "machine", found) == getattr(whole, "machine", whole)
+    # Two, if what is said of the past gets too large
+    assert len(questions) <= 1 + (pastified(asked.formula, semantics) is not None)
+    if all(isinstance(found, Done) and found.timed for found in told):
+        assert len({found.timed.clocked for found in told}) == 1
 
 
 @pytest.mark.spot

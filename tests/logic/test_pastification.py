@@ -12,15 +12,23 @@ from rulec.automata.clocks.clocked_machine import TimedMachine
 from rulec.automata.compiler_jobs import Job
 from rulec.automata.mealy_monitor import Read
 from rulec.automata.tables import SizeError
-from rulec.logic.bounds import operations_of, total_bound
-from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator, atoms_of
+from rulec.logic.bounds import in_steps, operations_of, total_bound
+from rulec.logic.formula import (
+    Atom,
+    Binary,
+    BinaryOperator,
+    Bound,
+    Unary,
+    UnaryOperator,
+    atoms_of,
+)
 from rulec.logic.past_registers import eliminate_past
 from rulec.logic.pastification import pastified
 from rulec.logic.printing import formula_text
 from rulec.logic.semantics import holds
 from support.asked_compilers import machine_by
 from support.builders.rulebooks import P, Q, always, implies
-from support.generators.timed_formulas import timed_formulas
+from support.generators.timed_formulas import in_seconds, timed_formulas
 from support.oracles.installed_spot import spot_bridge
 
 BEGUN = Atom("begun")
@@ -79,7 +87,23 @@ SHAPES = {
     "a release": lambda k: always(
         implies(P, Binary(BinaryOperator.RELEASE, Q, P, steps(max(k - 1, 0), k)))
     ),
+    "a deadline at the start": lambda k: within(k, Q),
+    "what lasts from the start": lambda k: implies(P, lasting(k, Q)),
+    "no quick sequence at the start": lambda k: not_(then(P, not_(P), 0, k)),
 }
+
+
+@pytest.mark.parametrize("semantics", SEMANTICS)
+@pytest.mark.parametrize("shape", SHAPES)
+def test_bounds_in_seconds_become_those_of_any_step(shape, semantics):
+    """Of 2.1 s there are, at steps of 0.7 s, three; at 0.8 and 1 s, two; at 3 s, none."""
+    for k in (0, 1, Fraction(21, 10)):
+        formula = in_seconds(SHAPES[shape](k))
+        past = pastified(formula, semantics)
+        for step in map(Fraction, ("0.7", "0.8", "1", "3")):
+            ours, theirs = in_steps(past, step), in_steps(formula, step)
+            for word in product(LETTERS, repeat=4):
+                assert holds(ours, word, semantics) == holds(theirs, word, semantics)
 
 
 @pytest.mark.parametrize("semantics", SEMANTICS)
@@ -171,7 +195,8 @@ def test_duties_whose_registers_have_too_many_states_are_translated_with_their_s
         always(implies(P, Unary(UnaryOperator.EVENTUALLY, Q, steps(1, 3)))),
         always(Binary(BinaryOperator.OR, within(2, P), within(3, Q))),
         always(implies(P, Unary(UnaryOperator.NEXT, Q))),
-        within(3, Q),
+        Unary(UnaryOperator.EVENTUALLY, Binary(BinaryOperator.AND, P, within(3, Q))),
+        Unary(UnaryOperator.EVENTUALLY, Q, steps(1, 3)),
     ],
 )
 def test_what_the_past_cannot_say_stays(formula):

@@ -52,17 +52,23 @@ def _pastified(formula: ltl.Formula, begun: ltl.Formula, semantics: Semantics) -
             return ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, before, then)
         case ltl.Unary(
             ltl.UnaryOperator.ALWAYS | ltl.UnaryOperator.NEVER as operator, demanded, None
-        ) if not _is_past(demanded):
-            try:
-                is_wanted = operator is ltl.UnaryOperator.ALWAYS
-                demands = list(_demands(begun, demanded, is_wanted, semantics))
-            except _NoDutyError:
-                return formula
-            every = demands[0]
-            for demand in demands[1:]:
-                every = ltl.Binary(_AND, every, demand)
-            return ltl.Unary(ltl.UnaryOperator.ALWAYS, fold_constants(every))
-    return formula
+        ):
+            when, is_wanted = begun, operator is ltl.UnaryOperator.ALWAYS
+        case _:
+            # It is demanded once: at the start.
+            before = ltl.Unary(ltl.UnaryOperator.PREVIOUSLY, begun)
+            when, demanded, is_wanted = _and(begun, _not(before)), formula, True
+    bounded = any(x.bound is not None for x in operations_of(demanded))
+    if _is_past(demanded) or not (bounded or when == begun):
+        return formula
+    try:
+        demands = list(_demands(when, demanded, is_wanted, semantics))
+    except _NoDutyError:
+        return formula
+    every = demands[0]
+    for demand in demands[1:]:
+        every = ltl.Binary(_AND, every, demand)
+    return ltl.Unary(ltl.UnaryOperator.ALWAYS, fold_constants(every))
 
 
 def _is_past(formula: ltl.Formula) -> bool:

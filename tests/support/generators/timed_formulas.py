@@ -4,6 +4,7 @@ A state here gives every atom and every term its value directly: what a count co
 runtime's matter.
 """
 
+from dataclasses import replace
 from fractions import Fraction
 
 from hypothesis import strategies as st
@@ -16,10 +17,12 @@ from rulec.logic.formula import (
     Comparison,
     Constant,
     Count,
+    Formula,
     QuantityTerm,
     Unary,
     UnaryOperator,
     atoms_of,
+    with_operands,
 )
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.vocabulary import Vocabulary
@@ -43,6 +46,14 @@ SUMS = {
     "count y: car (near(y))": ((Fraction(1), CARS),),
 }
 RELATIONS = ("<", "<=", "=", "!=", ">=", ">")
+
+
+def in_seconds(formula: Formula) -> Formula:
+    """The formula whose steps are seconds."""
+    if not isinstance(formula, Unary | Binary):
+        return formula
+    bound = formula.bound and replace(formula.bound, unit="s")
+    return replace(with_operands(formula, in_seconds), bound=bound)
 
 
 def comparison(of: str, relation: str, limit: Fraction | int) -> Comparison:

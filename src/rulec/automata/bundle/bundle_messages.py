@@ -96,17 +96,17 @@ _TWO_STEPS = """\
 cat > soon.rules <<.
 rulebook soon
 signal p
-hard rule soon { require eventually[<= 1 s] p }
+hard rule soon { require eventually (p and eventually[<= 1 s] not p) }
 .
-echo '{"step_s": 0.5, "states": [{"p": false}, {"p": true}]}' > trace.jsonl
+echo '{"step_s": 0.5, "states": [{"p": true}, {"p": false}]}' > trace.jsonl
 """
 OTHER_STEP = Code(
     "R0507",
     title="a trace has a step that a rule was not compiled for",
-    why="A bound in seconds corresponds to a number of states that depends on the time step "
-    "`step_s` of the trace. A compiled rulebook has this number for certain steps only, chosen by "
-    "`rulec compile --step`; with the source of the rulebook, every trace is judged by its own "
-    "step.",
+    why="Bounds in seconds are clocks in a compiled rulebook, which judge traces of any time step "
+    "`step_s`. A bound that begins at some instant or other is none: such a rule is for the step "
+    "of `rulec compile --step` alone. With the source of the rulebook, every trace is judged by "
+    "its own step.",
     bad=_TWO_STEPS + "rulec compile soon.rules --step 1 -o build > log\n"
     "rulec verify trace.jsonl -r build/soon.json",
     good=_TWO_STEPS + "rulec compile soon.rules --step 0.5 -o build > log\n"

@@ -17,7 +17,7 @@ from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 
 FORMAT = "rulec compiled rulebook"
 VERSION = 7
-WITHOUT_DIGEST = range(3, VERSION)
+WITHOUT_DIGEST = range(3, 6)
 """Versions that earlier releases wrote without a digest, so that changes to them go unnoticed."""
 
 
