@@ -40,7 +40,6 @@ WITHOUT = {
     "NO_NAME": ARGUMENT,
     "NO_START_CELL": LATER,
     "NO_TRAJECTORY": ARGUMENT,
-    "OTHER_STEP": LATER,
     "SPOT_MISSING": MISSING,
     "SPOT_NOT_CONFINED": MISSING,
     "TOO_MANY_MANEUVERS": LATER,
@@ -100,10 +99,6 @@ type car
 signal near(a: car, b: car) default false
 hard rule gap (a: car, b: car) { require always not near(a, b) }
 """
-SOON = """rulebook soon
-signal p, q default false
-hard rule soon { require always (p implies eventually[<= 1 s] q) }
-"""
 STATES = b'{"objects": {"a": "car", "b": "car"}, "state": {}}\n'
 IN_FILES = {
     "a horizon": ("maneuvers s.toml -r esterle2019 --horizon 3.3", "R0606", "s.toml"),
@@ -118,18 +113,13 @@ IN_FILES = {
     "a start, as envelopes": ("envelopes s.toml -r esterle2019 -o -", "R0607", "s.toml"),
     "a monitor in C": ("compile book.rules --emit c --objects bus=1 -o c", "R0750", "book.rules"),
     "choices": ("--limit choices=1 monitor ./book.rules", "R0718", "standard input:1"),
-    "steps": (
-        "--limit steps=1 compile soon.rules --step 1 --step 0.5 --step 0.25 -o out",
-        "R0718",
-        "soon.rules:3",
-    ),
 }
 
 
 @pytest.mark.parametrize("what", IN_FILES)
 def test_where_it_is_known_it_is_told(what, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    for name, text in {"s.toml": SCENARIO, "book.rules": BOOK, "soon.rules": SOON}.items():
+    for name, text in {"s.toml": SCENARIO, "book.rules": BOOK}.items():
         (tmp_path / name).write_text(text)
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(STATES)))
     words, code, place = IN_FILES[what]

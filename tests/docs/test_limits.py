@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from rulec.automata import compiler_jobs
+from rulec.automata import compiler_jobs, tables
+from rulec.automata.clocks import clocked_machine
 from rulec.automata.worker import compiler_worker
 from rulec.cli.main import main
 from rulec.extraction import traffic_thresholds
@@ -41,11 +42,12 @@ FIXED = {
     "rulebooks that one builds upon, one upon another": referenced_files.MOST_BASES,
     "levels of priority": priorities.MOST_LEVELS,
     "digits of a number in compiled files and saved monitors": MOST_DIGITS,
-    "states of a rule's automaton while it is built": compiler_jobs.MOST_STATES,
-    "edges of it": compiler_jobs.MOST_EDGES,
+    "states of a rule's automaton while it is built": tables.MOST_STATES,
+    "edges of it": tables.MOST_EDGES,
+    "states of it beside a clock": clocked_machine.MOST_PAIRS,
     "operators of a rule with each `then` written out": compiler_jobs.MOST_OPERATORS,
     "bytes of memory for it": compiler_worker.MEMORY_LIMIT_BYTES,
-    "steps of a bound, which are states of it": compiler_jobs.MOST_STEPS_AHEAD,
+    "steps of a bound, which are states of it": tables.MOST_STEPS_AHEAD,
     "bytes of a packed file, unpacked": read_files.LARGEST_UNPACKED,
     "bytes of one line of traces": json_line_problems.LONGEST_LINE_BYTES,
     "characters of a row of CSV": table_reader.LONGEST_ROW,

@@ -7,16 +7,13 @@ gives a table for letters alone: a bound costs states there, but no formula is l
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, partial
-from typing import TypeAlias
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
 from rulec.automata.tables import (
-    MOST_EDGES,
-    MOST_STATES,
     MOST_STEPS_AHEAD,
     SizeError,
     VerdictTable,
@@ -28,11 +25,11 @@ from rulec.logic.formula import Bound
 from rulec.logic.past_registers import Register, register_after
 from rulec.value_display import short_repr
 
+MOST_PAIRS = 100_000
+"""The most states of a table beside a clock before it is minimised: no compiler has to see them."""
+
 _SIDES = ((False, False), (True, False), (False, True), (True, True))
 """The values of a clock's left and right operand, by their code."""
-
-Due: TypeAlias = tuple[int, ...]
-"""For each clock whether it holds its proposition true, if its left operand is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,17 +43,6 @@ class ClockLetters:
 
     n_groups: int
     operands: tuple[tuple[int, ...], ...]
-
-    def read(self, group: int, due: Due, spans: Sequence[Range]) -> tuple[int, Due]:
-        """The letter of the table, and for each clock the code of its operands."""
-        letter, codes = group, []
-        weight = self.n_groups
-        for codes_of, is_due, span in zip(self.operands, due, spans, strict=True):
-            code = codes_of[letter]
-            codes.append(code)
-            letter += weight * (register_after(span, is_due << 1, *_SIDES[code]) & 1)
-            weight *= 2
-        return letter, tuple(codes)
 
     def possible(self, bounds: Sequence[Bound]) -> frozenset[int]:
         """The letters of the table that can come with clocks of these bounds."""
@@ -115,77 +101,86 @@ class TimedMachine:
         ]
         if any((span.high or span.low) > MOST_STEPS_AHEAD for span in spans):
             raise SizeError
-        clocked = self.clocked
-        rows = _side_by_side(clocked, spans, ends=self.ends)
-        machine = build_machine(rows, (), clocked.clocks.n_groups)
+        clocked, machine = self.clocked, self.clocked.table
+        for codes, span in reversed([*zip(clocked.clocks.operands, spans, strict=True)]):
+            machine = _with_last_clock(machine, codes, span)
+        if not self.ends:
+            machine = _settled(machine)
         numbers = (*machine.letters, IMPOSSIBLE)
         letters = tuple([numbers[group] for group in clocked.groups])
         return replace(machine, reads=clocked.reads, letters=letters)
 
 
-@dataclass(frozen=True, slots=True)
-class _Moves:
-    """The different moves where certain clocks are due, and for each group the place of its own.
+def _with_last_clock(table: MealyMonitor, codes: Sequence[int], span: Range) -> MealyMonitor:
+    """The table beside the last clock that it reads, over what it reads else.
 
-    A move is the class of letters that the table reads, and the codes of the clocks' operands.
+    Of what the clock holds only that is kept which can matter. So states multiply only where the
+    table really waits for both. Raises SizeError.
     """
-
-    moves: tuple[tuple[int, Due], ...]
-    of_group: tuple[int, ...]
-
-
-def _side_by_side(machine: ClockedMachine, spans: Sequence[Range], *, ends: bool) -> VerdictTable:
-    """The table for groups: its states are pairs of a state of the table and what clocks hold."""
-    table = machine.table
-    at_first = (Register.at_first,) * len(spans)
-    sinks = {table.rejecting_sink, table.accepting_sink}
-    after = [cache(partial(register_after, span)) for span in spans]
-    met: dict[Due, _Moves] = {}
-    numbers = {(0, at_first): 0}
-    rows: list[tuple[int, Due, list[int]]] = []
-    n_edges = 0
+    half = len(table.letters) // 2
+    # By the class that is read if the clock is due, and if it is not: the letters, as bits
+    moves: dict[tuple[int, int, int], int] = {}
+    for letter, code in enumerate(codes[:half]):
+        values = [register_after(span, due << 1, *_SIDES[code]) & 1 for due in (0, 1)]
+        idle, due = (table.letters[letter + half * value] for value in values)
+        if IMPOSSIBLE not in (idle, due):
+            move = code, idle, due
+            moves[move] = moves.get(move, 0) | 1 << letter
+    reach = _until_it_matters(table, moves)
+    after = cache(partial(register_after, span))
+    numbers = {(0, Register.at_first): 0}
+    rows, outputs = [], []
     for state, held in (reached := list(numbers)):
-        due = tuple([value >> 1 & 1 for value in held])
-        if due not in met:
-            met[due] = _moves(machine, due, spans)
-        row = []
-        for symbol, codes in met[due].moves:
-            target, later = table.successors[state][symbol], at_first
-            if target not in sinks:
-                # In a sink the past makes no difference.
-                each = zip(after, held, codes, strict=True)
-                later = tuple([advance(value, *_SIDES[code]) for advance, value, code in each])
+        is_due, row = held >> 1 & 1, []
+        symbols = [move[1 + is_due] for move in moves]
+        for (code, *_), symbol in zip(moves, symbols, strict=True):
+            target = table.successors[state][symbol]
+            later = 0
+            if target in reach:
+                later = after(held, *_SIDES[code]) & -1 << reach[target]
             pair = target, later
             if pair not in numbers:
                 numbers[pair] = len(reached)
                 reached.append(pair)
             row.append(numbers[pair])
-        rows.append((state, due, row))
-        n_edges += len(row)
-        if len(reached) > MOST_STATES or n_edges > MOST_EDGES:
+        rows.append(row)
+        outputs.append([table.outputs[state][symbol] for symbol in symbols])
+        if len(reached) > MOST_PAIRS:
             raise SizeError
-    # Groups that are told apart nowhere form a class.
-    members: dict[tuple[int, ...], int] = {}
-    for group, key in enumerate(zip(*[own.of_group for own in met.values()], strict=True)):
-        members[key] = members.get(key, 0) | 1 << group
-    place_of = {due: [key[place] for key in members] for place, due in enumerate(met)}
-    successors = [[row[place] for place in place_of[due]] for _, due, row in rows]
-    verdicts = [
-        [table.outputs[state][met[due].moves[place][0]] for place in place_of[due]]
-        for state, due, _ in rows
-    ]
-    if not ends:
-        # A letter that is repeated settles the clocks sooner or later.
-        columns = zip(zip(*successors, strict=True), zip(*verdicts, strict=True), strict=True)
-        settled = [loop_verdicts(list(zip(*column, strict=True)), bool) for column in columns]
-        verdicts = [list(row) for row in zip(*settled, strict=True)]
-    return VerdictTable(list(members.values()), successors, verdicts)
+    return build_machine(VerdictTable([*moves.values()], rows, outputs), (), half)
 
 
-def _moves(machine: ClockedMachine, due: Due, spans: Sequence[Range]) -> _Moves:
-    places: dict[tuple[int, Due], int] = {}
-    of_group = []
-    for group in range(machine.clocks.n_groups):
-        letter, codes = machine.clocks.read(group, due, spans)
-        of_group.append(places.setdefault((machine.table.letters[letter], codes), len(places)))
-    return _Moves(tuple(places), tuple(of_group))
+def _until_it_matters(table: MealyMonitor, moves: Iterable[tuple[int, int, int]]) -> dict[int, int]:
+    """For each state after how many letters it may matter whether the clock has been due since.
+
+    States from which it never does are left out: the clock is reset, or the table goes on alike.
+    """
+    before: dict[int, set[int]] = {}
+    apart: dict[int, int] = {}
+    for state, (targets, verdicts) in enumerate(zip(table.successors, table.outputs, strict=True)):
+        for code, idle, due in moves:
+            if (targets[idle], verdicts[idle]) != (targets[due], verdicts[due]):
+                apart[state] = 1
+            if code & 1:
+                before.setdefault(targets[idle], set()).add(state)
+                before.setdefault(targets[due], set()).add(state)
+    for state in (waiting := list(apart)):
+        for earlier in before.get(state, ()):
+            if earlier not in apart:
+                apart[earlier] = apart[state] + 1
+                waiting.append(earlier)
+    return apart
+
+
+def _settled(machine: MealyMonitor) -> MealyMonitor:
+    """The machine whose verdicts are about the last letter repeated until the clocks have run."""
+    columns = zip(
+        zip(*machine.successors, strict=True), zip(*machine.outputs, strict=True), strict=True
+    )
+    settled = [loop_verdicts(list(zip(*column, strict=True)), bool) for column in columns]
+    classes = [0] * len(settled)
+    for letter, number in enumerate(machine.letters):
+        classes[number] |= 1 << letter
+    outputs = [list(row) for row in zip(*settled, strict=True)]
+    rows = VerdictTable(classes, machine.successors, outputs)
+    return build_machine(rows, (), len(machine.letters))
