@@ -14,6 +14,7 @@ from functools import cache, partial
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
 from rulec.automata.tables import (
+    MOST_STATES,
     MOST_STEPS_AHEAD,
     SizeError,
     VerdictTable,
@@ -104,6 +105,8 @@ class TimedMachine:
         clocked, machine = self.clocked, self.clocked.table
         for codes, span in reversed([*zip(clocked.clocks.operands, spans, strict=True)]):
             machine = _with_last_clock(machine, codes, span)
+        if len(machine.successors) > MOST_STATES:
+            raise SizeError
         if not self.ends:
             machine = _settled(machine)
         numbers = (*machine.letters, IMPOSSIBLE)
