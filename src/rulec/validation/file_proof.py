@@ -25,7 +25,7 @@ VERSION = 7
 
 
 class UnreadableError(Exception):
-    """A file that is not of version 6, or has been changed since it was written (``changed``)."""
+    """A file that is not of version 7, or has been changed since it was written (``changed``)."""
 
     def __init__(self, why: Literal["changed", "unreadable"], message: str) -> None:
         super().__init__(message)
