@@ -59,7 +59,7 @@ def timed_machine(
     fits: list[bool] = [
         n_groups > 0,
         len(read.groups) == prod(item.size for item in reads),
-        all(group >= monitors.IMPOSSIBLE for group in read.groups),
+        min(read.groups, default=0) >= monitors.IMPOSSIBLE,
         all(len(clock.operands) == n_letters for clock in read.clocks),
         all(bound.low >= 0 for bound in bounds),
     ]
@@ -110,7 +110,8 @@ def check_table(
     fits: list[bool] = [
         n_states > 0,
         len(read.letters) == n_letters,
-        all(monitors.IMPOSSIBLE <= letter < n_classes for letter in read.letters),
+        min(read.letters, default=0) >= monitors.IMPOSSIBLE,
+        max(read.letters, default=0) < n_classes,
         all(len(row) == n_classes for row in read.successors),
         all(len(row) == n_classes for row in read.outputs),
         len(read.outputs) == n_states,
