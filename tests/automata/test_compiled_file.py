@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import rulec
 from rulec.automata.bundle.bundle_file import from_json, read_compiled, to_json, write_compiled
-from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
+from rulec.automata.bundle.cut_machines import StoredPrefixes, stored
 from rulec.automata.compiler import compile_rulebook
 from rulec.automata.second_compiler import with_automata
 from rulec.diagnostics import RulecError

@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.automata.alphabet import reads_of
-from rulec.automata.clocks import clocked_jobs
-from rulec.automata.clocks.clocked_jobs import machines
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.tables import minimise
+from rulec.automata.worker import clocked_jobs
+from rulec.automata.worker.clocked_jobs import machines
 from rulec.automata.worker.job_answers import answer_to
 from rulec.logic.bounds import in_steps
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Unary, UnaryOperator

@@ -25,6 +25,7 @@ WITHOUT = {
     "CUT_DRIVE": TABLE,
     "ENGINE_MISSING": MISSING,
     "MONITOR_COMPILER_FAILED": MISSING,
+    "AUTOMATON_TOO_LARGE": "a compiled file does not say where its rules are written",
     "MONITOR_DIFFERS": LATER,
     "NAME_NOT_FOUND": ARGUMENT,
     "NET_MISSING": TABLE,

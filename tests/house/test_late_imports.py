@@ -24,7 +24,6 @@ POOL = "worker processes take 15 ms, only where there are several"
 
 LATE = {
     "__init__.py": (1, "importing the package imports nothing"),
-    "automata/bundle/bundle_file.py": (1, COMPILER),
     "automata/bundle/minisign.py": (2, OPTIONAL),
     "automata/bundle/required_signature.py": (2, "hashes take 6 ms, where a signature is required"),
     "automata/compiled_cache.py": (3, COMPILER),

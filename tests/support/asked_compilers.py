@@ -1,7 +1,7 @@
 """Compilers that are asked in this process."""
 
-from rulec.automata.clocks.clocked_jobs import machines
 from rulec.automata.compiler_jobs import Compiler, Done, Failed, Job
+from rulec.automata.worker.clocked_jobs import machines
 from rulec.automata.worker.job_answers import answer_to
 
 

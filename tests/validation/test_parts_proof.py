@@ -7,7 +7,7 @@ import pytest
 
 import rulec
 from rulec.automata.bundle.bundle_file import from_json, to_json
-from rulec.automata.bundle.stored_prefixes import stored
+from rulec.automata.bundle.cut_machines import stored
 from rulec.automata.second_compiler import with_automata
 from rulec.validation.file_proof import proofs_of
 from support.builders.compiled_files import sealed

@@ -10,7 +10,7 @@ import pytest
 
 import rulec
 from rulec.automata.bundle.bundle_file import to_json
-from rulec.automata.bundle.stored_prefixes import stored
+from rulec.automata.bundle.cut_machines import stored
 from rulec.automata.second_compiler import with_automata
 from rulec.validation.comparison_words import KNOWN_UNITS
 from rulec.validation.file_proof import UnreadableError, proof_of, proofs_of

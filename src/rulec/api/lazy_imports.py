@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rulec.automata import compiled_cache, compiler, second_compiler
     from rulec.automata.bundle.bundle_file import read_compiled, write_compiled
     from rulec.automata.bundle.bundle_proof import proofs_of_file
-    from rulec.automata.prefix_machines import prefix_machines
+    from rulec.automata.prefix_machines import prefix_machines, timed_cuts
     from rulec.automata.second_compiler import with_automata
     from rulec.automata.step_compilation import StepCompiler, build_automata
     from rulec.automata.thresholds import exact_step

@@ -82,7 +82,8 @@ class RulebookVerbs(SessionSettings):
         if certificate:
             rulebook = lazy.second_compiler.certified(rulebook)
         texts_of = lazy.second_compiler.with_clocked_automata(rulebook) if clocks else None
-        return tuple(lazy.write_compiled(rulebook, Path(folder), texts_of))
+        paths = lazy.write_compiled(rulebook, Path(folder), texts_of, lazy.timed_cuts)
+        return tuple(paths)
 
     def write_monitor(
         self,

@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.bundle.cut_machines import StoredPrefixes, stored
 from rulec.automata.bundle.mapped_rulebook import COMPILATIONS, Compilation
-from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
 from rulec.cache.cache_folder import tidy, usable_folder, write_own
 from rulec.cache.mapped_tables import mapped
 from rulec.cache.stored_objects import DAMAGED

@@ -27,9 +27,9 @@ from rulec.automata.bundle.compiled_rulebook import (
     GivenRulebook,
     alike,
 )
-from rulec.automata.clocks.clocked_jobs import Answer, machines, texts_with_clocks
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.worker import compiler_choice
+from rulec.automata.worker.clocked_jobs import Answer, machines, texts_with_clocks
 from rulec.automata.worker.compiler_messages import no_machine, no_spot, no_time, not_confined
 from rulec.automata.worker.machine_cache import MachineCache
 from rulec.automata.worker.worker_answers import HAS_PROCESSES, WorkerGreeting, answered_here

@@ -15,15 +15,15 @@ from contextlib import suppress
 from dataclasses import replace
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.compiler import CompilerTime, answers_to, job_of
-from rulec.automata.compiler_jobs import MOST_LETTERS, Done, Failed, Job
-from rulec.automata.cut_machines import (
+from rulec.automata.bundle.cut_machines import (
     BEGUN,
     TimedCut,
     cut_machine,
     goes_on_from_before,
     looks_back,
 )
+from rulec.automata.compiler import CompilerTime, answers_to, job_of
+from rulec.automata.compiler_jobs import MOST_LETTERS, Done, Failed, Job
 from rulec.automata.mealy_monitor import MealyMonitor, Read
 from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.automata.tables import SizeError

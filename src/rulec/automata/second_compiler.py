@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rulec.automata import compiler
-from rulec.automata.bundle.stored_prefixes import StoredPrefixes
+from rulec.automata.bundle.cut_machines import StoredPrefixes
 from rulec.automata.compiler_jobs import Done, Failed
 from rulec.automata.worker.compiler_choice import DIAGRAMS
 from rulec.automata.worker.compiler_messages import COMPILERS_DISAGREE, no_machine, no_time

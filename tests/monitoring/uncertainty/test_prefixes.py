@@ -7,7 +7,7 @@ from itertools import product
 import pytest
 from hypothesis import Phase, given, settings
 
-from rulec.automata.bundle.stored_prefixes import stored
+from rulec.automata.bundle.cut_machines import stored
 from rulec.logic.bounds import PAST, operations_of, range_of
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
 from rulec.monitoring.verify import verify

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import rulec
 from rulec.automata.alphabet import letters_with, propositions_of
-from rulec.automata.bundle.stored_prefixes import stored
+from rulec.automata.bundle.cut_machines import stored
 from rulec.automata.second_compiler import with_automata
 from rulec.diagnostics import RulecError
 from rulec.logic.bounds import in_steps

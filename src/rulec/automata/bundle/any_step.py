@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
+from rulec.automata.bundle.bundle_messages import AUTOMATON_TOO_LARGE
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, too_large_rule
-from rulec.automata.bundle.stored_prefixes import StoredPrefixes
-from rulec.automata.compiler_jobs import Failed
+from rulec.automata.bundle.cut_machines import StoredPrefixes
 from rulec.automata.tables import SizeError
-from rulec.automata.worker.compiler_messages import no_machine
 from rulec.diagnostics import RulecError
 
 MOST_STEPS = 100
@@ -30,12 +29,15 @@ class AnyStep:
         """
         book = self.judgeable_at(step_s)
         if book.too_large:
-            names = {left_out.name for left_out in book.too_large}
             raise RulecError(
                 [
-                    no_machine(rule, None, Failed("size"), step_s)
-                    for rule in self.book.rules
-                    if rule.name in names
+                    AUTOMATON_TOO_LARGE.at(
+                        None,
+                        f"rule `{left_out.name}` cannot be judged: {left_out.why}",
+                        help="longer steps mean fewer states; for a recording, every fifth state "
+                        "may be enough",
+                    )
+                    for left_out in book.too_large
                 ]
             )
         return book

@@ -25,8 +25,13 @@ from rulec.automata.bundle.compiled_rulebook import (
     CompiledRulebook,
     alike,
 )
-from rulec.automata.bundle.stored_prefixes import CutTables, StoredPrefixes
-from rulec.automata.cut_machines import BEGUN, TimedCut, looks_back
+from rulec.automata.bundle.cut_machines import (
+    BEGUN,
+    CutTables,
+    StoredPrefixes,
+    TimedCut,
+    looks_back,
+)
 from rulec.diagnostics import SourceLocation
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, has_seconds, in_steps, operations_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from codecs import BOM_UTF8
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -28,9 +28,8 @@ from rulec.automata.bundle.compiled_rulebook import (
     CompiledRulebook,
     alike,
 )
+from rulec.automata.bundle.cut_machines import CutTables, StoredPrefixes, TimedCut, stored
 from rulec.automata.bundle.required_signature import check_signed
-from rulec.automata.bundle.stored_prefixes import CutTables, StoredPrefixes, stored
-from rulec.automata.cut_machines import TimedCut
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.json_problems import json_words
@@ -235,20 +234,20 @@ def read_signed(path: Path) -> bytes:
 
 
 def write_compiled(
-    rulebook: CompiledRulebook, folder: Path, texts_of: CompiledRulebook | None = None
+    rulebook: CompiledRulebook,
+    folder: Path,
+    texts_of: CompiledRulebook | None = None,
+    timed: Callable[[CompiledRulebook], Mapping[str, TimedCut]] = lambda _: {},
 ) -> list[Path]:
     """Write ``RULE.hoa`` for every rule and ``RULEBOOK.json`` to a folder.
 
     ``texts_of`` is the same rulebook with other automata as texts, which are written in place of
-    its own. ``RULEBOOK.json`` contains machines for cut traces if they can be compiled. All files
-    are written completely before the first one appears, so that they are consistent. Returns the
-    files, the compiled rulebook last. Raises RulecError R0702, and R0403 if such machines need Spot
-    and it is not installed.
+    its own; ``timed`` as for ``stored``. ``RULEBOOK.json`` contains machines for cut traces if they
+    can be compiled. All files are written completely before the first one appears, so that they are
+    consistent. Returns the files, the compiled rulebook last. Raises RulecError R0702, and R0403 if
+    such machines need Spot and it is not installed.
     """
-    # Processes, 30 ms: only where something is written.
-    from rulec.automata.prefix_machines import timed_cuts
-
-    rulebook = replace(rulebook, prefixes=stored(rulebook, timed_cuts))
+    rulebook = replace(rulebook, prefixes=stored(rulebook, timed))
     make_folder(folder)
     texts = {
         folder / f"{rule.name}.hoa": _with_sources(rule.hoa, rulebook)

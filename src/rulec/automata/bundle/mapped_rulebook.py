@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
-from rulec.automata.bundle.stored_prefixes import CutTables, StoredPrefixes
+from rulec.automata.bundle.cut_machines import CutTables, StoredPrefixes, TimedCut
 from rulec.automata.clocks.clocked_machine import ClockedMachine, ClockLetters, TimedMachine
-from rulec.automata.cut_machines import TimedCut
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read, Threshold
 from rulec.cache.stored_objects import ObjectCodec, ObjectKind, kind_of_fields, kinds_of_fields
 from rulec.diagnostics import Diagnostic

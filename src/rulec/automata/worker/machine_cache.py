@@ -13,11 +13,11 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from rulec.automata.bundle.mapped_rulebook import MACHINE_KINDS
-from rulec.automata.clocks.clocked_jobs import Answer
 from rulec.automata.clocks.clocked_machine import ClockedMachine
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.worker import compiler_choice
+from rulec.automata.worker.clocked_jobs import Answer
 from rulec.cache.kept_bytes import KeptBytes
 from rulec.cache.stored_objects import KeptObjects, ObjectCodec, kinds_of_fields
 
