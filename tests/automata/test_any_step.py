@@ -9,9 +9,8 @@ import pytest
 
 import rulec
 from rulec.automata import compiler
-from rulec.automata.bundle.bundle_file import from_json, read_compiled, to_json, write_compiled
+from rulec.automata.bundle.bundle_file import from_json, read_compiled, to_json
 from rulec.automata.clocks.clocked_machine import TimedMachine
-from rulec.automata.second_compiler import with_automata
 from rulec.automata.tables import SizeError
 from rulec.cli.main import main
 from rulec.diagnostics import RulecError
@@ -42,7 +41,7 @@ def soon(request, tmp_path_factory):
 @pytest.fixture(scope="module")
 def folder(soon, tmp_path_factory):
     path = tmp_path_factory.mktemp("build")
-    write_compiled(with_automata(rulec.compile_rulebook(soon, step_s=0.5)), path)
+    rulec.write_compiled(rulec.compile_rulebook(soon, step_s=0.5), path)
     return path
 
 
@@ -143,7 +142,7 @@ def test_an_automaton_with_clocks_is_the_same_for_any_bound(tmp_path):
 def test_a_rule_that_no_clock_tells_is_for_its_step_alone(tmp_path, capsys):
     (tmp_path / "soon.rules").write_text(UNTOLD)
     compiled = rulec.compile_rulebook(tmp_path / "soon.rules", step_s=0.5)
-    write_compiled(with_automata(compiled), tmp_path)
+    rulec.write_compiled(compiled, tmp_path)
     lines = [{"step_s": step, "states": [{"p": True, "q": True}]} for step in (0.5, 0.7)]
     traces = tmp_path / "traces.jsonl"
     traces.write_text("".join(f"{json.dumps(line)}\n" for line in lines))
