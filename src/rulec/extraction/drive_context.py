@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property, wraps
-from typing import Any, TypeVar
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy import intp
@@ -19,6 +19,7 @@ from rulec.extraction.tracks.source_tolerances import Tolerances
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
+from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import Recording, Side
 from rulec.scenario.recorded.route import ways_on
 from rulec.trace.cells import Cells
@@ -89,6 +90,28 @@ class DriveContext:
     def columns(self) -> NDArray[intp]:
         """The states' columns in arrays of the whole recording."""
         return self.steps - self.surroundings.tracks.first
+
+    def steps_in(self, seconds: float) -> int:
+        """The number of time steps in some time (s)."""
+        return round(seconds / self.recording.step_s)
+
+    @cached_property
+    def ego_moves(self) -> Flags:
+        """Mask of states in which ego moves."""
+        drives: Flags = self.ego.speed[0] * KMH_PER_MPS >= self.thresholds.standing_kmh
+        return drives
+
+    @cached_property
+    def moving(self) -> Flags:
+        """Mask of participants that move."""
+        moves: Flags = self.tracks.speed * KMH_PER_MPS >= self.thresholds.standing_kmh
+        return moves
+
+    @cached_property
+    def standing(self) -> Flags:
+        """Mask of participants that stand."""
+        stand: Flags = self.tracks.speed * KMH_PER_MPS < self.thresholds.standing_kmh
+        return stand
 
     @property
     def first_column(self) -> int:
@@ -363,27 +386,3 @@ class DriveContext:
     def stays(self) -> Flags:
         """Mask of participants that stand for as long as they are recorded, by row."""
         return self.surroundings.stays[self.tracks.rows]
-
-    def zero_if_standing(self, speed_kmh: Floats) -> Floats:
-        """Speeds (km/h), set to exactly 0 below the threshold of standing."""
-        return speed_kmh * (abs(speed_kmh) >= self.thresholds.standing_kmh)
-
-
-Found = TypeVar("Found")
-
-
-def once(compute: Callable[[DriveContext], Found]) -> Callable[[DriveContext], Found]:
-    """Make a function of a drive's context compute its result only once per context.
-
-    The result is shared, so callers must not change it.
-    """
-
-    @wraps(compute)
-    def found(context: DriveContext) -> Found:
-        known = context.computed
-        if compute not in known:
-            known[compute] = compute(context)
-        value: Found = known[compute]
-        return value
-
-    return found

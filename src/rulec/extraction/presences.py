@@ -12,7 +12,8 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct, in_order
 
@@ -36,7 +37,7 @@ def presence_runs(context: DriveContext) -> PresenceRuns:
 
     Participants that are in sight but too far away to count are not present.
     """
-    longest, spans = round(context.thresholds.away_s / context.recording.step_s), context.spans
+    longest, spans = context.steps_in(context.thresholds.away_s), context.spans
     counting, s = Cells.at(context.relevant), context.extents.s
     rows, columns = counting.rows, counting.columns
     drives, away = spans.number[columns], columns[1:] - columns[:-1]

@@ -12,7 +12,7 @@ from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.manoeuvre_signals import about_the_middle, oncoming_side
 from rulec.extraction.signals.ego_lanelets import own_lanelets, travel_lanes
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import ObjectSignal, WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
@@ -29,29 +29,7 @@ _ALONG = np.cos(np.pi / 4)
 """Cosine of the largest angle to the road at which a pedestrian walks along it, either way."""
 
 
-def _for_overtaking(context: DriveContext) -> SignalColumns:
-    clear, unknown = _oncoming_clear(context)
-    return SignalColumns({"oncoming_clear": clear}, unknown={"oncoming_clear": unknown})
-
-
-def _in_own_lanes(context: DriveContext) -> SignalColumns:
-    obstructed, perhaps = _obstructed(context)
-    return SignalColumns({"obstructed": obstructed}, unknown={"obstructed": perhaps})
-
-
-def _for_access(context: DriveContext) -> SignalColumns:
-    access, open_end = _needs_access(context)
-    return SignalColumns({"needs_access": access}, unknown={"needs_access": open_end})
-
-
-def _on_near_side(context: DriveContext) -> SignalColumns:
-    return SignalColumns(
-        about={"room_on_near_side": _room_on_near_side(context)},
-        only={"room_on_near_side": context.tracks.of_type("road_user")},
-    )
-
-
-def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
+def _oncoming_clear(context: DriveContext) -> WorldSignal:
     """Whether oncoming traffic leaves room to overtake, and where that is unknown.
 
     It does where ego need not leave the lanes of its direction, in the far one of which it may
@@ -66,7 +44,7 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     one_way = own_lanelets(context).flags(lambda at: context.surroundings.directions(at)[0] is True)
     alone = own_lanes | one_way
     own = np.maximum(context.ego_extents.along[0], 0.0)
-    steps = round(limits.overtaking_s / context.recording.step_s)
+    steps = context.steps_in(limits.overtaking_s)
     ends = context.spans.columns + steps >= context.spans.end
     far_enough = 2 * own * limits.overtaking_s <= limits.near_m
     present = presence_cells(context)
@@ -74,7 +52,7 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     against &= context.tracks.of_type("vehicle")[present.rows]
     cells = present.part(against.nonzero()[0])
     if not len(cells):
-        return np.ones(context.states, dtype=bool), ends & ~alone & ~far_enough
+        return WorldSignal(np.ones(context.states, dtype=bool), ends & ~alone & ~far_enough)
     comes = (np.abs(cells.of(context.extents.turned)) > np.pi / 2) & cells.of(context.relevant)
     cells = cells.part(comes.nonzero()[0])
     columns, station = cells.columns, cells.of(relations.station(context))
@@ -88,7 +66,7 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     soon[columns[left_s < limits.yielding_s]] = True
     meets |= context.spans.within(met, steps) | _meets_beyond_middle(context, met | soon)
     unknown = ends & ~far_enough | _may_brake_for_ego(context, cells)
-    return alone | ~meets, ~alone & ~meets & unknown
+    return WorldSignal(alone | ~meets, ~alone & ~meets & unknown)
 
 
 def _may_brake_for_ego(context: DriveContext, cells: Cells) -> Flags:
@@ -148,7 +126,7 @@ def _edges(context: DriveContext) -> tuple[NDArray[intp], NDArray[intp]]:
     return there.argmax(axis=1), there.shape[1] - there[:, ::-1].argmax(axis=1)
 
 
-def _obstructed(context: DriveContext) -> tuple[Flags, Flags]:
+def _obstructed(context: DriveContext) -> WorldSignal:
     """Whether an obstacle in one of ego's lanes leaves no room there, and where that is unknown.
 
     Obstacles stand ahead, beside ego, or so near behind it that ego may still be on its way back;
@@ -160,7 +138,7 @@ def _obstructed(context: DriveContext) -> tuple[Flags, Flags]:
     blocked, perhaps = np.zeros((2, context.states), dtype=bool)
     cells, needed = _obstacles(context)
     if not len(cells):
-        return blocked, perhaps
+        return WorldSignal(blocked, perhaps)
     own = context.ego_extents
     needed += cells.of(own.d_max[0] - own.d_min[0])
     near, sets = _near_obstacle(context, cells), cells.of(context.lanes_within[0])
@@ -170,13 +148,13 @@ def _obstructed(context: DriveContext) -> tuple[Flags, Flags]:
         blocked[cells.columns[there & near & cells.of(used[:, lane])]] = True
         bodies = cells.part(there.nonzero()[0])
         perhaps |= _on_the_way_round(context, bodies, lane, used[:, lane])
-    return blocked, perhaps & ~blocked
+    return WorldSignal(blocked, perhaps & ~blocked)
 
 
 def _obstacles(context: DriveContext) -> tuple[Cells, Floats]:
     """The cells of those that stand, or walk along the road, and the room (m) beside each."""
     present = presence_cells(context)
-    stands = present.of(context.tracks.speed) * KMH_PER_MPS < context.thresholds.standing_kmh
+    stands = present.of(context.standing)
     walks = context.tracks.of_type("pedestrian")[present.rows]
     walks &= np.abs(np.cos(present.of(context.extents.turned))) >= _ALONG
     chosen = ((stands | walks) & present.of(context.relevant)).nonzero()[0]
@@ -245,26 +223,25 @@ def _near_obstacle(context: DriveContext, cells: Cells) -> Flags:
     early = ~near & (gap <= along[cells.columns] * context.thresholds.parting_s)
     near |= early & context.tracks.of_type("pedestrian")[cells.rows]
     early &= cells.of(relations.station(context)) == relations.BEHIND
-    early &= cells.of(context.tracks.speed) * KMH_PER_MPS < context.thresholds.standing_kmh
+    early &= cells.of(context.standing)
     rows, never_moves = distinct(cells.rows[early]), np.zeros(len(context.relevant), dtype=bool)
     never_moves[rows] = context.stays[rows]
     near |= early & never_moves[cells.rows]
     return near
 
 
-def _room_on_near_side(context: DriveContext) -> Flags:
-    """Mask of participants that leave room for ego between them and the road's near edge."""
+def _room_on_near_side(context: DriveContext) -> ObjectSignal:
+    """Whether participants leave room for ego between them and the road's near edge."""
     first, end = _edges(context)
     others, right = context.extents, context.side == "right"
     room = others.from_bound(first)[0] if right else -others.from_bound(end)[1]
     width = context.ego_extents.d_max[0] - context.ego_extents.d_min[0] + _BESIDE_M
-    enough: Flags = room >= width
-    return enough
+    return ObjectSignal(room >= width, only=context.tracks.of_type("road_user"))
 
 
-def _needs_access(context: DriveContext) -> tuple[Flags, Flags]:
+def _needs_access(context: DriveContext) -> WorldSignal:
     """Whether ego turns off within ``access_s``; and where its drive ends too early to know."""
-    steps = round(context.thresholds.access_s / context.recording.step_s)
+    steps = context.steps_in(context.thresholds.access_s)
     turns = np.zeros(context.states, dtype=bool)
     least = np.radians(context.thresholds.turned_deg)
     own, spans = context.own, context.spans
@@ -274,15 +251,15 @@ def _needs_access(context: DriveContext) -> tuple[Flags, Flags]:
             if abs(own.passages.way(passage).turned) > least:
                 turns[columns] |= (numbers >= passage.first - steps) & (numbers <= passage.last)
     ends = spans.columns + steps >= spans.end
-    return turns, ends & ~turns
+    return WorldSignal(turns, ends & ~turns)
 
 
 clearance_signals = SignalPasses(
     {
-        ("oncoming_clear",): _for_overtaking,
-        ("obstructed",): _in_own_lanes,
-        ("needs_access",): _for_access,
-        ("room_on_near_side",): _on_near_side,
+        "oncoming_clear": _oncoming_clear,
+        "obstructed": _obstructed,
+        "needs_access": _needs_access,
+        "room_on_near_side": _room_on_near_side,
     }
 )
 """The signals of whether ego has room to go on, to overtake, and to pass."""

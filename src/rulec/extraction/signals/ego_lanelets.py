@@ -11,8 +11,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
-from rulec.extraction.signals.signal_passes import once_a_map
+from rulec.extraction.computed_once import once, once_a_map
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.recordings.recording import Lanelet
 from rulec.trace.cells import Cells

@@ -23,6 +23,7 @@ from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
 from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
+    WorldSignal,
     rounded,
     rounded_outward,
 )
@@ -55,7 +56,7 @@ def _ego_type(context: DriveContext) -> SignalColumns:
     )
 
 
-def _ego_length(context: DriveContext) -> SignalColumns:
+def _ego_length(context: DriveContext) -> WorldSignal:
     """Ego's length, of its own rectangle if known: a turning body is longer along the road."""
     outlines = [body.outlines for body in context.ego.participants]
     own = [x.track.length if isinstance(x, TrackOutlines) else np.nan for x in outlines]
@@ -65,14 +66,12 @@ def _ego_length(context: DriveContext) -> SignalColumns:
         (told,) = (~np.isnan(lengths)).nonzero()
         median, _ = medians(context.spans.number[told], lengths[told], context.spans.n_drives)
         length = np.where(np.isnan(length), median, length)
-    return SignalColumns({"ego_length": rounded(context.spans.spread(length))})
+    return WorldSignal(rounded(context.spans.spread(length)))
 
 
-def _speed(context: DriveContext) -> SignalColumns:
+def _speed(context: DriveContext) -> WorldSignal:
     speed, _ = own_speed(context)
-    return SignalColumns(
-        {"speed": rounded(speed * KMH_PER_MPS)}, bounds={"speed": speed_bounds(context)}
-    )
+    return WorldSignal(rounded(speed * KMH_PER_MPS), bounds=speed_bounds(context))
 
 
 def _change_of_speed(context: DriveContext) -> SignalColumns:
@@ -90,30 +89,24 @@ def _change_of_speed(context: DriveContext) -> SignalColumns:
     )
 
 
-def _acceleration(context: DriveContext) -> SignalColumns:
+def _acceleration(context: DriveContext) -> WorldSignal:
     gained, wrong = context.ego.acceleration[0], context.ego.acceleration_error[0]
-    return SignalColumns(
-        {"acceleration": rounded(gained)},
-        bounds={"acceleration": rounded_outward(gained - wrong, gained + wrong)},
-    )
+    return WorldSignal(rounded(gained), bounds=rounded_outward(gained - wrong, gained + wrong))
 
 
-def _stopping(context: DriveContext) -> SignalColumns:
+def _stopping(context: DriveContext) -> WorldSignal:
     (speed, error), slow = own_speed(context), context.thresholds.stops_at_once_kmh / KMH_PER_MPS
-    return SignalColumns(
-        {"can_stop_at_once": speed <= slow},
-        unknown={"can_stop_at_once": abs(speed - slow) < error},
-    )
+    return WorldSignal(speed <= slow, abs(speed - slow) < error)
 
 
-def _lane(context: DriveContext) -> SignalColumns:
+def _lane(context: DriveContext) -> WorldSignal:
     lane, moves = _from_kerb(context, context.steady_lane), np.zeros(context.states, dtype=bool)
     for other in (context.ego_lane, context.steady_lane_from_beside):
         if (context.steady_lane != other).any():
             moves |= lane != _from_kerb(context, other)
     # Beside a lane that only joins or leaves, the kerb lane may as well be ego's
     at_side = (lane == _MIDDLE) & ~_nearer_goes_on(context)
-    return SignalColumns({"lane": lane}, unknown={"lane": moves | at_side}, texts={"lane": _LANES})
+    return WorldSignal(lane, moves | at_side, texts=_LANES)
 
 
 def _nearer_goes_on(context: DriveContext) -> Flags:
@@ -125,30 +118,23 @@ def _nearer_goes_on(context: DriveContext) -> Flags:
     return found
 
 
-def _lane_number(context: DriveContext) -> SignalColumns:
+def _lane_number(context: DriveContext) -> WorldSignal:
     number, other, from_beside = (
         np.clip(_rank(context, lane), 0, len(_NUMBERS) - 1)
         for lane in (context.steady_lane, context.ego_lane, context.steady_lane_from_beside)
     )
-    return SignalColumns(
-        {"lane_number": number},
-        unknown={"lane_number": (number != other) | (number != from_beside)},
-        texts={"lane_number": _NUMBERS},
-    )
+    return WorldSignal(number, (number != other) | (number != from_beside), texts=_NUMBERS)
 
 
-def _apart_from_far_lane(context: DriveContext) -> SignalColumns:
+def _apart_from_far_lane(context: DriveContext) -> WorldSignal:
     apart, other, from_beside = (
         _from_far(context, lane) > 1
         for lane in (context.steady_lane, context.ego_lane, context.steady_lane_from_beside)
     )
-    return SignalColumns(
-        {"apart_from_far_lane": apart},
-        unknown={"apart_from_far_lane": (apart != other) | (apart != from_beside)},
-    )
+    return WorldSignal(apart, (apart != other) | (apart != from_beside))
 
 
-def _lane_count(context: DriveContext) -> SignalColumns:
+def _lane_count(context: DriveContext) -> WorldSignal:
     """The number of lanes, the largest at ego's rear, middle and front.
 
     A vehicle beside ego where ways part is no longer on ego's road once ego's middle is past that
@@ -159,12 +145,12 @@ def _lane_count(context: DriveContext) -> SignalColumns:
     counts = [travel_lanes_at(context, at).sum(axis=1) for at in places]
     count = np.maximum.reduce(counts)
     numbers = np.minimum(np.maximum(count - 1, 0), 2)
-    return SignalColumns({"lanes": numbers}, texts={"lanes": _COUNTS})
+    return WorldSignal(numbers, texts=_COUNTS)
 
 
-def _lane_position(context: DriveContext) -> SignalColumns:
+def _lane_position(context: DriveContext) -> WorldSignal:
     place = _place_in_lane(context)
-    return SignalColumns({"lane_position": place}, texts={"lane_position": _PLACES})
+    return WorldSignal(place, texts=_PLACES)
 
 
 def _from_kerb(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
@@ -186,7 +172,7 @@ def _from_far(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
     return count - 1 - _rank(context, lane)
 
 
-def _straddling(context: DriveContext) -> SignalColumns:
+def _straddling(context: DriveContext) -> WorldSignal:
     """Whether ego is in two lanes; unknown where tolerances or the map decide, or ego turns off.
 
     A turning body swings over the lanes of the road that it enters. Ego also straddles on its way
@@ -202,7 +188,7 @@ def _straddling(context: DriveContext) -> SignalColumns:
             unknown |= straddling & (spans.next_state(askew) < spans.next_state(~straddling))
     over = _goes_over_the_middle(context)
     straddling, unknown = straddling | over, unknown & ~over
-    return SignalColumns({"straddling": straddling}, unknown={"straddling": unknown})
+    return WorldSignal(straddling, unknown)
 
 
 def _goes_over_the_middle(context: DriveContext) -> Flags:
@@ -215,7 +201,7 @@ def _goes_over_the_middle(context: DriveContext) -> Flags:
     if not there.any():
         return np.zeros(context.states, dtype=bool)
     spans, on_both = context.spans, on_both_halves(context)
-    within = round(context.thresholds.passed_s / context.recording.step_s)
+    within = context.steps_in(context.thresholds.passed_s)
     stays, at = about_the_middle(context), spans.columns
     before, after = spans.latest(there), spans.next_state(there)
     goes = (after < spans.next_state(~stays)) & (after - at <= within)
@@ -268,18 +254,18 @@ def _place_in_lane(context: DriveContext) -> NDArray[intp]:
 
 ego_signals = SignalPasses(
     {
-        ("ego_type",): _ego_type,
-        ("ego_length",): _ego_length,
-        ("speed",): _speed,
+        "ego_type": _ego_type,
+        "ego_length": _ego_length,
+        "speed": _speed,
         ("accelerating", "braking_hard"): _change_of_speed,
-        ("acceleration",): _acceleration,
-        ("can_stop_at_once",): _stopping,
-        ("lane",): _lane,
-        ("lane_number",): _lane_number,
-        ("apart_from_far_lane",): _apart_from_far_lane,
-        ("lanes",): _lane_count,
-        ("straddling",): _straddling,
-        ("lane_position",): _lane_position,
+        "acceleration": _acceleration,
+        "can_stop_at_once": _stopping,
+        "lane": _lane,
+        "lane_number": _lane_number,
+        "apart_from_far_lane": _apart_from_far_lane,
+        "lanes": _lane_count,
+        "straddling": _straddling,
+        "lane_position": _lane_position,
     }
 )
 """The signals about ego alone."""

@@ -27,7 +27,7 @@ from rulec.extraction.signals.queues import (
     queues_by_lane,
     vehicles_around,
 )
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import SignalColumns, WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
@@ -182,28 +182,28 @@ def _is_slow(
     return slow & on_lanes.all(axis=0) & beside
 
 
-def _dense_all_lanes(context: DriveContext) -> SignalColumns:
+def _dense_all_lanes(context: DriveContext) -> WorldSignal:
     dense, _, not_told = dense_lines(context)
-    return SignalColumns({"dense_all_lanes": dense}, unknown={"dense_all_lanes": not_told})
+    return WorldSignal(dense, not_told)
 
 
-def _far_lane_queue(context: DriveContext) -> SignalColumns:
+def _far_lane_queue(context: DriveContext) -> WorldSignal:
     queues, are_slow = queues_by_lane(context)
     slow = queues & are_slow
     queue, fewer = (_beside(context, slow[reading]) for reading in (MEASURED, STRICT))
     # Whether a lane farther out is the queue beside ego's depends on the vehicle that is passed
     more = _at_far_side(context, slow[LOOSE])
-    return SignalColumns({"far_lane_queue": queue}, unknown={"far_lane_queue": more & ~fewer})
+    return WorldSignal(queue, more & ~fewer)
 
 
-def _own_lane_queue(context: DriveContext) -> SignalColumns:
+def _own_lane_queue(context: DriveContext) -> WorldSignal:
     """Whether ego's lane is a slow queue; unknown where errors or the definition decide."""
     queues, are_slow = queues_by_lane(context)
     slow = queues & are_slow
     queue, fewer, more = (
         slow[reading, context.ego_lane, context.spans.columns] for reading in READINGS
     )
-    return SignalColumns({"own_lane_queue": queue}, unknown={"own_lane_queue": more & ~fewer})
+    return WorldSignal(queue, more & ~fewer)
 
 
 def _at_far_side(context: DriveContext, lanes: Flags) -> Flags:
@@ -225,9 +225,9 @@ def _beside(context: DriveContext, lanes: Flags) -> Flags:
 flow_signals = SignalPasses(
     {
         ("congested", "CONGESTED", "walking_pace_flow"): _slow_traffic,
-        ("dense_all_lanes",): _dense_all_lanes,
-        ("far_lane_queue",): _far_lane_queue,
-        ("own_lane_queue",): _own_lane_queue,
+        "dense_all_lanes": _dense_all_lanes,
+        "far_lane_queue": _far_lane_queue,
+        "own_lane_queue": _own_lane_queue,
     }
 )
 """The signals of traffic as a whole."""

@@ -10,12 +10,12 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import SHOULDER, map_contents
 from rulec.extraction.signals.measured_numbers import own_widths
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import SignalColumns, WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Lanelet, LaneMark, is_lane
 from rulec.scenario.recorded.route import lanelet_area
@@ -69,20 +69,17 @@ def _marked_rows(context: DriveContext) -> MarkedRows:
     return MarkedRows(rows, different.searchsorted(keys))
 
 
-def _marked_lanes(context: DriveContext) -> SignalColumns:
+def _marked_lanes(context: DriveContext) -> WorldSignal | None:
     """Whether all lines between ego's lanes are marked."""
     if not map_contents(context).marks:
-        return _NONE
+        return None
     marked = _marked_rows(context)
     between = [[_between(*pair) for pair in pairwise(row) if all(pair)] for row in marked.rows]
     told = np.array([all(any(marks) for marks in row) for row in between])
     all_marked = np.array(
         [bool(row) and all(set(marks) != {"none"} for marks in row) for row in between]
     )
-    return SignalColumns(
-        {"marked_lanes": all_marked[marked.number]},
-        unknown={"marked_lanes": ~told[marked.number]},
-    )
+    return WorldSignal(all_marked[marked.number], ~told[marked.number])
 
 
 def _lines_under_ego(context: DriveContext) -> SignalColumns:
@@ -98,7 +95,7 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     if not map_contents(context).marks:
         return _NONE
     names = ("on_solid_line", "broken_on_own_side", "single_line")
-    stays = context.spans.all(context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh)
+    stays = context.spans.all(~context.ego_moves)
     if stays.all():
         return SignalColumns(dict.fromkeys(names, np.zeros(context.states, dtype=bool)))
     place, offsets = context.tolerances.place_m, context.map_offset_m
@@ -250,7 +247,7 @@ def _half_across(context: DriveContext) -> Floats:
     place = context.tolerances.place_m
     if place >= context.thresholds.touching_m:
         return width / 2
-    steps = max(round(context.thresholds.smoothing_s / 2 / context.recording.step_s), 1)
+    steps = max(context.steps_in(context.thresholds.smoothing_s / 2), 1)
     at, spans = context.spans.columns, context.spans
     before, after = np.maximum(at - steps, spans.first), np.minimum(at + steps, spans.end - 1)
     dx, dy = (places[0, after] - places[0, before] for places in (context.ego.x, context.ego.y))
@@ -338,7 +335,7 @@ _NONE = SignalColumns()
 
 lane_mark_signals = SignalPasses(
     {
-        ("marked_lanes",): _marked_lanes,
+        "marked_lanes": _marked_lanes,
         ("on_solid_line", "broken_on_own_side", "single_line"): _lines_under_ego,
     }
 )

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import Bounds, rounded_outward

@@ -10,7 +10,8 @@ from math import ceil
 import numpy as np
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import Bounds, rounded_outward
@@ -40,13 +41,6 @@ _AT_LIMIT_MPS = 0.01
 
 
 @once
-def moves(context: DriveContext) -> Flags:
-    """Mask of states in which ego moves."""
-    drives: Flags = context.ego.speed[0] * KMH_PER_MPS >= context.thresholds.standing_kmh
-    return drives
-
-
-@once
 def own_speed(context: DriveContext) -> tuple[Floats, Floats]:
     """Ego's speed (m/s), 0 if it stands, and its possible error.
 
@@ -58,7 +52,7 @@ def own_speed(context: DriveContext) -> tuple[Floats, Floats]:
     if (context.tolerances.stated_mps or np.inf) <= _AT_LIMIT_MPS:
         at_limit = np.abs(speed - context.limit_mps) <= _AT_LIMIT_MPS
         speed, error = np.where(at_limit, context.limit_mps, speed), np.where(at_limit, 0.0, error)
-    return np.where(moves(context), (speed, error), 0.0)  # type: ignore[return-value]
+    return np.where(context.ego_moves, (speed, error), 0.0)  # type: ignore[return-value]
 
 
 def _braked_since_the_mean(context: DriveContext) -> Floats:
@@ -67,7 +61,7 @@ def _braked_since_the_mean(context: DriveContext) -> Floats:
     The mean over ``smoothing_s`` includes the time before, in which ego braked for it.
     """
     half = context.thresholds.smoothing_s / 2
-    limit, steps = context.limit_mps, round(half / context.recording.step_s)
+    limit, steps = context.limit_mps, context.steps_in(half)
     is_lower = limit < context.spans.most_of_last(limit, steps)
     braking = np.maximum(-context.ego.acceleration[0], 0.0)
     slower: Floats = np.where(is_lower, braking * half / 2, 0.0)
@@ -99,7 +93,7 @@ def _differs_from_mean(context: DriveContext) -> Floats:
     columns, spans = context.spans.columns, context.spans
     # At the ends of a drive means are over less time
     inside = (columns - 2 * steps >= spans.first) & (columns + 2 * steps < spans.end)
-    inside &= moves(context)
+    inside &= context.ego_moves
     before, after = (np.roll(speed, way) for way in (steps, -steps))
     return np.where(inside, speed - (before + after) / 2, zero)
 
@@ -124,18 +118,12 @@ def _may_have_stood_beside(context: DriveContext, low: Floats, high: Floats) -> 
     return either
 
 
-def gap_bounds(context: DriveContext) -> Bounds:
-    """The bounds of gaps (m), per presence cell, like all functions below."""
-    _, least, most = gaps(context)
-    return rounded_outward(least, most)
-
-
 def headway_bounds(context: DriveContext) -> Bounds:
-    """The bounds of headways (s)."""
+    """The bounds of headways (s), per presence cell, like all functions below."""
     _, near, far = gaps(context)
     of_ego = presence_cells(context).of
     speed, error = map(of_ego, own_speed(context))
-    drives = of_ego(moves(context))
+    drives = of_ego(context.ego_moves)
     least = np.where(drives, speed - error, 1.0)
     longest = np.where(least > 0, far / np.maximum(least, _AT_LIMIT_MPS), LONGEST_S)
     shortest = near / np.where(drives, speed + error, 1.0)
@@ -169,7 +157,8 @@ def difference_bounds(context: DriveContext) -> Bounds:
 def speed_differences(context: DriveContext) -> tuple[Floats, Floats]:
     """By how much (km/h) ego is faster along the road; the others' speeds, 0 if they stand."""
     cells = presence_cells(context)
-    speeds = context.zero_if_standing(cells.of(context.extents.along) * KMH_PER_MPS)
+    speeds = cells.of(context.extents.along) * KMH_PER_MPS
+    speeds *= np.abs(speeds) >= context.thresholds.standing_kmh
     difference: Floats = cells.of(context.ego_extents.along[0]) * KMH_PER_MPS - speeds
     return difference, speeds
 

@@ -16,10 +16,10 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once, once_a_road
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import travel_lanes_first
-from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells

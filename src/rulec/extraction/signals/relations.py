@@ -17,7 +17,8 @@ from numpy import int8, intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.lane_sets import LaneSets, lane_sets, lanes_touched
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS

@@ -55,6 +55,35 @@ class SignalColumns(NamedTuple):
         return together((self, other))
 
 
+class WorldSignal(NamedTuple):
+    """A signal of the world alone, with what ``SignalColumns`` have of it by its name."""
+
+    world: SignalColumn
+    unknown: Flags | None = None
+    bounds: Bounds | None = None
+    texts: Sequence[str] | None = None
+    whom: SignalColumn | None = None
+
+
+class ObjectSignal(NamedTuple):
+    """A signal of objects alone, with what ``SignalColumns`` have of it by its name."""
+
+    about: SignalColumn
+    unknown: Flags | None = None
+    bounds: Bounds | None = None
+    texts: Sequence[str] | None = None
+    only: Flags | None = None
+
+
+OneSignal: TypeAlias = WorldSignal | ObjectSignal
+
+
+def named_signal(name: str, signal: OneSignal) -> SignalColumns:
+    """A signal under its name."""
+    own = signal._asdict().items()
+    return SignalColumns(**{kind: {name: part} for kind, part in own if part is not None})
+
+
 def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> SignalColumns:
     """The signals of all parts, optionally only those with some names."""
     kinds: list[dict[str, Any]] = []

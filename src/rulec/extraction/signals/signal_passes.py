@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import wraps
-from typing import Any, TypeAlias, TypeVar
+from typing import TypeAlias
 
 from rulec.diagnostics import named
 from rulec.diagnostics.fault_messages import fault_of
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, together
+from rulec.extraction.signals.signal_columns import (
+    OneSignal,
+    SignalColumns,
+    SignalNames,
+    named_signal,
+    together,
+)
 
-_Pass: TypeAlias = Callable[[DriveContext], SignalColumns]
+_Pass: TypeAlias = Callable[[DriveContext], SignalColumns | OneSignal | None]
 
-Passes: TypeAlias = Mapping[tuple[str, ...], _Pass]
-"""Names of signals -> the function that provides exactly these."""
-
-_Value = TypeVar("_Value")
+Passes: TypeAlias = Mapping[str | tuple[str, ...], _Pass]
+"""Names of signals -> the function that provides exactly these; None if the recording does not."""
 
 _MOST_READERS = 1 << 6
 """Most choices of names whose functions are kept; beyond this all are dropped."""
@@ -26,7 +29,9 @@ class SignalPasses:
     """The functions that compute a drive's signals, called only if a signal of theirs is read."""
 
     def __init__(self, passes: Passes) -> None:
-        self._passes = passes
+        self._passes = {
+            (given,) if isinstance(given, str) else given: x for given, x in passes.items()
+        }
         self._read: dict[SignalNames, Sequence[tuple[Sequence[str], _Pass]]] = {}
 
     def __call__(self, context: DriveContext, names: SignalNames = None) -> SignalColumns:
@@ -55,59 +60,14 @@ class SignalPasses:
 
 def _contained(given: Sequence[str], signals_of: _Pass, context: DriveContext) -> SignalColumns:
     try:
-        return signals_of(context)
+        found = signals_of(context)
     except Exception as problem:
         if context.spans.n_drives > 1:
             raise
         ego = context.ego.participants[0].id
         fault = fault_of(problem, f"{named(given)} in the drive of `{ego}`")
         return SignalColumns(faults=dict.fromkeys(given, fault))
-
-
-def once_a_recording(
-    function: Callable[[DriveContext], _Value],
-) -> Callable[[DriveContext], _Value]:
-    """Make a function of only the recording and its thresholds compute its result once.
-
-    The recording's surroundings keep the result; they belong to one side of traffic and one choice
-    of thresholds. It is shared, so callers must not change it.
-    """
-
-    @wraps(function)
-    def found(context: DriveContext) -> _Value:
-        return _kept(function, function, context, context.surroundings.computed)
-
-    return found
-
-
-def once_a_map(function: Callable[[DriveContext], _Value]) -> Callable[[DriveContext], _Value]:
-    """``once_a_recording`` for a function of only the recording's map."""
-
-    @wraps(function)
-    def found(context: DriveContext) -> _Value:
-        return _kept(function, function, context, context.surroundings.of_map)
-
-    return found
-
-
-def once_a_road(function: Callable[[DriveContext], _Value]) -> Callable[[DriveContext], _Value]:
-    """``once_a_recording`` for a function of only the map and one road."""
-
-    @wraps(function)
-    def found(context: DriveContext) -> _Value:
-        known = context.surroundings.of_map
-        return _kept((function, context.road), function, context, known)
-
-    return found
-
-
-def _kept(
-    key: object,
-    function: Callable[[DriveContext], _Value],
-    context: DriveContext,
-    known: dict[object, Any],
-) -> _Value:
-    if key not in known:
-        known[key] = function(context)
-    found: _Value = known[key]
-    return found
+    if found is None or isinstance(found, SignalColumns):
+        return found or SignalColumns()
+    (name,) = given
+    return named_signal(name, found)

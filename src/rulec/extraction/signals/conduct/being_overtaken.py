@@ -9,6 +9,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
+from rulec.extraction.computed_once import once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
@@ -21,8 +22,7 @@ from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.queues import dense_lines
-from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
-from rulec.extraction.signals.signal_passes import once_a_road
+from rulec.extraction.signals.signal_columns import WorldSignal, ids_by_state
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import RAMPS
@@ -39,7 +39,7 @@ _CRAWLS_MPS = 5.5
 """A vehicle this slow that gains speed sets off, although it has not quite stood."""
 
 
-def being_overtaken(context: DriveContext) -> SignalColumns:
+def being_overtaken(context: DriveContext) -> WorldSignal:
     """Whether a vehicle overtakes ego, and which one.
 
     Unknown where ego may only be slow because it sets off, has had to brake, or has just come here.
@@ -48,11 +48,7 @@ def being_overtaken(context: DriveContext) -> SignalColumns:
     if not by.any() and not open_end.any():
         nobody = np.zeros(context.states, dtype=bool)
         whom = ids_by_state(by, context.ids)
-        return SignalColumns(
-            {"being_overtaken": nobody},
-            unknown={"being_overtaken": nobody},
-            whom={"being_overtaken": whom},
-        )
+        return WorldSignal(nobody, nobody, whom=whom)
     # A vehicle about to join gains speed beside others on the lanes that go on; one that leaves may
     # be faster than they are, too (StVO § 7a), and many lanes between ramps serve for both
     on_ramp = own_lanelets(context).flags(lambda at: not at.types.isdisjoint(RAMPS))
@@ -65,10 +61,10 @@ def being_overtaken(context: DriveContext) -> SignalColumns:
     joined = _was(context, elsewhere)
     moot = _sets_off(context) | _recovers(context) | _may_recover(context) | joined | not_told
     # Where all lanes queue, a faster vehicle does not overtake (Vienna, Art. 11(6)(a))
-    return SignalColumns(
-        {"being_overtaken": ~dense & overtaken},
-        unknown={"being_overtaken": ~surely & np.where(overtaken, moot, open_end)},
-        whom={"being_overtaken": ids_by_state(by, context.ids)},
+    return WorldSignal(
+        ~dense & overtaken,
+        ~surely & np.where(overtaken, moot, open_end),
+        whom=ids_by_state(by, context.ids),
     )
 
 
@@ -86,7 +82,7 @@ def _recovers(context: DriveContext) -> Flags:
     Or that long before it began to gain the speed again, as it still does.
     """
     speed, spans = context.ego.speed[0], context.spans
-    steps = round(context.thresholds.setting_off_s / context.recording.step_s)
+    steps = context.steps_in(context.thresholds.setting_off_s)
     fastest, least = spans.most_of_last(speed, steps), speed + context.tolerances.speed_mps
     recovers: Flags = least < fastest
     gains = _gains_speed(context)
@@ -149,7 +145,7 @@ def _gains_speed(context: DriveContext) -> Flags:
 
 
 def _smoothing_steps(context: DriveContext) -> int:
-    return max(round(context.thresholds.smoothing_s / context.recording.step_s), 1)
+    return max(context.steps_in(context.thresholds.smoothing_s), 1)
 
 
 def _sets_off(context: DriveContext) -> Flags:
@@ -249,7 +245,7 @@ def _gets_past(
     than ego by more than the error of speeds. A vehicle ``over`` the middle would get past if it
     did not have to brake harder than ``disturbing_mps2`` for ego, which comes there, too.
     """
-    horizon = round(context.thresholds.catching_up_s / context.recording.step_s)
+    horizon = context.steps_in(context.thresholds.catching_up_s)
     spans, states = context.spans, context.spans.columns
     seen, limits, tracks = (context.relevant | over)[rows], context.thresholds, context.tracks
     past = seen & (relations.station(context)[rows] == relations.BEHIND)

@@ -9,7 +9,8 @@ import numpy as np
 import shapely
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.right_of_way.bodies import gap_s
 from rulec.extraction.signals.map.right_of_way.conflicts import LONGEST_WAIT_S
 from rulec.extraction.signals.map.right_of_way.held_up import DRIVES_MPS
@@ -41,7 +42,7 @@ def cut_on_ring(context: DriveContext) -> Flags:
             # Not who is beyond the ring from the start
             if (states := (front > end).nonzero()[0]).size and states[0]:
                 first = columns.start + int(states[0])
-                lasts = round(_LEAVES_S / context.recording.step_s)
+                lasts = context.steps_in(_LEAVES_S)
                 found = _cut(context.one(number), end, int(states[0]))
                 cut[:, first : min(first + lasts, columns.stop)] |= found[:, None]
     return cut

@@ -11,18 +11,17 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
 from rulec.extraction.signals.conduct.others_lamps import (
     flashing,
     lamps_of_all,
     lit_lamps,
-    moves,
-    stands,
 )
 from rulec.extraction.signals.ego_lanelets import own_lanelets, room_beside
-from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
+from rulec.extraction.signals.signal_columns import ObjectSignal, WorldSignal, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 
@@ -32,7 +31,7 @@ _FACES = -0.5
 """Cosine between the directions of ego's road and of a vehicle that comes the other way on it."""
 
 
-def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
+def _emergency_vehicle_near(context: DriveContext) -> WorldSignal:
     """Whether an emergency vehicle on call is near.
 
     Unknown for one that stands, does not sound a horn that the recording contains, is not beside
@@ -47,11 +46,7 @@ def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
     comes: Flags = np.logical_or.reduce(surely)
     if comes.any():
         comes &= ~_may_be_on_call(context)
-    return SignalColumns(
-        {"emergency_vehicle_near": comes},
-        unknown={"emergency_vehicle_near": perhaps & ~comes},
-        whom={"emergency_vehicle_near": ids_by_state(surely & comes, context.ids)},
-    )
+    return WorldSignal(comes, perhaps & ~comes, whom=ids_by_state(surely & comes, context.ids))
 
 
 @once
@@ -67,24 +62,21 @@ def _surely_near(context: DriveContext) -> Flags:
     return found
 
 
-def _way_cleared(context: DriveContext) -> SignalColumns:
+def _way_cleared(context: DriveContext) -> WorldSignal:
     """Whether ego stands, or is at an edge of its lane.
 
     Unknown where the vehicles that are near have another lane or are clear of ego sideways: they
     get past, and laws may still want ego at the edge.
     """
-    still = context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh
+    still = ~context.ego_moves
     cleared = still | _at_edge(context)
     near = _surely_near(context)
     if not near.any():
-        return SignalColumns({"way_cleared": cleared})
+        return WorldSignal(cleared)
     clear = relations.way_across(context)
     in_way = near & context.in_ego_lane & (clear < context.thresholds.touching_m)
     in_way |= near & (clear < 0)
-    return SignalColumns(
-        {"way_cleared": cleared},
-        unknown={"way_cleared": near.any(axis=0) & ~in_way.any(axis=0) & ~cleared},
-    )
+    return WorldSignal(cleared, near.any(axis=0) & ~in_way.any(axis=0) & ~cleared)
 
 
 def _at_edge(context: DriveContext) -> Flags:
@@ -92,9 +84,9 @@ def _at_edge(context: DriveContext) -> Flags:
     return (np.minimum(right, left) < edge) & (np.abs(right - left) > edge)
 
 
-def _called(context: DriveContext) -> SignalColumns:
+def _called(context: DriveContext) -> ObjectSignal:
     on_call, not_told = _on_call(context)
-    return SignalColumns(about={"on_call": on_call}, unknown={"on_call": not_told})
+    return ObjectSignal(on_call, not_told)
 
 
 @once
@@ -133,7 +125,7 @@ def _comes_near(context: DriveContext) -> Flags:
 def _against(context: DriveContext) -> Flags:
     along, faces = context.extents.along, np.cos(context.extents.turned) < _FACES
     against: Flags = np.where(
-        stands(context), faces, along * KMH_PER_MPS < -context.thresholds.standing_kmh
+        context.standing, faces, along * KMH_PER_MPS < -context.thresholds.standing_kmh
     )
     return against
 
@@ -179,10 +171,7 @@ def _crosses_near(context: DriveContext) -> Flags:
     across = np.abs(np.cos(tracks.heading[places] - context.ego.heading[0]))
     across_way = across < np.cos(np.radians(limits.turned_deg))
     near = called & across_way & (np.hypot(*aside) < limits.approach_m)
-    shortly, long = (
-        round(seconds / context.recording.step_s)
-        for seconds in (limits.passed_s, limits.preparing_s)
-    )
+    shortly, long = (context.steps_in(seconds) for seconds in (limits.passed_s, limits.preparing_s))
     brakes = tracks.acceleration[places] < -limits.disturbing_mps2
     held_up = near & brakes & context.spans.within_last(near & closer, shortly)
     found: Flags = np.logical_or.reduce(near & closer)
@@ -195,23 +184,23 @@ def _drives(context: DriveContext, rows: NDArray[intp]) -> Flags:
 
     Before or after. One that stands for longer with its lights on may be where it was called to.
     """
-    steps = round(context.thresholds.preparing_s / context.recording.step_s)
-    return context.spans.within(moves(context)[rows], steps, around=True)
+    steps = context.steps_in(context.thresholds.preparing_s)
+    return context.spans.within(context.moving[rows], steps, around=True)
 
 
 def _is_silent(context: DriveContext, rows: NDArray[intp]) -> Flags:
     """Mask, for ``rows``, of vehicles that do not sound their horn, where it is recorded."""
     horn, told = (flags[rows] for flags in lit_lamps(context, "horn"))
-    steps = round(context.thresholds.preparing_s / context.recording.step_s)
+    steps = context.steps_in(context.thresholds.preparing_s)
     silent: Flags = told & ~context.spans.within(horn, steps, around=True)
     return silent
 
 
 called_signals = SignalPasses(
     {
-        ("emergency_vehicle_near",): _emergency_vehicle_near,
-        ("on_call",): _called,
-        ("way_cleared",): _way_cleared,
+        "emergency_vehicle_near": _emergency_vehicle_near,
+        "on_call": _called,
+        "way_cleared": _way_cleared,
     }
 )
 """The signals of emergency vehicles on call."""

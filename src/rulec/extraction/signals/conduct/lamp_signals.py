@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from rulec.extraction.drive_context import DriveContext, once
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.signal_columns import SignalColumns, WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.recording import Lamp
 
@@ -19,22 +20,18 @@ FLASH_S = 1.0
 """Flashing lights count as on if they are lit within this time (s)."""
 
 
-def _headlamps(context: DriveContext) -> SignalColumns:
+def _headlamps(context: DriveContext) -> WorldSignal | None:
     """The brightest of ego's lamps; without a beam there may be weaker ones, unless it is night.
 
     At night none of those would be enough.
     """
     egos = context.ego.participants
     if not context.spans.agreed([ego.lamps and ego.shows >= _BEAMS for ego in egos]):
-        return SignalColumns()
+        return None
     lit = ego_lamps(context)
     codes = [2 if "main_beam" in (x or ()) else "dipped_beam" in (x or ()) for x in lit]
     dark = [x is None or not (x & _BEAMS or context.recording.weather.night) for x in lit]
-    return SignalColumns(
-        {"headlamps": np.array(codes, dtype=int)},
-        unknown={"headlamps": np.array(dark, dtype=bool)},
-        texts={"headlamps": _HEADLAMPS},
-    )
+    return WorldSignal(np.array(codes, dtype=int), np.array(dark, dtype=bool), texts=_HEADLAMPS)
 
 
 def _fog_lamps(context: DriveContext) -> SignalColumns:
@@ -52,21 +49,19 @@ def _fog_lamps(context: DriveContext) -> SignalColumns:
     )
 
 
-def _ego_on_call(context: DriveContext) -> SignalColumns:
+def _ego_on_call(context: DriveContext) -> WorldSignal:
     """Ego's blue lights; unknown only for emergency vehicles whose lights are not recorded."""
     egos, spread = context.ego.participants, context.spans.spread
     may_be = spread([ego.type == "priorityVehicle" for ego in egos])
     shows = spread(["blue_light" in ego.shows for ego in egos])
     if not (may_be | shows).any():
-        return SignalColumns({"ego_on_call": may_be})
+        return WorldSignal(may_be)
     lit = ego_lamps(context)
     blue = np.array(["blue_light" in (lamps or ()) for lamps in lit], dtype=bool)
     recorded = shows & np.array([lamps is not None for lamps in lit], dtype=bool)
-    steps = round(FLASH_S / context.recording.step_s)
+    steps = context.steps_in(FLASH_S)
     flashing = context.spans.within(blue[None], steps, around=True)[0]
-    return SignalColumns(
-        {"ego_on_call": flashing}, unknown={"ego_on_call": may_be & ~recorded & ~flashing}
-    )
+    return WorldSignal(flashing, may_be & ~recorded & ~flashing)
 
 
 @once
@@ -82,8 +77,8 @@ def ego_lamps(context: DriveContext) -> list[frozenset[Lamp] | None]:
 
 lamp_signals = SignalPasses(
     {
-        ("headlamps",): _headlamps,
-        ("ego_on_call",): _ego_on_call,
+        "headlamps": _headlamps,
+        "ego_on_call": _ego_on_call,
         ("front_fog_lamps", "rear_fog_lamps"): _fog_lamps,
     }
 )

@@ -11,7 +11,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_passages
 from rulec.extraction.signals.map.right_of_way.conflicts import Passing, in_conflict
 from rulec.extraction.signals.signal_columns import SignalColumns

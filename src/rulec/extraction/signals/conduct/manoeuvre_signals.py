@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.conduct.u_turns import may_turn_round, swings_round, u_turns
 from rulec.extraction.signals.ego_lanelets import own_lanelets
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.surroundings import BACKS_MPS
@@ -28,7 +29,7 @@ _DRIFT_M = 3.0
 """Boxes of standing vehicles drift by less: up to 2.5 m to and fro in Argoverse 2."""
 
 
-def _reversing(context: DriveContext) -> SignalColumns:
+def _reversing(context: DriveContext) -> WorldSignal:
     """Whether ego moves against its heading.
 
     Where headings are derived from places, vehicles are taken to head where their lanes lead: those
@@ -50,7 +51,7 @@ def _reversing(context: DriveContext) -> SignalColumns:
         for number, columns in spans.those(asked):
             unknown[columns] |= against[columns] & (not _tells_headings(context, number, columns))
         unknown |= may_back(context) & ~backs
-    return SignalColumns({"reversing": backs}, unknown={"reversing": unknown})
+    return WorldSignal(backs, unknown)
 
 
 def _comes_back_nowhere(context: DriveContext, perhaps: Flags, backs: Flags) -> Flags:
@@ -147,7 +148,7 @@ def may_back(context: DriveContext) -> Flags:
     return found | spans.all(found | ~moves) & spans.any(found)
 
 
-def _driving_side(context: DriveContext) -> SignalColumns:
+def _driving_side(context: DriveContext) -> WorldSignal:
     there, perhaps = oncoming_side(context)
     sides = there.astype(int)
     if perhaps.any():
@@ -155,11 +156,7 @@ def _driving_side(context: DriveContext) -> SignalColumns:
     perhaps = perhaps | may_back(context)
     if context.wrong_way:
         sides, perhaps = np.full_like(sides, _SIDES.index("wrong_way")), perhaps & False
-    return SignalColumns(
-        {"driving_side": sides},
-        unknown={"driving_side": perhaps},
-        texts={"driving_side": _SIDES},
-    )
+    return WorldSignal(sides, perhaps, texts=_SIDES)
 
 
 def _goes_over(context: DriveContext, there: Flags, perhaps: Flags) -> Flags:
@@ -173,7 +170,7 @@ def _goes_over(context: DriveContext, there: Flags, perhaps: Flags) -> Flags:
     )
     goes = (own_before > before) & (after < own_after)
     comes = (before > own_before) & (own_after < after)
-    least = round(context.thresholds.passed_s / context.recording.step_s)
+    least = context.steps_in(context.thresholds.passed_s)
     short = np.minimum(own_after, after) - np.maximum(own_before, before) <= least
     over: Flags = (goes | comes) & short
     return over
@@ -265,7 +262,7 @@ def _beyond_edges(context: DriveContext) -> tuple[Floats, Floats]:
 
 
 def _along_road(context: DriveContext) -> Flags:
-    drives = context.ego.speed[0] * KMH_PER_MPS >= context.thresholds.standing_kmh
+    drives = context.ego_moves
     along: Flags = drives & (np.abs(context.ego_extents.turned[0]) <= _ALONG_RAD)
     return along
 
@@ -285,11 +282,11 @@ def _on_map(context: DriveContext) -> Flags:
     return on_map
 
 
-def _u_turn(context: DriveContext) -> SignalColumns:
-    return SignalColumns({"u_turn": u_turns(context)}, unknown={"u_turn": may_turn_round(context)})
+def _u_turn(context: DriveContext) -> WorldSignal:
+    return WorldSignal(u_turns(context), may_turn_round(context))
 
 
-def _joins_road(context: DriveContext) -> SignalColumns:
+def _joins_road(context: DriveContext) -> WorldSignal:
     """Whether ego drives onto the road from where it stood beside it.
 
     Unknown where ego comes from beside the road at an angle, or is there when first seen, since the
@@ -298,11 +295,11 @@ def _joins_road(context: DriveContext) -> SignalColumns:
     outside = (beyond_near_edge(context) > _loose(context)) & _on_map(context)
     inside, joins = beyond_near_edge(context) <= 0, np.zeros(context.states, dtype=bool)
     perhaps = np.zeros(context.states, dtype=bool)
-    stands = outside & (context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh)
-    reach, spans = round(context.thresholds.setting_off_s / context.recording.step_s), context.spans
+    stands = outside & ~context.ego_moves
+    reach, spans = context.steps_in(context.thresholds.setting_off_s), context.spans
     comes = (spans.enters(inside).nonzero()[0] - 1).tolist()
     if not comes:
-        return SignalColumns({"joins_road": joins}, unknown={"joins_road": perhaps})
+        return WorldSignal(joins, perhaps)
     last_inside, last_stood = spans.latest(inside), spans.latest(stands)
     for state in comes:
         left, stood, first = (
@@ -317,15 +314,15 @@ def _joins_road(context: DriveContext) -> SignalColumns:
         swings = swings_round(context) | may_turn_round(context)
         round_ = context.spans.within(swings, reach, around=True)
         perhaps, joins = perhaps | (joins & round_), joins & ~round_
-    return SignalColumns({"joins_road": joins}, unknown={"joins_road": perhaps & ~joins})
+    return WorldSignal(joins, perhaps & ~joins)
 
 
 manoeuvre_signals = SignalPasses(
     {
-        ("reversing",): _reversing,
-        ("driving_side",): _driving_side,
-        ("u_turn",): _u_turn,
-        ("joins_road",): _joins_road,
+        "reversing": _reversing,
+        "driving_side": _driving_side,
+        "u_turn": _u_turn,
+        "joins_road": _joins_road,
     }
 )
 """The signals of ego's manoeuvres."""

@@ -13,18 +13,15 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once, once_a_recording, once_a_road
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import CYCLE_LANE, SHOULDER, own_lanelets, travel_lanes
 from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.queues import LOOSE, close_by, lanes_that_go_on, queues_by_lane
-from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.signals.signal_passes import (
-    SignalPasses,
-    once_a_recording,
-    once_a_road,
-)
+from rulec.extraction.signals.signal_columns import WorldSignal
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.recordings.recording import RAMPS, Lanelet, LaneMark, Side
 from rulec.trace.cells import Cells
@@ -64,11 +61,7 @@ _STANDING_CAMERAS = frozenset(
 """Formats of data recorded from above a stretch of road, or invented for one."""
 
 
-def _on_far_lane(context: DriveContext) -> SignalColumns:
-    return SignalColumns({"other_lane_available": _far_lane_is_free(context)})
-
-
-def _on_near_lane(context: DriveContext) -> SignalColumns:
+def _on_near_lane(context: DriveContext) -> WorldSignal:
     free, within_error = _near_lane_is_free(context)
     doubtful = _goes_back(context)
     # Rarely needed: an ego in the lane next to the kerb mostly stays there
@@ -77,7 +70,7 @@ def _on_near_lane(context: DriveContext) -> SignalColumns:
     # Maps do not say for which buses a bus lane is, or when; and those that may use it need not
     doubtful |= _is_beside(context, _BUS_LANE)
     unknown = free & doubtful | within_error
-    return SignalColumns({"near_lane_is_free": free}, unknown={"near_lane_is_free": unknown})
+    return WorldSignal(free, unknown)
 
 
 def _next_lane(context: DriveContext, side: Side) -> tuple[NDArray[intp], Flags]:
@@ -89,8 +82,8 @@ def _next_lane(context: DriveContext, side: Side) -> tuple[NDArray[intp], Flags]
     return lane, inside & travel_lanes(context)[np.arange(context.states), lane]
 
 
-def _far_lane_is_free(context: DriveContext) -> Flags:
-    """Mask of states with nobody in the place beside ego on the next far lane, now or soon."""
+def _far_lane_is_free(context: DriveContext) -> WorldSignal:
+    """Whether nobody is in the place beside ego on the next far lane, now or soon."""
     lane, there = _next_lane(context, "left" if context.side == "right" else "right")
     cells = _on_lane(context, lane, there.nonzero()[0])
     gap, station = relations.gap(context)[cells], relations.station(context)[cells]
@@ -99,7 +92,7 @@ def _far_lane_is_free(context: DriveContext) -> Flags:
     free: Flags = there.copy()
     beside = station == relations.BESIDE
     free[cells[1][beside | ((station == relations.IN_FRONT_OF) & near)]] = False
-    return free
+    return WorldSignal(free)
 
 
 def _near_lane_is_free(context: DriveContext) -> tuple[Flags, Flags]:
@@ -169,7 +162,7 @@ def _goes_back(context: DriveContext) -> Flags:
     lane, spans = context.steady_lane, context.spans
     kerbward = spans.after(lane) - lane
     changes = kerbward < 0 if context.side == "right" else kerbward > 0
-    steps = round(_CHANGE_S / context.recording.step_s)
+    steps = context.steps_in(_CHANGE_S)
     return spans.within(changes, steps - 1)
 
 
@@ -383,8 +376,8 @@ def _on_lane(
 
 next_lane_signals = SignalPasses(
     {
-        ("other_lane_available",): _on_far_lane,
-        ("near_lane_is_free",): _on_near_lane,
+        "other_lane_available": _far_lane_is_free,
+        "near_lane_is_free": _on_near_lane,
     }
 )
 """The signals of whether a lane next to ego's is free for it."""

@@ -202,5 +202,5 @@ def _is_passed(context: DriveContext, row: int, states: slice) -> bool:
     return bool((others.s_min[row, states] < own.s_max[0, states]).any())
 
 
-oncoming_conflicts = SignalPasses({("holds_up_oncoming",): _holds_up_oncoming})
+oncoming_conflicts = SignalPasses({"holds_up_oncoming": _holds_up_oncoming})
 """The signal of conflicts with oncoming vehicles while ego is beyond the middle."""

@@ -1,4 +1,4 @@
-"""Which lamps of participants are lit, and for which that is recorded; which participants stand."""
+"""Which lamps of participants are lit, and for which that is recorded."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from rulec.array_types import Flags
+from rulec.extraction.computed_once import once_a_recording
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.conduct.lamp_signals import FLASH_S
-from rulec.extraction.signals.signal_passes import once_a_recording
-from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import Lamp
 
 
@@ -48,16 +47,4 @@ def lit_lamps(context: DriveContext, lamp: Lamp) -> tuple[Flags, Flags]:
 
 def flashing(lit: Flags, context: DriveContext) -> Flags:
     """A mask of lit lamps that includes the time between two flashes."""
-    return context.spans.within(lit, round(FLASH_S / context.recording.step_s), around=True)
-
-
-def stands(context: DriveContext) -> Flags:
-    """Mask of participants that stand."""
-    still: Flags = context.tracks.speed * KMH_PER_MPS < context.thresholds.standing_kmh
-    return still
-
-
-def moves(context: DriveContext) -> Flags:
-    """Mask of participants that move."""
-    moving: Flags = context.tracks.speed * KMH_PER_MPS >= context.thresholds.standing_kmh
-    return moving
+    return context.spans.within(lit, context.steps_in(FLASH_S), around=True)

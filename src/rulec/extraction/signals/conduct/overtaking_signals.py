@@ -18,17 +18,16 @@ from rulec.extraction.signals.ego_lanelets import (
     those_on_lanes,
 )
 from rulec.extraction.signals.settling import fewest_states, without_blips
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.traffic_thresholds import LEAST_S
-from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
 
 _DRIFT_MPS = 0.2
 """A vehicle with a lower lateral speed keeps its lane."""
 
 
-def _overtaking(context: DriveContext) -> SignalColumns:
+def _overtaking(context: DriveContext) -> WorldSignal:
     """Whether ego overtakes; beyond the road's middle, from its way there until it is back.
 
     Unknown if ego goes there behind a vehicle and back: it may have given up; and where its drive
@@ -38,7 +37,7 @@ def _overtaking(context: DriveContext) -> SignalColumns:
     # Back for so short a time that `driving_side` takes it for noise does not count as back
     least = fewest_states(LEAST_S["driving_side"], context.recording.step_s)
     side = there | perhaps | without_blips(there | perhaps, least, context.spans)
-    stands = (context.tracks.speed * KMH_PER_MPS < context.thresholds.standing_kmh) & side
+    stands = context.standing & side
     overtakes, unsure = _overtakes(context, ~stands)
     if side.any():
         side = _with_all_that_joins(context, side, on_both_halves(context))
@@ -46,7 +45,7 @@ def _overtaking(context: DriveContext) -> SignalColumns:
         overtakes = overtakes | goes_round | _meanwhile(context, overtakes, side)
         perhaps = _meanwhile(context, unsure | _close_behind(context), side)
         unsure = unsure | may_go_round | perhaps | _may_come_from_passing(context, side)
-    return SignalColumns({"overtaking": overtakes}, unknown={"overtaking": unsure & ~overtakes})
+    return WorldSignal(overtakes, unsure & ~overtakes)
 
 
 def _with_all_that_joins(context: DriveContext, flags: Flags, more: Flags) -> Flags:
@@ -63,7 +62,7 @@ def _may_come_from_passing(context: DriveContext, side: Flags) -> Flags:
     For as long as overtaking takes.
     """
     spans = context.spans
-    lasts = round(context.thresholds.overtaking_s / context.recording.step_s)
+    lasts = context.steps_in(context.thresholds.overtaking_s)
     begins_there = side & (spans.latest(~side) < spans.first)
     return begins_there & (spans.columns - spans.first < lasts)
 
@@ -78,7 +77,7 @@ def _near_enough_to_go_round(context: DriveContext) -> Flags:
 def _meanwhile(context: DriveContext, flags: Flags, during: Flags) -> Flags:
     """Mask of states within ``catching_up_s`` of a flagged one, with ``during`` true in between."""
     spans, held = context.spans, flags & during
-    horizon = round(context.thresholds.catching_up_s / context.recording.step_s)
+    horizon = context.steps_in(context.thresholds.catching_up_s)
     before, after = spans.latest(held), spans.next_state(held)
     earlier = (before > spans.latest(~during)) & (before >= spans.columns - horizon)
     later = (after < spans.next_state(~during)) & (after <= spans.columns + horizon)
@@ -102,20 +101,18 @@ def _close_behind(context: DriveContext) -> Flags:
     return close
 
 
-def _begins_to_overtake(context: DriveContext) -> SignalColumns:
+def _begins_to_overtake(context: DriveContext) -> WorldSignal:
     """Whether ego overtakes within ``parting_s``, so that it is pulling out for that by now.
 
     Unknown where the drive ends before.
     """
     overtakes, unsure = _overtakes(context, True)
-    horizon = round(context.thresholds.parting_s / context.recording.step_s)
+    horizon = context.steps_in(context.thresholds.parting_s)
     spans = context.spans
     begins, perhaps = (spans.within(flags, horizon) for flags in (overtakes, overtakes | unsure))
     moves_out = np.abs(context.ego_extents.across[0]) > _DRIFT_MPS
     ends = moves_out & (spans.columns + horizon >= spans.end)
-    return SignalColumns(
-        {"begins_to_overtake": begins}, unknown={"begins_to_overtake": (perhaps | ends) & ~begins}
-    )
+    return WorldSignal(begins, (perhaps | ends) & ~begins)
 
 
 def _overtakes(context: DriveContext, whom: Flags | bool) -> tuple[Flags, Flags]:
@@ -166,9 +163,9 @@ def _ahead_and_past(context: DriveContext, cells: Cells, tolerances: float) -> F
 
 overtaking_signals = SignalPasses(
     {
-        ("overtaking",): _overtaking,
-        ("begins_to_overtake",): _begins_to_overtake,
-        ("being_overtaken",): being_overtaken,
+        "overtaking": _overtaking,
+        "begins_to_overtake": _begins_to_overtake,
+        "being_overtaken": being_overtaken,
     }
 )
 """The signals of overtaking."""

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.braking_causes.map_causes import (
     LOOKS_S,
@@ -36,8 +37,7 @@ from rulec.extraction.signals.conduct.braking_causes.traffic_causes import (
 )
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.map.exit_room import waits_for_room
-from rulec.extraction.signals.measured_numbers import moves
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import JOINING
@@ -64,9 +64,9 @@ _DRIVES_KMH = 30.0
 """A vehicle that is this fast later on has not broken down, nor is it towed."""
 
 
-def _cause_to_brake(context: DriveContext) -> SignalColumns:
+def _cause_to_brake(context: DriveContext) -> WorldSignal:
     caused, unknown = _causes(context)
-    return SignalColumns({"cause_to_brake": caused}, unknown={"cause_to_brake": unknown})
+    return WorldSignal(caused, unknown)
 
 
 @once
@@ -85,7 +85,7 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     when a reason, or somebody who may have been one, is just gone. Where not all traffic is
     recorded, the road counts as known only as far as a participant is recorded ahead.
     """
-    reach, spans, stands = _reach(context), context.spans, ~moves(context)
+    reach, spans, stands = _reach(context), context.spans, ~context.ego_moves
     brakes, asked = _asked(context)
     on_map = map_reasons(context, asked, reach)
     caused = on_map.does | led(context, brakes, reach) | waits_for_room(context)
@@ -110,10 +110,10 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     perhaps[on_road] |= bends
     caused[on_road] |= too_fast
     # The mean still shows hard braking when its reason, such as a lower limit, is just gone
-    shown = round(context.thresholds.smoothing_s / 2 / context.recording.step_s)
+    shown = context.steps_in(context.thresholds.smoothing_s / 2)
     perhaps |= brakes & spans.within_last(caused, shown)
     # And it takes ego a moment to see that somebody will not come after all
-    seen = shown + round(context.thresholds.reaction_s / context.recording.step_s)
+    seen = shown + context.steps_in(context.thresholds.reaction_s)
     perhaps |= brakes & spans.within_last(comes, seen)
     if stands.any():
         caused |= stands & _since(context, caused & stands, _SETS_OFF_S)
@@ -121,7 +121,7 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     if (caused | perhaps).all():
         return caused, ~caused
     others = others.part((~(caused | perhaps)[others.states]).nonzero()[0])
-    soon = round(context.thresholds.preparing_s / context.recording.step_s)
+    soon = context.steps_in(context.thresholds.preparing_s)
     if stands.any():
         broken_down = stands & ~_drives_on(context, stands)
         perhaps |= spans.within(broken_down, soon) & ~(stands & _shows_no_hazard(context))
@@ -139,7 +139,7 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     if stands.any():
         perhaps |= stands & _since(context, stands & (caused | perhaps), MOVES_OFF_S)
         # A vehicle that has just stopped may have seen another one that did not come after all
-        looks = spans.within_last(~stands, round(LOOKS_S / context.recording.step_s))
+        looks = spans.within_last(~stands, context.steps_in(LOOKS_S))
         perhaps |= on_map.freely & stands & looks
     if not _all_are_recorded(context):
         farther = (others.ahead > reach[others.states]) & (others.away <= _ROAD_M)
@@ -152,7 +152,7 @@ def _since(context: DriveContext, flags: Flags, seconds: float) -> Flags:
     spans = context.spans
     latest = spans.latest(flags)
     recent = (spans.columns - latest) * context.recording.step_s <= seconds
-    found: Flags = recent & (latest > spans.latest(moves(context)))
+    found: Flags = recent & (latest > spans.latest(context.ego_moves))
     return found
 
 
@@ -166,8 +166,8 @@ def _asked(context: DriveContext) -> tuple[Flags, Flags]:
     brakes = acceleration - context.ego.acceleration_error[0] <= hard
     limit, speed = context.limit_mps, context.ego.speed[0]
     slow = np.where(np.isfinite(limit), speed < _SLOWER * limit, _followed(context))
-    second = round(1.0 / context.recording.step_s)
-    return acceleration <= hard, context.spans.within(brakes, second) | ~moves(context) | slow
+    second = context.steps_in(1.0)
+    return acceleration <= hard, context.spans.within(brakes, second) | ~context.ego_moves | slow
 
 
 def _drives_on(context: DriveContext, stands: Flags) -> Flags:
@@ -187,7 +187,7 @@ def _beside(context: DriveContext, others: Others) -> Flags:
     beside = (others.away > IN_WAY_M) & (others.away <= COMES_M)
     beside &= np.abs(others.ahead) <= REACH_M
     found: Flags = np.logical_or.reduce(beside)
-    turns = (found & ~moves(context)[others.states]).nonzero()[0]
+    turns = (found & ~context.ego_moves[others.states]).nonzero()[0]
     if len(turns):
         # If ego stands in a turn, those behind it on its road may appear to be beside it
         there = without_followers(context, others.part(turns))
@@ -254,7 +254,7 @@ def _all_are_recorded(context: DriveContext) -> bool:
     return "arrivals" in context.recording.complete
 
 
-def _impedes(context: DriveContext) -> SignalColumns:
+def _impedes(context: DriveContext) -> WorldSignal:
     """Whether a vehicle follows ego, which is far below the limit for long without a reason.
 
     A cycle has one: no law asks for more than its rider's strength. A vehicle that gains speed, as
@@ -266,19 +266,16 @@ def _impedes(context: DriveContext) -> SignalColumns:
     followed = _followed(context, _FALLS_BACK_MPS) & ~cycles
     caused, perhaps = _causes(context)
     gains = context.ego.acceleration[0] > context.thresholds.accelerating_mps2
-    slow = told & (speed < _FAR_SLOWER * limit) & moves(context)
+    slow = told & (speed < _FAR_SLOWER * limit) & context.ego_moves
     far_slower = slow & ~gains & ~caused & ~perhaps
-    steps = round(context.thresholds.preparing_s / context.recording.step_s)
+    steps = context.steps_in(context.thresholds.preparing_s)
     runs = context.spans.columns - context.spans.latest(~far_slower)
     impedes = followed & (runs > steps)
-    slower = (~told | (speed < _SLOWER * limit)) & moves(context) & ~gains & ~caused
+    slower = (~told | (speed < _SLOWER * limit)) & context.ego_moves & ~gains & ~caused
     since = context.spans.latest(~slower)
     # What was before its drive began is unknown
     for_long = (context.spans.columns - since > steps) | (since < context.spans.first)
-    return SignalColumns(
-        {"impedes_traffic": impedes},
-        unknown={"impedes_traffic": followed & slower & for_long & ~impedes},
-    )
+    return WorldSignal(impedes, followed & slower & for_long & ~impedes)
 
 
 def _followed(context: DriveContext, slower_mps: float = np.inf) -> Flags:
@@ -299,8 +296,8 @@ def _followed(context: DriveContext, slower_mps: float = np.inf) -> Flags:
 
 reason_signals = SignalPasses(
     {
-        ("cause_to_brake",): _cause_to_brake,
-        ("impedes_traffic",): _impedes,
+        "cause_to_brake": _cause_to_brake,
+        "impedes_traffic": _impedes,
     }
 )
 """The signals of reasons to brake and of holding up others."""

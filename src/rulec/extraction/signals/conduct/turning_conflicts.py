@@ -158,5 +158,5 @@ def _in_frame(
     return x * cos + y * sin, y * cos - x * sin
 
 
-turning_conflicts = SignalPasses({("turns_in_way_of",): _turns_in_way_of})
+turning_conflicts = SignalPasses({"turns_in_way_of": _turns_in_way_of})
 """The signal of conflicts with participants beside a turning ego."""

@@ -8,7 +8,8 @@ import numpy as np
 import shapely
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.tracks.tracks import Tracks
 from rulec.scenario.recorded.reference_line import turn

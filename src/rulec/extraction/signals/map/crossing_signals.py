@@ -16,7 +16,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.junction_signals import at_unknown_way
 from rulec.extraction.signals.map.map_signals import crossings_told, next_crossing
 from rulec.extraction.signals.map.zone_signals import (
@@ -25,7 +26,7 @@ from rulec.extraction.signals.map.zone_signals import (
     in_turn,
     side_road,
 )
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import ObjectSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
@@ -49,9 +50,9 @@ _WALKS_MPS = 1.4
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
 
 
-def _crossing_use(context: DriveContext) -> SignalColumns:
+def _crossing_use(context: DriveContext) -> ObjectSignal | None:
     if not crossings_told(context):
-        return SignalColumns()
+        return None
     rows, used = _pedestrians(context), _used_ahead(context)
     own, unsure = np.zeros(context.relevant.shape, dtype=int), np.zeros_like(context.relevant)
     some = used.any(axis=1)
@@ -61,12 +62,7 @@ def _crossing_use(context: DriveContext) -> SignalColumns:
         own[rows] = np.where(_past_ego(context, rows) | too_late, 0, used)
         unsure[rows] = (may_be | _is_far_off(context, rows)) & (own[rows] > 0)
         unsure[rows] |= _in_doubt(context, own[rows])
-    return SignalColumns(
-        about={"crossing_use": own},
-        only={"crossing_use": context.tracks.of_type("pedestrian")},
-        unknown={"crossing_use": unsure},
-        texts={"crossing_use": _USES},
-    )
+    return ObjectSignal(own, unsure, only=context.tracks.of_type("pedestrian"), texts=_USES)
 
 
 def _in_doubt(context: DriveContext, uses: NDArray[intp]) -> Flags:
@@ -80,9 +76,9 @@ def _in_doubt(context: DriveContext, uses: NDArray[intp]) -> Flags:
     return context.spans.within(changes, steps, around=True)
 
 
-def _stopped_for_pedestrian(context: DriveContext) -> SignalColumns:
+def _stopped_for_pedestrian(context: DriveContext) -> ObjectSignal | None:
     if not crossings_told(context):
-        return SignalColumns()
+        return None
     stopped = np.zeros(context.relevant.shape, dtype=bool)
     if len(_pedestrians(context)):
         rows = _pedestrians(context)
@@ -91,10 +87,8 @@ def _stopped_for_pedestrian(context: DriveContext) -> SignalColumns:
         waited_for = ((_used_ahead(context) >= least) & context.relevant[rows]).any(axis=0)
         states = waited_for.nonzero()[0]
         stopped[:, states] = _stopped(context, states)
-    return SignalColumns(
-        about={"stopped_for_pedestrian": stopped},
-        only={"stopped_for_pedestrian": context.tracks.of_type("vehicle")},
-        unknown={"stopped_for_pedestrian": _behind_another(context, stopped)},
+    return ObjectSignal(
+        stopped, _behind_another(context, stopped), only=context.tracks.of_type("vehicle")
     )
 
 
@@ -106,9 +100,9 @@ def _is_lit(context: DriveContext) -> Flags:
     return lit
 
 
-def _nearest_to_crossing(context: DriveContext) -> SignalColumns:
+def _nearest_to_crossing(context: DriveContext) -> ObjectSignal | None:
     if not crossings_told(context):
-        return SignalColumns()
+        return None
     start, _ = next_crossing(context)
     way = np.where(context.going_along, start - context.extents.s_max, np.inf)
     ahead = np.where((way >= 0) & (way <= context.thresholds.approach_m), way, np.inf)
@@ -117,12 +111,10 @@ def _nearest_to_crossing(context: DriveContext) -> SignalColumns:
     place = context.tolerances.place_m
     unsure = np.isfinite(ahead) & ~near & (ahead < nearest + 2 * place)
     unsure |= near & ((np.isfinite(ahead) & (ahead < nearest + 2 * place)).sum(axis=0) > 1)
-    return SignalColumns(
-        about={"nearest_to_crossing": near}, unknown={"nearest_to_crossing": unsure}
-    )
+    return ObjectSignal(near, unsure)
 
 
-def _crosses_side_road(context: DriveContext) -> SignalColumns:
+def _crosses_side_road(context: DriveContext) -> ObjectSignal:
     """Pedestrians that use the road into which ego turns without being let across by ego.
 
     An ego that waits in the junction until they are across has entered it lawfully. Who drives into
@@ -139,11 +131,7 @@ def _crosses_side_road(context: DriveContext) -> SignalColumns:
             uses |= in_turn(context) & (context.spans.next_state(uses) < past)
             crosses[rows], unsure[rows] = uses & taken, uses & open_end
     unsure |= at_unknown_way(context, _pedestrians(context))
-    return SignalColumns(
-        about={"crosses_side_road": crosses},
-        only={"crosses_side_road": context.tracks.of_type("pedestrian")},
-        unknown={"crosses_side_road": unsure},
-    )
+    return ObjectSignal(crosses, unsure, only=context.tracks.of_type("pedestrian"))
 
 
 def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags, NDArray[intp]]:
@@ -162,7 +150,7 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     spans, seen = context.spans, context.relevant[rows]
     limits, step_s = context.thresholds, context.recording.step_s
     on_lanes, last = in_side_road(context, rows) & seen, spans.end - 1
-    stands = context.tracks.speed[rows] * KMH_PER_MPS < limits.standing_kmh
+    stands = context.standing[rows]
     comes = spans.next_state(seen & (own.s_max >= others.s_min))
     reached, at = comes < spans.end, np.minimum(comes, last)
     goes = np.minimum(spans.next_state(own.s_min > others.s_max), last)
@@ -203,7 +191,7 @@ def _gets_away(context: DriveContext, rows: NDArray[intp]) -> Flags:
     Noise moves one that stands to and fro, at the speed of one that walks.
     """
     spans, tracks = context.spans, context.tracks
-    reach = max(round(_AROUND_S / context.recording.step_s), 1)
+    reach = max(context.steps_in(_AROUND_S), 1)
     begin = np.maximum(spans.columns - reach, spans.first)
     end = np.minimum(spans.columns + reach, spans.end - 1)
     x, y = (at[rows][:, end] - at[rows][:, begin] for at in (tracks.x, tracks.y))
@@ -239,7 +227,7 @@ def _waited_for(
     faster = spans.next_state(~slow)[since]
     across = np.take_along_axis(spans.next_state(off), since, axis=1)
     yet = waits & (faster >= spans.end) & (across >= spans.end)
-    soon = faster + round(context.thresholds.entering_s / context.recording.step_s)
+    soon = faster + context.steps_in(context.thresholds.entering_s)
     return waits & (across <= np.minimum(soon, last)), yet
 
 
@@ -324,7 +312,7 @@ def _too_late(
     limits, used = context.thresholds, uses > 0
     speed, front = np.maximum(context.ego_extents.along[0], 0.0), context.ego_extents.s_max[0]
     start, _ = next_crossing(context)
-    longest = round(limits.away_s / context.recording.step_s)
+    longest = context.steps_in(limits.away_s)
     spans = context.spans
     off = spans.columns - spans.latest(used) > longest
     seen_before = spans.latest(off & context.relevant[rows]) >= spans.first
@@ -358,7 +346,7 @@ def _past_ego(context: DriveContext, rows: NDArray[intp]) -> Flags:
     spans = context.spans
     away = spans.latest((on_left | on_right) & (leaves > least))
     back = spans.latest(~(left | right) | (leaves < -least))
-    longest = round(context.thresholds.away_s / context.recording.step_s)
+    longest = context.steps_in(context.thresholds.away_s)
     past: Flags = (away > back) & (spans.columns - away <= longest)
     return past
 
@@ -411,7 +399,7 @@ def _behind_another(context: DriveContext, stopped: Flags) -> Flags:
 def _stopped(context: DriveContext, states: NDArray[intp]) -> Flags:
     """Mask of participants stopped on ego's lanes before the crossing ahead, in some states."""
     start, _ = next_crossing(context)
-    stands = context.tracks.speed[:, states] * KMH_PER_MPS < context.thresholds.standing_kmh
+    stands = context.standing[:, states]
     way = start[states] - context.extents.s_max[:, states]
     stopped: Flags = stands & context.on_lanes[:, states]
     stopped &= (way >= 0) & (way <= 2 * context.thresholds.zone_m)
@@ -420,10 +408,10 @@ def _stopped(context: DriveContext, states: NDArray[intp]) -> Flags:
 
 crossing_signals = SignalPasses(
     {
-        ("crossing_use",): _crossing_use,
-        ("stopped_for_pedestrian",): _stopped_for_pedestrian,
-        ("nearest_to_crossing",): _nearest_to_crossing,
-        ("crosses_side_road",): _crosses_side_road,
+        "crossing_use": _crossing_use,
+        "stopped_for_pedestrian": _stopped_for_pedestrian,
+        "nearest_to_crossing": _nearest_to_crossing,
+        "crosses_side_road": _crosses_side_road,
     }
 )
 """The signals of pedestrians, and of vehicles that stop for them."""

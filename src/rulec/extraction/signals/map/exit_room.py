@@ -7,11 +7,12 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.map.level_crossing_signals import Stretches, level_crossings
 from rulec.extraction.signals.measured_numbers import corner_ahead
-from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
+from rulec.extraction.signals.signal_columns import WorldSignal, ids_by_state
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 
 ROOM_M = 1.0
@@ -21,7 +22,7 @@ _AT_PLACE_M = 10.0
 """Ego waits before a place if its front is at most this far (m) from it."""
 
 
-def exit_clear(context: DriveContext) -> SignalColumns:
+def exit_clear(context: DriveContext) -> WorldSignal:
     """Whether ego has room behind the place that it enters; and where that is unknown.
 
     There is none if a vehicle ahead, at walking pace at most while ego stands, leaves too little
@@ -33,7 +34,7 @@ def exit_clear(context: DriveContext) -> SignalColumns:
     places = _places(context)
     clear, unknown = np.ones(context.states, dtype=bool), np.zeros(context.states, dtype=bool)
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
-    stands = context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh
+    stands = ~context.ego_moves
     entered = _entered(front, rear, places, context.thresholds.approach_m)
     if not any((entered == number).any() for number in range(len(places))):
         nobody = np.zeros(context.relevant.shape, dtype=bool)
@@ -93,12 +94,8 @@ def _places(context: DriveContext) -> Stretches:
 
 def _room_beyond(
     context: DriveContext, clear: Flags, unknown: Flags, nearest: Flags
-) -> SignalColumns:
-    return SignalColumns(
-        {"exit_clear": clear},
-        unknown={"exit_clear": unknown & clear},
-        whom={"exit_clear": ids_by_state(nearest, context.ids)},
-    )
+) -> WorldSignal:
+    return WorldSignal(clear, unknown & clear, whom=ids_by_state(nearest, context.ids))
 
 
 def _until(context: DriveContext, flags: Flags) -> Flags:

@@ -8,7 +8,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.priority_signals import (
     approach,
@@ -25,7 +26,7 @@ from rulec.extraction.signals.map.stop_lines import (
     stop_line,
 )
 from rulec.extraction.signals.measured_numbers import own_front
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import SignalColumns, WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.at_junctions.junctions import all_have_to_stop
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
@@ -42,11 +43,11 @@ _SWEEPS_M = 10.0
 """The middle of a longer body cuts the corner in a turn."""
 
 
-def _junction_zone(context: DriveContext) -> SignalColumns:
+def _junction_zone(context: DriveContext) -> WorldSignal:
     zone = np.zeros(context.states, dtype=bool)
     for start, end in context.road.junctions:
         zone |= _at_junction(context, start, end)
-    return SignalColumns({"junction_zone": zone})
+    return WorldSignal(zone)
 
 
 def _at_junction(context: DriveContext, start: float, end: float) -> Flags:
@@ -56,12 +57,12 @@ def _at_junction(context: DriveContext, start: float, end: float) -> Flags:
     return at_junction
 
 
-def _enters_junction(context: DriveContext) -> SignalColumns:
+def _enters_junction(context: DriveContext) -> WorldSignal:
     enters, may_enter = np.zeros((2, context.states), dtype=bool)
     for start, _ in context.road.junctions:
         enters |= passes(context, start)
         may_enter |= may_have_passed(context, start)
-    return SignalColumns({"enters_junction": enters}, unknown={"enters_junction": may_enter})
+    return WorldSignal(enters, may_enter)
 
 
 def _turns(context: DriveContext) -> SignalColumns:
@@ -85,11 +86,11 @@ def _turns(context: DriveContext) -> SignalColumns:
     )
 
 
-def _stop_signs(context: DriveContext) -> SignalColumns:
+def _stop_signs(context: DriveContext) -> WorldSignal | None:
     if not _tells_stop_signs(context):
-        return SignalColumns()
+        return None
     crosses, may_cross = _crosses_stop_line(context)
-    return SignalColumns({"crosses_stop_line": crosses}, unknown={"crosses_stop_line": may_cross})
+    return WorldSignal(crosses, may_cross)
 
 
 @drive_by_drive
@@ -260,7 +261,7 @@ def _may_have_sign(context: DriveContext) -> Flags:
     if not STOP_SIGNS & map_contents(context).untold_signs:
         return np.zeros(context.states, dtype=bool)
     may = own_lanelets(context).flags(lambda lanelet: bool(STOP_SIGNS & lanelet.untold_signs))
-    moves = context.ego.speed[0] * KMH_PER_MPS >= context.thresholds.standing_kmh
+    moves = context.ego_moves
     may |= context.spans.before(may)
     may &= moves
     return may
@@ -300,11 +301,11 @@ def turn_at(context: DriveContext, start: float, end: float) -> str:
 
 junction_signals = SignalPasses(
     {
-        ("junction_zone",): _junction_zone,
-        ("enters_junction",): _enters_junction,
+        "junction_zone": _junction_zone,
+        "enters_junction": _enters_junction,
         ("turn", "preparing_to_leave"): _turns,
-        ("crosses_stop_line",): _stop_signs,
-        ("all_way_stop",): _all_way_stop,
+        "crosses_stop_line": _stop_signs,
+        "all_way_stop": _all_way_stop,
     }
 )
 """The signals of junctions on ego's road, and of their signs."""

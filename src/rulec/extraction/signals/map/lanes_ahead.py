@@ -11,11 +11,11 @@ from itertools import pairwise
 import numpy as np
 
 from rulec.array_types import Flags
+from rulec.extraction.computed_once import once_a_recording, once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
-from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.signals.signal_passes import once_a_recording, once_a_road
+from rulec.extraction.signals.signal_columns import ObjectSignal
 from rulec.extraction.tracks.at_junctions.junctions import JunctionWay
 from rulec.recordings.recording import Lanelet
 from rulec.scenario.recorded.reference_line import turn
@@ -121,7 +121,7 @@ def _lead(context: DriveContext, ways: Sequence[JunctionWay], turned: float) -> 
     return Leads.BOTH if any(along) else Leads.ELSEWHERE
 
 
-def leads_elsewhere(context: DriveContext) -> SignalColumns:
+def leads_elsewhere(context: DriveContext) -> ObjectSignal:
     """Whether a participant's lane before a junction does not go on along ego's road beyond it.
 
     Where ways from a lane lead there and elsewhere, the way that the participant takes decides; in
@@ -162,9 +162,7 @@ def leads_elsewhere(context: DriveContext) -> SignalColumns:
             turns_off = _turns_off(context, row, junction)
             elsewhere[row] |= near[row] & both[row] & bool(turns_off)
             unknown[row] |= near[row] & both[row] & (turns_off is None)
-    return SignalColumns(
-        about={"leads_elsewhere": elsewhere}, unknown={"leads_elsewhere": unknown & ~elsewhere}
-    )
+    return ObjectSignal(elsewhere, unknown & ~elsewhere)
 
 
 @once_a_road

@@ -8,10 +8,11 @@ from heapq import heappop, heappush
 import numpy as np
 
 from rulec.array_types import Flags, Floats
+from rulec.extraction.computed_once import once_a_map, once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.stop_lines import may_have_passed
-from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.signals.signal_passes import SignalPasses, once_a_map, once_a_road
+from rulec.extraction.signals.signal_columns import SignalColumns, WorldSignal
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.driven_road import runs_along
 from rulec.scenario.recorded.route import lanelet_length
 
@@ -37,18 +38,16 @@ def _zones(context: DriveContext) -> SignalColumns:
     )
 
 
-def _warned(context: DriveContext) -> SignalColumns:
+def _warned(context: DriveContext) -> WorldSignal | None:
     """Whether ego is past the sign warning of a level crossing; unknown where there may be one.
 
     No map has these signs, but where no level crossing is ahead, none warns of it.
     """
     if not _tells_rails(context):
-        return SignalColumns()
+        return None
     front, nobody = context.ego_extents.s_max[0], np.zeros(context.states, dtype=bool)
     perhaps = _way_to_next(context, front) <= _SIGNS_M
-    return SignalColumns(
-        {"past_level_crossing_sign": nobody}, unknown={"past_level_crossing_sign": perhaps}
-    )
+    return WorldSignal(nobody, perhaps)
 
 
 def _way_to_next(context: DriveContext, places: Floats) -> Floats:
@@ -85,10 +84,10 @@ def _ways_to_next(context: DriveContext) -> Mapping[str, float]:
     return ways
 
 
-def _tracks_at_kerb(context: DriveContext) -> SignalColumns:
+def _tracks_at_kerb(context: DriveContext) -> WorldSignal | None:
     """Whether rails are beside the kerb lane, or in it, as rail vehicles there show."""
     if not _tells_rails(context):
-        return SignalColumns()
+        return None
     pieces = context.road.piece(context.ego_extents.s[0])
     there = context.existing_lanes
     kerb = there.argmax(axis=1)
@@ -98,7 +97,7 @@ def _tracks_at_kerb(context: DriveContext) -> SignalColumns:
     runs = context.relevant[rails] & context.on_lanes[rails]
     runs &= abs(context.extents.turned[rails]) < 1.0
     in_it = (runs & (context.extents.lane[rails] == kerb)).any(axis=0)
-    return SignalColumns({"tracks_at_kerb": _pieces_by_rails(context)[pieces] | in_it})
+    return WorldSignal(_pieces_by_rails(context)[pieces] | in_it)
 
 
 def _tells_rails(context: DriveContext) -> bool:
@@ -130,8 +129,8 @@ def _pieces_by_rails(context: DriveContext) -> Flags:
 level_crossing_signals = SignalPasses(
     {
         ("level_crossing_zone", "enters_level_crossing", "guarded"): _zones,
-        ("past_level_crossing_sign",): _warned,
-        ("tracks_at_kerb",): _tracks_at_kerb,
+        "past_level_crossing_sign": _warned,
+        "tracks_at_kerb": _tracks_at_kerb,
     }
 )
 """The signals of level crossings and rails."""

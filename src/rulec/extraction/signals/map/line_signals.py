@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.junction_signals import way_not_known
 from rulec.extraction.signals.map.stop_lines import (
@@ -19,10 +20,11 @@ from rulec.extraction.signals.map.stop_lines import (
     stop_line,
     unseen_steps,
 )
-from rulec.extraction.signals.measured_numbers import LONGEST_S, moves, own_front, own_speed
+from rulec.extraction.signals.measured_numbers import LONGEST_S, own_front, own_speed
 from rulec.extraction.signals.signal_columns import (
     SignalColumn,
     SignalColumns,
+    WorldSignal,
     rounded,
     rounded_outward,
 )
@@ -50,7 +52,7 @@ def _to_line(context: DriveContext) -> SignalColumns:
     if not _tells_lines(context):
         return SignalColumns()
     way, (near, far) = _way_to_line(context)
-    (speed, error), drives = own_speed(context), moves(context)
+    (speed, error), drives = own_speed(context), context.ego_moves
     ahead = far > 0
 
     def seconds(distance: Floats, at_mps: Floats) -> Floats:
@@ -103,17 +105,14 @@ def _way_to_line(context: DriveContext) -> tuple[Floats, tuple[Floats, Floats]]:
     return way, (near, far)
 
 
-def _to_junction(context: DriveContext) -> SignalColumns:
+def _to_junction(context: DriveContext) -> WorldSignal:
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
     begin = np.full(context.states, np.inf)
     for low, high in sorted(context.road.junctions, reverse=True):
         begin = np.where(rear < high, low, begin)
     way, place = begin - front, context.tolerances.place_m
     to, *bounds = (np.clip(way + more, 0.0, _NO_JUNCTION_M) for more in (0.0, -place, place))
-    return SignalColumns(
-        {"distance_to_junction": rounded(to)},
-        bounds={"distance_to_junction": rounded_outward(bounds[0], bounds[1])},
-    )
+    return WorldSignal(rounded(to), bounds=rounded_outward(bounds[0], bounds[1]))
 
 
 def _traffic_lights(context: DriveContext) -> SignalColumns:
@@ -265,7 +264,7 @@ line_signals = SignalPasses(
     {
         ("light", "crosses_light_line"): _traffic_lights,
         ("distance_to_stop_line", "time_to_stop_line"): _to_line,
-        ("distance_to_junction",): _to_junction,
+        "distance_to_junction": _to_junction,
     }
 )
 """The signals of the distance to lines and junctions."""

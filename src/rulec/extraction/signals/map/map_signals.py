@@ -10,7 +10,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once, once_a_recording, once_a_road
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
     SHOULDER,
@@ -25,10 +26,11 @@ from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (
     SignalColumn,
     SignalColumns,
+    WorldSignal,
     rounded,
     rounded_outward,
 )
-from rulec.extraction.signals.signal_passes import SignalPasses, once_a_recording, once_a_road
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import (
     BUSES_ONLY,
@@ -77,20 +79,17 @@ _SURFACES = {
 _PLAIN = "carriageway"
 
 
-def _distance_to_crossing(context: DriveContext) -> SignalColumns:
+def _distance_to_crossing(context: DriveContext) -> WorldSignal | None:
     if not crossings_told(context):
-        return SignalColumns()
+        return None
     distance, place = distance_to_crossing(context), context.tolerances.place_m
     nearer, farther = (_to_crossing(context, way * place) for way in (-1, 1))
-    return SignalColumns(
-        {"distance_to_crossing": rounded(distance)},
-        bounds={"distance_to_crossing": rounded_outward(nearer, farther)},
-    )
+    return WorldSignal(rounded(distance), bounds=rounded_outward(nearer, farther))
 
 
-def _crossing_zone(context: DriveContext) -> SignalColumns:
+def _crossing_zone(context: DriveContext) -> WorldSignal | None:
     if not crossings_told(context):
-        return SignalColumns()
+        return None
     distance, zone = distance_to_crossing(context), context.thresholds.zone_m
     near, unknown = distance <= zone, abs(distance - zone) < context.tolerances.place_m
     unknown = _in_doubt(context, near, unknown)
@@ -98,25 +97,23 @@ def _crossing_zone(context: DriveContext) -> SignalColumns:
     _, end = next_crossing(context)
     half_step_m = np.maximum(context.ego_extents.along[0], 0.0) * context.recording.step_s / 2
     unknown |= context.ego_extents.s_max[0] + half_step_m > end - context.tolerances.place_m
-    return SignalColumns({"crossing_zone": near}, unknown={"crossing_zone": unknown})
+    return WorldSignal(near, unknown)
 
 
-def _limit(context: DriveContext) -> SignalColumns:
+def _limit(context: DriveContext) -> WorldSignal | None:
     if not map_contents(context).limits:
-        return SignalColumns()
-    return SignalColumns(
-        {"limit": rounded(np.minimum(context.limit_mps * KMH_PER_MPS, NO_LIMIT_KMH))},
-        unknown={"limit": context.limit_untold},
+        return None
+    return WorldSignal(
+        rounded(np.minimum(context.limit_mps * KMH_PER_MPS, NO_LIMIT_KMH)), context.limit_untold
     )
 
 
-def _minimum_limit(context: DriveContext) -> SignalColumns:
+def _minimum_limit(context: DriveContext) -> WorldSignal | None:
     if not map_contents(context).minima:
-        return SignalColumns()
+        return None
     least = own_lanelets(context).values(lambda at: at.minimum_mps or 0.0)
-    return SignalColumns(
-        {"minimum_limit": rounded(np.array(least) * KMH_PER_MPS)},
-        unknown={"minimum_limit": _may_hold(context, {LEAST_SPEED_SIGN})},
+    return WorldSignal(
+        rounded(np.array(least) * KMH_PER_MPS), _may_hold(context, {LEAST_SPEED_SIGN})
     )
 
 
@@ -223,7 +220,7 @@ def next_crossing(context: DriveContext) -> tuple[Floats, Floats]:
     return start, end
 
 
-def _surface(context: DriveContext) -> SignalColumns:
+def _surface(context: DriveContext) -> WorldSignal:
     """What ego is on: a crossing if any part of it is on one, else the surface at its middle.
 
     That is of its road's lanes, or beside them of a hard shoulder which the map does not link to
@@ -234,7 +231,7 @@ def _surface(context: DriveContext) -> SignalColumns:
     if not (context.road.junctions or context.road.crossings or _kinds(context)):
         surfaces = np.full(context.states, _PLAIN)
         nowhere = np.zeros(context.states, dtype=bool)
-        return SignalColumns({"surface": surfaces}, unknown={"surface": nowhere})
+        return WorldSignal(surfaces, nowhere)
     middle, place = context.ego_extents.s[0], context.tolerances.place_m
     surfaces = _below_middle(context, middle, context.ego_lane)
     others = [_below_middle(context, middle + way * place, context.ego_lane) for way in (-1, 1)]
@@ -248,9 +245,7 @@ def _surface(context: DriveContext) -> SignalColumns:
     unknown |= _may_share(context) & (surfaces == "bus_lane")
     surfaces[on_it] = "crossing"
     unknown = (unknown | perhaps) & ~surely
-    return SignalColumns(
-        {"surface": surfaces}, unknown={"surface": _in_doubt(context, surfaces, unknown)}
-    )
+    return WorldSignal(surfaces, _in_doubt(context, surfaces, unknown))
 
 
 def _in_doubt(context: DriveContext, values: SignalColumn, unknown: Flags) -> Flags:
@@ -260,8 +255,8 @@ def _in_doubt(context: DriveContext, values: SignalColumn, unknown: Flags) -> Fl
     """
     if not unknown.any():
         return unknown
-    moves = context.ego.speed[0] * KMH_PER_MPS >= context.thresholds.standing_kmh
-    longest = round(context.thresholds.passed_s / context.recording.step_s)
+    moves = context.ego_moves
+    longest = context.steps_in(context.thresholds.passed_s)
     (passing,) = only_when(values[None], unknown[None], moves[None], longest, context.spans)
     doubt: Flags = unknown & ~passing
     return doubt
@@ -388,11 +383,11 @@ def _crossing_areas(context: DriveContext) -> shapely.Geometry:
 
 map_signals = SignalPasses(
     {
-        ("surface",): _surface,
-        ("distance_to_crossing",): _distance_to_crossing,
-        ("crossing_zone",): _crossing_zone,
-        ("limit",): _limit,
-        ("minimum_limit",): _minimum_limit,
+        "surface": _surface,
+        "distance_to_crossing": _distance_to_crossing,
+        "crossing_zone": _crossing_zone,
+        "limit": _limit,
+        "minimum_limit": _minimum_limit,
         tuple(_SIGNS): _signs,
     }
 )

@@ -16,10 +16,11 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
+from rulec.extraction.computed_once import once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.signals.signal_passes import SignalPasses, once_a_road
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.recording import RAMPS, Lanelet, Recording
 from rulec.scenario.recorded.route import lanelet_length, turns_back
 

@@ -13,7 +13,8 @@ from math import ceil
 import numpy as np
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.right_of_way.arrivals import (
     ARRIVALS,
@@ -250,7 +251,7 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
     passages, shift = context.surroundings.passages, context.first_column
     span = approach(context, own)
     waits, latest = (
-        own.last + round(seconds / context.recording.step_s)
+        own.last + context.steps_in(seconds)
         for seconds in (LONGEST_WAIT_S, context.thresholds.held_up_s)
     )
     for other in passages.through[own.junction]:

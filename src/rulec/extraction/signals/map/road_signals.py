@@ -10,13 +10,11 @@ from collections.abc import Callable
 import numpy as np
 
 from rulec.array_types import Flags
+from rulec.extraction.computed_once import once_a_map
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import lanelets_at, map_contents, own_lanelets
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
-from rulec.extraction.signals.signal_passes import (
-    SignalPasses,
-    once_a_map,
-)
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, WorldSignal
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.surroundings import Directions
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import BROAD_LEFT, BROAD_RIGHT, RAMPS, Lanelet
@@ -37,11 +35,11 @@ _LANE_KINDS = {
 }
 
 
-def _built_up(context: DriveContext) -> SignalColumns:
+def _built_up(context: DriveContext) -> WorldSignal | None:
     if not _SETTINGS & map_contents(context).types:
-        return SignalColumns()
+        return None
     town, unknown = own_lanelets(context).told(_town(context))
-    return SignalColumns({"built_up": town}, unknown={"built_up": unknown})
+    return WorldSignal(town, unknown)
 
 
 def _road_class(context: DriveContext) -> SignalColumns:
@@ -96,10 +94,10 @@ def _lane_kind(context: DriveContext) -> SignalColumns:
     return _where_told("lane_kind", kinds)
 
 
-def _tunnel(context: DriveContext) -> SignalColumns:
+def _tunnel(context: DriveContext) -> WorldSignal | None:
     if "tunnel" not in map_contents(context).types:
-        return SignalColumns()
-    return SignalColumns({"tunnel": own_lanelets(context).flags(lambda at: "tunnel" in at.types)})
+        return None
+    return WorldSignal(own_lanelets(context).flags(lambda at: "tunnel" in at.types))
 
 
 def _officers(context: DriveContext) -> SignalColumns:
@@ -185,11 +183,11 @@ def _has_fast_town(context: DriveContext) -> bool:
 
 road_signals = SignalPasses(
     {
-        ("built_up",): _built_up,
-        ("road_class",): _road_class,
+        "built_up": _built_up,
+        "road_class": _road_class,
         ("one_way", "divided"): _ways,
-        ("lane_kind",): _lane_kind,
-        ("tunnel",): _tunnel,
+        "lane_kind": _lane_kind,
+        "tunnel": _tunnel,
         ("told_to_stop", "told_to_go"): _officers,
         ("wet", "icy", "visibility", "raining", "night"): _weather,
     }

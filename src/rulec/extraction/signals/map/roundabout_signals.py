@@ -8,11 +8,12 @@ from itertools import pairwise
 import numpy as np
 
 from rulec.array_types import Flags
+from rulec.extraction.computed_once import once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.stop_lines import may_have_passed
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
-from rulec.extraction.signals.signal_passes import SignalPasses, once_a_road
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.driven_road import runs_along
 
 _ROUNDABOUT = frozenset({"ROUNDABOUT"})

@@ -10,10 +10,9 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
-from rulec.extraction.signals.measured_numbers import moves, own_front, own_speed
-from rulec.extraction.signals.signal_passes import once_a_road
-from rulec.recordings.encodings.speed_units import KMH_PER_MPS
+from rulec.extraction.computed_once import once, once_a_road
+from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.measured_numbers import own_front, own_speed
 from rulec.recordings.recording import STOP_SIGNS, Lanelet
 
 LINE_REACH_M = 40.0
@@ -89,7 +88,7 @@ def _driven_unseen(context: DriveContext) -> Floats:
     begins, steps = context.spans.begins, unseen_steps(context)
     seconds = steps * context.recording.step_s
     # It may have braked meanwhile, to its speed now
-    braked = np.where(moves(context)[begins] | (steps > 1), context.thresholds.braking_mps2, 0.0)
+    braked = np.where(context.ego_moves[begins] | (steps > 1), context.thresholds.braking_mps2, 0.0)
     speed, error = own_speed(context)
     driven: Floats = (speed + error)[begins] * seconds + braked / 2 * seconds**2
     return driven + context.tolerances.place_m
@@ -107,7 +106,7 @@ def may_stop_beyond(context: DriveContext, line: tuple[float, float]) -> Flags:
     if not comes.any():
         return comes
     beyond = front > last
-    stands = ~beyond & (context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh)
+    stands = ~beyond & ~context.ego_moves
     goes_on = spans.next_state(beyond)
     found: Flags = comes & ((goes_on >= spans.end) | (spans.next_state(stands | beyond) < goes_on))
     return found
@@ -124,7 +123,7 @@ def around_crossing(
     drive begins between these two: it may have crossed the line before.
     """
     first, last = line
-    stands = context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh
+    stands = ~context.ego_moves
     latest = context.spans.latest(passes(context, first) | (stands & (front > first)))
     since = np.where(latest < context.spans.first, context.spans.columns, latest)
     began = front[context.spans.first]

@@ -10,6 +10,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
+from rulec.extraction.computed_once import once_a_map, once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.exit_room import exit_clear
@@ -17,12 +18,8 @@ from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.level_crossing_signals import Stretches
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.map.stop_lines import drawn_lines
-from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.signals.signal_passes import (
-    SignalPasses,
-    once_a_map,
-    once_a_road,
-)
+from rulec.extraction.signals.signal_columns import WorldSignal
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.recording import Recording, is_lane, is_there
 from rulec.scenario.recorded.lane_coordinates import crossings_along
 from rulec.scenario.recorded.route import lanelet_area
@@ -34,7 +31,7 @@ _BEFORE_LINE_M = 10.0
 """On maps without stop lines, crossings are up to this far before ends of lanelets with lights."""
 
 
-def _crossing_kind(context: DriveContext) -> SignalColumns:
+def _crossing_kind(context: DriveContext) -> WorldSignal:
     """The kind of the crossing ahead: ``directed_crossing`` by a light of its own or ego's.
 
     Unknown where there may be an unobserved light.
@@ -45,7 +42,7 @@ def _crossing_kind(context: DriveContext) -> SignalColumns:
         directed |= (start == place) & lit
         unknown |= (start == place) & unsure
     kinds = np.where(directed, "directed_crossing", "zebra")
-    return SignalColumns({"crossing_kind": kinds}, unknown={"crossing_kind": unknown})
+    return WorldSignal(kinds, unknown)
 
 
 @once_a_road
@@ -239,8 +236,8 @@ def _directed_stretches(context: DriveContext, there: bool) -> Stretches:
 
 zone_signals = SignalPasses(
     {
-        ("crossing_kind",): _crossing_kind,
-        ("exit_clear",): exit_clear,
+        "crossing_kind": _crossing_kind,
+        "exit_clear": exit_clear,
     }
 )
 """The signals of crossings and of the room behind what ego enters."""

@@ -16,15 +16,12 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.presences import in_presences
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.measured_numbers import LONGEST_S, safe_distances
-from rulec.extraction.signals.signal_columns import (
-    SignalColumns,
-    rounded,
-    rounded_outward,
-)
+from rulec.extraction.signals.signal_columns import ObjectSignal, rounded, rounded_outward
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
@@ -47,7 +44,7 @@ _OUTLIERS = 3.0
 _HAIR_S = 1e-6
 
 
-def _ahead_for(context: DriveContext) -> SignalColumns:
+def _ahead_for(context: DriveContext) -> ObjectSignal:
     """Times (s) for which ego has been behind others in the same lane, with their bounds."""
     _, surely, _ = relations.ahead_in_lane(context)
     cells, step_s = relations.perhaps_ahead(context), context.recording.step_s
@@ -68,7 +65,7 @@ def _ahead_for(context: DriveContext) -> SignalColumns:
     measured, low, high = (
         in_presences(context, cells, own, 0.0) for own in (rounded(least), *ends)
     )
-    return SignalColumns(about={"ahead_for": measured}, bounds={"ahead_for": (low, high)})
+    return ObjectSignal(measured, bounds=(low, high))
 
 
 def _since(context: DriveContext, cells: Cells) -> tuple[NDArray[intp], Flags]:
@@ -112,7 +109,7 @@ def parts_soon(context: DriveContext) -> Flags:
     stands or waits behind them.
     """
     _, _, follows = relations.ahead_in_lane(context)
-    horizon = round(context.thresholds.parting_s / context.recording.step_s)
+    horizon = context.steps_in(context.thresholds.parting_s)
     at, spans = Cells.of_drives(follows, context.spans)
     seen, way_across = at.of(context.relevant), at.of(relations.way_across(context))
     apart = at.of(context.extents.lane) != at.of(context.ego_extents.lane[0])
@@ -172,13 +169,13 @@ def _side(context: DriveContext, cells: Cells) -> Floats:
     return side
 
 
-def may_part(context: DriveContext) -> SignalColumns:
+def may_part(context: DriveContext) -> ObjectSignal:
     """Unknown for participants ahead in ego's lane that leave it soon, False for all others.
 
     No law says how near they may be by then.
     """
     unknown = parts_soon(context)
-    return SignalColumns(about={"parts_soon": unknown & False}, unknown={"parts_soon": unknown})
+    return ObjectSignal(unknown & False, unknown)
 
 
 def _in_junctions(context: DriveContext, cells: Cells) -> Flags:
@@ -211,7 +208,7 @@ def _would_stand(context: DriveContext, at: Cells, spans: EndToEnd) -> NDArray[i
     return stands
 
 
-def keeps_safe_gap(context: DriveContext) -> SignalColumns:
+def keeps_safe_gap(context: DriveContext) -> ObjectSignal:
     """Whether ego keeps its distance from participants that are, or may be, ahead in its lane.
 
     Unknown for a participant that already stood ``reaction_s`` ago if ego can stop behind it: ego
@@ -225,7 +222,7 @@ def keeps_safe_gap(context: DriveContext) -> SignalColumns:
     perhaps_short = (short > -wrong).nonzero()[0]
     short, wrong = short.take(perhaps_short), wrong.take(perhaps_short)
     cells = followed.cells.part(perhaps_short)
-    stands = cells.of(context.tracks.speed) * KMH_PER_MPS < limits.standing_kmh
+    stands = cells.of(context.standing)
     # A standing participant that ego drives past does not drive ahead of it
     aside = cells.of(relations.way_across(context)) - limits.touching_m
     room = np.where(stands, aside, -np.inf)
@@ -236,9 +233,7 @@ def keeps_safe_gap(context: DriveContext) -> SignalColumns:
     far_too_late = short.take(late) > _OUTLIERS * wrong.take(late)
     moot[late] |= _brief_and_slight(context, cells.part(late), far_too_late)
     safe, unknown = ~follows | (short <= 0), (follows & (np.abs(short) < wrong)) | moot
-    return SignalColumns(
-        about={"safe_gap": cells.laid(safe, True)}, unknown={"safe_gap": cells.laid(unknown)}
-    )
+    return ObjectSignal(cells.laid(safe, True), cells.laid(unknown))
 
 
 def _need_not_follow(context: DriveContext, cells: Cells, short: Floats) -> Flags:
@@ -273,8 +268,8 @@ def _brief_and_slight(context: DriveContext, late: Cells, far_too_late: Flags) -
 def _stood_before(context: DriveContext, cells: Cells) -> Flags:
     """Mask of cells of participants that stand, and did for ``reaction_s`` or since first seen."""
     rows = distinct(cells.rows)
-    stands = context.tracks.speed[rows] * KMH_PER_MPS < context.thresholds.standing_kmh
-    steps = round(context.thresholds.reaction_s / context.recording.step_s)
+    stands = context.standing[rows]
+    steps = context.steps_in(context.thresholds.reaction_s)
     moves_there = ~stands & ~np.isnan(context.extents.s_min[rows])
     stood = stands & ~context.spans.within_last(moves_there, steps)
     found: Flags = stood[rows.searchsorted(cells.rows), cells.columns]
@@ -303,5 +298,5 @@ def safe_gaps(context: DriveContext) -> SafeGaps:
     return SafeGaps(cells, gap, safe, error + scale * np.abs(gap))
 
 
-following_signals = SignalPasses({("ahead_for",): _ahead_for})
+following_signals = SignalPasses({"ahead_for": _ahead_for})
 """The signal of times behind others."""

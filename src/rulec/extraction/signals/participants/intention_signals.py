@@ -11,37 +11,32 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once, once_a_recording
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.others_lamps import (
     flashing,
     lit_lamps,
-    moves,
     own_part,
-    stands,
 )
 from rulec.extraction.signals.ego_lanelets import those_on_lanes
-from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.signals.signal_passes import (
-    SignalPasses,
-    once_a_recording,
-)
-from rulec.recordings.encodings.speed_units import KMH_PER_MPS
+from rulec.extraction.signals.signal_columns import ObjectSignal
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
 
 _PUBLIC = ("bus", "rail_vehicle")
 
 
-def _boarding(context: DriveContext) -> SignalColumns:
+def _boarding(context: DriveContext) -> ObjectSignal:
     public = np.any([context.tracks.of_type(kind) for kind in _PUBLIC], axis=0)[:, None]
     if not public.any():
         nobody = np.zeros(context.relevant.shape, dtype=bool)
-        return SignalColumns(about={"boarding": nobody}, unknown={"boarding": nobody})
-    stops = public & stands(context)
+        return ObjectSignal(nobody, nobody)
+    stops = public & context.standing
     doors, told = _open_doors(context)
     doors &= ~_doors_away(context)
-    return SignalColumns(about={"boarding": stops & doors}, unknown={"boarding": stops & ~told})
+    return ObjectSignal(stops & doors, stops & ~told)
 
 
 def _open_doors(context: DriveContext) -> tuple[Flags, Flags]:
@@ -64,15 +59,13 @@ def _doors_away(context: DriveContext) -> Flags:
     return away
 
 
-def _warning_lights(context: DriveContext) -> SignalColumns:
+def _warning_lights(context: DriveContext) -> ObjectSignal | None:
     if "hazard_lights" not in context.surroundings.whole.shows:
-        return SignalColumns()
+        return None
     hazard, told = lit_lamps(context, "hazard_lights")
     blue, _ = lit_lamps(context, "blue_light")
     warns = hazard | flashing(blue, context)
-    return SignalColumns(
-        about={"warning_lights": warns}, unknown={"warning_lights": ~told & ~warns}
-    )
+    return ObjectSignal(warns, ~told & ~warns)
 
 
 def may_have_broken_down(context: DriveContext) -> Flags:
@@ -80,7 +73,7 @@ def may_have_broken_down(context: DriveContext) -> Flags:
 
     They may as well stand because of traffic, or warn of the end of a jam.
     """
-    still = stands(context)
+    still = context.standing
     if not still.any():
         return still
     left, right, hazard = (
@@ -92,20 +85,18 @@ def may_have_broken_down(context: DriveContext) -> Flags:
     return warns
 
 
-def _hazard_lights(context: DriveContext) -> SignalColumns:
+def _hazard_lights(context: DriveContext) -> ObjectSignal | None:
     if "hazard_lights" not in context.surroundings.whole.shows:
-        return SignalColumns()
+        return None
     hazard, told = lit_lamps(context, "hazard_lights")
-    return SignalColumns(
-        about={"hazard_lights": hazard}, unknown={"hazard_lights": ~told & ~hazard}
-    )
+    return ObjectSignal(hazard, ~told & ~hazard)
 
 
 def _far_indicator(context: DriveContext) -> tuple[Flags, Flags]:
     return lit_lamps(context, "left_indicator" if context.side == "right" else "right_indicator")
 
 
-def _turning_far(context: DriveContext) -> SignalColumns:
+def _turning_far(context: DriveContext) -> ObjectSignal:
     """The signal of vehicles that have signalled to turn to the far side, and do.
 
     However long they wait for it with the indicator on.
@@ -117,16 +108,13 @@ def _turning_far(context: DriveContext) -> SignalColumns:
         seen_last = _ends_within(context, 1)
         if "arrivals" not in context.recording.complete:
             # A vehicle that signals and leaves the map may turn beyond it
-            ahead = round(context.thresholds.preparing_s / context.recording.step_s)
+            ahead = context.steps_in(context.thresholds.preparing_s)
             open_end |= lit & _ends_within(context, ahead)
         else:
             seen_last &= context.spans.columns == context.spans.end - 1
         drives = context.tracks.of_type("vehicle")[:, None]
         open_end |= drives & _lit_until(context, seen_last, lit)
-    return SignalColumns(
-        about={"turning_far": turns & lit},
-        unknown={"turning_far": np.where(told, lit & open_end & ~turns, turns | open_end)},
-    )
+    return ObjectSignal(turns & lit, np.where(told, lit & open_end & ~turns, turns | open_end))
 
 
 def _lit_until(context: DriveContext, flags: Flags, lit: Flags) -> Flags:
@@ -145,7 +133,7 @@ def _turns(context: DriveContext) -> tuple[Flags, Flags]:
     For all participants of the recording, in all its steps.
     """
     passages = context.surroundings.passages
-    ahead = round(context.thresholds.preparing_s / context.recording.step_s)
+    ahead = context.steps_in(context.thresholds.preparing_s)
     towards = 1 if context.side == "right" else -1
     least = np.radians(context.thresholds.turned_deg)
     turns, open_end = np.zeros((2, *passages.tracks.present.shape), dtype=bool)
@@ -178,20 +166,20 @@ def _may_turn(context: DriveContext, row: int) -> bool:
     return not inside and passages.crosses_junction((x, y), ahead)
 
 
-def _leaving_stop(context: DriveContext) -> SignalColumns:
+def _leaving_stop(context: DriveContext) -> ObjectSignal:
     """The signal of buses that stand at a stop, signal to leave it, and do so soon."""
     leaves, unknown = np.zeros((2, *context.relevant.shape), dtype=bool)
     buses = context.tracks.of_type("bus").nonzero()[0]
     if len(buses):
         leaves[buses], unknown[buses] = _buses_leave(context, buses)
-    return SignalColumns(about={"leaving_stop": leaves}, unknown={"leaving_stop": unknown})
+    return ObjectSignal(leaves, unknown)
 
 
 def _buses_leave(context: DriveContext, buses: NDArray[intp]) -> tuple[Flags, Flags]:
     """Masks, one row per bus, of those that leave a stop and of those for which it is unknown."""
-    steps = round(context.thresholds.preparing_s / context.recording.step_s)
-    still = stands(context)[buses]
-    leaves = still & context.spans.within(moves(context)[buses], steps)
+    steps = context.steps_in(context.thresholds.preparing_s)
+    still = context.standing[buses]
+    leaves = still & context.spans.within(context.moving[buses], steps)
     lit, told = (flags[buses] for flags in _far_indicator(context))
     doors, doors_told = (flags[buses] for flags in _open_doors(context))
     at_stop = context.spans.within_last(doors, steps)
@@ -231,21 +219,21 @@ def _last_seen(context: DriveContext) -> NDArray[intp]:
     return last
 
 
-def _about_to_overtake(context: DriveContext) -> SignalColumns:
+def _about_to_overtake(context: DriveContext) -> ObjectSignal:
     """The signal of vehicles that have signalled to pull out to the far side, and do so soon.
 
     A vehicle on a lane that joins others has to leave it, and overtakes nobody by that. Unknown for
     vehicles that ego does not catch up with: they change lanes one after the other.
     """
     far = 1 if context.side == "right" else -1
-    steps = round(context.thresholds.signalling_s / context.recording.step_s)
+    steps = context.steps_in(context.thresholds.signalling_s)
     onward = context.extents.lane_steps
     pulls_out = onward > 0 if far > 0 else onward < 0
     pulls_out[:, context.spans.end[context.spans.begins] - 1] = False
     rows = pulls_out.any(axis=1).nonzero()[0]
     lit, told = _far_indicator(context)
     if not len(rows) and not lit.any():
-        return SignalColumns(about={"about_to_overtake": lit}, unknown={"about_to_overtake": lit})
+        return ObjectSignal(lit, lit)
     inside = context.on_lanes[rows]
     pulls_out[rows] &= inside & context.spans.after(inside)
     soon = np.zeros_like(pulls_out)
@@ -256,9 +244,7 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
     if lit.any():
         perhaps = told & lit & _ends_within(context, steps) & ~soon
         unknown |= perhaps & ~those_on_lanes(context, JOINING, perhaps)
-    return SignalColumns(
-        about={"about_to_overtake": soon & lit}, unknown={"about_to_overtake": unknown}
-    )
+    return ObjectSignal(soon & lit, unknown)
 
 
 def _caught_up(context: DriveContext, cells: Cells) -> Flags:
@@ -270,7 +256,7 @@ def _caught_up(context: DriveContext, cells: Cells) -> Flags:
     return caught_up
 
 
-def _came_up(context: DriveContext) -> SignalColumns:
+def _came_up(context: DriveContext) -> ObjectSignal:
     """The signal of riders that came up beside ego while it waited at a junction.
 
     For a rider that is already beside ego when first seen, it is unknown how it got there.
@@ -279,16 +265,12 @@ def _came_up(context: DriveContext) -> SignalColumns:
     came, unsure = np.zeros((2, *context.relevant.shape), dtype=bool)
     if riders.any():
         came[riders], unsure[riders] = _came_beside(context, riders.nonzero()[0])
-    return SignalColumns(
-        about={"came_up_beside": came},
-        unknown={"came_up_beside": unsure},
-        only={"came_up_beside": riders},
-    )
+    return ObjectSignal(came, unsure, only=riders)
 
 
 def _came_beside(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags]:
     """Masks of participants in ``rows`` beside ego that came up there, or perhaps did."""
-    waits = context.ego.speed[0] * KMH_PER_MPS < context.thresholds.standing_kmh
+    waits = ~context.ego_moves
     at_junction = np.zeros(context.states, dtype=bool)
     front = context.ego_extents.s_max[0]
     for start, end in context.road.junctions:
@@ -306,13 +288,13 @@ def _came_beside(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Fla
 
 intention_signals = SignalPasses(
     {
-        ("boarding",): _boarding,
-        ("leaving_stop",): _leaving_stop,
-        ("warning_lights",): _warning_lights,
-        ("hazard_lights",): _hazard_lights,
-        ("turning_far",): _turning_far,
-        ("about_to_overtake",): _about_to_overtake,
-        ("came_up_beside",): _came_up,
+        "boarding": _boarding,
+        "leaving_stop": _leaving_stop,
+        "warning_lights": _warning_lights,
+        "hazard_lights": _hazard_lights,
+        "turning_far": _turning_far,
+        "about_to_overtake": _about_to_overtake,
+        "came_up_beside": _came_up,
     }
 )
 """The signals of others' lamps and doors, and of what they are about to do."""

@@ -7,7 +7,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.recording_parts import span_of
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
@@ -16,7 +17,7 @@ from rulec.extraction.signals.ego_lanelets import (
     those_on_lanes,
 )
 from rulec.extraction.signals.participants.intention_signals import may_have_broken_down
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import ObjectSignal
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
@@ -34,9 +35,9 @@ _EDGE_M, _ROOM_M = 0.5, 3.05
 """A parked vehicle is at the edge; the widest vehicle (2.55 m) needs half a metre more to pass."""
 
 
-def oncoming(context: DriveContext) -> SignalColumns:
+def oncoming(context: DriveContext) -> ObjectSignal:
     """Whether participants come towards ego; see ``comes_towards``."""
-    return SignalColumns(about={"oncoming": comes_towards(context)})
+    return ObjectSignal(comes_towards(context))
 
 
 @once
@@ -86,7 +87,7 @@ def _waits_elsewhere(context: DriveContext, cells: Cells) -> Flags:
     return waits
 
 
-def goes_across(context: DriveContext) -> SignalColumns:
+def goes_across(context: DriveContext) -> ObjectSignal:
     """Whether participants move across the road more than along it.
 
     A person or cycle that crosses keeps crossing, even if it stops or is hit, until it leaves the
@@ -107,7 +108,7 @@ def goes_across(context: DriveContext) -> SignalColumns:
         present = context.tracks.present[users]
         known, away = map(context.spans.latest, ((goes[users] | off) & present, ~present))
         unsure[users] |= _appears_there(context, users, away) & (known <= away)
-    return SignalColumns(about={"goes_across": goes}, unknown={"goes_across": unsure})
+    return ObjectSignal(goes, unsure)
 
 
 def _appears_there(context: DriveContext, rows: NDArray[intp], away: NDArray[intp]) -> Flags:
@@ -137,19 +138,17 @@ def _mostly_along(context: DriveContext, rows: NDArray[intp]) -> Flags:
     return 2 * spans.count_of_last(turns, steps) > steps
 
 
-def stopped(context: DriveContext) -> SignalColumns:
+def stopped(context: DriveContext) -> ObjectSignal:
     """Whether participants stand."""
-    stands = context.tracks.speed * KMH_PER_MPS < context.thresholds.standing_kmh
-    return SignalColumns(about={"stopped": stands})
+    stands = context.standing
+    return ObjectSignal(stands)
 
 
-def parked(context: DriveContext) -> SignalColumns:
+def parked(context: DriveContext) -> ObjectSignal:
     """Whether participants are parked; unknown for those that may have broken down."""
     standing = [body.standing for body in context.tracks.participants]
     parked = _constant(context, standing) | _stays_aside(context)
-    return SignalColumns(
-        about={"parked": parked}, unknown={"parked": may_have_broken_down(context) & ~parked}
-    )
+    return ObjectSignal(parked, may_have_broken_down(context) & ~parked)
 
 
 def _stays_aside(context: DriveContext) -> Flags:
@@ -187,7 +186,7 @@ def _at_edge(others: RoadExtents, there: Flags) -> Flags:
     return at_edge
 
 
-def on_shoulder(context: DriveContext) -> SignalColumns:
+def on_shoulder(context: DriveContext) -> ObjectSignal:
     """Whether vehicles heading along the road stand beside its lanes or are on a hard shoulder.
 
     Only at the near side: at the far one they may be on lanes of the other direction. A vehicle
@@ -202,24 +201,24 @@ def on_shoulder(context: DriveContext) -> SignalColumns:
     vehicles = on_wheels[:, None] & there.any(axis=2)
     along = vehicles & ~context.elsewhere & (np.abs(np.sin(others.turned)) < _ALONG)
     inside = those_on_lanes(context, SHOULDER, along)
-    stands = context.tracks.speed * KMH_PER_MPS < context.thresholds.standing_kmh
+    stands = context.standing
     loose = context.tolerances.place_m + np.abs(context.map_offset_m)
     beside = along & (inside | (stands & (beyond > 0)))
     unsure = along & ~inside & ((np.abs(beyond) < loose) | (~stands & (beyond > 0)))
-    return SignalColumns(about={"on_shoulder": beside}, unknown={"on_shoulder": unsure})
+    return ObjectSignal(beside, unsure)
 
 
-def two_wheeled(context: DriveContext) -> SignalColumns:
+def two_wheeled(context: DriveContext) -> ObjectSignal:
     """Whether participants ride on two wheels."""
     two_wheeled = [body.type in _TWO_WHEELED for body in context.tracks.participants]
-    return SignalColumns(about={"two_wheeled": _constant(context, two_wheeled)})
+    return ObjectSignal(_constant(context, two_wheeled))
 
 
 def _constant(context: DriveContext, flags: list[bool]) -> Flags:
     return np.array(flags, dtype=bool)[:, None].repeat(context.states, axis=1)
 
 
-def in_the_road(context: DriveContext) -> SignalColumns:
+def in_the_road(context: DriveContext) -> ObjectSignal:
     """Whether people are on a lane; unknown at the outermost edges there, where they may wait.
 
     Unknown, too, for riders on a cycle lane: it may be a path beside the road.
@@ -243,8 +242,4 @@ def in_the_road(context: DriveContext) -> SignalColumns:
     if CYCLE_LANE in map_contents(context).types:
         rides = context.tracks.of_type("light_rider")[:, None] & context.tracks.on_lane
         unsure |= those_on_lanes(context, CYCLE_LANE, rides)
-    return SignalColumns(
-        about={"in_the_road": context.tracks.on_lane},
-        only={"in_the_road": users},
-        unknown={"in_the_road": unsure & context.tracks.on_lane},
-    )
+    return ObjectSignal(context.tracks.on_lane, unsure & context.tracks.on_lane, only=users)

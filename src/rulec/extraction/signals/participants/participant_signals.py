@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.presences import in_presences, presence_cells, presence_runs
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.lateral_gaps import lateral_gaps
@@ -13,10 +14,8 @@ from rulec.extraction.signals.map.lanes_ahead import leads_elsewhere
 from rulec.extraction.signals.measured_numbers import (
     LONGEST_S,
     difference_bounds,
-    gap_bounds,
     gaps,
     headway_bounds,
-    moves,
     own_speed,
     speed_differences,
 )
@@ -33,8 +32,7 @@ from rulec.extraction.signals.participants.participant_conduct import (
 )
 from rulec.extraction.signals.settling import only_when, with_one_change
 from rulec.extraction.signals.signal_columns import (
-    Bounds,
-    SignalColumns,
+    ObjectSignal,
     rounded,
     rounded_outward,
 )
@@ -45,16 +43,14 @@ _ASKED_FOR_M = 3.0
 """No law requires more room between a vehicle and a cycle, or people in the road."""
 
 
-def _position(context: DriveContext) -> SignalColumns:
+def _position(context: DriveContext) -> ObjectSignal:
     """The paper's positions; unknown, like stations, for participants at ego's side at first."""
     position = relations.position(context)
     at_side = (position == "l") | (position == "r")
-    return SignalColumns(
-        about={"position": position}, unknown={"position": _at_first(context) & at_side}
-    )
+    return ObjectSignal(position, _at_first(context) & at_side)
 
 
-def _station(context: DriveContext) -> SignalColumns:
+def _station(context: DriveContext) -> ObjectSignal:
     """The stations; unknown within the tolerance of places, except while ego or the other passes.
 
     There only the moment is in doubt, unless passing takes longer than ``passed_s``. Unknown, too,
@@ -64,15 +60,11 @@ def _station(context: DriveContext) -> SignalColumns:
     station, others = relations.station(context), relations.possible_stations(context)
     doubtful = np.logical_or.reduce([station != codes for codes in others])
     there = context.relevant & ~np.isnan(context.extents.s_min)
-    longest = round(context.thresholds.passed_s / context.recording.step_s)
+    longest = context.steps_in(context.thresholds.passed_s)
     station = with_one_change(station, doubtful, there, context.spans)
     doubtful &= ~only_when(station, doubtful, there, longest, context.spans)
     beside = _at_first(context) & (relations.station(context) == relations.BESIDE)
-    return SignalColumns(
-        about={"station": station},
-        unknown={"station": doubtful | _passed_unseen(context) | beside},
-        texts={"station": STATIONS},
-    )
+    return ObjectSignal(station, doubtful | _passed_unseen(context) | beside, texts=STATIONS)
 
 
 @once
@@ -105,46 +97,44 @@ def _passed_unseen(context: DriveContext) -> Flags:
     return passed
 
 
-def _lateral(context: DriveContext) -> SignalColumns:
+def _lateral(context: DriveContext) -> ObjectSignal:
     """The sides of others; unknown within tolerances, except while ego or the other moves over.
 
     There only the moment is in doubt, as with stations.
     """
     laterals = relations.laterals(context)
     there = context.relevant & ~np.isnan(context.extents.s_min)
-    longest = round(context.thresholds.passed_s / context.recording.step_s)
+    longest = context.steps_in(context.thresholds.passed_s)
     codes = with_one_change(laterals.codes, laterals.doubtful, there, context.spans)
     over = only_when(codes, laterals.doubtful, there, longest, context.spans)
-    return SignalColumns(
-        about={"lateral": codes},
-        unknown={"lateral": laterals.doubtful & ~over},
-        texts={"lateral": LATERALS},
-    )
+    return ObjectSignal(codes, laterals.doubtful & ~over, texts=LATERALS)
 
 
-def _gap(context: DriveContext) -> SignalColumns:
-    return _measured("gap", gaps(context)[0], gap_bounds(context))
+def _gap(context: DriveContext) -> ObjectSignal:
+    gap, least, most = gaps(context)
+    return ObjectSignal(rounded(gap), bounds=rounded_outward(least, most))
 
 
-def _time_headway(context: DriveContext) -> SignalColumns:
+def _time_headway(context: DriveContext) -> ObjectSignal:
     # The speed that the word `speed` has
     cells = presence_cells(context)
-    speed, drives = cells.of(own_speed(context)[0]), cells.of(moves(context))
+    speed, drives = cells.of(own_speed(context)[0]), cells.of(context.ego_moves)
     seconds = gaps(context)[0] / np.where(drives, speed, 1.0)
     headway = np.where(drives, np.minimum(seconds, LONGEST_S), LONGEST_S)
-    return _measured("time_headway", headway, headway_bounds(context))
+    return ObjectSignal(rounded(headway), bounds=headway_bounds(context))
 
 
-def _lateral_gap(context: DriveContext) -> SignalColumns:
-    return _measured("lateral_gap", *lateral_gaps(context))
+def _lateral_gap(context: DriveContext) -> ObjectSignal:
+    gap, bounds = lateral_gaps(context)
+    return ObjectSignal(rounded(gap), bounds=bounds)
 
 
-def _speed_difference(context: DriveContext) -> SignalColumns:
+def _speed_difference(context: DriveContext) -> ObjectSignal:
     difference, _ = speed_differences(context)
-    return _measured("speed_difference", difference, difference_bounds(context))
+    return ObjectSignal(rounded(difference), bounds=difference_bounds(context))
 
 
-def _time_to_collision(context: DriveContext) -> SignalColumns:
+def _time_to_collision(context: DriveContext) -> ObjectSignal:
     """The time (s) in which ego reaches participants ahead in its lane, at both current speeds."""
     measured, surely, perhaps = relations.ahead_in_lane(context)
     # Ego runs into no other participants
@@ -166,25 +156,19 @@ def _time_to_collision(context: DriveContext) -> SignalColumns:
         in_presences(context, cells, own, LONGEST_S)
         for own in (seconds_measured, *rounded_outward(soonest, latest_s))
     )
-    return SignalColumns(
-        about={"time_to_collision": found}, bounds={"time_to_collision": (low, high)}
-    )
+    return ObjectSignal(found, bounds=(low, high))
 
 
-def _measured(name: str, values: Floats, bounds: Bounds) -> SignalColumns:
-    return SignalColumns(about={name: rounded(values)}, bounds={name: bounds})
-
-
-def _precedes(context: DriveContext) -> SignalColumns:
+def _precedes(context: DriveContext) -> ObjectSignal:
     """The participant next ahead of ego in its lane."""
     (follows, _, _), cells = relations.ahead_in_lane(context), relations.perhaps_ahead(context)
     counts = cells.of(follows) & ~cells.of(comes_towards(context)) & cells.of(context.relevant)
     ahead = cells.part(counts.nonzero()[0])
     gap = ahead.of(relations.gap(context))
-    return SignalColumns(about={"precedes": ahead.laid(gap == ahead.of(ahead.least(gap)))})
+    return ObjectSignal(ahead.laid(gap == ahead.of(ahead.least(gap))))
 
 
-def _one_between(context: DriveContext) -> SignalColumns:
+def _one_between(context: DriveContext) -> ObjectSignal:
     """Whether another vehicle ahead in ego's lane is nearer to ego than a participant ahead.
 
     It is if it is nearer by more than the tolerance of places, and unknown within that.
@@ -198,34 +182,31 @@ def _one_between(context: DriveContext) -> SignalColumns:
     )
     between = gap > nearest + place
     unknown = ~between & (gap > may_be - place) & (gap > may_be)
-    return SignalColumns(
-        about={"one_between": cells.laid(between)},
-        unknown={"one_between": cells.laid(unknown)},
-    )
+    return ObjectSignal(cells.laid(between), cells.laid(unknown))
 
 
 participant_signals = SignalPasses(
     {
-        ("position",): _position,
-        ("station",): _station,
-        ("lateral",): _lateral,
-        ("gap",): _gap,
-        ("time_headway",): _time_headway,
-        ("lateral_gap",): _lateral_gap,
-        ("speed_difference",): _speed_difference,
-        ("time_to_collision",): _time_to_collision,
-        ("safe_gap",): keeps_safe_gap,
-        ("parts_soon",): may_part,
-        ("precedes",): _precedes,
-        ("one_between",): _one_between,
-        ("oncoming",): oncoming,
-        ("goes_across",): goes_across,
-        ("stopped",): stopped,
-        ("parked",): parked,
-        ("on_shoulder",): on_shoulder,
-        ("leads_elsewhere",): leads_elsewhere,
-        ("two_wheeled",): two_wheeled,
-        ("in_the_road",): in_the_road,
+        "position": _position,
+        "station": _station,
+        "lateral": _lateral,
+        "gap": _gap,
+        "time_headway": _time_headway,
+        "lateral_gap": _lateral_gap,
+        "speed_difference": _speed_difference,
+        "time_to_collision": _time_to_collision,
+        "safe_gap": keeps_safe_gap,
+        "parts_soon": may_part,
+        "precedes": _precedes,
+        "one_between": _one_between,
+        "oncoming": oncoming,
+        "goes_across": goes_across,
+        "stopped": stopped,
+        "parked": parked,
+        "on_shoulder": on_shoulder,
+        "leads_elsewhere": leads_elsewhere,
+        "two_wheeled": two_wheeled,
+        "in_the_road": in_the_road,
     }
 )
 """The signals about objects."""

@@ -25,7 +25,7 @@ from rulec.extraction.signals.map.line_signals import colour_at, lights_of
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.map.stop_lines import ends_at_line, stop_line
 from rulec.extraction.signals.map.zone_signals import crossings_lit
-from rulec.extraction.signals.measured_numbers import moves, own_front
+from rulec.extraction.signals.measured_numbers import own_front
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import GIVE_WAY_SIGNS, STOP_SIGNS
 from rulec.scenario.recorded.reference_line import turn
@@ -67,7 +67,7 @@ class MapReasons:
 def map_reasons(context: DriveContext, asked: Flags, reach: Floats) -> MapReasons:
     """The map's reasons as far ahead as ego looks; certain only in states ``asked`` for."""
     road, front, rear = context.road, context.ego_extents.s_max[0], context.ego_extents.s_min[0]
-    speed, drives = context.ego.speed[0], moves(context)
+    speed, drives = context.ego.speed[0], context.ego_moves
     shown = _lights_ahead(context, asked, reach)
     does = (shown == _STOP) | (asked & _at_stop_sign(context, reach))
     goes_on = asked & (shown <= _GO) & _all_are_recorded(context)
@@ -107,7 +107,7 @@ def map_reasons(context: DriveContext, asked: Flags, reach: Floats) -> MapReason
 
 
 def _steps(context: DriveContext, seconds: float) -> int:
-    return round(seconds / context.recording.step_s)
+    return context.steps_in(seconds)
 
 
 def _all_are_recorded(context: DriveContext) -> bool:
@@ -157,7 +157,7 @@ def _at_stop_sign(context: DriveContext, reach: Floats) -> Flags:
             if stops and ends_at_line(context, piece, lane):
                 first, last = stop_line(context, piece, lane)
                 there |= (context.ego_lane == lane) & (front <= last) & (front > first - reach)
-    drives = moves(context)
+    drives = context.ego_moves
     return there & spans.within_last(drives, _steps(context, LOOKS_S))
 
 
@@ -194,7 +194,7 @@ def road_reasons(
     place = zero_if_nan(front + ahead)
     # No vehicle stands because of a bend
     bends = np.abs(turn(before, road.line.headings_at(place))) > _BEND_RAD
-    bends &= moves(context)[states]
+    bends &= context.ego_moves[states]
     there = road.lanes.existing_at(place)[:, np.arange(len(states)), lanes]
     codes = road.piece(place) * width + lanes
     different = distinct(codes)

@@ -18,7 +18,6 @@ from rulec.extraction.signals.conduct.braking_causes.others_around import (
     motion_of,
 )
 from rulec.extraction.signals.map.priority_signals import approach, own_passages, passages_of
-from rulec.extraction.signals.measured_numbers import moves
 from rulec.trace.cells import Cells
 
 IN_WAY_M, COMES_M = 2.5, 6.0
@@ -48,7 +47,7 @@ def led(context: DriveContext, brakes: Flags, reach: Floats) -> Flags:
     if not len(cells):
         return found
     gap, theirs = cells.of(relations.gap(context)), np.maximum(cells.of(context.extents.along), 0.0)
-    own, soon = context.ego.speed[0], round(_REACTS_S / context.recording.step_s)
+    own, soon = context.ego.speed[0], context.steps_in(_REACTS_S)
     slow = theirs < cells.of(own) + _ALIKE_MPS
     held = (gap <= _HOLDS_UP_M) & slow
     came = cells.of(spans.most_of_last(own, soon))
@@ -57,7 +56,7 @@ def led(context: DriveContext, brakes: Flags, reach: Floats) -> Flags:
         | (cells.of(context.tracks.acceleration) <= -_BRAKES_MPS2) & slow
     )
     hard |= gap <= _NEAR_S * cells.of(own)
-    by_speed = np.where(cells.of(moves(context)), slow, held)
+    by_speed = np.where(cells.of(context.ego_moves), slow, held)
     found[cells.columns[by_speed]] = True
     for_braking = np.zeros(context.states, dtype=bool)
     for_braking[cells.columns[hard]] = True
@@ -86,7 +85,7 @@ def may_be_others(context: DriveContext, others: Others, reach: Floats) -> tuple
     slower = (angle < ACROSS_RAD) & (motion.along < speed + _ALIKE_MPS)
     not_to_pass = slower & (to_far > 0) & (away <= COMES_M)
     found[columns[comes | (across & motion.moves) | not_to_pass]] = True
-    soon = round(_REACTS_S / context.recording.step_s)
+    soon = context.steps_in(_REACTS_S)
     came = context.spans.most_of_last(context.ego.speed[0], soon)[states[columns]]
     gap = cells.of(others.ahead)
     kept_back = np.zeros(len(states), dtype=bool)
@@ -133,7 +132,7 @@ def crossed(context: DriveContext, others: Others, reach: Floats) -> Flags:
     angle, there = np.abs(motion.turned), np.zeros(context.states, dtype=bool)
     across = (angle > ACROSS_RAD) & (angle < np.pi - ACROSS_RAD) & motion.moves
     there[states[cells.columns[across]]] = True
-    return context.spans.within(there, round(_WAITS_S / context.recording.step_s))
+    return context.spans.within(there, context.steps_in(_WAITS_S))
 
 
 def met(context: DriveContext, asked: Flags, reach: Floats) -> tuple[Flags, Flags]:
@@ -150,9 +149,7 @@ def met(context: DriveContext, asked: Flags, reach: Floats) -> tuple[Flags, Flag
 def _met_alone(context: DriveContext, reach: Floats) -> tuple[Flags, Flags]:
     """``met`` for a single drive."""
     passages, first = context.surroundings.passages, context.first_column
-    waits_for, thinks_of = (
-        round(seconds / context.recording.step_s) for seconds in (_WAITS_S, _THINKS_OF_S)
-    )
+    waits_for, thinks_of = (context.steps_in(seconds) for seconds in (_WAITS_S, _THINKS_OF_S))
     waits, thinks = np.zeros((2, context.states), dtype=bool)
     for own in own_passages(context):
         stop = approach(context, own).stop

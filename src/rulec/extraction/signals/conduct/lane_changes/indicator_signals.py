@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from rulec.array_types import Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
-from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_columns import WorldSignal
 
 _INDICATORS = frozenset({"left_indicator", "right_indicator"})
 
@@ -25,7 +25,7 @@ _ABRUPT_MPS, _ABRUPT_S = 2.5, 2.0
 """Who changes lanes faster than anybody drives began to at most this long (s) before."""
 
 
-def indicator(context: DriveContext) -> SignalColumns:
+def indicator(context: DriveContext) -> WorldSignal | None:
     """Ego's indicator, if the recording contains its lamps.
 
     Both sides at once are no indication, like hazard lights; if a file states that hazard lights
@@ -38,7 +38,7 @@ def indicator(context: DriveContext) -> SignalColumns:
     """
     egos = context.ego.participants
     if not context.spans.agreed([ego.lamps and ego.shows >= _INDICATORS for ego in egos]):
-        return SignalColumns()
+        return None
     far = "left_indicator" if context.side == "right" else "right_indicator"
     steps = ego_lamps(context)
     lit = [(lamps or frozenset()) & _INDICATORS for lamps in steps]
@@ -55,7 +55,7 @@ def indicator(context: DriveContext) -> SignalColumns:
     spans, across_mps = context.spans, _speed_across(context)
     changed = spans.changes(context.steady_lane)
     changes = (changed & is_dark).nonzero()[0]
-    shown, longest = codes.copy(), round(context.thresholds.signalling_s / context.recording.step_s)
+    shown, longest = codes.copy(), context.steps_in(context.thresholds.signalling_s)
     for change in changes.tolist():
         last = _lit_across(context, shown, change)
         # What it showed until then is as much later as the change is known later
@@ -64,18 +64,14 @@ def indicator(context: DriveContext) -> SignalColumns:
             codes[first + change - last : change + 1] = shown[first : last + 1]
     jumps = across_mps > _JUMP_MPS
     # A jump may end short of the mark, or begin just behind it
-    about = spans.within(jumps, round(_JUMP_S / context.recording.step_s), around=True)
+    about = spans.within(jumps, context.steps_in(_JUMP_S), around=True)
     unknown[changes] |= (codes[changes] == 0) & about[changes]
     off_the_edge = jumps & ~changed
     unknown |= is_dark & (off_the_edge | spans.after(off_the_edge))
     abrupt = changed & (across_mps > _ABRUPT_MPS)
-    abrupt = spans.within(abrupt, round(_ABRUPT_S / context.recording.step_s))
+    abrupt = spans.within(abrupt, context.steps_in(_ABRUPT_S))
     unknown |= is_dark & abrupt & ~changed
-    return SignalColumns(
-        {"indicator": codes},
-        unknown={"indicator": unknown},
-        texts={"indicator": _INDICATIONS},
-    )
+    return WorldSignal(codes, unknown, texts=_INDICATIONS)
 
 
 def _lit_across(context: DriveContext, codes: NDArray[intp], change: int) -> int:
@@ -85,7 +81,7 @@ def _lit_across(context: DriveContext, codes: NDArray[intp], change: int) -> int
     """
     lane, own = context.steady_lane, context.ego_extents
     mark = max(lane[change - 1], lane[change])
-    longest = round(context.thresholds.signalling_s / context.recording.step_s)
+    longest = context.steps_in(context.thresholds.signalling_s)
     first = max(int(context.spans.first[change]), change - longest)
     low, high = (
         left_of[first:change, mark] for left_of in (own.left_of_min[0], own.left_of_max[0])

@@ -23,7 +23,7 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
 )
 from rulec.extraction.signals.conduct.u_turns import may_turn_round, swings_round, u_turns
 from rulec.extraction.signals.map.junction_signals import lies_askew_in_turn
-from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
+from rulec.extraction.signals.signal_columns import WorldSignal, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.scenario.recorded.route import lanelet_area
@@ -44,7 +44,7 @@ _ASTRIDE_S = 1.0
 _HAIR_M = 0.01
 
 
-def _lane_change(context: DriveContext) -> SignalColumns:
+def _lane_change(context: DriveContext) -> WorldSignal:
     """Whether ego has changed lanes; unknown within tolerances, and where ego turns round or off.
 
     Its body then swings over the lanes of the road that it enters. Unknown, too, where a lane has
@@ -66,7 +66,7 @@ def _lane_change(context: DriveContext) -> SignalColumns:
         for change, piece, before in zip(states.tolist(), *places, strict=True):
             unknown[change] = _at_fork(context, change, piece) or _at_merge(context, change, before)
     unknown |= np.logical_or.reduce(crossed_on_ring(context))
-    return SignalColumns({"lane_change": changes}, unknown={"lane_change": unknown})
+    return WorldSignal(changes, unknown)
 
 
 def _speed_ahead(context: DriveContext) -> Floats:
@@ -162,7 +162,7 @@ def _has_followed(context: DriveContext, lane: int, begin_m: float, end: int) ->
     return True
 
 
-def _lane_is_clear(context: DriveContext) -> SignalColumns:
+def _lane_is_clear(context: DriveContext) -> WorldSignal:
     """Whether no vehicle has to brake or make way for ego as it comes into a lane.
 
     Unknown where the only ones that have to are about to be past, with ego coming in behind them,
@@ -195,17 +195,13 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
         # Or may stand, by its speed's error
         slowest = context.ego.speed[0] - context.ego.speed_error[0]
         stands = slowest * KMH_PER_MPS < context.thresholds.standing_kmh
-        just_stood = round(_JUST_STOOD_S / context.recording.step_s)
+        just_stood = context.steps_in(_JUST_STOOD_S)
         stands |= _changes(context) & context.spans.within_last(stands, just_stood)
         only_perhaps = np.zeros_like(clear)
         only_perhaps[flagged[is_perhaps]] = True
         unknown = np.where(clear, unsure, moot | stands | only_perhaps)
     unknown |= clear & np.logical_or.reduce(crossed_on_ring(context))
-    return SignalColumns(
-        {"lane_is_clear": clear},
-        unknown={"lane_is_clear": unknown},
-        whom={"lane_is_clear": ids_by_state(disturbed, context.ids)},
-    )
+    return WorldSignal(clear, unknown, whom=ids_by_state(disturbed, context.ids))
 
 
 def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[WayIn], Flags]:
@@ -350,9 +346,9 @@ def _pulls_away(context: DriveContext, states: NDArray[intp]) -> Flags:
 
 lane_change_signals = SignalPasses(
     {
-        ("lane_change",): _lane_change,
-        ("lane_is_clear",): _lane_is_clear,
-        ("indicator",): indicator,
+        "lane_change": _lane_change,
+        "lane_is_clear": _lane_is_clear,
+        "indicator": indicator,
     }
 )
 """The signals of ego's lane changes, and of the lamps that announce them."""

@@ -11,8 +11,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
+from rulec.extraction.computed_once import once_a_road
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.trace.plain_arrays import zero_if_nan
 
 _BEYOND_M = 15.0

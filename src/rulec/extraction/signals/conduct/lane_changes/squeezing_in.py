@@ -79,7 +79,7 @@ def _moves_over(
     """The states from which ego moves over, and from which its body is across the mark, by way."""
     own, spans = context.ego_extents, context.spans
     begins, reaches = changes.copy(), changes.copy()
-    longest = round(_LONGEST_S / context.recording.step_s)
+    longest = context.steps_in(_LONGEST_S)
     for line, to_left in {(way.line, way.to_left) for way in ways}:
         alike = [(way.line, way.to_left) == (line, to_left) for way in ways]
         states, side = changes[alike], 1 if to_left else -1
@@ -202,7 +202,7 @@ def _comes_in_close(context: DriveContext, since: NDArray[intp], changes: NDArra
 
 def _reacted(context: DriveContext, changes: NDArray[intp]) -> NDArray[intp]:
     """The states after those in which others have reacted to a change of lanes."""
-    reacts = round(context.thresholds.reaction_s / context.recording.step_s) + 1
+    reacts = context.steps_in(context.thresholds.reaction_s) + 1
     ends: NDArray[intp] = np.minimum(changes + reacts, context.spans.end[changes])
     return ends
 
@@ -215,7 +215,7 @@ def _drifts(
     Measured in the lane, since the road's own line may bend from one lane to another; over half of
     ``smoothing_s``, as far as the drive goes back.
     """
-    steps = max(round(context.thresholds.smoothing_s / 2 / context.recording.step_s), 1)
+    steps = max(context.steps_in(context.thresholds.smoothing_s / 2), 1)
     before = np.maximum(states - steps, context.spans.first[states])
     went_s = (states - before) * context.recording.step_s
     drifts, whole = np.zeros(whom.shape, dtype=bool), context.relevant.shape

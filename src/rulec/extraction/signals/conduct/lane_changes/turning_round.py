@@ -73,7 +73,7 @@ def _brakes(context: DriveContext, row: int, state: int) -> tuple[bool, bool]:
     tracks, limits = context.surroundings.tracks, context.thresholds
     own, column = int(context.tracks.rows[row]), int(context.columns[state])
     soon, before = (
-        round(seconds / context.recording.step_s)
+        context.steps_in(seconds)
         for seconds in (limits.reaction_s + limits.smoothing_s, limits.smoothing_s)
     )
     span = slice(max(column - before, 0), column + soon + 1)

@@ -158,7 +158,7 @@ def _runs_into(
     alone = slice(enters, until if hit is None else hit + 1)
     slowest = passages.tracks.speed[[own.row, other.row], alone].min(axis=1, initial=np.inf)
     moved_in = max(drives_in(context, own, enters), int(present[0]))
-    sees = slice(max(moved_in - round(SEES_S / context.recording.step_s), 0), moved_in + 1)
+    sees = slice(max(moved_in - context.steps_in(SEES_S), 0), moved_in + 1)
     came_mps = max(slowest[1], np.fmax.reduce(passages.tracks.speed[other.row, sees]))
     drives_mps = DRIVES_MPS if hit is None else SLOWEST_MPS
     if not (slowest[0] > SLOWEST_MPS and came_mps > drives_mps):

@@ -208,7 +208,7 @@ def _slows_for_itself(
 ) -> bool:
     """Whether a vehicle gets slower, while ego is on its way there, and not only for ego."""
     last = int(ego.until) if ego.gone else comes
-    until = min(last + round(_BRIEFLY_S / context.recording.step_s), comes)
+    until = min(last + context.steps_in(_BRIEFLY_S), comes)
     rows = ego.passage.row, other.row
     slows = slows_down(context, other, first, last)
     return bool(slows) and slows_for_itself(context, rows, first, until)

@@ -107,7 +107,7 @@ def _shown(context: DriveContext, other: Passage) -> Iterator[str | None]:
     Otherwise during all of the time in which it may have crossed it.
     """
     passages = context.surroundings.passages
-    since = round(_CLEARED_S / context.recording.step_s)
+    since = context.steps_in(_CLEARED_S)
     for entry, lights in entry_lights(context.recording, passages.way(other)):
         crossed = _crossed(context, other, entry.stop_line)
         columns = range(other.first - since, other.first + 1)

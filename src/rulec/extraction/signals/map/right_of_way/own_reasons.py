@@ -123,7 +123,7 @@ def _slows_for_bend(context: DriveContext, braking: _Braking) -> bool:
     if not bends.any():
         return False
     sharpest = (across[bends] / speed[slowest : slowest + len(across)][bends] ** 2).max()
-    before = max(first - round(_JUST_S / context.recording.step_s), 0)
+    before = max(first - context.steps_in(_JUST_S), 0)
     taken = np.fmax.reduce(_across(context, row, before, first), initial=0.0)
     return bool(sharpest * speed[first] ** 2 > taken)
 
@@ -167,7 +167,7 @@ def _slows_for_limit(context: DriveContext, braking: _Braking) -> bool:
     passages, lanelets = context.surroundings.passages, context.recording.lanelets
     row, first = braking.rows[1], braking.first
     speed = passages.tracks.speed[row]
-    soon = first + round(_AHEAD_S / context.recording.step_s)
+    soon = first + context.steps_in(_AHEAD_S)
     for passage in passages.of_row.get(row, ()):
         if not (passage.first <= soon and passage.last >= first):
             continue
@@ -199,7 +199,7 @@ def _meets_another(context: DriveContext, passage: Passage, braking: _Braking) -
         for x in passages.through[passage.junction]
         if x.row not in rows and junction.meeting(passage.way, x.way) is not None
     ]
-    soon = column + round(context.thresholds.held_up_s / context.recording.step_s)
+    soon = column + context.steps_in(context.thresholds.held_up_s)
     return any(first <= soon and last >= column for first, last in (*strays, *crossing))
 
 

@@ -10,11 +10,11 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
-from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.computed_once import once, once_a_recording
+from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.right_of_way.conflicts import side_of
 from rulec.extraction.signals.map.right_of_way.held_up import drives_in
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS
-from rulec.extraction.signals.signal_passes import once_a_recording
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.scenario.recorded.reference_line import turn
 
@@ -65,7 +65,7 @@ def may_meet(context: DriveContext) -> bool:
     """Whether others are near a junction ``held_up_s`` before or after ego is on no way of it."""
     passages, row = context.surroundings.passages, int(context.ego.rows[0])
     tracks, limits = passages.tracks, context.thresholds
-    longest = round(limits.held_up_s / context.recording.step_s)
+    longest = context.steps_in(limits.held_up_s)
     for junction, first, last in strays(context):
         columns = slice(max(first - longest, 0), last + longest + 1)
         there = tracks.present[:, columns] & (np.arange(len(tracks.present)) != row)[:, None]
