@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.lane_sets import LaneSets, is_in
+from rulec.extraction.tracks.lane_sets import LaneSets, edges, is_in
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.source_tolerances import Tolerances
 from rulec.extraction.tracks.surroundings import Surroundings
@@ -239,6 +239,11 @@ class DriveContext:
     def existing_lanes(self) -> Flags:
         """Mask of the lanes (second axis) that exist beside ego, by state."""
         return self.road.lanes.existing_at(self.ego_extents.s[0])
+
+    @cached_property
+    def lane_edges(self) -> tuple[NDArray[intp], NDArray[intp]]:
+        """The numbers of the first and the last lane bound beside ego, by state."""
+        return edges(self.existing_lanes)
 
     @cached_property
     def steady_lane(self) -> NDArray[intp]:

@@ -77,6 +77,12 @@ class Cells:
         by_row = values.ndim > 1 and len(values) == self.shape[0]
         return values.take(self.places if by_row else self.columns)
 
+    def in_columns(self, flags: NDArray[bool_]) -> NDArray[bool_]:
+        """Mask of the columns in which some cell has a flag."""
+        found = np.zeros(self.shape[1], dtype=bool)
+        found[self.columns[flags]] = True
+        return found
+
     def least(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """The least of the cells' ``values`` in each column; infinity in columns without cells."""
         least = np.full(self.shape[1], np.inf)

@@ -118,6 +118,11 @@ class EndToEnd:
         begins = np.arange(0, flags.size, self.n_states).reshape(*flags.shape[:-1], 1)
         return places.reshape(flags.shape) - begins
 
+    def runs(self, flags: Flags) -> Iterator[tuple[int, int]]:
+        """The first column of each run of a flag within a drive, and the one after its last."""
+        firsts = (flags & (self.begins_here | ~self.before(flags))).nonzero()[0]
+        return zip(firsts.tolist(), self.next_state(~flags)[firsts].tolist(), strict=True)
+
     def within(self, flags: Flags, steps: int, *, around: bool = False) -> Flags:
         """Mask of states with a flag then or up to ``steps`` later; ``around``: or earlier."""
         if not flags.any():

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy import intp
-from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext
@@ -60,10 +58,10 @@ def _oncoming_clear(context: DriveContext) -> WorldSignal:
     left_s = np.where(
         station == relations.BEHIND, cells.of(relations.gap(context)) / closing, np.inf
     )
-    met, meets, soon = np.zeros((3, context.states), dtype=bool)
-    met[columns[station == relations.BESIDE]] = True
-    meets[columns[left_s < limits.overtaking_s]] = True
-    soon[columns[left_s < limits.yielding_s]] = True
+    met, meets, soon = map(
+        cells.in_columns,
+        (station == relations.BESIDE, left_s < limits.overtaking_s, left_s < limits.yielding_s),
+    )
     meets |= context.spans.within(met, steps) | _meets_beyond_middle(context, met | soon)
     unknown = ends & ~far_enough | _may_brake_for_ego(context, cells)
     return WorldSignal(alone | ~meets, ~alone & ~meets & unknown)
@@ -113,17 +111,11 @@ def _meets_beyond_middle(context: DriveContext, meets: Flags) -> Flags:
 
 def _beyond_own_lanes(context: DriveContext) -> Flags:
     """Mask of states in which ego reaches over the far edge of the lanes of its direction."""
-    first, end = _edges(context)
+    first, end = context.lane_edges
     own, touching = context.ego_extents, context.thresholds.touching_m
     left, right = own.from_bound(end)[1][0], -own.from_bound(first)[0][0]
     beyond: Flags = (left if context.side == "right" else right) > touching
     return beyond
-
-
-def _edges(context: DriveContext) -> tuple[NDArray[intp], NDArray[intp]]:
-    """The first and the last lane bound beside ego, by state."""
-    there = context.existing_lanes
-    return there.argmax(axis=1), there.shape[1] - there[:, ::-1].argmax(axis=1)
 
 
 def _obstructed(context: DriveContext) -> WorldSignal:
@@ -145,7 +137,7 @@ def _obstructed(context: DriveContext) -> WorldSignal:
     for lane in range(used.shape[1]):
         (low, _), (_, high) = context.extents.cells_from_bounds(cells, lane, lane + 1)
         there = is_in(sets, lane) & (np.maximum(low, -high) < needed)
-        blocked[cells.columns[there & near & cells.of(used[:, lane])]] = True
+        blocked |= cells.in_columns(there & near & cells.of(used[:, lane]))
         bodies = cells.part(there.nonzero()[0])
         perhaps |= _on_the_way_round(context, bodies, lane, used[:, lane])
     return WorldSignal(blocked, perhaps & ~blocked)
@@ -187,9 +179,7 @@ def _on_the_way_round(context: DriveContext, obstacles: Cells, lane: int, used: 
         (np.ones(len(rows), dtype=bool), used, False),
         (keeps_place[rows], is_next, True),
     ):
-        passed = np.zeros(context.states, dtype=bool)
-        passed[obstacles.columns[counting]] = True
-        passed = _passed_from(context, passed, within, steps)
+        passed = _passed_from(context, obstacles.in_columns(counting), within, steps)
         near = spans.within_last(passed, steps) & (spans.latest(passed) > spans.latest(within))
         if ahead:
             soon = spans.next_state(passed) < spans.next_state(within)
@@ -232,7 +222,7 @@ def _near_obstacle(context: DriveContext, cells: Cells) -> Flags:
 
 def _room_on_near_side(context: DriveContext) -> ObjectSignal:
     """Whether participants leave room for ego between them and the road's near edge."""
-    first, end = _edges(context)
+    first, end = context.lane_edges
     others, right = context.extents, context.side == "right"
     room = others.from_bound(first)[0] if right else -others.from_bound(end)[1]
     width = context.ego_extents.d_max[0] - context.ego_extents.d_min[0] + _BESIDE_M

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -98,6 +98,15 @@ def map_contents(context: DriveContext) -> MapContents:
         lights=any(lanelet.lights for lanelet in lanelets),
         marks=any(lanelet.left_mark or lanelet.right_mark for lanelet in lanelets),
     )
+
+
+def may_hold(context: DriveContext, signs: Set[str]) -> Flags:
+    """Mask of states in which the map does not say whether one of these signs holds."""
+    if not signs & map_contents(context).untold_signs:
+        return np.zeros(context.states, dtype=bool)
+    may = own_lanelets(context).flags(lambda lanelet: bool(signs & lanelet.untold_signs))
+    may |= context.spans.before(may)
+    return may
 
 
 @once

@@ -76,6 +76,14 @@ class DrivenRoad:
         assert own is not None
         return row[lane] or own
 
+    def ids_between(self, low: float, high: float) -> frozenset[str]:
+        """The ids of the lanelets that begin between two places, or just before the first."""
+        starts = self.borders[:-1].tolist()
+        rows = [
+            row for row, start in zip(self.rows, starts, strict=True) if low - 0.1 <= start < high
+        ]
+        return frozenset(lanelet.id for row in rows for lanelet in row if lanelet is not None)
+
     def limit_mps(self, piece: int, lane: int, most_turned: float) -> float | None:
         """The speed limit of a lane; None if the map has none there.
 

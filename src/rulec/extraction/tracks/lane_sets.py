@@ -26,6 +26,11 @@ def lane_sets(lanes: Flags) -> LaneSets:
     return sets
 
 
+def edges(lanes: Flags) -> tuple[NDArray[intp], NDArray[intp]]:
+    """The numbers of the first and the last bound of lanes (last axis) that exist."""
+    return lanes.argmax(axis=-1), lanes.shape[-1] - lanes[..., ::-1].argmax(axis=-1)
+
+
 def is_in(sets: LaneSets, lane: NDArray[intp] | int) -> Flags:
     """Mask of the sets that contain a lane."""
     # Cast to the sets' narrow type, so that the result keeps it

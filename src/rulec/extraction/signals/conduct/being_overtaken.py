@@ -46,9 +46,7 @@ def being_overtaken(context: DriveContext) -> WorldSignal:
     """
     by, open_end = _overtaken(context)
     if not by.any() and not open_end.any():
-        nobody = np.zeros(context.states, dtype=bool)
-        whom = ids_by_state(by, context.ids)
-        return WorldSignal(nobody, nobody, whom=whom)
+        return WorldSignal(open_end, open_end, whom=ids_by_state(by, context.ids))
     # A vehicle about to join gains speed beside others on the lanes that go on; one that leaves may
     # be faster than they are, too (StVO § 7a), and many lanes between ramps serve for both
     on_ramp = own_lanelets(context).flags(lambda at: not at.types.isdisjoint(RAMPS))
@@ -191,9 +189,8 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     comes &= ((relations.lateral(context) == near) & context.going_along) | over
     closing = relations.gap(context) <= faster_mps * limits.passed_s
     cells = Cells.at(comes & (closing | (station == relations.BESIDE)))
-    open_end = np.zeros(context.states, dtype=bool)
     if not len(cells):
-        return np.zeros_like(comes), open_end
+        return np.zeros_like(comes), np.zeros(context.states, dtype=bool)
     gets_past, unsure = map(cells.of, _gets_past(context, distinct(cells.rows), faster_mps, over))
     next_lane, lanes = cells.of(_next_lane(context)), context.existing_lanes.shape[1]
     there = (next_lane >= 0) & (next_lane < lanes)
@@ -201,7 +198,7 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     inside = reaches & (cells.of(context.extents.lane) == next_lane)
     beyond = cells.of(over) & ~there
     inside, reaches = inside | beyond, reaches | beyond
-    open_end[cells.columns[reaches & (unsure | (~inside & gets_past))]] = True
+    open_end = cells.in_columns(reaches & (unsure | (~inside & gets_past)))
     return cells.laid(inside & gets_past), open_end
 
 

@@ -67,9 +67,7 @@ def _comes_back_nowhere(context: DriveContext, perhaps: Flags, backs: Flags) -> 
     x, y = (own.x[0], own.y[0])
     moved = [np.where(spans.begins_here, 0.0, at - spans.before(at)) for at in (x, y)]
     ahead = (moved[0] * np.cos(heading) + moved[1] * np.sin(heading)).cumsum()
-    firsts = (perhaps & (spans.begins_here | ~spans.before(perhaps))).nonzero()[0]
-    behind = np.minimum(spans.next_state(~perhaps), spans.end)
-    for first, end in zip(firsts.tolist(), behind[firsts].tolist(), strict=True):
+    for first, end in spans.runs(perhaps):
         way = ahead[max(first - 1, int(spans.first[first])) : end]
         back = float((np.maximum.accumulate(way) - way).max())
         wrong = np.sqrt(2.0) * context.tolerances.place_m
@@ -85,9 +83,7 @@ def _for_long(context: DriveContext, flags: Flags) -> Flags:
     spans, found, x, y = context.spans, np.zeros_like(flags), context.ego.x[0], context.ego.y[0]
     if not flags.any():
         return found
-    firsts = (flags & (spans.begins_here | ~spans.before(flags))).nonzero()[0]
-    behind = np.minimum(spans.next_state(~flags), spans.end)
-    for first, end in zip(firsts.tolist(), behind[firsts].tolist(), strict=True):
+    for first, end in spans.runs(flags):
         states = context.ego.participants[int(spans.number[first])].states
         moved = np.hypot(x[end - 1] - x[first], y[end - 1] - y[first])
         steps = context.steps[first:end].tolist()
@@ -135,12 +131,9 @@ def may_back(context: DriveContext) -> Flags:
     there, perhaps = oncoming_side(context)
     if not there.any():
         return found
-    speed = context.ego.speed[0]
-    moves = speed * KMH_PER_MPS >= context.thresholds.standing_kmh
+    speed, moves = context.ego.speed[0], context.ego_moves
     own_side = _along_road(context) & _on_map(context) & ~at_junctions(context) & ~there & ~perhaps
-    firsts = (moves & (spans.begins_here | ~spans.before(moves))).nonzero()[0]
-    ends = np.minimum(spans.next_state(~moves), spans.end)[firsts]
-    for first, end in zip(firsts.tolist(), ends.tolist(), strict=True):
+    for first, end in spans.runs(moves):
         part, number = slice(first, end), int(spans.number[first])
         slow = there[part].any() and speed[part].max() < BACKS_MPS and not own_side[part].any()
         found[part] = slow and not _tells_headings(context, number, spans.slices[number])
@@ -209,10 +202,10 @@ def about_the_middle(context: DriveContext) -> Flags:
 
 def sides_beyond_far_edge(context: DriveContext, bodies: RoadExtents) -> tuple[Floats, Floats]:
     """How far (m) the nearer and the farther side of bodies, by row, are beyond ego's far edge."""
-    lanes = context.existing_lanes
+    first, end = context.lane_edges
     if context.side == "right":
-        return bodies.from_bound(lanes.shape[1] - lanes[:, ::-1].argmax(axis=1))
-    right, left = bodies.from_bound(lanes.argmax(axis=1))
+        return bodies.from_bound(end)
+    right, left = bodies.from_bound(first)
     return -left, -right
 
 
@@ -244,20 +237,20 @@ def _loose(context: DriveContext) -> Floats:
 
 def _beyond_far_edge(context: DriveContext) -> Floats:
     """How far (m) ego's middle is beyond the far edge of the lanes that lead its way."""
-    right, left = _beyond_edges(context)
+    right, left = beyond_edges(context)
     return left if context.side == "right" else right
 
 
 def beyond_near_edge(context: DriveContext) -> Floats:
     """How far (m) ego's middle is beyond the road's edge at its near side."""
-    right, left = _beyond_edges(context)
+    right, left = beyond_edges(context)
     return right if context.side == "right" else left
 
 
 @once
-def _beyond_edges(context: DriveContext) -> tuple[Floats, Floats]:
-    lanes, own = context.existing_lanes, context.ego_extents
-    first, end = lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)
+def beyond_edges(context: DriveContext) -> tuple[Floats, Floats]:
+    """How far (m) ego's middle is beyond the right and the left edge of the lanes of its way."""
+    own, (first, end) = context.ego_extents, context.lane_edges
     return -own.middle_from(first)[0], own.middle_from(end)[0]
 
 

@@ -88,11 +88,9 @@ def _stays_over_the_middle(context: DriveContext, far: Floats) -> list[_Stay]:
         return []
     signs = own_lanelets(context).flags(lambda lanelet: _GOES_FIRST in lanelet.signs)
     spans, unsure = context.spans, not_told | at_junctions(context)
-    begins = (over & (spans.begins_here | ~spans.before(over))).nonzero()[0]
-    ends = np.minimum(spans.next_state(~over), spans.end)[begins]
     return [
         _Stay(first, end, int(spans.end[first]), sure)
-        for first, end in zip(begins.tolist(), ends.tolist(), strict=True)
+        for first, end in spans.runs(over)
         if not signs[first:end].any()
         for sure in [not (spans.begins_here[first] or unsure[first:end].any())]
     ]

@@ -121,20 +121,18 @@ def _overtakes(context: DriveContext, whom: Flags | bool) -> tuple[Flags, Flags]
     An overtaking ego is at the far side, from shortly before it is beside the other until it is
     just past. ``whom``: mask of the others by state.
     """
-    overtakes, unsure = np.zeros((2, context.states), dtype=bool)
+    nowhere = np.zeros(context.states, dtype=bool)
     if not np.any(whom):
-        return overtakes, unsure
+        return nowhere, nowhere
     far = relations.LEFT_OF if context.side == "right" else relations.RIGHT_OF
     slower: Flags = (context.extents.along < context.ego_extents.along) & whom
     slower &= (relations.lateral(context) == far) & (context.driving_along | _ride_along(context))
     cells = Cells.at(slower)
     if not len(cells):
-        return overtakes, unsure
+        return nowhere, nowhere
     beside = cells.of(relations.station(context)) == relations.BESIDE
     surely, perhaps = (_ahead_and_past(context, cells, tolerances) for tolerances in (0.0, 1.0))
-    overtakes[cells.columns[surely | beside]] = True
-    unsure[cells.columns[perhaps]] = True
-    return overtakes, unsure
+    return cells.in_columns(surely | beside), cells.in_columns(perhaps)
 
 
 def _ride_along(context: DriveContext) -> Flags:

@@ -19,7 +19,6 @@ from rulec.extraction.signals.conduct.braking_causes.map_causes import (
     road_reasons,
 )
 from rulec.extraction.signals.conduct.braking_causes.others_around import (
-    ACROSS_RAD,
     Others,
     motion_of,
     others_in,
@@ -211,10 +210,8 @@ def _slow_beside(context: DriveContext, others: Others) -> Flags:
     rows, columns = cells.rows, cells.columns
     motion = motion_of(context, others.rows[rows], others.states[columns])
     ego_mps = context.ego.speed[0, others.states[columns]]
-    slow = (np.abs(motion.turned) < ACROSS_RAD) & (motion.along < _HALF * ego_mps)
-    found = np.zeros(len(others.states), dtype=bool)
-    found[columns[slow]] = True
-    return found
+    slow = motion.goes_along & (motion.along < _HALF * ego_mps)
+    return cells.in_columns(slow)
 
 
 def _seeks_a_gap(context: DriveContext) -> Flags:
@@ -286,12 +283,11 @@ def _followed(context: DriveContext, slower_mps: float = np.inf) -> Flags:
     behind = relations.station(context) == relations.IN_FRONT_OF
     behind &= context.going_along
     behind &= context.in_ego_lane
-    cells, followed = Cells.at(behind), np.zeros(context.states, dtype=bool)
+    cells = Cells.at(behind)
     speed = np.maximum(cells.of(context.extents.along), 0.0)
     near = cells.of(relations.gap(context)) <= FOLLOWS_S * speed
     near &= speed > context.ego_extents.along[0, cells.columns] - slower_mps
-    followed[cells.columns[near]] = True
-    return followed
+    return cells.in_columns(near)
 
 
 reason_signals = SignalPasses(

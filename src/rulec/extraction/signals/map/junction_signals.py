@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rulec.array_types import Flags, Floats
 from rulec.extraction.computed_once import once
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
+from rulec.extraction.signals.ego_lanelets import map_contents, may_hold, own_lanelets
 from rulec.extraction.signals.map.priority_signals import (
     approach,
     drive_by_drive,
@@ -19,11 +19,11 @@ from rulec.extraction.signals.map.priority_signals import (
 )
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.map.stop_lines import (
-    ends_at_line,
+    has_stop_sign,
     may_have_passed,
     may_pass,
+    own_lines,
     passes,
-    stop_line,
 )
 from rulec.extraction.signals.measured_numbers import own_front
 from rulec.extraction.signals.signal_columns import SignalColumns, WorldSignal
@@ -31,7 +31,6 @@ from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.at_junctions.junctions import all_have_to_stop
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import STOP_SIGNS, STRAIGHT_ON
-from rulec.trace.plain_arrays import distinct
 
 _SLOWEST_MPS = 5.0
 """A vehicle that stands at the end of a drive is assumed to go on this fast."""
@@ -84,13 +83,6 @@ def _turns(context: DriveContext) -> SignalColumns:
         {"turn": turn, "preparing_to_leave": prepares},
         unknown={"turn": unknown, "preparing_to_leave": perhaps & ~prepares},
     )
-
-
-def _stop_signs(context: DriveContext) -> WorldSignal | None:
-    if not _tells_stop_signs(context):
-        return None
-    crosses, may_cross = _crosses_stop_line(context)
-    return WorldSignal(crosses, may_cross)
 
 
 @drive_by_drive
@@ -177,15 +169,7 @@ def _ways_part(context: DriveContext, start: float, columns: slice) -> bool:
 
 def _on_known_way(context: DriveContext, stretch: tuple[float, float], number: int) -> bool:
     """Whether ego's passage of a junction on its road, in a drive, shows which way it takes."""
-    road, (start, end) = context.road, stretch
-    passages = context.own.passages
-    inside = {
-        lanelet.id
-        for row, low in zip(road.rows, road.borders.tolist(), strict=False)
-        if start - 0.1 <= low < end
-        for lanelet in row
-        if lanelet is not None
-    }
+    passages, inside = context.own.passages, context.road.ids_between(*stretch)
     return any(
         passage.sure and inside & passages.way(passage).names
         for passage in passages_of(context, number)
@@ -232,39 +216,23 @@ def _time_driven(context: DriveContext, pace_kmh: float) -> Floats:
     return driven
 
 
-def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
-    """Masks of ego crossing the line of a lanelet with a stop sign, and perhaps crossing it.
+def _crosses_stop_line(context: DriveContext) -> WorldSignal | None:
+    """Whether ego crosses the line of a lanelet with a stop sign; unknown where it perhaps does.
 
     Perhaps if its drive ends while it moves between the places where the line may be, or begins
     just beyond the line, or where errors of places decide, as when it stands at the line.
     """
+    if not _tells_stop_signs(context):
+        return None
     crosses, may_cross = np.zeros((2, context.states), dtype=bool)
-    front, moves = own_front(context), context.ego.speed[0] * KMH_PER_MPS
-    ends, least = context.spans.columns == context.spans.end - 1, context.thresholds.standing_kmh
-    for piece in range(len(context.road.rows)):
-        if any(row and STOP_SIGNS & row.signs for row in context.road.rows[piece]):
-            for lane in distinct(context.ego_lane).tolist():
-                stops = bool(STOP_SIGNS & context.road.lanelet(piece, lane).signs)
-                if stops and ends_at_line(context, piece, lane):
-                    first, last = stop_line(context, piece, lane)
-                    unsure = may_pass(context, last) | may_have_passed(context, last)
-                    unsure &= context.ego_lane == lane
-                    crosses |= passes(context, last) & (context.ego_lane == lane) & ~unsure
-                    may_cross |= unsure
-                    on_it = (first < front) & (front <= last) & (context.ego_lane == lane)
-                    may_cross |= ends & on_it & (moves >= least)
-    return crosses, (may_cross | _may_have_sign(context)) & ~crosses
-
-
-def _may_have_sign(context: DriveContext) -> Flags:
-    """Mask of states in which ego moves where the map does not say whether there are stop signs."""
-    if not STOP_SIGNS & map_contents(context).untold_signs:
-        return np.zeros(context.states, dtype=bool)
-    may = own_lanelets(context).flags(lambda lanelet: bool(STOP_SIGNS & lanelet.untold_signs))
-    moves = context.ego_moves
-    may |= context.spans.before(may)
-    may &= moves
-    return may
+    front, ends = own_front(context), context.spans.columns == context.spans.end - 1
+    for _, _, on_lane, first, last in own_lines(context, has_stop_sign):
+        unsure = (may_pass(context, last) | may_have_passed(context, last)) & on_lane
+        crosses |= passes(context, last) & on_lane & ~unsure
+        on_it = (first < front) & (front <= last) & on_lane
+        may_cross |= unsure | (ends & on_it & context.ego_moves)
+    may_cross |= context.ego_moves & may_hold(context, STOP_SIGNS)
+    return WorldSignal(crosses, may_cross & ~crosses)
 
 
 @once
@@ -304,7 +272,7 @@ junction_signals = SignalPasses(
         "junction_zone": _junction_zone,
         "enters_junction": _enters_junction,
         ("turn", "preparing_to_leave"): _turns,
-        "crosses_stop_line": _stop_signs,
+        "crosses_stop_line": _crosses_stop_line,
         "all_way_stop": _all_way_stop,
     }
 )

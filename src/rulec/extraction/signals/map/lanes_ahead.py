@@ -188,23 +188,13 @@ def _parted_at_the_end(context: DriveContext) -> tuple[float, Flags]:
 
 def _turns_off(context: DriveContext, row: int, junction: JunctionAhead) -> bool | None:
     """Whether a participant leaves ego's road at a junction; None if its track does not show it."""
-    passages, inside = context.surroundings.passages, _lanelets_inside(context, junction)
+    passages = context.surroundings.passages
+    inside = context.road.ids_between(junction.low, junction.high)
     for passage in passages.of_row.get(int(context.tracks.rows[row]), ()):
         same = passages.junctions[passage.junction]
         if passage.sure and any(inside & way.names for way in same.ways):
             return not _goes_along(context, passages.way(passage), junction.turned)
     return None
-
-
-def _lanelets_inside(context: DriveContext, junction: JunctionAhead) -> frozenset[str]:
-    """The ids of the lanelets of ego's road in a junction."""
-    return frozenset(
-        lanelet.id
-        for lanelets, low in zip(context.road.rows, context.road.borders.tolist(), strict=False)
-        if junction.low - 0.1 <= low < junction.high
-        for lanelet in lanelets
-        if lanelet is not None
-    )
 
 
 def _on_another_way(
@@ -216,7 +206,7 @@ def _on_another_way(
     its track does not show its way.
     """
     passages, own_row = context.surroundings.passages, int(context.tracks.rows[row])
-    own_ways = _lanelets_inside(context, junction)
+    own_ways = context.road.ids_between(junction.low, junction.high)
     surely, perhaps = np.zeros((2, context.states), dtype=bool)
     (own,) = context.road.line.headings_at(np.array([junction.low - _HAIR_M])).tolist()
     for passage in passages.of_row.get(own_row, ()):

@@ -89,10 +89,8 @@ def _tracks_at_kerb(context: DriveContext) -> WorldSignal | None:
     if not _tells_rails(context):
         return None
     pieces = context.road.piece(context.ego_extents.s[0])
-    there = context.existing_lanes
-    kerb = there.argmax(axis=1)
-    if context.side == "left":
-        kerb = there.shape[1] - 1 - there[:, ::-1].argmax(axis=1)
+    first, end = context.lane_edges
+    kerb = first if context.side == "right" else end - 1
     rails = context.tracks.of_type("rail_vehicle")
     runs = context.relevant[rails] & context.on_lanes[rails]
     runs &= abs(context.extents.turned[rails]) < 1.0

@@ -16,6 +16,7 @@ from rulec.extraction.signals.map.stop_lines import (
     may_have_passed,
     may_pass,
     may_stop_beyond,
+    own_lines,
     passes,
     stop_line,
     unseen_steps,
@@ -32,7 +33,6 @@ from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import STOP_SIGNS, Light, ObservedLight, Recording
-from rulec.trace.plain_arrays import distinct
 
 _NO_JUNCTION_M = 1000.0
 
@@ -85,18 +85,11 @@ def _way_to_line(context: DriveContext) -> tuple[Floats, tuple[Floats, Floats]]:
     front, place = own_front(context), context.tolerances.place_m
     touching = context.thresholds.touching_m
     way, near, far = np.zeros((3, context.states))
-    for piece in range(len(context.road.rows) - 1, -1, -1):
-        if not any(row is not None and has_line(row) for row in context.road.rows[piece]):
-            continue
-        for lane in distinct(context.ego_lane).tolist():
-            if not ends_at_line(context, piece, lane):
-                continue
-            first, last = stop_line(context, piece, lane)
-            ahead = (front <= last) & (context.ego_lane == lane)
-            ahead &= front > first - context.thresholds.near_m
-            way[ahead] = np.maximum(first - front, 0.0)[ahead]
-            near[ahead] = np.maximum(first - front - place, 0.0)[ahead]
-            far[ahead] = np.maximum(last - touching - front + place, 0.0)[ahead]
+    for _, _, on_lane, first, last in own_lines(context, has_line):
+        ahead = on_lane & (front <= last) & (front > first - context.thresholds.near_m)
+        way[ahead] = np.maximum(first - front, 0.0)[ahead]
+        near[ahead] = np.maximum(first - front - place, 0.0)[ahead]
+        far[ahead] = np.maximum(last - touching - front + place, 0.0)[ahead]
     if STOP_SIGNS & map_contents(context).untold_signs:
         own = own_lanelets(context)
         may = own.flags(lambda lanelet: bool(STOP_SIGNS & lanelet.untold_signs))
@@ -146,41 +139,32 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
     colours = np.full(context.states, "no_light", dtype="<U11")
     crosses, may_cross = np.zeros((2, context.states), dtype=bool)
     slow = context.ego.speed[0] * KMH_PER_MPS <= context.thresholds.stops_at_once_kmh
-    lanes = distinct(context.ego_lane).tolist()
-    for piece in range(len(context.road.rows) - 1, -1, -1):
-        if not any(row is not None and row.lights for row in context.road.rows[piece]):
+    for piece, lane, on_lane, first, last in own_lines(context, lambda at: at.lights):
+        lights = lights_of(context.recording, context.road, piece, lane)
+        if not lights:
             continue
-        for lane in lanes:
-            lights = lights_of(context.recording, context.road, piece, lane)
-            if not lights or not ends_at_line(context, piece, lane):
-                continue
-            first, last = stop_line(context, piece, lane)
-            unseen = may_have_passed(context, last) & (context.ego_lane == lane)
-            unsure = unseen | (may_pass(context, last) & (context.ego_lane == lane))
-            crossed = passes(context, last) & ~unsure
-            may_cross |= unsure | (
-                may_stop_beyond(context, (first, last)) & (context.ego_lane == lane)
-            )
-            ahead = ((front <= last) | unsure) & (front > first - context.thresholds.light_reach_m)
-            while_crossing = around_crossing(context, front, (first, last))
-            every = context.road.lanelet(piece, lane).lights
-            several = way_not_known(context) if len(every) > len(lights) else crosses & False
-            for state in ((ahead | crossed) & (context.ego_lane == lane)).nonzero()[0].tolist():
-                own = every if several[state] else lights
-                around = while_crossing(state) if crossed[state] else None
-                moments = around or (state,)
-                shown = {_colour(context, own, moment) for moment in moments}
-                if crossed[state] and around is None:
-                    shown.add("")
-                if unseen[state]:
-                    shown |= _colours_unseen(context, own, state)
-                crosses[state] |= crossed[state]
-                colours[state] = shown.pop() if len(shown) == 1 else ""
-                at_place = slow[[*moments]]
-                amber = colours[state] == _AMBER and last - first > context.thresholds.touching_m
-                may_cross[state] |= (
-                    crossed[state] and amber and at_place.any() and not at_place.all()
-                )
+        unseen = may_have_passed(context, last) & on_lane
+        unsure = unseen | (may_pass(context, last) & on_lane)
+        crossed = passes(context, last) & ~unsure
+        may_cross |= unsure | (may_stop_beyond(context, (first, last)) & on_lane)
+        ahead = ((front <= last) | unsure) & (front > first - context.thresholds.light_reach_m)
+        while_crossing = around_crossing(context, front, (first, last))
+        every = context.road.lanelet(piece, lane).lights
+        several = way_not_known(context) if len(every) > len(lights) else crosses & False
+        for state in ((ahead | crossed) & on_lane).nonzero()[0].tolist():
+            own = every if several[state] else lights
+            around = while_crossing(state) if crossed[state] else None
+            moments = around or (state,)
+            shown = {_colour(context, own, moment) for moment in moments}
+            if crossed[state] and around is None:
+                shown.add("")
+            if unseen[state]:
+                shown |= _colours_unseen(context, own, state)
+            crosses[state] |= crossed[state]
+            colours[state] = shown.pop() if len(shown) == 1 else ""
+            at_place = slow[[*moments]]
+            amber = colours[state] == _AMBER and last - first > context.thresholds.touching_m
+            may_cross[state] |= crossed[state] and amber and at_place.any() and not at_place.all()
     for state in _between_lights(context, colours, crosses):
         crosses[state], colours[state] = True, ""
     return colours, crosses, may_cross

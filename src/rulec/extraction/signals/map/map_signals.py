@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from rulec.array_types import Flags, Floats
 from rulec.extraction.computed_once import once, once_a_recording, once_a_road
 from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.conduct.manoeuvre_signals import beyond_edges
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
     SHOULDER,
     lanelets_at,
     map_contents,
+    may_hold,
     own_lanelets,
 )
 from rulec.extraction.signals.map.line_signals import own_light
@@ -113,7 +115,7 @@ def _minimum_limit(context: DriveContext) -> WorldSignal | None:
         return None
     least = own_lanelets(context).values(lambda at: at.minimum_mps or 0.0)
     return WorldSignal(
-        rounded(np.array(least) * KMH_PER_MPS), _may_hold(context, {LEAST_SPEED_SIGN})
+        rounded(np.array(least) * KMH_PER_MPS), may_hold(context, {LEAST_SPEED_SIGN})
     )
 
 
@@ -122,7 +124,7 @@ def _signs(context: DriveContext) -> SignalColumns:
     values, unknown = dict[str, Flags](), dict[str, Flags]()
     for name, (signs, at_line) in _SIGNS.items():
         if signs & known:
-            may = _may_hold(context, signs)
+            may = may_hold(context, signs)
             if at_line:
                 values[name], unseen = _holds_to_line(
                     context, signs, of_junction=name in _OVERRULED
@@ -144,15 +146,6 @@ def _has_sign(signs: Set[str]) -> Callable[[Lanelet], bool]:
     return lambda lanelet: bool(signs & lanelet.signs)
 
 
-def _may_hold(context: DriveContext, signs: Set[str]) -> Flags:
-    """Mask of states in which the map does not say whether one of these signs holds."""
-    if not signs & map_contents(context).untold_signs:
-        return np.zeros(context.states, dtype=bool)
-    may = own_lanelets(context).flags(lambda lanelet: bool(signs & lanelet.untold_signs))
-    may |= context.spans.before(may)
-    return may
-
-
 def _is_of(kind: str) -> Callable[[Lanelet], bool]:
     return lambda lanelet: kind in lanelet.types
 
@@ -167,7 +160,7 @@ def _holds_to_line(
     priority there: it holds until ego drives in, as some lines are a few metres before that.
     """
     before = context.spans.before(own_front(context))
-    holds, may_hold = np.zeros((2, context.states), dtype=bool)
+    holds, perhaps = np.zeros((2, context.states), dtype=bool)
     for piece, row in enumerate(context.road.rows):
         if any(lanelet is not None and signs & lanelet.signs for lanelet in row):
             begins = float(context.road.borders[piece])
@@ -178,8 +171,8 @@ def _holds_to_line(
                         line = max(line, _next_junction(context, first))
                     there = (before >= begins) & (before <= line)
                     holds |= there & (context.ego_lane == lane)
-                    may_hold |= may_have_passed(context, line) & (context.ego_lane == lane)
-    return holds, may_hold
+                    perhaps |= may_have_passed(context, line) & (context.ego_lane == lane)
+    return holds, perhaps
 
 
 def _next_junction(context: DriveContext, line: float) -> float:
@@ -285,9 +278,7 @@ def _on_shoulder_beside(context: DriveContext) -> tuple[Flags, Flags]:
     shoulders = _shoulders_beside(context)
     if shoulders is None:
         return on_it, perhaps
-    lanes, own = context.existing_lanes, context.ego_extents
-    first, end = lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)
-    beyond = np.maximum(-own.middle_from(first)[0], own.middle_from(end)[0])
+    beyond = np.maximum(*beyond_edges(context))
     (there,) = (beyond > 0.0).nonzero()
     if not len(there):
         return on_it, perhaps

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from math import ceil, floor
+from typing import NamedTuple
 
 import numpy as np
 from numpy import intp
@@ -14,12 +15,38 @@ from rulec.extraction.computed_once import once, once_a_road
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.measured_numbers import own_front, own_speed
 from rulec.recordings.recording import STOP_SIGNS, Lanelet
+from rulec.trace.plain_arrays import distinct
 
 LINE_REACH_M = 40.0
 
 _HAIR = 1e-6
 _AT_ONCE_S = 0.05
 """A line crossed this close in time to a state is crossed in it: lights change less often."""
+
+
+class OwnLine(NamedTuple):
+    """The line of a lanelet, between two places (m); ``on_lane``: ego is in its lane, by state."""
+
+    piece: int
+    lane: int
+    on_lane: Flags
+    first: float
+    last: float
+
+
+def own_lines(context: DriveContext, counts: Callable[[Lanelet], object]) -> Iterator[OwnLine]:
+    """The lines of the lanelets that count, in lanes that ego is ever in, the farthest first."""
+    for piece in range(len(context.road.rows) - 1, -1, -1):
+        for lane in distinct(context.ego_lane).tolist():
+            counted = counts(context.road.lanelet(piece, lane))
+            if counted and ends_at_line(context, piece, lane):
+                line = stop_line(context, piece, lane)
+                yield OwnLine(piece, lane, context.ego_lane == lane, *line)
+
+
+def has_stop_sign(lanelet: Lanelet) -> bool:
+    """Whether vehicles have to stop at a lanelet's end by a sign."""
+    return bool(STOP_SIGNS & lanelet.signs)
 
 
 def passes(context: DriveContext, line: float) -> Flags:

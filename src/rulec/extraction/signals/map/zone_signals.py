@@ -195,20 +195,8 @@ def _junctions_with_lights_untold(context: DriveContext) -> Stretches:
     return [
         (low - reach, high + reach)
         for low, high in context.road.junctions
-        if not seen or names & _lanelets_between(context, low, high)
+        if not seen or names & context.road.ids_between(low, high)
     ]
-
-
-def _lanelets_between(context: DriveContext, low: float, high: float) -> set[str]:
-    """The ids of the lanelets of ego's road that begin in between."""
-    starts = context.road.borders.tolist()
-    return {
-        lanelet.id
-        for row, start in zip(context.road.rows, starts, strict=False)
-        if low - 0.1 <= start < high
-        for lanelet in row
-        if lanelet is not None
-    }
 
 
 def _directed_stretches(context: DriveContext, there: bool) -> Stretches:

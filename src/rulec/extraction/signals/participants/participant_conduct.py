@@ -18,6 +18,7 @@ from rulec.extraction.signals.ego_lanelets import (
 )
 from rulec.extraction.signals.participants.intention_signals import may_have_broken_down
 from rulec.extraction.signals.signal_columns import ObjectSignal
+from rulec.extraction.tracks.lane_sets import edges
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.trace.cells import Cells
@@ -157,9 +158,8 @@ def _stays_aside(context: DriveContext) -> Flags:
     Their middles are beside the lanes of ego's road, or their sides at the road's edge with room
     for all others in their lane. Vehicles that wait in a lane do not stand aside, however long.
     """
-    lanes, vehicles = context.existing_lanes, context.tracks.of_type("vehicle").nonzero()[0]
-    aside = np.zeros(context.relevant.shape, dtype=bool)
-    first, end = lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)
+    vehicles = context.tracks.of_type("vehicle").nonzero()[0]
+    aside, (first, end) = np.zeros(context.relevant.shape, dtype=bool), context.lane_edges
     still = vehicles[context.stays[vehicles]]
     if len(still):
         others = context.extents.part(still, slice(None))
@@ -179,7 +179,7 @@ def _at_edge(others: RoadExtents, there: Flags) -> Flags:
 
     ``there``: the lanes (last axis) that exist at their places.
     """
-    first, end = there.argmax(axis=2), there.shape[2] - there[..., ::-1].argmax(axis=2)
+    first, end = edges(there)
     right = (others.from_bound(first)[0] < _EDGE_M) & (others.from_bound(first + 1)[1] < -_ROOM_M)
     left = (others.from_bound(end)[1] > -_EDGE_M) & (others.from_bound(end - 1)[0] > _ROOM_M)
     at_edge: Flags = there.any(axis=2) & (right | left)
@@ -193,10 +193,9 @@ def on_shoulder(context: DriveContext) -> ObjectSignal:
     that moves beside the lanes may be on a lane that the road does not contain.
     """
     others, there = context.extents, context.there
-    if context.side == "right":
-        beyond = -others.middle_from(there.argmax(axis=2))
-    else:
-        beyond = others.middle_from(there.shape[2] - there[..., ::-1].argmax(axis=2))
+    first, end = edges(there)
+    right, left = -others.middle_from(first), others.middle_from(end)
+    beyond = right if context.side == "right" else left
     on_wheels = context.tracks.of_type("vehicle") & ~context.tracks.of_type("rail_vehicle")
     vehicles = on_wheels[:, None] & there.any(axis=2)
     along = vehicles & ~context.elsewhere & (np.abs(np.sin(others.turned)) < _ALONG)
@@ -234,8 +233,7 @@ def in_the_road(context: DriveContext) -> ObjectSignal:
         # Where they are, not where ego is: in a junction there are fewer lanes than around it
         for place in (people.s - near, people.s, people.s + near):
             there = context.road.lanes.existing_at(place)
-            ends = there.argmax(axis=2), there.shape[2] - there[..., ::-1].argmax(axis=2)
-            for edge in ends:
+            for edge in edges(there):
                 low, high = people.from_bound(edge)
                 at_edge |= there.any(axis=2) & (np.abs(low + high) / 2 <= least)
         unsure[rows[own], states] = at_edge[0]

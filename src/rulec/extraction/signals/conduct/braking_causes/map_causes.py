@@ -23,11 +23,11 @@ from rulec.extraction.signals.conduct.braking_causes.others_around import (
 from rulec.extraction.signals.map.level_crossing_signals import level_crossings
 from rulec.extraction.signals.map.line_signals import colour_at, lights_of
 from rulec.extraction.signals.map.map_signals import next_crossing
-from rulec.extraction.signals.map.stop_lines import ends_at_line, stop_line
+from rulec.extraction.signals.map.stop_lines import has_stop_sign, own_lines
 from rulec.extraction.signals.map.zone_signals import crossings_lit
 from rulec.extraction.signals.measured_numbers import own_front
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
-from rulec.recordings.recording import GIVE_WAY_SIGNS, STOP_SIGNS
+from rulec.recordings.recording import GIVE_WAY_SIGNS
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.plain_arrays import distinct, zero_if_nan
 
@@ -71,7 +71,7 @@ def map_reasons(context: DriveContext, asked: Flags, reach: Floats) -> MapReason
     shown = _lights_ahead(context, asked, reach)
     does = (shown == _STOP) | (asked & _at_stop_sign(context, reach))
     goes_on = asked & (shown <= _GO) & _all_are_recorded(context)
-    changed = context.spans.within_last(shown > _GO, _steps(context, _SEES_GREEN_S))
+    changed = context.spans.within_last(shown > _GO, context.steps_in(_SEES_GREEN_S))
     may, freely, at_junction = np.zeros((3, context.states), dtype=bool)
     for start, end in road.junctions:
         here = (front >= start - reach) & (rear <= end)
@@ -106,10 +106,6 @@ def map_reasons(context: DriveContext, asked: Flags, reach: Floats) -> MapReason
     return MapReasons(may | does, does, freely & ~may)
 
 
-def _steps(context: DriveContext, seconds: float) -> int:
-    return context.steps_in(seconds)
-
-
 def _all_are_recorded(context: DriveContext) -> bool:
     return {"arrivals", "light", "YIELD"} <= context.recording.complete
 
@@ -130,35 +126,21 @@ def _lights_ahead(context: DriveContext, asked: Flags, reach: Floats) -> NDArray
     """What the light ahead shows to ego in the states asked for, 0 without one."""
     road, front, recording = context.road, own_front(context), context.recording
     told = np.zeros(context.states, dtype=intp)
-    for piece in range(len(road.rows) - 1, -1, -1):
-        if not asked.any() or not any(row is not None and row.lights for row in road.rows[piece]):
-            continue
-        for lane in distinct(context.ego_lane).tolist():
-            lights = lights_of(recording, road, piece, lane)
-            if not lights or not ends_at_line(context, piece, lane):
-                continue
-            first, last = stop_line(context, piece, lane)
-            ahead = asked & (context.ego_lane == lane) & (front <= last) & (front > first - reach)
-            for state in ahead.nonzero()[0].tolist():
-                colour = colour_at(lights, int(context.steps[state]))
-                told[state] = _TELLS.get(colour, _UNTOLD)
+    for line in own_lines(context, lambda at: at.lights) if asked.any() else ():
+        lights = lights_of(recording, road, line.piece, line.lane)
+        ahead = asked & line.on_lane & (front <= line.last) & (front > line.first - reach)
+        for state in ahead.nonzero()[0].tolist() if lights else ():
+            colour = colour_at(lights, int(context.steps[state]))
+            told[state] = _TELLS.get(colour, _UNTOLD)
     return told
 
 
 def _at_stop_sign(context: DriveContext, reach: Floats) -> Flags:
     """Mask of states in which ego comes to a stop sign, or has not stood there for long."""
-    road, front, spans = context.road, own_front(context), context.spans
-    there = np.zeros(context.states, dtype=bool)
-    for piece, row in enumerate(road.rows):
-        if not any(lanelet and STOP_SIGNS & lanelet.signs for lanelet in row):
-            continue
-        for lane in distinct(context.ego_lane).tolist():
-            stops = bool(STOP_SIGNS & road.lanelet(piece, lane).signs)
-            if stops and ends_at_line(context, piece, lane):
-                first, last = stop_line(context, piece, lane)
-                there |= (context.ego_lane == lane) & (front <= last) & (front > first - reach)
-    drives = context.ego_moves
-    return there & spans.within_last(drives, _steps(context, LOOKS_S))
+    front, there = own_front(context), np.zeros(context.states, dtype=bool)
+    for line in own_lines(context, has_stop_sign):
+        there |= line.on_lane & (front <= line.last) & (front > line.first - reach)
+    return there & context.spans.within_last(context.ego_moves, context.steps_in(LOOKS_S))
 
 
 def _stands_alone(context: DriveContext, where: Flags) -> Flags:
@@ -173,7 +155,7 @@ def _stands_alone(context: DriveContext, where: Flags) -> Flags:
     others = without_followers(context, others_in(context, states))
     about = np.hypot(others.ahead, others.left) <= CROSSES_M
     alone[states] = ~about.any(axis=0)
-    steps = _steps(context, MOVES_OFF_S)
+    steps = context.steps_in(MOVES_OFF_S)
     found: Flags = ~spans.within_last(~alone, steps) & (spans.columns - spans.first >= steps)
     return found
 

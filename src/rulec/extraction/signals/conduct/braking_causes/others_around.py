@@ -14,7 +14,7 @@ from rulec.extraction.signals import relations
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.scenario.recorded.reference_line import turn
 
-CROSSES_M, ACROSS_RAD = 30.0, np.radians(30.0)
+CROSSES_M, _ACROSS_RAD = 30.0, np.radians(30.0)
 """A participant this near to the side that drives across may come into ego's way."""
 
 
@@ -49,6 +49,19 @@ class MotionAhead:
     sideways: Floats
     turned: Floats
     moves: Flags
+
+    @property
+    def goes_along(self) -> Flags:
+        """Whether they head about where ego does."""
+        flags: Flags = np.abs(self.turned) < _ACROSS_RAD
+        return flags
+
+    @property
+    def goes_across(self) -> Flags:
+        """Whether they head across ego's way."""
+        angle = np.abs(self.turned)
+        flags: Flags = (angle > _ACROSS_RAD) & (angle < np.pi - _ACROSS_RAD)
+        return flags
 
 
 def others_in(context: DriveContext, states: NDArray[intp]) -> Others:

@@ -12,7 +12,6 @@ from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.braking_causes.others_around import (
-    ACROSS_RAD,
     CROSSES_M,
     Others,
     motion_of,
@@ -42,10 +41,9 @@ def led(context: DriveContext, brakes: Flags, reach: Floats) -> Flags:
     """Mask of states in which a vehicle ahead in ego's lane makes it brake, stand or be slow."""
     ahead = relations.station(context) == relations.BEHIND
     ahead &= context.relevant & context.in_ego_lane & (relations.gap(context) <= reach)
-    found, spans = np.zeros(context.states, dtype=bool), context.spans
-    cells = Cells.at(ahead)
+    cells, spans = Cells.at(ahead), context.spans
     if not len(cells):
-        return found
+        return np.zeros(context.states, dtype=bool)
     gap, theirs = cells.of(relations.gap(context)), np.maximum(cells.of(context.extents.along), 0.0)
     own, soon = context.ego.speed[0], context.steps_in(_REACTS_S)
     slow = theirs < cells.of(own) + _ALIKE_MPS
@@ -57,11 +55,8 @@ def led(context: DriveContext, brakes: Flags, reach: Floats) -> Flags:
     )
     hard |= gap <= _NEAR_S * cells.of(own)
     by_speed = np.where(cells.of(context.ego_moves), slow, held)
-    found[cells.columns[by_speed]] = True
-    for_braking = np.zeros(context.states, dtype=bool)
-    for_braking[cells.columns[hard]] = True
-    for_braking = spans.within(for_braking, soon) | spans.within_last(for_braking, soon)
-    return np.where(brakes, for_braking, found)
+    for_braking = spans.within(cells.in_columns(hard), soon, around=True)
+    return np.where(brakes, for_braking, cells.in_columns(by_speed))
 
 
 def may_be_others(context: DriveContext, others: Others, reach: Floats) -> tuple[Flags, Flags]:
@@ -77,19 +72,17 @@ def may_be_others(context: DriveContext, others: Others, reach: Floats) -> tuple
     left, away = cells.of(others.left), cells.of(others.away)
     motion = motion_of(context, others.rows[rows], states[columns])
     comes = (away <= COMES_M) & (-motion.sideways * np.sign(left) > _SIDEWAYS_MPS)
-    angle = np.abs(motion.turned)
-    across = (angle > ACROSS_RAD) & (angle < np.pi - ACROSS_RAD)
     # Vehicles that ego may not pass on their near side
     to_far = left * (1 if context.side == "right" else -1)
     speed = context.ego.speed[0, states[columns]]
-    slower = (angle < ACROSS_RAD) & (motion.along < speed + _ALIKE_MPS)
+    slower = motion.goes_along & (motion.along < speed + _ALIKE_MPS)
     not_to_pass = slower & (to_far > 0) & (away <= COMES_M)
-    found[columns[comes | (across & motion.moves) | not_to_pass]] = True
+    found |= cells.in_columns(comes | (motion.goes_across & motion.moves) | not_to_pass)
     soon = context.steps_in(_REACTS_S)
     came = context.spans.most_of_last(context.ego.speed[0], soon)[states[columns]]
     gap = cells.of(others.ahead)
-    kept_back = np.zeros(len(states), dtype=bool)
-    kept_back[columns[not_to_pass & (gap > 0) & _closes(came - motion.along, gap)]] = True
+    closes = _closes(came - motion.along, gap)
+    kept_back = cells.in_columns(not_to_pass & (gap > 0) & closes)
     rest = (~found).nonzero()[0]
     at = states[rest]
     in_lane = relations.station(context)[:, at] == relations.BEHIND
@@ -116,11 +109,9 @@ def may_come(context: DriveContext, others: Others, reach: Floats) -> Flags:
     found: Flags = np.logical_or.reduce(near & (others.away <= _WALKS_M) & users[:, None])
     cells = Cells.at(near & (others.away <= _SEEN_M) & ~found)
     motion = motion_of(context, others.rows[cells.rows], states[cells.columns])
-    angle = np.abs(motion.turned)
-    comes = (angle > ACROSS_RAD) & (angle < np.pi - ACROSS_RAD) & motion.moves
+    comes = motion.goes_across & motion.moves
     comes &= motion.sideways * cells.of(others.left) < 0
-    found[cells.columns[comes]] = True
-    return found
+    return found | cells.in_columns(comes)
 
 
 def crossed(context: DriveContext, others: Others, reach: Floats) -> Flags:
@@ -129,9 +120,8 @@ def crossed(context: DriveContext, others: Others, reach: Floats) -> Flags:
     near = (others.ahead > 0) & (others.ahead <= reach[states])
     cells = Cells.at(near & (others.away <= IN_WAY_M))
     motion = motion_of(context, others.rows[cells.rows], states[cells.columns])
-    angle, there = np.abs(motion.turned), np.zeros(context.states, dtype=bool)
-    across = (angle > ACROSS_RAD) & (angle < np.pi - ACROSS_RAD) & motion.moves
-    there[states[cells.columns[across]]] = True
+    there = np.zeros(context.states, dtype=bool)
+    there[states] = cells.in_columns(motion.goes_across & motion.moves)
     return context.spans.within(there, context.steps_in(_WAITS_S))
 
 

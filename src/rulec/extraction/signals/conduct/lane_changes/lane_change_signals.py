@@ -224,9 +224,7 @@ def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[WayIn],
         ways.append(WayIn(state, int(lane[state]) + (not to_left), to_left=to_left))
     back = comes_back_over_middle(context).nonzero()[0].tolist()
     back = [at for at in back if at not in changes and at not in flagged]
-    lanes = context.existing_lanes
-    first, last = lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)
-    far = last if to_left else first
+    far = context.lane_edges[to_left]
     ways += [WayIn(at, int(far[at]), to_left=not to_left) for at in back]
     surely = changes + flagged + back
     perhaps = _changes_from_beside(context).nonzero()[0].tolist()
