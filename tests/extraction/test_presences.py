@@ -29,7 +29,8 @@ def found(flags, away_s=1.0, nowhere=(), others=("8",), far_away=()):
     rows = np.zeros_like(context.relevant)
     rows[0] = flags
     rows[1:] = True
-    extents = replace(context.extents, s_min=s_min)
+    everybody = np.arange(len(s_min))
+    extents = replace(context.extents.part(everybody, slice(STEPS)), s_min=s_min)
     context = replace(context, relevant=rows, extents=extents)
     runs = presence_runs(context)
     return list(zip(presence_names(context), runs.first, runs.last, strict=True))

@@ -22,39 +22,6 @@ from rulec.trace.laid_out import LaidOut, columns_of, one_behind_the_other
 from rulec.trace.plain_arrays import keep_freed_memory
 
 
-def drive_context(
-    surroundings: Surroundings, places: RoadPlaces, side: Side, ego: int, columns: slice
-) -> DriveContext:
-    """The part of a recording that concerns one drive: row ``ego`` in a range of columns."""
-    own = np.array([ego])
-    tracks, extents = places.tracks.part(own, columns), places.extents.part(own, columns)
-    relevant, in_sight = _near(places, (columns,), extents)
-    relevant[ego] = in_sight[ego] = False
-    rows = (relevant | in_sight).any(axis=1).nonzero()[0]
-    n_states = columns.stop - columns.start
-    return DriveContext(
-        recording=surroundings.recording,
-        thresholds=places.thresholds,
-        side=side,
-        road=places.road,
-        spans=EndToEnd.of_one(n_states),
-        steps=tracks.first + np.arange(n_states),
-        own=surroundings,
-        ego=tracks,
-        ego_extents=extents,
-        tracks=places.tracks.part(rows, columns),
-        extents=places.extents.part(rows, columns),
-        relevant=relevant[rows],
-        in_sight=in_sight[rows],
-        lanes_there=places.lanes_there[rows, columns],
-        lanes_within=tuple(
-            sets[rows, columns] for sets in places.lanes_within(surroundings.tolerances.place_m)
-        ),
-        elsewhere=places.elsewhere[rows, columns],
-        surroundings=surroundings,
-    )
-
-
 @dataclass(frozen=True, eq=False, slots=True)
 class EgosOnRoad:
     """Drives along one road: their rows in ``places`` and the columns of each.
@@ -73,7 +40,7 @@ class EgosOnRoad:
 def drives_context(
     surroundings: Surroundings, places: RoadPlaces, side: Side, egos: EgosOnRoad
 ) -> DriveContext:
-    """The parts of a recording that concern several drives along one road, end to end.
+    """The parts of a recording that concern one drive, or several along one road, end to end.
 
     Egos that have surroundings of their ``own`` are not among the other participants.
     """

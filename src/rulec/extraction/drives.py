@@ -14,7 +14,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags
-from rulec.extraction.context_arrays import EgosOnRoad, drive_context, drives_context
+from rulec.extraction.context_arrays import EgosOnRoad, drives_context
 from rulec.extraction.recording_parts import egos_of
 from rulec.extraction.traces.lost_drives import lost_drive, made_apart
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
@@ -214,15 +214,17 @@ class Drives:
         found = self._there(places, row, columns)
         if found is None:
             return NoDrive(ego, "it is far from its road for a while")
-        return self._made_alone(places, name, *found, against=stretch.against)
+        return self._made(places, [(name, *found)], against=stretch.against)[0]
 
-    def _made_alone(
-        self, places: RoadPlaces, name: str, row: int, columns: slice, *, against: bool = False
-    ) -> Drive:
-        context = drive_context(self._surroundings, places, self._side, row, columns)
-        ego = places.tracks.participants[row].id
-        (drive,) = to_traces(replace(context, wrong_way=against), [ego], [name], self._writer)
-        return drive
+    def _made(
+        self, places: RoadPlaces, egos: Sequence[tuple[str, int, slice]], *, against: bool = False
+    ) -> list[Drive]:
+        """Drives along one road, from names, rows and columns."""
+        names, rows, columns = zip(*egos, strict=True)
+        on_road = EgosOnRoad(places, rows, columns, own=self._surroundings)
+        context = drives_context(self._surroundings, places, self._side, on_road)
+        ids = [places.tracks.participants[row].id for row in rows]
+        return to_traces(replace(context, wrong_way=against), ids, names, self._writer)
 
     @cached_property
     def _planned(self) -> dict[int, list[RouteStretch]]:
@@ -271,18 +273,15 @@ class Drives:
         self, places: RoadPlaces, members: Mapping[_Key, tuple[str, int, slice]]
     ) -> dict[_Key, Drive | NoDrive]:
         """Drives along one road, from names, rows and columns; empty if their signals differ."""
-        names, rows, columns = zip(*members.values(), strict=True)
-        ids = [self._tracks.participants[row].id for row, _ in members]
         drives: Sequence[Drive | NoDrive]
+        egos = [*members.values()]
         try:
-            egos = EgosOnRoad(places, rows, columns, own=self._surroundings)
-            context = drives_context(self._surroundings, places, self._side, egos)
-            drives = to_traces(context, ids, names, self._writer)
+            drives = self._made(places, egos)
         except UnlikeDrivesError:
             return {}
         except Exception as problem:
-            own = [*members.values()]
-            drives = made_apart(names, lambda k: self._made_alone(places, *own[k]), problem)
+            names = [name for name, *_ in egos]
+            drives = made_apart(names, lambda k: self._made(places, [egos[k]])[0], problem)
         return dict(zip(members, drives, strict=True))
 
     def _there(self, places: RoadPlaces, row: int, columns: slice) -> tuple[int, slice] | None:

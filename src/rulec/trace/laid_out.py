@@ -37,8 +37,11 @@ class LaidOut:
         stays first in memory.
         """
         by_lane = values.transpose(2, 0, 1) if values.ndim > 2 else values[None]
-        own = by_lane.take(self.rows, axis=1)
-        part = one_behind_the_other(own, self.ranges, self.columns)
+        if len(self.ranges) == 1:
+            part = by_lane[..., self.ranges[0]].take(self.rows, axis=1)
+        else:
+            own = by_lane.take(self.rows, axis=1)
+            part = one_behind_the_other(own, self.ranges, self.columns)
         none = values.dtype.type(np.nan if values.dtype.kind == "f" else 0)
         if self._are_long:
             for columns, gone in self._absent_in:

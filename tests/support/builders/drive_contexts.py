@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rulec.extraction.context_arrays import drive_context
+from rulec.extraction.context_arrays import EgosOnRoad, drives_context
 from rulec.extraction.tracks.driven_road import DrivenRoads
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.road_extents import road_extents
@@ -44,7 +44,8 @@ def context_of(
     moving = around.in_traffic
     places = RoadPlaces(road, tracks, extents, limits, elsewhere=elsewhere, in_traffic=moving)
     driven = slice(int(columns[0]), int(columns[-1]) + 1 if until is None else until)
-    return drive_context(around, places, side, row, driven)
+    egos = EgosOnRoad(places, [row], [driven], own=around)
+    return drives_context(around, places, side, egos)
 
 
 def told_on_both_sides(signals, found, route, **thresholds):
