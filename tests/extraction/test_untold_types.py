@@ -5,8 +5,8 @@ import pytest
 
 import rulec
 from rulec.analysis.audit.source_audit import audit_source
-from rulec.extraction.tellable_types import told_types
 from rulec.extraction.tellable_words import TELLABLE_WORDS
+from rulec.extraction.traces.tellable_types import told_types
 
 T = np.arange(40) / 10
 

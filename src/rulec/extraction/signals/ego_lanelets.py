@@ -168,3 +168,10 @@ def room_beside(context: DriveContext) -> tuple[Floats, Floats]:
     """The room (m) in ego's lane to ego's right and left."""
     lane, own = context.steady_lane, context.ego_extents
     return own.from_bound(lane)[0][0], -own.from_bound(lane + 1)[1][0]
+
+
+@once
+def beyond_edges(context: DriveContext) -> tuple[Floats, Floats]:
+    """How far (m) ego's middle is beyond the right and the left edge of the lanes of its way."""
+    own, (first, end) = context.ego_extents, context.lane_edges
+    return -own.middle_from(first)[0], own.middle_from(end)[0]

@@ -47,7 +47,6 @@ from rulec.extraction.signals.signal_columns import (
     unknown_where_unlike,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tellable_types import told_types
 from rulec.extraction.traces.recorded_drive import DecidedBy, Drive, DrivePlaces
 from rulec.extraction.traces.signal_arrays import (
     WrittenPresences,
@@ -57,6 +56,7 @@ from rulec.extraction.traces.signal_arrays import (
     with_likeliest,
     written,
 )
+from rulec.extraction.traces.tellable_types import told_types
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.monitoring.assumptions import check_assumed
 from rulec.trace import Value

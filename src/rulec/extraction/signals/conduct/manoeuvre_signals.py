@@ -8,7 +8,7 @@ from rulec.array_types import Flags, Floats
 from rulec.extraction.computed_once import once
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.conduct.u_turns import may_turn_round, swings_round, u_turns
-from rulec.extraction.signals.ego_lanelets import own_lanelets
+from rulec.extraction.signals.ego_lanelets import beyond_edges, own_lanelets
 from rulec.extraction.signals.signal_columns import WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.road_extents import RoadExtents
@@ -245,13 +245,6 @@ def beyond_near_edge(context: DriveContext) -> Floats:
     """How far (m) ego's middle is beyond the road's edge at its near side."""
     right, left = beyond_edges(context)
     return right if context.side == "right" else left
-
-
-@once
-def beyond_edges(context: DriveContext) -> tuple[Floats, Floats]:
-    """How far (m) ego's middle is beyond the right and the left edge of the lanes of its way."""
-    own, (first, end) = context.ego_extents, context.lane_edges
-    return -own.middle_from(first)[0], own.middle_from(end)[0]
 
 
 def _along_road(context: DriveContext) -> Flags:

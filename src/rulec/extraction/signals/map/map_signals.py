@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from rulec.array_types import Flags, Floats
 from rulec.extraction.computed_once import once, once_a_recording, once_a_road
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.conduct.manoeuvre_signals import beyond_edges
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
     SHOULDER,
+    beyond_edges,
     lanelets_at,
     map_contents,
     may_hold,
