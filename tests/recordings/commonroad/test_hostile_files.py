@@ -98,7 +98,6 @@ def test_shapes_in_shapes_without_end(tmp_path):
 
 def test_an_obstacle_of_too_many_elements(tmp_path, monkeypatch):
     monkeypatch.setattr(xml_tree, "MOST_ELEMENTS", 1000)
-    monkeypatch.setattr(xml_tree, "LARGEST_BYTES", 0)
     assert len(read_recording(with_obstacles(tmp_path, car(7, 10, 0, 12))).participants) == 1
     found = refused(with_obstacles(tmp_path, car(7, 10, 0, 12, steps=100)))
     assert "the element `obstacle` has more than 1,000 others in it" in found.message
@@ -112,9 +111,8 @@ def test_a_packed_file_is_unpacked_as_it_is_read(tmp_path):
     assert (recording.name, recording.country) == ("DEU_Road-1_1_T-1", "DEU")
 
 
-def test_a_state_of_a_large_file_takes_little_memory(tmp_path, monkeypatch):
+def test_a_state_of_a_large_file_takes_little_memory(tmp_path):
     """A few numbers, whether or not anybody looks at its outline."""
-    monkeypatch.setattr(xml_tree, "LARGEST_BYTES", 0)
     many = "".join(car(number, 10, 0, 12, steps=400) for number in range(100, 110))
     file = with_obstacles(tmp_path, many)
     read_recording(file)  # what is imported on the way is not the recording's

@@ -14,16 +14,8 @@ import numpy as np
 import shapely
 from shapely import affinity
 
-from rulec.recordings.encodings.file_values import LARGEST
-from rulec.recordings.encodings.tree import LONGEST_TEXT, SMALLEST, Texts, Tree
-from rulec.recordings.encodings.xml_tree import Way
+from rulec.recordings.encodings.tree import Tree
 from rulec.recordings.recording import Points
-
-NOT_USUAL = "it takes a closer look"
-"""Reason of an internal error that makes the caller read the file again with line numbers.
-
-Never shown.
-"""
 
 _FEWEST_CORNERS = 3
 _SMALLEST_M = 1e-6
@@ -139,39 +131,7 @@ def read_point(tree: Tree) -> tuple[float, float]:
 
 def read_points(tree: Tree) -> Points:
     """The x and y of all points in an element, one row each."""
-    if tree.alike is not None:
-        if tree.first("point") is not None:
-            raise tree.wrong(NOT_USUAL)
-        columns = [usual_numbers(texts) for texts in tree.alike.columns]
-        if None in columns:
-            raise tree.wrong(NOT_USUAL)
-        places: Points = np.stack([np.array(column) for column in columns], axis=1)
-        return places
     return np.array(list(map(read_point, tree.all("point"))), dtype=float).reshape(-1, 2)
-
-
-def wanted_of_point(ways: Sequence[Way]) -> Sequence[int] | None:
-    """The indices of a point's x and y among its texts; None unless they come first."""
-    return (0, 1) if tuple(ways[:2]) == (("x",), ("y",)) else None
-
-
-def usual_numbers(texts: Texts) -> list[float] | None:
-    """The numbers in texts, as ``Tree.number`` reads them; None if any text is invalid."""
-    # In bytes, Python reads no digits of other scripts
-    if b"_" in b"".join(texts):
-        return None
-    try:
-        # Adding 0 turns -0 into 0.
-        numbers = [float(text) + 0.0 for text in texts]
-    except ValueError:
-        return None
-    # The sum is large or NaN if one of the numbers is.
-    is_usual = (
-        sum(map(abs, numbers)) < LARGEST
-        and min(filter(None, map(abs, numbers)), default=1.0) > SMALLEST
-        and max(map(len, texts), default=0) < LONGEST_TEXT
-    )
-    return numbers if is_usual else None
 
 
 def turned_once(heading: float) -> float:

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from pathlib import Path
 
-from rulec.diagnostics import RulecError
 from rulec.garbage_collection import no_garbage_collection
-from rulec.recordings.commonroad.areas import wanted_of_point
 from rulec.recordings.commonroad.countries import country_in
 from rulec.recordings.commonroad.scenario_content import Content, add, add_step, to_recording
-from rulec.recordings.commonroad.states import wanted_of_state
 from rulec.recordings.encodings.file_format import XmlFormat
 from rulec.recordings.encodings.file_values import short
 from rulec.recordings.encodings.tree import Tree
-from rulec.recordings.encodings.xml_tree import Alike, scan_trees, whole_tree
+from rulec.recordings.encodings.xml_tree import scan_trees
 from rulec.recordings.recording import Recording
 from rulec.recordings.road_map import RoadMap
 
@@ -27,12 +23,6 @@ VERSIONS = ("2018b", "2020a")
 
 _SAME_STEP_S = 1e-6
 
-_ALIKE = (
-    Alike("trajectory", "state", wanted_of_state),
-    Alike("leftBound", "point", wanted_of_point),
-    Alike("rightBound", "point", wanted_of_point),
-)
-
 
 def read_commonroad(path: Path) -> Recording:
     """Read the recording in a CommonRoad file.
@@ -40,24 +30,11 @@ def read_commonroad(path: Path) -> Recording:
     Raises RulecError R0610 for a file that cannot be read as CommonRoad, R0701 if it cannot be
     opened.
     """
-    with no_garbage_collection(), suppress(RulecError):
-        recording = _read_whole(path)
-        if recording is not None:
-            return recording
-    # Reading again, element by element, finds the error with its line.
     content = Content()
-    scan_trees(path, COMMONROAD, lambda tree: begin(content, tree), lambda tree: add(content, tree))
-    return to_recording(content, path, COMMONROAD)
-
-
-def _read_whole(path: Path) -> Recording | None:
-    whole = whole_tree(path, COMMONROAD, _ALIKE)
-    if whole is None:
-        return None
-    content = Content()
-    begin(content, whole)
-    for child in whole.children:
-        add(content, child)
+    with no_garbage_collection():
+        scan_trees(
+            path, COMMONROAD, lambda tree: begin(content, tree), lambda tree: add(content, tree)
+        )
     return to_recording(content, path, COMMONROAD)
 
 

@@ -5,24 +5,17 @@ Positions may be areas, and numbers intervals.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
 from math import pi
 from typing import NamedTuple
 
 from rulec.recordings.commonroad.areas import (
-    NOT_USUAL,
     Area,
     is_area,
     read_area,
     read_point,
     turned_once,
-    usual_numbers,
 )
-from rulec.recordings.encodings.tree import AlikeElements, Tree
-from rulec.recordings.encodings.xml_tree import Way
-
-_STEP = re.compile(rb"[0-9]{1,8}")
+from rulec.recordings.encodings.tree import Tree
 
 
 class Bounds(NamedTuple):
@@ -82,55 +75,7 @@ def read_state(tree: Tree, *, initial: bool = False) -> State:
 
 def read_states(trajectory: Tree) -> list[State]:
     """The states of a trajectory."""
-    if trajectory.alike is None:
-        return [read_state(state) for state in trajectory.all("state")]
-    if trajectory.first("state") is not None:
-        raise trajectory.wrong(NOT_USUAL)
-    return _usual_states(trajectory, trajectory.alike)
-
-
-_TEXTS = (
-    ("time", "exact"),
-    ("position", "point", "x"),
-    ("position", "point", "y"),
-    ("orientation", "exact"),
-    ("velocity", "exact"),
-    ("acceleration", "exact"),
-)
-"""The paths of a state's numbers; the acceleration may be missing and is then 0."""
-
-
-_HEIGHT = ("position", "point", "z")
-
-
-def wanted_of_state(ways: Sequence[Way]) -> Sequence[int] | None:
-    """The indices of a state's numbers among its texts; None if one is not exact or is repeated."""
-    by_field: dict[str, list[Way]] = {}
-    for way in ways:
-        by_field.setdefault(way[0], []).append(way)
-    texts = _TEXTS if "acceleration" in by_field else _TEXTS[:-1]
-    for names in texts:
-        own = by_field.get(names[0], [])
-        expected = [text for text in texts if text[0] == names[0]]
-        # A place may have a height, too
-        if own[: len(expected)] != expected or set(own[len(expected) :]) - {_HEIGHT}:
-            return None
-    return [ways.index(names) for names in texts]
-
-
-def _usual_states(trajectory: Tree, states: AlikeElements) -> list[State]:
-    """The states of a trajectory whose numbers are all exact."""
-    steps, *texts = states.columns
-    columns = [usual_numbers(column) for column in texts]
-    if None in columns or not all(map(_STEP.fullmatch, steps)):
-        raise trajectory.wrong(NOT_USUAL)
-    x, y, heading, speed, *more = (column or [] for column in columns)
-    acceleration = more[0] if more else [0.0] * states.count
-    none, exact = [()] * states.count, [0.0] * states.count
-    place = (map(int, steps), x, y, none)
-    motion = (map(Bounds, heading, heading), speed, acceleration, exact)
-    rows = zip(*place, *motion, strict=True)
-    return list(map(State._make, rows))
+    return [read_state(state) for state in trajectory.all("state")]
 
 
 def read_step(tree: Tree) -> int:

@@ -23,26 +23,11 @@ SMALLEST = 1e-100
 """Numbers closer to 0 than this are read as 0: geometry would square them and divide by 0."""
 
 
-Texts = tuple[bytes, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class AlikeElements:
-    """Consecutive elements with the same child elements: their number and contents.
-
-    ``columns``: for each wanted child element, its text in all of them.
-    """
-
-    count: int
-    columns: tuple[Texts, ...]
-
-
 @dataclass(slots=True)
 class Tree:
     """An element with its text and children. Its methods raise RulecError R0610.
 
-    ``place`` is the line or byte where it begins, depending on the format; ``alike`` are children
-    that have no trees of their own because they are very many.
+    ``place`` is the line or byte where it begins, depending on the format.
     """
 
     # Not frozen: a recording has millions, whose text and children are added later
@@ -53,7 +38,6 @@ class Tree:
     form: FileFormat
     text: str = ""
     children: list[Tree] = field(default_factory=list)
-    alike: AlikeElements | None = None
 
     def first(self, name: str) -> Tree | None:
         """The first child with a name."""
