@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from fractions import Fraction
 from types import MappingProxyType
 from typing import Any, TypeAlias
@@ -89,8 +88,7 @@ class RunningMonitor:
             judged = judged_rules(rulebook, self._told, cut=cut)
             if cut:
                 machines = {rule.name: machine.machine for rule, machine in judged.machines}
-            rules = tuple(rule for rule, _ in judged.machines)
-            rulebook = replace(rulebook, vocabulary=judged.vocabulary, rules=rules)
+            rulebook = judged.rulebook
         self._judged = rulebook
         lacks_hard = any(self._strengths[name] == "hard" for name in self.not_judged)
         groups = rule_groups(rulebook, machines, lacks_hard=lacks_hard)

@@ -18,14 +18,20 @@ from rulec.vocabulary import Vocabulary
 class JudgedRules:
     """The rules that can be judged, with their machines, and those that cannot.
 
-    ``vocabulary`` has unknown defaults for names that the source cannot provide; ``presumed`` are
-    the names that rules read and that keep their defaults where no source provides them.
+    ``rulebook`` has these rules alone, and unknown defaults for names that the source cannot
+    provide; ``presumed`` are the names that rules read and that keep their defaults where no source
+    provides them.
     """
 
     machines: tuple[tuple[CompiledRule, UncertainMachine], ...]
     not_judged: tuple[RuleNotJudged, ...]
-    vocabulary: Vocabulary
+    rulebook: CompiledRulebook
     presumed: tuple[str, ...]
+
+    @property
+    def vocabulary(self) -> Vocabulary:
+        """That of the states of such a source."""
+        return self.rulebook.vocabulary
 
 
 def judged_rules(
@@ -102,4 +108,5 @@ def _judged_rules(
     read = {name for rule in rulebook.rules for name in names_of(rule.formula)}
     presumed = [name for name, item in declarations.items() if item.presumed and name in read]
     vocabulary = with_untold(rulebook.vocabulary, unknown)
-    return JudgedRules(tuple(machines), tuple(not_judged), vocabulary, tuple(presumed))
+    judged = replace(rulebook, vocabulary=vocabulary, rules=tuple([rule for rule, _ in machines]))
+    return JudgedRules(tuple(machines), tuple(not_judged), judged, tuple(presumed))
