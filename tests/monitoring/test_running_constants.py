@@ -76,6 +76,7 @@ def test_what_was_unknown_may_be_anything(rules):
         ([{}, {"heavy": True}], "state 1 says true, without it before it counted as false"),
         ([{}, {"heavy": UNKNOWN}], "state 1 says that it is unknown, without it before it counted"),
         ([{"mass": 2.0}, {"mass": Interval(3.0, 4.0)}], "state 1 says 3 to 4, an earlier state"),
+        ([{"mass": 2.0}, {"mass": 2.0}, {"mass": 2.0}, {"mass": 2.5}], "state 3 says `2.5`, an"),
     ],
 )
 def test_what_changes_is_refused_and_changes_nothing(rules, states, message):

@@ -11,10 +11,14 @@ from operator import itemgetter
 from typing import Any, TypeAlias
 
 from rulec.monitoring.online.encoding import encoded_values
-from rulec.monitoring.online.encoding.encoded_values import Encoded, MonitorInput
+from rulec.monitoring.online.encoding.encoded_values import (
+    Encoded,
+    MonitorInput,
+    digits_between,
+)
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
 from rulec.monitoring.online.rule_group import RuleGroup, RulesRead
-from rulec.monitoring.state_view import StateView
+from rulec.monitoring.state_view import StateView, value_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
 from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
@@ -224,20 +228,27 @@ def _sum_column(read: MonitorInput, about: Sequence[Items], shape: StateShape) -
     assert number is not None
     ready = read_digits(number)
     bindings = [dict(zip(read.variables, items, strict=True)) for items in about]
-
-    def digit(binding: Mapping[str, str], view: StateView) -> Any:
-        try:
-            possible = ready.in_state(binding, view)
-        except MissingValueError:
-            raise LookupError from None
-        if possible & (possible - 1) == 0:
-            return possible.bit_length() - 1
-        if possible != (1 << number.size) - 1:
-            raise LookupError  # it lies between two others
-        return UNKNOWN
+    summands = [
+        [
+            (name, tuple([binding[x] for x in own]), shape.vocabulary.declarations[name])
+            for name, own in ready.summands
+        ]
+        for binding in bindings
+    ]
 
     def column(state: State, _: Sequence[Encoded]) -> Sequence[Any]:
         view = StateView(state, shape.objects, shape.vocabulary)
-        return [digit(binding, view) for binding in bindings]
+        digits: list[int | range] = []
+        for binding, own in zip(bindings, summands, strict=True):
+            possible = ready.of_sum([value_in(state, *one) for one in own]) if own else None
+            if possible is None:
+                # Exact numbers are needed.
+                try:
+                    possible = ready.in_state(binding, view)
+                except MissingValueError:
+                    raise LookupError from None
+            lowest = (possible & -possible).bit_length() - 1
+            digits.append(digits_between(lowest, possible.bit_length() - 1))
+        return digits
 
     return column

@@ -13,7 +13,6 @@ from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.monitoring.online.encoding.encoded_values import PARTIAL_DIGITS
 from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
-from rulec.vocabulary.partial_values import Interval
 
 if TYPE_CHECKING:
     from rulec.monitoring.uncertainty.state_letters.read_digits import Cube
@@ -32,7 +31,7 @@ class WholeStateError(LookupError):
 class WalkedRead(NamedTuple):
     """A read with a digit of its own: its ``place`` among the rule's reads.
 
-    ``masks`` are the possible digits, as bits, of a digit or a partly known value.
+    ``masks`` are the possible digits, as bits, of a digit or a range of digits.
     ``decided_alone``: nothing else influences which of them it has. ``is_constant``: it is the same
     in every state.
     """
@@ -65,9 +64,7 @@ class _Node(dict[Any, "_Node"]):
         self.answer: tuple[LetterClass, bool] | None = None
 
     def __missing__(self, digit: Any) -> _Node:
-        node = self.walk.step(self, digit)
-        if type(digit) is not Interval:
-            self[digit] = node
+        node = self[digit] = self.walk.step(self, digit)
         return node
 
 

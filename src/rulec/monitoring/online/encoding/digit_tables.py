@@ -9,7 +9,7 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.monitoring.online.encoding.encoded_values import MISSING, UNKNOWN_DIGIT, DigitWeight
 from rulec.monitoring.uncertainty.state_letters.read_digits import possible_digits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
-from rulec.vocabulary.partial_values import UNKNOWN, Interval
+from rulec.vocabulary.partial_values import UNKNOWN
 
 MOST_KNOWN = 1 << 12
 """How many values of a part are kept before all are discarded."""
@@ -46,7 +46,7 @@ class PartNumbers(dict[tuple[Any, ...], int]):
 
 
 class DigitMasks(dict[Any, int]):
-    """The possible digits, as bits, of a read, by its digit or its partly known value.
+    """The possible digits, as bits, of a read, by its digit or a range of digits.
 
     Raises LookupError if that is invalid.
     """
@@ -57,13 +57,13 @@ class DigitMasks(dict[Any, int]):
 
     def __missing__(self, digit: Any) -> int:
         read = self._read
-        if type(digit) is Interval:
-            if isinstance(read, Read):
-                raise LookupError
-            return possible_digits(read, digit)
         if digit is UNKNOWN_DIGIT:
-            self[digit] = possible_digits(read, UNKNOWN)
-            return self[digit]
-        self._weight_of(digit)
-        self[digit] = 1 << digit if isinstance(read, NumberRead) else possible_digits(read, digit)
-        return self[digit]
+            mask = possible_digits(read, UNKNOWN)
+        elif isinstance(read, NumberRead):
+            self._weight_of(digit)
+            mask = sum([1 << own for own in digit]) if type(digit) is range else 1 << digit
+        else:
+            self._weight_of(digit)
+            mask = possible_digits(read, digit)
+        self[digit] = mask
+        return mask

@@ -17,7 +17,7 @@ from rulec.automata.thresholds import EXACT_IN_FLOATS, scale
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import NUMBERS
 from rulec.vocabulary import Declaration, Quantity, Signal, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from rulec.vocabulary.vocabulary_model import values_of
 
 Breakpoints: TypeAlias = Mapping[str, tuple[float, ...] | None]
@@ -29,13 +29,10 @@ The first is the least number that they distinguish, the last is the first one b
 Encoded: TypeAlias = tuple[Any, ...]
 """Values of an enumeration or a signal as they are, and the digits of a quantity.
 
-The digit of a number is how many of the ``Breakpoints`` it reaches; where every value matters, it
-is the number itself. An interval, and partial knowledge of an enumeration, stand for themselves;
-what is entirely unknown is ``UNKNOWN_DIGIT``.
+The digit of a number is how many of the ``Breakpoints`` it reaches, that of an interval the
+``range`` of those of its numbers; where every value matters, both stand for themselves. So does
+partial knowledge of an enumeration; what is entirely unknown is ``UNKNOWN_DIGIT``.
 """
-
-PARTIAL_NUMBERS = NUMBERS | UNKNOWN_TYPES
-"""The types of numbers, and of placeholders for unknown ones."""
 
 MISSING: Final = object()
 """Replaces an encoded value that is not given and has no default."""
@@ -47,8 +44,11 @@ Digits are kept as dictionary keys. The garbage collector would track keys that 
 a member of an enumeration; it does not track a plain object.
 """
 
-PARTIAL_DIGITS = frozenset({object, Interval})
-"""The types of digits that are not known: of ``UNKNOWN_DIGIT``, and of bounds."""
+PARTIAL_DIGITS = frozenset({object, Interval, range})
+"""The types of digits that are not known: of ``UNKNOWN_DIGIT``, and of bounds.
+
+A range is no object that the garbage collector tracks, either.
+"""
 
 Encoder: TypeAlias = Callable[[tuple[Any, ...]], Encoded]
 """Encodes values.
@@ -76,6 +76,8 @@ def breakpoints_of(rulebook: CompiledRulebook) -> Breakpoints:
                     floors[threshold_scale.quantity.name].update(threshold_scale.floors)
     # Axioms may distinguish other numbers than rules do.
     all_matter.update(name for axiom in rulebook.axioms for name in names_in(axiom.formula))
+    # A constant is the same number in all states, not only one that rules treat alike.
+    all_matter.update(rulebook.vocabulary.constants)
     # Beyond this, the same floors no longer work for both integers and floats.
     most = float(EXACT_IN_FLOATS)
     return {
@@ -126,28 +128,39 @@ def _encode_numbers(values: tuple[Any, ...]) -> Encoded:
     # Equal integers and floats of this size have the same decimals; NaN compares as False.
     encode: Encoder = tuple
     for value in values:
-        if type(value) in UNKNOWN_TYPES:
+        if value is UNKNOWN:
             encode = _with_unknown_digits
             continue
-        if not -EXACT_IN_FLOATS <= value <= EXACT_IN_FLOATS or type(value) not in NUMBERS:
-            raise LookupError
+        for number in (value.low, value.high) if type(value) is Interval else (value,):
+            if not -EXACT_IN_FLOATS <= number <= EXACT_IN_FLOATS or type(number) not in NUMBERS:
+                raise LookupError
     return encode(values)
 
 
 def _encode_digits(floors: Sequence[float], values: tuple[Any, ...]) -> Encoded:
-    types: frozenset[type] = NUMBERS
     try:
         digits: Encoded = tuple([bisect_right(floors, value) for value in values])
     except TypeError:
-        types = PARTIAL_NUMBERS
-        digits = _with_unknown_digits(
-            value if type(value) in UNKNOWN_TYPES else bisect_right(floors, value)
-            for value in values
-        )
+        return tuple([_some_digits(floors, value) for value in values])
     # NaN sorts above all floors.
-    if 0 in digits or len(floors) in digits or not types.issuperset(map(type, values)):
+    if 0 in digits or len(floors) in digits or not NUMBERS.issuperset(map(type, values)):
         raise LookupError
     return digits
+
+
+def _some_digits(floors: Sequence[float], value: Any) -> Any:
+    if value is UNKNOWN:
+        return UNKNOWN_DIGIT
+    ends = (value.low, value.high) if type(value) is Interval else (value, value)
+    first, last = bisect_right(floors, ends[0]), bisect_right(floors, ends[1])
+    if first == 0 or last == len(floors) or not NUMBERS.issuperset(map(type, ends)):
+        raise LookupError
+    return digits_between(first, last)
+
+
+def digits_between(first: int, last: int) -> int | range:
+    """The digits from the first to the last one, or the only one."""
+    return first if first == last else range(first, last + 1)
 
 
 DigitWeight: TypeAlias = Callable[[Any], int]
@@ -162,7 +175,7 @@ class MonitorInput:
 
     ``name`` is the declaration; it is None if ``number`` is a count or a sum, whose ``variables``
     these are. A number's digit is how many thresholds it passes; the digit of anything else is its
-    value. Unknown values are ``UNKNOWN_DIGIT``; partly known ones stand for themselves.
+    value. Unknown values are ``UNKNOWN_DIGIT``; an interval's digits are a ``range``.
     """
 
     name: str | None
@@ -178,12 +191,20 @@ class MonitorInput:
         """
         if encoded is UNKNOWN or encoded is UNKNOWN_DIGIT:
             return UNKNOWN_DIGIT
-        if self.name is None or self.number is None or type(encoded) is Interval:
+        if self.name is None or self.number is None:
             return encoded
         floors = breakpoints[self.name]
-        # The floors that a number reaches are those up to the highest common floor that it reaches.
-        reached = encoded if floors is None else floors[encoded - 1]
-        return bisect_right(self._floors, reached)
+
+        def own(encoded: Any) -> int:
+            # The floors that a number reaches are those up to the highest common one.
+            reached = encoded if floors is None else floors[encoded - 1]
+            return bisect_right(self._floors, reached)
+
+        if type(encoded) is range:
+            return digits_between(own(encoded[0]), own(encoded[-1]))
+        if type(encoded) is Interval:
+            return digits_between(own(encoded.low), own(encoded.high))
+        return own(encoded)
 
     @property
     def names(self) -> tuple[str, ...]:
