@@ -22,9 +22,9 @@ from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.online.group_letters import GroupLetters
 from rulec.monitoring.online.partial_states import RulesOfAll, StateReader, rules_of_all
 from rulec.monitoring.online.prepared_rule import PreparedRule
-from rulec.monitoring.online.rule_group import GroupNode, RuleGroup, RuleGroups, RulesRead
+from rulec.monitoring.online.rule_group import GroupNode, RuleGroup, RuleGroups
 from rulec.monitoring.online.uncertain_steps import Edge
-from rulec.monitoring.state_validation import check_state, has_partial_values
+from rulec.monitoring.state_validation import check_state
 from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings
 from rulec.monitoring.uncertainty.state_letters.possible_letters import BoundLetters, bound_letters
 from rulec.resource_limits import CHOICES
@@ -39,9 +39,6 @@ NONE_AWAKE: Awake = {}
 
 Letters: TypeAlias = list[int]
 """The letter read by each binding of each group, one after the other."""
-
-MOST_STATES = 1 << 12
-"""How many partly known states keep their letters before all are discarded."""
 
 MOST_SHAPES = 64
 """How many shapes of states are kept before all are discarded."""
@@ -87,7 +84,6 @@ class BoundRules:
         self.groups = groups
         self._rulebook = rulebook
         self._counting = any(counts(axiom.formula) for axiom in rulebook.axioms)
-        self._partial: dict[KnownState, Letters] = {}
         self._letters: BoundLetters | None = None
         self._of_all: RulesOfAll | None = None
         self._readers: dict[tuple[str, ...], GroupLetters | None] = {}
@@ -124,11 +120,8 @@ class BoundRules:
 
         Raises RulecError as ``read`` does, and R0718 if there are too many.
         """
-        name, rulebook = f"state {number}", self._rulebook
-        check_state(state, self.objects, rulebook.vocabulary, name, place)
-        state = with_implied_signals(state, rulebook.vocabulary)
-        reader = self._state_reader(state, (name, place))
-        cast = Cast(self.objects, rulebook.vocabulary, 1, {}, place)
+        reader = self._checked(state, number, place)
+        cast = Cast(self.objects, self._rulebook.vocabulary, 1, {}, place)
         awake: dict[tuple[str, ...], dict[Items, None]] = {}
         for group in self.lazy:
             own = awake.setdefault(group.types, {})
@@ -145,7 +138,7 @@ class BoundRules:
 
         Raises RulecError R0502 to R0505 or R0508, naming the state by its ``number``.
         """
-        known = None
+        known = letters = None
         try:
             state = with_implied_signals(state, self._rulebook.vocabulary)
             names = tuple(state)
@@ -153,23 +146,15 @@ class BoundRules:
             if reader is not None:
                 encoded = reader.shape.encode(state)
                 known = reader.shape, encoded
-                if not self._counting:
-                    letters = reader.letters(state, encoded)
-                    if self.groups.cache_size.has_holes:
-                        letters = self._filled(letters, state, (number, place))
-                    return letters, known
+                letters = reader.letters(state, encoded)
         except (LookupError, TypeError, AttributeError):
             pass
-        with suppress(LookupError, TypeError):
-            return self._partial[known], known  # type: ignore[index]
-        letters, is_partial = self._careful_letters(state, number, place, known)
-        if not is_partial:
-            return letters, known
-        if known is None:
-            return letters, None
-        if len(self._partial) >= MOST_STATES:
-            self._partial.clear()
-        self._partial[known] = letters
+        if letters is None or self._counting:
+            careful = self._checked(state, number, place)
+            state = careful.view(0).state
+            letters = self._careful_letters(careful) if letters is None else letters
+        if self.groups.cache_size.has_holes:
+            letters = self._filled(letters, state, (number, place))
         return letters, known
 
     def _reader_of(self, names: tuple[str, ...]) -> GroupLetters | None:
@@ -203,36 +188,22 @@ class BoundRules:
             begin += len(bindings)
         return inexact
 
-    def _careful_letters(
-        self,
-        state: State,
-        number: int,
-        place: SourceLocation | None,
-        known: KnownState | None,
-    ) -> tuple[Letters, bool]:
-        """Letters read like ``verify`` does, with all cases and errors.
-
-        Also returns whether some value is partly known or the past is unknown. If the state could
-        be encoded, only the rules that need it are read.
-        """
+    def _checked(self, state: State, number: int, place: SourceLocation | None) -> StateReader:
+        """A reader like that of ``verify``, with all cases and errors."""
         name, rulebook = f"state {number}", self._rulebook
         check_state(state, self.objects, rulebook.vocabulary, name, place)
         state = with_implied_signals(state, rulebook.vocabulary)
         reader = self._state_reader(state, (name, place))
         check_counting_axioms(rulebook, 1, reader.view, name.format, place)
-        by_place = self._known_letters(state, known)
-        for bound_rule in self.rules:
-            prepared = bound_rule.prepared
-            for place_, items in enumerate(bound_rule.bindings, bound_rule.places.start):
-                own = by_place[place_]
-                if isinstance(own, list) and own[bound_rule.number] is None:
-                    own[bound_rule.number] = reader.letter_class(prepared, items)
-        letters = [
-            own if isinstance(own, int) else _letter(group, own)
-            for (group, _), own in zip(self._at, by_place, strict=True)
-        ]
-        is_partial = self.groups.is_partial or has_partial_values(state)
-        return self._filled(letters, state, (number, place)), is_partial
+        return reader
+
+    def _careful_letters(self, reader: StateReader) -> Letters:
+        """Letters read like ``verify`` does, in the same order, so that it finds the same error."""
+        read: list[list[tuple[LetterClass, bool]]] = [[] for _ in self._at]
+        for own in self.rules:
+            for at, items in enumerate(own.bindings, own.places.start):
+                read[at].append(reader.letter_class(own.prepared, items))
+        return [group.letter_read(own) for (group, _), own in zip(self._at, read, strict=True)]
 
     def _filled(
         self,
@@ -266,19 +237,6 @@ class BoundRules:
         for at, group, items in has_holes:
             letters[at] = group.filled(letters[at], items, read)
         return letters
-
-    def _known_letters(self, state: State, known: KnownState | None) -> Sequence[int | RulesRead]:
-        """The letters that can be read from an encoded state without closer inspection."""
-        reader = None if known is None else self._readers[tuple(state)]
-        if known is not None and reader is not None:
-            return reader.known_letters(state, known[1])
-        return [[None] * len(group.rules) for group, _ in self._at]
-
-
-def _letter(group: RuleGroup, read: RulesRead) -> int:
-    classes = [own for own in read if own is not None]
-    inexact = {number for number, (_, is_exact) in enumerate(classes) if not is_exact}
-    return group.letter(tuple([own for own, _ in classes]), inexact)
 
 
 def _chosen(group: RuleGroup, cast: Cast, awake: Awake) -> tuple[Items, ...]:

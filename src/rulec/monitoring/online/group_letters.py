@@ -6,7 +6,6 @@ The letters for one state of the world, and for some values, are computed once a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
 from operator import itemgetter
 from typing import Any, TypeAlias
 
@@ -17,7 +16,7 @@ from rulec.monitoring.online.encoding.encoded_values import (
     digits_between,
 )
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
-from rulec.monitoring.online.rule_group import RuleGroup, RulesRead
+from rulec.monitoring.online.rule_group import RuleGroup
 from rulec.monitoring.state_view import StateView, value_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
 from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
@@ -73,22 +72,6 @@ class GroupLetters:
             letters += map(known.__getitem__, keys(state, parts))
         return letters
 
-    def known_letters(self, state: State, parts: tuple[Encoded, ...]) -> Sequence[int | RulesRead]:
-        """The letter of each binding, or its reads for the rules without closer inspection."""
-        letters: list[int | RulesRead] = []
-        for number in range(len(self._readers)):
-            letters += self._known_of_group(number, state, parts)
-        return letters
-
-    def _known_of_group(
-        self, number: int, state: State, parts: tuple[Encoded, ...]
-    ) -> list[int | RulesRead]:
-        reader = self._readers[number]
-        with suppress(LookupError, TypeError):
-            letters = self._in_world(parts[: self.shape.n_world])[number]
-            return [letters.as_far_as_known(key) for key in reader.keys(state, parts)]
-        return [reader.nothing_read() for _ in range(reader.n_bindings)]
-
     def _in_world(self, world: tuple[Encoded, ...]) -> list[_LetterTable]:
         in_world = self._by_world.get(world)
         if in_world is None:
@@ -125,13 +108,6 @@ class _LetterTable(dict[Any, int]):
             self.clear()
         self[key] = letter
         return letter
-
-    def as_far_as_known(self, key: Any) -> int | RulesRead:
-        """The letter or, if that needs closer inspection, the reads of the rules that do not."""
-        try:
-            return self[key]
-        except (LookupError, TypeError):
-            return self._group.read_by_rules(self._digits(key))
 
     def _digits(self, key: Any) -> Mapping[MonitorInput, Any]:
         own = self._own
@@ -192,10 +168,6 @@ class _GroupReader:
         }
         others = {**self._not_given, **digits}
         return _LetterTable(self._group, self._own, others, self._breakpoints)
-
-    def nothing_read(self) -> RulesRead:
-        """The reads of a binding for which every rule needs closer inspection."""
-        return [None] * len(self._group.rules)
 
     def _read_keys(self, whole: Sequence[int | None]) -> _ReadKeys:
         columns, n_bindings = self._columns, self.n_bindings

@@ -21,19 +21,12 @@ from rulec.monitoring.online.four_valued import (
     LetterClass,
     RunningVerdict,
 )
-from rulec.monitoring.online.prepared_rule import BY_STATE, ClassTable, PreparedRule, prepared_rule
+from rulec.monitoring.online.prepared_rule import BY_STATE, PreparedRule, prepared_rule
 from rulec.monitoring.online.uncertain_steps import Edge
 from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
-from rulec.vocabulary.partial_values import UNKNOWN_TYPES
 
 MOST_CACHED = 1 << 18
 """How many nodes, letters and transitions are kept before all are discarded."""
-
-RulesRead: TypeAlias = "list[tuple[LetterClass, bool] | None]"
-"""For each rule of a group the class that it reads, and whether this is exact.
-
-None where this needs closer inspection of a state.
-"""
 
 _SetsOfClasses: TypeAlias = tuple[tuple[LetterClass, ...], tuple[int, ...]]
 """For each rule its class, and the numbers of the rules that read sets of classes."""
@@ -199,30 +192,17 @@ class RuleGroup:
         )
         return self.letter(classes, inexact)
 
-    def read_by_rules(self, digits: Mapping[MonitorInput, Any]) -> RulesRead:
-        """The classes that each rule reads for inputs with these digits or partly known values."""
-        return [_read_by_rule(table, pick, digits) for table, pick in self._tables]
-
-
-def _read_by_rule(
-    table: ClassTable,
-    pick: Callable[[Mapping[MonitorInput, Any]], tuple[Any, ...]],
-    digits: Mapping[MonitorInput, Any],
-) -> tuple[LetterClass, bool] | None:
-    try:
-        own = pick(digits)
-        letter_class = table[own]
-        return None if letter_class == BY_STATE else (letter_class, own not in table.inexact)
-    except (LookupError, TypeError):
-        return None
+    def letter_read(self, read: Sequence[tuple[LetterClass, bool]]) -> int:
+        """The letter with the class that each rule reads, given with whether this is exact."""
+        inexact = {number for number, (_, is_exact) in enumerate(read) if not is_exact}
+        return self.letter(tuple([own for own, _ in read]), inexact)
 
 
 class RuleGroups:
     """The rules of a rulebook, singly and grouped by their variables' types.
 
-    The groups cache their nodes, letters and transitions. ``is_partial``: names that no state
-    contains may be unknown, or the past is unknown. ``lacks_hard``: some hard rules cannot be
-    judged.
+    The groups cache their nodes, letters and transitions. ``lacks_hard``: some hard rules cannot
+    be judged.
     """
 
     def __init__(
@@ -230,11 +210,10 @@ class RuleGroups:
         rules: Sequence[PreparedRule],
         breakpoints: Breakpoints,
         *,
-        is_partial: bool = False,
         lacks_hard: bool = False,
     ) -> None:
         self.rules, self.breakpoints = tuple(rules), breakpoints
-        self.is_partial, self.lacks_hard = is_partial, lacks_hard
+        self.lacks_hard = lacks_hard
         self.cache_size = CacheSize()
         by_types: dict[tuple[str, ...], list[PreparedRule]] = {}
         for prepared in rules:
@@ -246,9 +225,7 @@ class RuleGroups:
 
     def without_cache(self) -> RuleGroups:
         """These groups with empty caches."""
-        return RuleGroups(
-            self.rules, self.breakpoints, is_partial=self.is_partial, lacks_hard=self.lacks_hard
-        )
+        return RuleGroups(self.rules, self.breakpoints, lacks_hard=self.lacks_hard)
 
 
 def rule_groups(
@@ -262,7 +239,4 @@ def rule_groups(
         prepared_rule(rule, rulebook, None if cut is None else cut[rule.name])
         for rule in rulebook.rules
     ]
-    defaults = [declaration.default for declaration in rulebook.vocabulary.declarations.values()]
-    is_partial = cut is not None or any(type(value) in UNKNOWN_TYPES for value in defaults)
-    points = breakpoints_of(rulebook)
-    return RuleGroups(rules, points, is_partial=is_partial, lacks_hard=lacks_hard)
+    return RuleGroups(rules, breakpoints_of(rulebook), lacks_hard=lacks_hard)
