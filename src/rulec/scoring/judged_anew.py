@@ -6,7 +6,7 @@ half of a candidate is left to end it. What is violated later than that is viola
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence, Set
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -37,7 +37,7 @@ from rulec.monitoring.verdict import (
 )
 from rulec.scoring.candidate_score import CandidateScore
 from rulec.scoring.charges import at
-from rulec.trace.trace_arrays import TraceArrays, said_by
+from rulec.trace.trace_arrays import TraceArrays, stretches_of
 
 
 def verdicts_of(
@@ -97,20 +97,17 @@ def apart_from_past(
     """
     if not known:
         return list(scores)
-    some, names = _after_any_past(frozenset(rule for rule, _ in known), rulebook)
+    some = _after_any_past(frozenset(rule for rule, _ in known), rulebook)
     doubtful = [{rule_for(result) for result in score.open} & set(known) for score in scores]
-    futures = _saying(
-        names,
-        [
-            _Future(number, drive.first_step, trace)
-            for number, score in enumerate(scores)
-            if doubtful[number]
-            for drive, _ in verdicts_of(score.drives)
-            if drive.first_step + drive.arrays.n_states > first
-            for trace in (drive.arrays, *drive.otherwise)
-        ],
-    )
-    answers = answers_contained([future.since(first) for future in futures], some)
+    futures = [
+        _Future(number, drive.first_step, trace)
+        for number, score in enumerate(scores)
+        if doubtful[number]
+        for drive, _ in verdicts_of(score.drives)
+        if drive.first_step + drive.arrays.n_states > first
+        for trace in (drive.arrays, *drive.otherwise)
+    ]
+    answers = _since([first] * len(futures), futures, some)
     for future, answer in zip(futures, answers, strict=True):
         own = doubtful[future.number]
         if isinstance(answer, Verdict):
@@ -198,17 +195,14 @@ def _anew(
 ) -> list[CandidateScore]:
     """The scores, with the ``known`` rules judged anew."""
     first, begin = steps
-    some, names = some_rules(frozenset(rule for rule, _ in known), rulebook)
-    futures = _saying(
-        names,
-        [
-            _Future(number, drive.first_step, drive.arrays)
-            for number, found in enumerate(scores)
-            for drive, _ in verdicts_of(found.drives)
-            if drive.first_step + drive.arrays.n_states > begin
-        ],
-    )
-    answers = answers_contained([one.since(begin) for one in futures], some)
+    some = some_rules(frozenset(rule for rule, _ in known), rulebook)
+    futures = [
+        _Future(number, drive.first_step, drive.arrays)
+        for number, found in enumerate(scores)
+        for drive, _ in verdicts_of(found.drives)
+        if drive.first_step + drive.arrays.n_states > begin
+    ]
+    answers = _since([begin] * len(futures), futures, some)
     late = _mended_after(futures, known, some, steps)
     new, ended = _violated_again(futures, known, some, steps)
     reopened = _open_again(futures, ended, some, begin)
@@ -245,34 +239,32 @@ def _anew(
 
 
 class _Future(NamedTuple):
-    """The values of a candidate's drive that some rules read, and the step in which it begins.
-
-    ``number`` is the candidate's.
-    """
+    """A candidate's drive and the step in which it begins; ``number`` is the candidate's."""
 
     number: int
     first_step: int
     trace: TraceArrays
 
-    def since(self, step: int) -> TraceArrays:
-        """The drive from a step on, as if nothing before were known."""
-        return self.trace.since(max(step - self.first_step, 0))
 
-    def at(self, step: int) -> TraceArrays:
-        """One state of the drive, as if nothing before and after were known."""
-        return self.trace.at([max(step - self.first_step, 0)])
+def _since(
+    steps: Sequence[int], futures: Sequence[_Future], some: SomeRules, most: int | None = None
+) -> list[Verdict | NotJudged]:
+    """The answers to the drives, each from a step on, as if nothing before were known.
 
-
-def _saying(names: Set[str], futures: Sequence[_Future]) -> list[_Future]:
-    """The drives with the values of these names only."""
-    traces = said_by([future.trace for future in futures], names)
-    return [future._replace(trace=trace) for future, trace in zip(futures, traces, strict=True)]
+    With ``most`` nothing is known after so many states, either.
+    """
+    stretches = [
+        range(own.trace.n_states)[max(step - own.first_step, 0) :][:most]
+        for step, own in zip(steps, futures, strict=True)
+    ]
+    traces = stretches_of([own.trace for own in futures], stretches, some.names)
+    return answers_contained(traces, some.rulebook)
 
 
 def _mended_after(
     futures: Sequence[_Future],
     known: Collection[RuleFor],
-    rulebook: CompiledRulebook,
+    some: SomeRules,
     steps: tuple[int, int],
 ) -> dict[int, int]:
     """For each candidate the number of states until what the past violated is kept for good.
@@ -283,12 +275,8 @@ def _mended_after(
     low, high = np.zeros(len(futures), dtype=int), np.full(len(futures), begin - first)
     while (low < high).any():
         middle = (low + high) // 2
-        traces = [
-            own.since(first + after) for after, own in zip(middle.tolist(), futures, strict=True)
-        ]
-        is_kept = np.array(
-            [_keeps(answer, known) for answer in answers_contained(traces, rulebook)]
-        )
+        answers = _since((first + middle).tolist(), futures, some)
+        is_kept = np.array([_keeps(answer, known) for answer in answers])
         low, high = np.where(is_kept, low, middle + 1), np.where(is_kept, middle, high)
         low = np.minimum(low, high)
     late: dict[int, int] = {}
@@ -307,7 +295,7 @@ def _keeps(answer: Verdict | NotJudged, known: Collection[RuleFor]) -> bool:
 def _violated_again(
     futures: Sequence[_Future],
     known: Collection[RuleFor],
-    rulebook: CompiledRulebook,
+    some: SomeRules,
     steps: tuple[int, int],
 ) -> tuple[list[dict[RuleFor, tuple[int, Violation]]], list[dict[RuleFor, int]]]:
     """For each future what it violates after the past's violation has ended, and when it has.
@@ -319,16 +307,16 @@ def _violated_again(
     one on.
     """
     first, begin = steps
-    soonest = {rule.name: _least_states(rule) for rule in rulebook.rules}
+    soonest = {rule.name: _least_states(rule) for rule in some.rulebook.rules}
     found: list[dict[RuleFor, tuple[int, Violation]]] = [{} for _ in futures]
     ended: list[dict[RuleFor, int]] = [{} for _ in futures]
     asked = {(n, about): first for n in range(len(futures)) for about in known}
     while asked:
         jobs = sorted({(n, step) for (n, _), step in asked.items()})
-        traces = [futures[n].since(step) for n, step in jobs]
+        answers = _since([step for _, step in jobs], [futures[n] for n, _ in jobs], some)
         violations = {
             (*job, rule_for(one)): one
-            for job, answer in zip(jobs, answers_contained(traces, rulebook), strict=True)
+            for job, answer in zip(jobs, answers, strict=True)
             for one in (answer.violations if isinstance(answer, Verdict) else ())
         }
         goes_on = {}
@@ -349,7 +337,7 @@ def _violated_again(
 def _open_again(
     futures: Sequence[_Future],
     ended: Sequence[Mapping[RuleFor, int]],
-    rulebook: CompiledRulebook,
+    some: SomeRules,
     begin: int,
 ) -> list[dict[RuleFor, OpenVerdict]]:
     """For each future what is open after the past's violation has surely ended, before ``begin``.
@@ -359,19 +347,19 @@ def _open_again(
     """
     found: list[dict[RuleFor, OpenVerdict]] = [{} for _ in futures]
     asked = {(n, about): step for n, own in enumerate(ended) for about, step in own.items()}
-    is_open = _open_from(futures, asked, rulebook)
+    is_open = _open_from(futures, asked, some)
     waiting = {key: asked[key] for key in is_open}
     surely = {}
     while waiting := {key: step for key, step in waiting.items() if step < begin}:
         jobs = sorted({(n, step) for (n, _), step in waiting.items()})
-        answers = answers_contained([futures[n].at(step) for n, step in jobs], rulebook)
+        answers = _since([step for _, step in jobs], [futures[n] for n, _ in jobs], some, most=1)
         answer_to = dict(zip(jobs, answers, strict=True))
         for key in list(waiting):
             if _keeps(answer_to[key[0], waiting[key]], {key[1]}):
                 surely[key] = waiting.pop(key)
             else:
                 waiting[key] += 1
-    for (n, about), verdict in _open_from(futures, surely, rulebook).items():
+    for (n, about), verdict in _open_from(futures, surely, some).items():
         found[n][about] = verdict
     return found
 
@@ -379,11 +367,11 @@ def _open_again(
 def _open_from(
     futures: Sequence[_Future],
     asked: Mapping[tuple[int, RuleFor], int],
-    rulebook: CompiledRulebook,
+    some: SomeRules,
 ) -> dict[tuple[int, RuleFor], OpenVerdict]:
     """What is open, by future and rule, if it is asked from a step on."""
     jobs = sorted({(n, step) for (n, _), step in asked.items()})
-    answers = answers_contained([futures[n].since(step) for n, step in jobs], rulebook)
+    answers = _since([step for _, step in jobs], [futures[n] for n, _ in jobs], some)
     verdicts = {
         (*job, rule_for(own)): own
         for job, answer in zip(jobs, answers, strict=True)

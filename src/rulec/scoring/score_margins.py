@@ -19,6 +19,7 @@ from rulec.monitoring.verdict import RuleFor, Violation, rule_for
 from rulec.scoring.candidate_score import CandidateScore
 from rulec.scoring.charges import at
 from rulec.scoring.judged_anew import verdicts_of
+from rulec.trace.trace_arrays import stretches_of
 from rulec.trace.trace_model import present_in
 from rulec.value_display import short_repr
 
@@ -84,7 +85,9 @@ def _deciding(
     cut = 0 if since is None else since - begins
     own = at(violation, -begins - cut)
     decided_by = {name: _DecidedSince(x, cut) for name, x in drive.decided_by.items()}
-    explanation = explain(own, drive.arrays.since(cut).trace(), rules, decided_by, repaired=False)
+    names = drive.arrays.world.keys() | drive.arrays.about.keys()
+    (arrays,) = stretches_of([drive.arrays], [range(cut, drive.arrays.n_states)], names)
+    explanation = explain(own, arrays.trace(), rules, decided_by, repaired=False)
     for margin, state in explanation.measured():
         yield RuleMargin(violation.rule, True, violation.binding, state + cut + begins, margin)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Flags
 from rulec.diagnostics import RulecError
+from rulec.trace.plain_arrays import ranges
 from rulec.trace.shared_columns import SharedColumns
 from rulec.trace.trace_columns import Array
 from rulec.trace.trace_model import Ending, Trace
 from rulec.value_display import short_repr
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
-
-Places = NDArray[np.intp] | Flags | slice
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,57 +64,6 @@ class TraceArrays:
 
     __hash__ = None  # type: ignore[assignment]
 
-    def since(self, state: int) -> TraceArrays:
-        """The trace from a state on, as if nothing were known about earlier states."""
-        if not state:
-            return self
-        return self._of_states(np.arange(state, self.n_states), slice(state, None))
-
-    def at(self, states: Sequence[int]) -> TraceArrays:
-        """The trace of some states (ascending, distinct), and the objects present in any."""
-        chosen = np.array(states, dtype=np.intp)
-        return self._of_states(chosen, chosen)
-
-    def _of_states(self, chosen: NDArray[np.intp], states: Places) -> TraceArrays:
-        """The trace of the ``chosen`` states, which are at ``states`` in columns of the world."""
-        first = chosen.searchsorted(self.spans[:, 0])
-        last = chosen.searchsorted(self.spans[:, 1], side="right") - 1
-        there = first <= last
-        stays = np.zeros(self.n_states, dtype=bool)
-        stays[chosen] = True
-        # The state that each value in `about` belongs to
-        starts = self.starts
-        state_of = np.arange(starts[-1]) + (self.spans[:, 0] - starts[:-1]).repeat(np.diff(starts))
-        part = self._cut(states, stays[state_of], there, self.world.keys() | self.about.keys())
-        spans = np.stack([first[there], last[there]], axis=1)
-        return replace(part, n_states=len(chosen), spans=spans)
-
-    def _cut(self, states: Places, cells: Places, there: Flags, names: Set[str]) -> TraceArrays:
-        """Values of ``names`` in ``states`` (world) and ``cells`` (objects marked ``there``)."""
-
-        def part(name: str, values: Array) -> Array:
-            return values[states if name in self.world else cells]
-
-        def of(values: Mapping[str, Array]) -> dict[str, Array]:
-            return {name: part(name, own) for name, own in values.items() if name in names}
-
-        items = zip(self.objects.items(), there.tolist(), strict=True)
-        return replace(
-            self,
-            objects=dict(item for item, is_there in items if is_there),
-            spans=self.spans[there],
-            world=of(self.world),
-            about=of(self.about),
-            unknown=of(self.unknown),
-            absent=of(self.absent),
-            bounds={
-                name: (part(name, low), part(name, high))
-                for name, (low, high) in self.bounds.items()
-                if name in names
-            },
-            only={name: flags[there] for name, flags in self.only.items() if name in names},
-        )
-
     @property
     def is_partial(self) -> bool:
         """Whether any given value is unknown or known only within bounds."""
@@ -142,7 +90,29 @@ class TraceArrays:
     def part(self, names: Set[str], items: Set[str]) -> TraceArrays:
         """The trace with these names and objects only."""
         kept = np.array([item in items for item in self.objects], dtype=bool)
-        return self._cut(slice(None), kept.repeat(np.diff(self.starts)), kept, names)
+        cells = kept.repeat(np.diff(self.starts))
+
+        def part(name: str, values: Array) -> Array:
+            return values if name in self.world else values[cells]
+
+        def of(values: Mapping[str, Array]) -> dict[str, Array]:
+            return {name: part(name, own) for name, own in values.items() if name in names}
+
+        return replace(
+            self,
+            objects={item: kind for item, kind in self.objects.items() if item in items},
+            spans=self.spans[kept],
+            world=of(self.world),
+            about=of(self.about),
+            unknown=of(self.unknown),
+            absent=of(self.absent),
+            bounds={
+                name: (part(name, low), part(name, high))
+                for name, (low, high) in self.bounds.items()
+                if name in names
+            },
+            only={name: flags[kept] for name, flags in self.only.items() if name in names},
+        )
 
     def trace(self) -> Trace:
         """The trace with its states as mappings."""
@@ -196,29 +166,104 @@ class TraceArrays:
         return values
 
 
-def said_by(traces: Sequence[TraceArrays], names: Set[str]) -> list[TraceArrays]:
-    """The traces with the values of these names only; those that share columns still do."""
-    known: dict[int, dict[str, Any]] = {}
+def stretches_of(
+    traces: Sequence[TraceArrays], stretches: Sequence[range], names: Set[str]
+) -> list[TraceArrays]:
+    """The traces with these states and names only, as if nothing were known of others.
 
-    def of(values: Mapping[str, Any]) -> Mapping[str, Any]:
-        columns = values.columns if isinstance(values, SharedColumns) else values
-        if id(columns) not in known:
-            known[id(columns)] = {name: columns[name] for name in columns if name in names}
-        chosen = known[id(columns)]
-        return replace(values, columns=chosen) if isinstance(values, SharedColumns) else chosen
+    Those that share columns share the shortened ones.
+    """
+    sharing: dict[tuple[int, ...], list[int]] = {}
+    for number, trace in enumerate(traces):
+        key = tuple([id(_columns(values)) for values in _by_name(trace).values()])
+        sharing.setdefault(key, []).append(number)
+    cut: dict[int, TraceArrays] = {}
+    for numbers in sharing.values():
+        chosen = [stretches[n] for n in numbers]
+        together = _shortened([traces[n] for n in numbers], chosen, names)
+        cut.update(zip(numbers, together, strict=True))
+    return [cut[number] for number in range(len(traces))]
 
-    return [
-        replace(
-            trace,
-            world=of(trace.world),
-            about=of(trace.about),
-            unknown=of(trace.unknown),
-            absent=of(trace.absent),
-            bounds=of(trace.bounds),
-            only=of(trace.only),
-        )
-        for trace in traces
-    ]
+
+def _shortened(
+    traces: Sequence[TraceArrays], stretches: Sequence[range], names: Set[str]
+) -> Iterator[TraceArrays]:
+    """The stretches of traces that share their columns."""
+    begins, ends = np.array([(own.start, own.stop) for own in stretches], dtype=np.intp).T
+    counts = np.array([len(trace.spans) for trace in traces])
+    of = np.arange(len(traces)).repeat(counts)
+    whole = np.concatenate([trace.spans for trace in traces])
+    firsts = np.maximum(whole[:, 0], begins[of])
+    lasts = np.minimum(whole[:, 1], ends[of] - 1)
+    there = firsts <= lasts
+    at = np.array([_places(trace) for trace in traces], dtype=np.intp)
+    starts = starts_of(whole)[:-1]
+    n_before = np.concatenate([[0], counts.cumsum()[:-1]])
+    starts = starts + (at[:, 1] - np.append(starts, 0)[n_before])[of] + firsts - whole[:, 0]
+    kept, lengths = of[there], (lasts - firsts + 1)[there]
+    places = (
+        ranges(at[:, 0] + begins, ends - begins)[0],
+        ranges(starts[there], lengths)[0],
+        ranges(at[:, 2], counts)[0][there],
+    )
+    n_cells = np.bincount(kept, lengths, len(traces)).astype(np.intp)
+    n_objects = np.bincount(kept, minlength=len(traces))
+    own = [_slices(sizes) for sizes in (ends - begins, n_cells, n_objects)]
+    spans = np.stack([firsts, lasts], axis=1)[there] - begins[kept, None]
+    example = _by_name(traces[0])
+    about = frozenset(_columns(example["about"]))
+    columns = {
+        key: {
+            name: _at(column, places[2 if key == "only" else name in about])
+            for name, column in _columns(values).items()
+            if name in names
+        }
+        for key, values in example.items()
+    }
+    is_there = iter(there.tolist())
+    for trace, states, cells, items in zip(traces, *own, strict=True):
+        objects = [item for item in trace.objects.items() if next(is_there)]
+        parts: dict[str, Any] = {
+            key: SharedColumns(mine, about, *((items, items) if key == "only" else (states, cells)))
+            for key, mine in columns.items()
+        }
+        n_states = states.stop - states.start
+        yield replace(trace, n_states=n_states, objects=dict(objects), spans=spans[items], **parts)
+
+
+def _by_name(trace: TraceArrays) -> Mapping[str, Mapping[str, Any]]:
+    """The values of a trace, by the fields that have them by name."""
+    return {
+        "world": trace.world,
+        "about": trace.about,
+        "unknown": trace.unknown,
+        "absent": trace.absent,
+        "bounds": trace.bounds,
+        "only": trace.only,
+    }
+
+
+def _columns(values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The whole columns, of all traces that share them."""
+    return values.columns if isinstance(values, SharedColumns) else values
+
+
+def _places(trace: TraceArrays) -> tuple[int, int, int]:
+    """Where a trace's states, cells and objects begin in its columns."""
+    shared = [x for x in (trace.world, trace.about) if isinstance(x, SharedColumns)]
+    at = (shared[0].states.start, shared[0].cells.start) if shared else (0, 0)
+    return *at, trace.only.states.start if isinstance(trace.only, SharedColumns) else 0
+
+
+def _at(column: Any, places: NDArray[np.intp]) -> Any:
+    if isinstance(column, tuple):
+        return tuple([own.take(places) for own in column])
+    return column.take(places)
+
+
+def _slices(sizes: NDArray[np.intp]) -> list[slice]:
+    ends = sizes.cumsum().tolist()
+    return list(map(slice, [0, *ends[:-1]], ends))
 
 
 def starts_of(spans: NDArray[np.intp]) -> NDArray[np.intp]:
