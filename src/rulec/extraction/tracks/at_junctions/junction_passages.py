@@ -138,12 +138,17 @@ class JunctionPassages:
         line = shapely.LineString([start, end])
         return len(self._areas.query(line, predicate="intersects")) > 0
 
-    def touched_by(self, outline: Points | None) -> list[int]:
-        """The numbers of the junctions that a body touches."""
-        if outline is None:
-            return []
-        found: list[int] = self._areas.query(shapely.Polygon(outline), "intersects").tolist()
-        return found
+    def touched_by(self, outlines: Sequence[Points | None]) -> list[list[int]]:
+        """The numbers of the junctions that each body touches; none where it is absent."""
+        touched: list[list[int]] = [[] for _ in outlines]
+        there = [(number, own) for number, own in enumerate(outlines) if own is not None]
+        if there and self.junctions:
+            owners = np.arange(len(there)).repeat([len(own) for _, own in there])
+            rings = shapely.linearrings(np.concatenate([own for _, own in there]), indices=owners)
+            found = self._areas.query(shapely.polygons(rings), "intersects")
+            for at, junction in found.T.tolist():
+                touched[there[at][0]].append(junction)
+        return touched
 
     @cached_property
     def _first_meetings(self) -> dict[str, float]:

@@ -36,10 +36,10 @@ def strays(context: DriveContext) -> tuple[tuple[int, int, int], ...]:
         for own, columns in zip(rows, steps, strict=True)
         if row == own and last >= columns[0] and first <= columns[-1]
     ]
-    for row, columns in zip(rows, steps, strict=True):
-        begin, end = columns[[0, -1]].tolist()
-        driven = {x.junction for x in passages.of_row.get(row, ()) if x.last >= begin}
-        at_end = passages.touched_by(tracks.outline(row, end))
+    ends = [int(columns[-1]) for columns in steps]
+    touched = passages.touched_by([*map(tracks.outline, rows, ends)])
+    for row, columns, end, at_end in zip(rows, steps, ends, touched, strict=True):
+        driven = {x.junction for x in passages.of_row.get(row, ()) if x.last >= columns[0]}
         found += [(junction, end, end) for junction in at_end if junction not in driven]
     return tuple(found)
 
