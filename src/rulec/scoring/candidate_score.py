@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import dataclass, field, replace
 
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.fault_messages import fault_of
 from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.extraction.traces.recorded_drive import NoDrive
-from rulec.monitoring.verdict import OpenVerdict, RuleFor, RuleNotJudged, Violation
+from rulec.monitoring.verdict import OpenVerdict, RuleFor, RuleNotJudged, Violation, rule_for
 from rulec.value_display import short_repr
 
 
@@ -45,6 +45,16 @@ class CandidateScore:
     judged_from: Mapping[RuleFor, int] = field(default_factory=dict)
     open_before: tuple[OpenVerdict, ...] = ()
     faults: tuple[RulecError, ...] = field(default=(), compare=False)
+
+    def apart(self, about: Set[RuleFor]) -> CandidateScore:
+        """The score in which what is open of these counts as open before."""
+        if not about:
+            return self
+        own, before = (
+            tuple([result for result in self.open if (rule_for(result) in about) is is_before])
+            for is_before in (False, True)
+        )
+        return replace(self, open=own, open_before=before)
 
     @property
     def satisfied(self) -> bool | None:

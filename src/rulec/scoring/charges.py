@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import NamedTuple, TypeAlias, overload
@@ -18,7 +18,7 @@ from rulec.diagnostics.fault_messages import is_fault
 from rulec.extraction.recording_verdicts import DriveVerdict, JudgedDrive
 from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.monitoring.batch.findings import Findings, JudgedTrace
-from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
+from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleFor, Verdict, Violation, rule_for
 from rulec.scoring.candidate_score import CandidateScore, lost_candidate
 from rulec.scoring.scored_again import without_drives
 
@@ -34,7 +34,7 @@ class CandidateCharges:
 
     ``begins`` are the states of the candidate in which its ``drives`` begin. If there are many
     candidates only the drives' verdicts are kept; everything else is recomputed by ``again`` from
-    the candidate's number.
+    the candidate's number. ``open_before`` is what is not charged though it is open.
     """
 
     number: int
@@ -44,6 +44,7 @@ class CandidateCharges:
     why: str
     is_judged: bool
     again: Callable[[int], CandidateScore] | None = None
+    open_before: frozenset[RuleFor] = frozenset()
 
     def later(self, again: Callable[[int], CandidateScore]) -> CandidateCharges:
         """The same without the drives, which ``again`` recomputes."""
@@ -80,7 +81,7 @@ class CandidateCharges:
             is_judged=self.is_judged,
             drives=tuple([x for x in drives if isinstance(x, DriveVerdict | NoDrive)]),
             faults=tuple(faults),
-        )
+        ).apart(self.open_before)
         if self.again is None:
             return found
         return without_drives(found, len(drives), partial(self.again, self.number))
@@ -134,6 +135,22 @@ class CandidateScores(Sequence[CandidateScore]):
 
     def __reduce__(self) -> tuple[type[CandidateScores], tuple[list[CandidateScore]]]:
         return CandidateScores, (list(self),)
+
+
+def open_of(charges: Sequence[CandidateCharges], rules: Set[str]) -> list[set[RuleFor]]:
+    """For which objects some of these rules are open for each candidate."""
+    known: dict[Findings, Mapping[int, Set[RuleFor]]] = {}
+    found: list[set[RuleFor]] = []
+    for candidate in charges:
+        found.append(set())
+        for own in map(_judged, candidate.drives):
+            if isinstance(own, JudgedTrace):
+                if own.findings not in known:
+                    known[own.findings] = own.findings.open_of(rules)
+                found[-1] |= known[own.findings].get(own.number, set())
+            elif isinstance(own, Verdict):
+                found[-1] |= {rule_for(result) for result in own.open if result.rule in rules}
+    return found
 
 
 def forget_reasons(charges: Sequence[CandidateCharges]) -> None:
@@ -194,6 +211,7 @@ def _rows(
     """Everything charged to candidates; ``places`` are the numbers of rules."""
     told: list[tuple[int, int, bool]] = []
     judged: dict[Findings, dict[int, int]] = defaultdict(dict)
+    apart: dict[Findings, dict[int, frozenset[RuleFor]]] = defaultdict(dict)
     for number, candidate in enumerate(charges):
         for own in (
             map(_judged, candidate.drives)
@@ -202,16 +220,23 @@ def _rows(
         ):
             if isinstance(own, JudgedTrace):
                 judged[own.findings][own.number] = number
+                if isinstance(candidate, CandidateCharges) and candidate.open_before:
+                    apart[own.findings][own.number] = candidate.open_before
             elif isinstance(own, Verdict | CandidateScore):
                 told += [(number, places[violation.rule], True) for violation in own.violations]
-                told += [(number, places[open_verdict.rule], False) for open_verdict in own.open]
+                told += [
+                    (number, places[open_verdict.rule], False)
+                    for open_verdict in own.open
+                    if isinstance(candidate, CandidateScore)
+                    or rule_for(open_verdict) not in candidate.open_before
+                ]
                 told += [(number, places[x.rule], False) for x in own.not_judged if x.by_fault]
     whose, which, are_violated = np.array(told, dtype=intp).reshape(-1, 3).T
     yield whose, which, are_violated.astype(bool)
     for findings, numbers in judged.items():
         candidate_of = np.full(findings.n_traces, _NOBODY)
         candidate_of[list(numbers)] = list(numbers.values())
-        for rule, traces, own_violated in findings.charged():
+        for rule, traces, own_violated in findings.charged(apart[findings]):
             own_ones = candidate_of[traces]
             there = own_ones != _NOBODY
             own_ones = own_ones[there]

@@ -6,7 +6,7 @@ half of a candidate is left to end it. What is violated later than that is viola
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -84,45 +84,39 @@ def opened_by(drives: Sequence[DriveVerdict | NoDrive]) -> frozenset[RuleFor]:
     )
 
 
-def apart_from_past(
-    scores: Sequence[CandidateScore],
-    known: Collection[RuleFor],
+def kept_since(
+    doubtful: Sequence[Set[RuleFor]],
+    drives: Sequence[Sequence[Drive]],
+    known: Set[RuleFor],
     rulebook: CompiledRulebook,
     first: int,
-) -> list[CandidateScore]:
-    """The scores, in which ``known`` rules that are open count only if the future leaves them so.
+) -> list[frozenset[RuleFor]]:
+    """What candidates' own states, from step ``first`` on, keep of what they leave open.
 
-    They are those that the past alone leaves open. The future is what begins at step ``first``; it
-    is judged after any past that is not lost yet, with each type that participants may have.
+    ``doubtful`` is what each candidate leaves open; asked of it is what the past alone leaves open,
+    which is ``known``. Its drives are judged after any past that is not lost yet, with each type
+    that participants may have.
     """
     if not known:
-        return list(scores)
+        return [frozenset() for _ in doubtful]
     some = _after_any_past(frozenset(rule for rule, _ in known), rulebook)
-    doubtful = [{rule_for(result) for result in score.open} & set(known) for score in scores]
+    kept = [set(about & known) for about in doubtful]
     futures = [
         _Future(number, drive.first_step, trace)
-        for number, score in enumerate(scores)
-        if doubtful[number]
-        for drive, _ in verdicts_of(score.drives)
+        for number, own_drives in enumerate(drives)
+        if kept[number]
+        for drive in own_drives
         if drive.first_step + drive.arrays.n_states > first
         for trace in (drive.arrays, *drive.otherwise)
     ]
-    answers = _since([first] * len(futures), futures, some)
-    for future, answer in zip(futures, answers, strict=True):
-        own = doubtful[future.number]
+    for future, answer in zip(futures, _since([first] * len(futures), futures, some), strict=True):
+        own = kept[future.number]
         if isinstance(answer, Verdict):
             untold = {result.rule for result in answer.not_judged}
             own -= {about for about in own if about[0] in untold or not _keeps(answer, {about})}
         else:
             own.clear()
-    return [
-        replace(
-            score,
-            open=tuple([result for result in score.open if rule_for(result) not in own]),
-            open_before=tuple([result for result in score.open if rule_for(result) in own]),
-        )
-        for score, own in zip(scores, doubtful, strict=True)
-    ]
+    return [frozenset(own) for own in kept]
 
 
 def _after_any_past(names: frozenset[str], rulebook: CompiledRulebook) -> SomeRules:

@@ -20,15 +20,15 @@ from rulec.extraction.recording_verdicts import (
     judged_drives,
     names_read,
 )
-from rulec.extraction.traces.recorded_drive import NoDrive
+from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.extraction.traces.to_trace import TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_participant
 from rulec.garbage_collection import no_garbage_collection
-from rulec.monitoring.verdict import NotJudged, RuleFor, Violation
+from rulec.monitoring.verdict import NotJudged, RuleFor, Violation, rule_for
 from rulec.recordings.recording import Participant
 from rulec.scoring.candidate_score import CandidateScore, lost_candidate
-from rulec.scoring.charges import CandidateCharges, CandidateScores, forget_reasons
-from rulec.scoring.judged_anew import apart_from_past, judged_anew, opened_by, verdicts_of
+from rulec.scoring.charges import CandidateCharges, CandidateScores, forget_reasons, open_of
+from rulec.scoring.judged_anew import judged_anew, kept_since, opened_by, verdicts_of
 from rulec.scoring.scored_again import without_drives
 from rulec.scoring.scores import Scores
 from rulec.scoring.scoring_messages import BAD_CANDIDATES
@@ -126,14 +126,19 @@ def _scored(
             before, is_awaited = _past(block.pop(0)[1]), False
         block = [(number - is_asked, own) for number, own in block]
         charges = _charges(block, first, (beside, back))
-        if any(before):
+        drives = [*map(_judged_drives, block)]
+        kept = partial(
+            kept_since, drives=drives, known=before.opened, rulebook=at_step, first=first
+        )
+        if before.violated:
             scores = judged_anew(
                 [candidate_charges.score() for candidate_charges in charges],
                 before.violated,
                 at_step,
                 (first, half),
             )
-            scores = apart_from_past(scores, before.opened, at_step, first)
+            maybe = [{*map(rule_for, candidate.open)} for candidate in scores]
+            scores = [x.apart(own) for x, own in zip(scores, kept(maybe), strict=True)]
             if not is_kept:
                 scores = [
                     without_drives(
@@ -144,11 +149,15 @@ def _scored(
             candidates.update({candidate.number: candidate for candidate in scores})
             del scores
         else:
+            maybe = open_of(charges, {rule for rule, _ in before.opened})
+            charges = [
+                replace(x, open_before=own) for x, own in zip(charges, kept(maybe), strict=True)
+            ]
             candidates.update({x.number: x if is_kept else x.later(again) for x in charges})
         if not is_kept:
             forget_reasons(charges)
         # Freed before the next block is made
-        del block, charges
+        del block, charges, drives, kept
     # The next candidates mostly have the same past.
     known[world] = about, before
     ordered = CandidateScores([candidates[number] for number in range(len(paths))])
@@ -198,6 +207,11 @@ def _judged(
         judged = judged_drives([drive for _, own in block for drive in own], rules)
         yield [(number, [next(judged) for _ in own]) for number, own in block]
         del block, judged
+
+
+def _judged_drives(candidate: tuple[int, Sequence[JudgedDrive | NoDrive]]) -> list[Drive]:
+    own = [drive for drive in candidate[1] if isinstance(drive, JudgedDrive)]
+    return [drive.drive for drive in own if not isinstance(drive.judged, NotJudged)]
 
 
 def _charges(

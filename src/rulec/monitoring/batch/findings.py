@@ -7,7 +7,7 @@ list.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence, Set
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import repeat
@@ -22,7 +22,15 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.outcome_machine import VIOLATED
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules
 from rulec.monitoring.uncertainty.uncertain_machine import Answer
-from rulec.monitoring.verdict import OpenReasons, OpenVerdict, RuleNotJudged, Verdict, Violation
+from rulec.monitoring.verdict import (
+    OpenReasons,
+    OpenVerdict,
+    RuleFor,
+    RuleNotJudged,
+    Verdict,
+    Violation,
+    rule_for,
+)
 
 ViolationOrOpen: TypeAlias = Violation | OpenVerdict
 
@@ -30,6 +38,9 @@ Place: TypeAlias = tuple[int, ...]
 """The place of a finding: of its rule and of its objects."""
 
 _PLACE = itemgetter(0)
+
+NOTHING_APART: Mapping[int, Set[RuleFor]] = {}
+"""All that is open counts."""
 
 
 class JudgedTrace(NamedTuple):
@@ -115,15 +126,44 @@ class Findings:
         names = [self._names[item] for item in chosen]
         return dict(zip([variable.name for variable in rule.variables], names, strict=True))
 
-    def charged(self) -> Iterator[ChargedTraces]:
-        """The traces with findings, rule by rule."""
+    def charged(self, apart: Mapping[int, Set[RuleFor]] = NOTHING_APART) -> Iterator[ChargedTraces]:
+        """The traces with findings, rule by rule, but for what is open ``apart``, by trace."""
+        rules = {rule for own in apart.values() for rule, _ in own}
         for own in self._of_rules:
             are_violated = np.array([answer.best == VIOLATED for answer in own.answers], dtype=bool)
-            yield self._known(own.rule.name, own.traces, are_violated)
+            known = self._known(own.rule.name, own.traces, are_violated)
+            if own.rule.name in rules:
+                about = zip(own.traces.tolist(), self._about(own), strict=True)
+                counts = np.array([x not in apart.get(n, ()) for n, x in about], dtype=bool)
+                kept = counts | are_violated
+                known = self._known(own.rule.name, own.traces[kept], are_violated[kept])
+            yield known
         for trace, several in self._single.items():
             for _, finding in several:
-                is_violated = np.array([isinstance(finding, Violation)])
-                yield self._known(finding.rule, np.array([trace]), is_violated)
+                if isinstance(finding, Violation) or rule_for(finding) not in apart.get(trace, ()):
+                    is_violated = np.array([isinstance(finding, Violation)])
+                    yield self._known(finding.rule, np.array([trace]), is_violated)
+
+    def open_of(self, rules: Set[str]) -> Mapping[int, Set[RuleFor]]:
+        """By trace, for which objects some of these rules are open."""
+        found: dict[int, set[RuleFor]] = defaultdict(set)
+        for own in self._of_rules:
+            if own.rule.name in rules:
+                rows = zip(own.traces.tolist(), own.answers, self._about(own), strict=True)
+                for trace, answer, about in rows:
+                    if answer.best != VIOLATED:
+                        found[trace].add(about)
+        for trace, several in self._single.items():
+            for _, finding in several:
+                if isinstance(finding, OpenVerdict) and finding.rule in rules:
+                    found[trace].add(rule_for(finding))
+        return {trace: about for trace, about in found.items() if trace not in self._whole}
+
+    def _about(self, own: RuleFindings) -> list[RuleFor]:
+        """The rule and the objects of each of its findings."""
+        objects = [[self._names[item] for item in items.tolist()] for items in own.objects]
+        choices = zip(*objects, strict=True) if objects else repeat((), len(own.answers))
+        return [(own.rule.name, chosen) for chosen in choices]
 
     def _known(
         self, rule: str, traces: NDArray[intp], are_violated: NDArray[bool_]
