@@ -11,7 +11,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule,
 from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.automata.outcome_machine import OutcomeMachine, of_running_words
 from rulec.logic.free_names import names_in
-from rulec.monitoring.online.encoding.digit_tables import DigitMasks, PartNumbers
+from rulec.monitoring.online.encoding.digit_tables import PartNumbers, digit_bits
 from rulec.monitoring.online.encoding.encoded_values import (
     MISSING,
     PARTIAL_DIGITS,
@@ -28,14 +28,10 @@ from rulec.monitoring.online.four_valued import (
     RunningVerdict,
     linked_edges,
 )
-from rulec.monitoring.online.letter_walk import LetterWalk, WalkedRead, WholeStateError
 from rulec.monitoring.online.uncertain_steps import Edge, UncertainSteps, cut_edges
 from rulec.monitoring.uncertainty.idle_letters import IdleLetters
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads, local_reads
-from rulec.monitoring.uncertainty.state_letters.read_digits import (
-    Letters,
-    names_of_read,
-)
+from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
 from rulec.vocabulary import Enumeration, Vocabulary
 
 MOST_CLASSES = 1 << 12
@@ -43,6 +39,10 @@ MOST_CLASSES = 1 << 12
 
 BY_STATE = IMPOSSIBLE - 1
 """Replaces the class of a rule's letter that depends on the whole state."""
+
+
+class WholeStateError(LookupError):
+    """The letters that a rule may read depend on more than its own objects."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,14 +131,11 @@ class PreparedRule:
         ``digits`` are those of the ``inputs``, then the ``values``, as encoded. Raises LookupError
         if one is missing or invalid, or if the classes depend on the whole state.
         """
-        if self._is_simple and not PARTIAL_DIGITS.isdisjoint(map(type, digits)):
-            # The usual case with unknown values
-            return self._walk.classes(digits)
         n_alone = len(self._weights)
         own, values = digits[:n_alone], digits[n_alone:]
         place, is_exact, letter = self._decided.get(values) or self._decided_by(values)
         if letter is None or not PARTIAL_DIGITS.isdisjoint(map(type, own)):
-            return self._walk.classes(own, place, is_exact=is_exact)
+            return self._possible_class(own, place), is_exact and not self._varies(own)
         for weight_of, digit in zip(self._weights, own, strict=True):
             letter += weight_of(digit)
         letter_class = self.letters[letter]
@@ -186,11 +183,6 @@ class PreparedRule:
     def _decided_at(self) -> dict[int, _Decided]:
         return {}
 
-    def _cubes_at(self, place: int) -> Letters:
-        if self.entangled is None or not self.entangled.numbers:
-            return _NO_CUBES
-        return self.entangled.joint_letters[place][0]
-
     @cached_property
     def _constant_places(self) -> tuple[int, ...]:
         """The places of constants among the values."""
@@ -198,27 +190,32 @@ class PreparedRule:
             [n for n, read in enumerate(self.values) if not self.constants.isdisjoint(read.names)]
         )
 
-    @cached_property
-    def _is_simple(self) -> bool:
-        """Whether each read has a digit of its own."""
-        return self.entangled is None or not self.entangled.numbers
-
-    @cached_property
-    def _walk(self) -> LetterWalk:
-        reads = self.rule.machine.reads
-        walked = [
-            WalkedRead(
-                place,
-                DigitMasks(reads[place], weight_of),
-                self.entangled is not None or place not in self._perhaps_entangled,
-                not self.constants.isdisjoint(own.names),
-            )
-            for place, (own, weight_of) in zip(self.alone, self.inputs, strict=True)
+    def _possible_class(self, own: Sequence[Any], place: int) -> LetterClass:
+        """The classes for digits of which some are partly known, and a place of joint letters."""
+        reads, steps = self.rule.machine.reads, self.uncertain
+        key = [
+            digit_bits(reads[read], digit, weight_of)
+            for read, digit, weight_of in zip(self.alone, own, self._weights, strict=True)
         ]
-        others = () if self.entangled is None else self.entangled.numbers
-        steps = self.uncertain
-        diagram = steps.classes.diagram
-        return LetterWalk(diagram, walked, others, self._cubes_at, steps.letter_class)
+        if self.entangled is None:
+            if any(key[read] & (key[read] - 1) for read in self._perhaps_entangled):
+                raise WholeStateError
+            classes = steps.classes.of((tuple(key),))
+        else:
+            joint = [place] if self.entangled.numbers else []
+            letters = steps.classes.of_rule(self.rule, self.entangled)
+            classes = letters.classes_of((*key, *joint))
+        letter_class = steps.letter_class(classes)
+        if letter_class is None:
+            raise LookupError
+        return letter_class
+
+    def _varies(self, own: Sequence[Any]) -> bool:
+        """Whether an unknown constant among these digits is taken to vary."""
+        return bool(self.constants) and any(
+            type(digit) in PARTIAL_DIGITS and not self.constants.isdisjoint(read.names)
+            for digit, (read, _) in zip(own, self.inputs, strict=True)
+        )
 
     @cached_property
     def _perhaps_entangled(self) -> frozenset[int]:
@@ -301,8 +298,6 @@ _Decided: TypeAlias = tuple[int, bool, int | None]
 The weight is None if there are several. A plain tuple of numbers is not tracked by the garbage
 collector.
 """
-
-_NO_CUBES: Letters = ((),)
 
 
 def prepared_rule(

@@ -45,25 +45,14 @@ class PartNumbers(dict[tuple[Any, ...], int]):
         return number
 
 
-class DigitMasks(dict[Any, int]):
-    """The possible digits, as bits, of a read, by its digit or a range of digits.
+def digit_bits(read: Read | NumberRead, digit: Any, weight_of: DigitWeight) -> int:
+    """The possible digits, as bits, of a read with a digit or a range of digits.
 
     Raises LookupError if that is invalid.
     """
-
-    def __init__(self, read: Read | NumberRead, weight_of: DigitWeight) -> None:
-        self._read = read
-        self._weight_of = weight_of
-
-    def __missing__(self, digit: Any) -> int:
-        read = self._read
-        if digit is UNKNOWN_DIGIT:
-            mask = possible_digits(read, UNKNOWN)
-        elif isinstance(read, NumberRead):
-            self._weight_of(digit)
-            mask = sum([1 << own for own in digit]) if type(digit) is range else 1 << digit
-        else:
-            self._weight_of(digit)
-            mask = possible_digits(read, digit)
-        self[digit] = mask
-        return mask
+    if digit is UNKNOWN_DIGIT:
+        return possible_digits(read, UNKNOWN)
+    weight_of(digit)
+    if isinstance(read, NumberRead):
+        return sum([1 << own for own in digit]) if type(digit) is range else 1 << digit
+    return possible_digits(read, digit)
