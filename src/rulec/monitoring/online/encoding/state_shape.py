@@ -18,7 +18,7 @@ from rulec.monitoring.online.encoding.encoded_values import (
 )
 from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
-from rulec.vocabulary.vocabulary_model import choices
+from rulec.vocabulary.vocabulary_model import choices, fitting_objects
 
 Items: TypeAlias = tuple[str, ...]
 """Objects, in the order of parameters or of a rule's variables."""
@@ -58,15 +58,18 @@ class StateShape:
             encode = _encoded(given, alike[0], breakpoints)
             self._add(encode, [(declaration.name, ()) for declaration in alike])
         self.n_world = len(self._parts)
+        of_kind: dict[str, Items] = {}
+        chosen: dict[tuple[str, ...], Sequence[Items]] = {}
         for declaration in declarations:
             if kinds := declaration.parameters:
-                fitting = [
-                    tuple([item for (item,) in choices([kind], objects, vocabulary)])
-                    for kind in kinds
-                ]
+                for kind in kinds:
+                    if kind not in of_kind:
+                        of_kind[kind] = tuple(fitting_objects(kind, objects, vocabulary))
+                if kinds not in chosen:
+                    chosen[kinds] = tuple(choices(kinds, objects, vocabulary))
+                fitting = [of_kind[kind] for kind in kinds]
                 encode = _of_objects(declaration, fitting, breakpoints)
-                all_items = choices(kinds, objects, vocabulary)
-                values = [(declaration.name, items) for items in all_items]
+                values = [(declaration.name, items) for items in chosen[kinds]]
                 self._add(_inside(declaration.name, encode), values)
         self.key: StateKey = self.encode
         self.key_of: Callable[[tuple[Encoded, ...]], Hashable] = lambda encoded: encoded

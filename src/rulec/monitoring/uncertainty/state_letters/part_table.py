@@ -82,7 +82,8 @@ class PartTable:
         known = None
         if all(own & (own - 1) == 0 for own in digits):
             known = tuple([own.bit_length() - 1 for own in digits])
-            if UNKNOWN_TYPES.isdisjoint(map(type, values)):
+            # Only axioms can exclude what each read by itself is sure of.
+            if not self._facts or UNKNOWN_TYPES.isdisjoint(map(type, values)):
                 return PartDigits(known, frozenset({known}), True)
         possible = joint_digits(self._reads, self._binding, state, self._facts)
         return PartDigits(known, possible.digits, possible.exact)
