@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import NamedTuple, TypeAlias, overload
@@ -137,13 +137,15 @@ class CandidateScores(Sequence[CandidateScore]):
         return CandidateScores, (list(self),)
 
 
-def open_of(charges: Sequence[CandidateCharges], rules: Set[str]) -> list[set[RuleFor]]:
-    """For which objects some of these rules are open for each candidate."""
+def open_of(
+    candidates: Iterable[Sequence[JudgedDrive | NoDrive]], rules: Set[str]
+) -> list[set[RuleFor]]:
+    """For which objects some of these rules are open for each candidate, given by its drives."""
     known: dict[Findings, Mapping[int, Set[RuleFor]]] = {}
     found: list[set[RuleFor]] = []
-    for candidate in charges:
+    for drives in candidates:
         found.append(set())
-        for own in map(_judged, candidate.drives):
+        for own in map(_judged, drives):
             if isinstance(own, JudgedTrace):
                 if own.findings not in known:
                     known[own.findings] = own.findings.open_of(rules)

@@ -125,11 +125,16 @@ def _scored(
         if is_awaited:
             before, is_awaited = _past(block.pop(0)[1]), False
         block = [(number - is_asked, own) for number, own in block]
-        charges = _charges(block, first, (beside, back))
         drives = [*map(_judged_drives, block)]
         kept = partial(
             kept_since, drives=drives, known=before.opened, rulebook=at_step, first=first
         )
+        open_before = [frozenset[RuleFor]()] * len(block)
+        if not before.violated:
+            # The score of a candidate is made on demand.
+            rules_before = {rule for rule, _ in before.opened}
+            open_before = kept(open_of([own for _, own in block], rules_before))
+        charges = _charges(block, first, (beside, back), open_before)
         if before.violated:
             scores = judged_anew(
                 [candidate_charges.score() for candidate_charges in charges],
@@ -149,10 +154,6 @@ def _scored(
             candidates.update({candidate.number: candidate for candidate in scores})
             del scores
         else:
-            maybe = open_of(charges, {rule for rule, _ in before.opened})
-            charges = [
-                replace(x, open_before=own) for x, own in zip(charges, kept(maybe), strict=True)
-            ]
             candidates.update({x.number: x if is_kept else x.later(again) for x in charges})
         if not is_kept:
             forget_reasons(charges)
@@ -218,10 +219,12 @@ def _charges(
     block: Sequence[tuple[int, Sequence[JudgedDrive | NoDrive]]],
     first: int,
     off_lanes: tuple[NDArray[np.bool_], NDArray[np.bool_]],
+    open_before: Sequence[frozenset[RuleFor]],
 ) -> list[CandidateCharges]:
     """Candidates with everything that their drives violate; ``first`` is their first step.
 
-    ``off_lanes`` are masks of all states beside all lanes, and of those driven backwards.
+    ``off_lanes`` are masks of all states beside all lanes, and of those driven backwards;
+    ``open_before`` is what is open and not charged to each.
     """
     members = np.array([number for number, _ in block], dtype=np.intp)
     beside, back = (flags[members] for flags in off_lanes)
@@ -246,6 +249,7 @@ def _charges(
             off_road=counts[row],
             is_judged=are_judged[row],
             why=_why(drives, leaves=leave[row], goes_back=go_back[row]),
+            open_before=open_before[row],
         )
         for row, (number, drives) in enumerate(block)
     ]

@@ -41,7 +41,7 @@ class SharedColumns(Mapping[str, Any]):
     def is_before(self, other: Mapping[str, Any]) -> bool:
         """Whether ``other`` is the part that follows this one in the same columns."""
         return (
-            isinstance(other, SharedColumns)
+            type(other) is SharedColumns
             and other.columns is self.columns
             and self.states.stop == other.states.start
             and self.cells.stop == other.cells.start

@@ -137,7 +137,7 @@ def _stands_before(before: TraceArrays, after: TraceArrays) -> bool:
     if after.texts is not before.texts:
         return False
     for own, theirs in zip(_columns_of(before), _columns_of(after), strict=True):
-        if isinstance(own, SharedColumns):
+        if type(own) is SharedColumns:
             if not own.is_before(theirs):
                 return False
         elif own or theirs or type(own) is not type(theirs):

@@ -74,18 +74,19 @@ class LetterSets:
         return here
 
     def _behind(self, read: int, here: Numbers, column: Numbers) -> Numbers:
-        width, n_before = len(self._meanings[read]), len(self._places[read + 1])
+        """The node sets behind a read, by number, times the width of the next read's table."""
+        width, n_before = self._widths[read], len(self._places[read + 1])
         table = self._tables[read]
         if len(table) < n_before:
             more = np.full((2 * n_before - len(table), width), -1, dtype=np.intp)
             table = self._tables[read] = np.concatenate([table, more])
-        entry = here * width + column
+        entry = here + column
         if isinstance(entry, int) and (known := table.item(entry)) >= 0:
             return known
-        result: Numbers = table.take(entry)
-        unmet = np.asarray(result) < 0
-        if not unmet.any():
+        result = np.asarray(table.take(entry))
+        if result.min(initial=0) >= 0:
             return result
+        unmet = result < 0
         # There may be very many entries, while the table is small.
         is_missing = np.zeros(table.size, dtype=bool)
         is_missing[np.asarray(entry)[unmet]] = True
@@ -95,5 +96,6 @@ class LetterSets:
             nodes = self._diagram.step(
                 read, before[number // width], self._meanings[read][number % width]
             )
-            table.ravel()[number] = places.setdefault(nodes, len(places))
+            next_width = self._widths[read - 1] if read else 1
+            table.ravel()[number] = next_width * places.setdefault(nodes, len(places))
         return table.item(entry) if isinstance(entry, int) else table.take(entry)
