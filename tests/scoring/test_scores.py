@@ -427,6 +427,8 @@ def test_what_the_past_leaves_open_is_charged_to_no_candidate():
     world = street(speed=50 / 3.6)
     slower, as_fast = [speeding(np.full(8, mps), world.past[-1]) for mps in (10.0, 50 / 3.6)]
     found = score(np.array([slower, as_fast]), world, GERMAN, world.past)
+    # Before any candidate's score has been made
+    assert found.allowed.tolist() == [True, False]
     charged, before = (
         [[own.rule for own in results] for results in zip_of]
         for zip_of in (
@@ -438,7 +440,6 @@ def test_what_the_past_leaves_open_is_charged_to_no_candidate():
     assert "speed_limit" in before[0]
     assert "speed_limit" in charged[1]
     assert "speed_limit" not in before[1]
-    assert found.allowed.tolist() == [True, False]
     # With and without a past, both are as `verify_recording` says together
     (_, verdict), *_ = verdicts_of(found.candidates[0].drives)
     assert sorted(charged[0] + before[0]) == sorted(own.rule for own in verdict.open)
