@@ -167,6 +167,13 @@ class TraceArrays:
         return values
 
 
+BY_NAME = "world", "about", "unknown", "absent", "bounds", "only"
+"""The fields in which traces have something by name."""
+
+by_name = attrgetter(*BY_NAME)
+"""The content of these fields."""
+
+
 def stretches_of(
     traces: Sequence[TraceArrays], stretches: Sequence[range], names: Set[str]
 ) -> list[TraceArrays]:
@@ -176,7 +183,7 @@ def stretches_of(
     """
     sharing: dict[tuple[int, ...], list[int]] = {}
     for number, trace in enumerate(traces):
-        key = tuple([id(_columns(values)) for values in _by_name(trace)])
+        key = tuple([id(_columns(values)) for values in by_name(trace)])
         sharing.setdefault(key, []).append(number)
     cut: dict[int, TraceArrays] = {}
     for numbers in sharing.values():
@@ -218,7 +225,7 @@ def _shortened(
             for name, column in _columns(values).items()
             if name in names
         }
-        for key, values in zip(_BY_NAME, _by_name(traces[0]), strict=True)
+        for key, values in zip(BY_NAME, by_name(traces[0]), strict=True)
     }
     is_there = iter(there.tolist())
     for trace, states, cells, items in zip(traces, *own, strict=True):
@@ -240,12 +247,6 @@ def _shortened(
             told=trace.told,
             faults=trace.faults,
         )
-
-
-_BY_NAME = "world", "about", "unknown", "absent", "bounds", "only"
-
-_by_name = attrgetter(*_BY_NAME)
-"""What traces have by name."""
 
 
 def _columns(values: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -142,7 +142,7 @@ class JunctionPassages:
         """The numbers of the junctions that each body touches; none where it is absent."""
         touched: list[list[int]] = [[] for _ in outlines]
         there = [(number, own) for number, own in enumerate(outlines) if own is not None]
-        if there and self.junctions:
+        if there:
             owners = np.arange(len(there)).repeat([len(own) for _, own in there])
             rings = shapely.linearrings(np.concatenate([own for _, own in there]), indices=owners)
             found = self._areas.query(shapely.polygons(rings), "intersects")

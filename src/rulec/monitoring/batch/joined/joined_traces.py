@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,13 +12,10 @@ import numpy as np
 from rulec.array_types import Flags, Indices
 from rulec.trace import Trace
 from rulec.trace.shared_columns import SharedColumns
-from rulec.trace.trace_arrays import TraceArrays
+from rulec.trace.trace_arrays import BY_NAME, TraceArrays, by_name
 from rulec.trace.trace_columns import Array
 from rulec.trace.trace_model import Ending
 from rulec.vocabulary import Vocabulary
-
-_COLUMNS = ("world", "about", "unknown", "absent", "bounds", "only")
-_columns_of = attrgetter(*_COLUMNS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +41,7 @@ class JoinedPiece:
     def of(traces: Sequence[TraceArrays]) -> JoinedPiece:
         """The content of traces, each of which lies before the next one."""
         first, last = traces[0], traces[-1]
-        ends = zip(_COLUMNS, _columns_of(first), _columns_of(last), strict=True)
+        ends = zip(BY_NAME, by_name(first), by_name(last), strict=True)
         columns: dict[str, Any] = {name: _joined(own, end) for name, own, end in ends}
         n_objects = sum([len(trace.objects) for trace in traces])
         return JoinedPiece(**columns, texts=first.texts, n_objects=n_objects)
@@ -136,7 +132,7 @@ def _stands_before(before: TraceArrays, after: TraceArrays) -> bool:
     """Whether all columns of a trace lie before those of another in the same arrays."""
     if after.texts is not before.texts:
         return False
-    for own, theirs in zip(_columns_of(before), _columns_of(after), strict=True):
+    for own, theirs in zip(by_name(before), by_name(after), strict=True):
         if type(own) is SharedColumns:
             if not own.is_before(theirs):
                 return False

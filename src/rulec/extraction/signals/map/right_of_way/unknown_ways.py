@@ -28,6 +28,8 @@ def strays(context: DriveContext) -> tuple[tuple[int, int, int], ...]:
     And where its drive ends as it gets there.
     """
     rows, passages, tracks = context.ego.rows.tolist(), context.own.passages, context.own.tracks
+    if not passages.junctions:
+        return ()
     steps = [context.steps[own] - tracks.first for own in context.spans.slices]
     found = [
         (junction, first, last)
