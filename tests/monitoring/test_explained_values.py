@@ -12,6 +12,7 @@ from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.explain.observed_word import ObservedWord, bits_of
 from rulec.monitoring.verify import verify
 from rulec.trace import Trace
+from rulec.trace.trace_arrays import stretches_of
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.array_traces import in_arrays
 from support.generators.timed_formulas import letters_of, timed_formulas, timed_words
@@ -80,11 +81,11 @@ def test_some_states_of_a_trace():
     )
     trace = Trace("t", 1.0, {"a": "car", "b": "car"}, states, {"a": (0, 1), "b": (1, 2)})
     arrays = in_arrays(trace, compiled.vocabulary)
-    assert arrays.at((0, 1, 2, 3)).trace() == trace
-    assert arrays.at((0, 2)).trace() == replace(
-        trace, states=states[::2], present={"a": (0, 0), "b": (1, 1)}
-    )
-    assert arrays.at((3,)).trace() == replace(trace, objects={}, states=states[3:], present={})
+    some = [range(4), range(1, 3), range(3, 4)]
+    whole, middle, last = stretches_of([arrays] * 3, some, {"speed", "far", "parked", "light"})
+    assert whole.trace() == trace
+    assert middle.trace() == replace(trace, states=states[1:3], present={"a": (0, 0)})
+    assert last.trace() == replace(trace, objects={}, states=states[3:], present={})
 
 
 @pytest.mark.parametrize("semantics", ["stutter", "finite"])
