@@ -366,7 +366,7 @@ def test_questions_that_make_no_sense():
             found.reward(worth)
 
 
-@pytest.mark.parametrize("step_s", [0.1, [0.1, 0.2]])
+@pytest.mark.parametrize("step_s", [0.1, 0.2])
 @pytest.mark.parametrize("y", [0.0, 40.0])
 def test_rules_compiled_for_another_step_are_refused(step_s, y):
     within = "always (speed > 3 m/s implies eventually[<= 1 s] speed > 5 m/s)"
