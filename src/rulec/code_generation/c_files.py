@@ -3,60 +3,51 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
-from math import isfinite
-from pathlib import Path
-from textwrap import dedent
+from collections.abc import Iterable, Iterator, Sequence
 
-from rulec.code_generation.c_tables import rule_tables, text_tables, type_tables
+from rulec.code_generation.c_tables import table_texts
+from rulec.code_generation.field_spelling import FieldSpelling, meaning
+from rulec.code_generation.file_templates import Places, filled, fixed
 from rulec.code_generation.input_fields import RULE, TYPE
 from rulec.code_generation.monitor_layout import TOGETHER, MonitorLayout
 from rulec.code_generation.reading_code import ignored_in_c, unread
 from rulec.code_generation.written_names import in_comment, prefix_of
-from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
-from rulec.vocabulary.partial_values import UNKNOWN_TYPES
+from rulec.vocabulary import Declaration
 
-_TEXTS = Path(__file__).parent / "c_texts"
+_SPELLING = FieldSpelling(
+    "uint8_t",
+    "double",
+    "(uint8_t)RULEC_UNKNOWN",
+    "RULEC_UNKNOWN_NUMBER",
+    of_whole="(uint8_t){}u".format,
+    of_decimal=float.hex,
+)
 
 
 def c_header(layout: MonitorLayout) -> str:
     """The header: constants, types of input, state and verdict, and function declarations."""
-    return in_own_names("\n".join(_header(layout)) + "\n", layout)
+    return in_own_names(filled("c_texts/header.h", _of_header(layout)), layout)
 
 
 def c_source(layout: MonitorLayout) -> str:
     """The source: tables, readings and the engine."""
-    engine = (_TEXTS / "engine.c").read_text(encoding="utf-8")
-    own = "\n".join(_reading_functions(layout))
-    texts = (_TEXTS / "readings.c").read_text(encoding="utf-8")
+    own = filled("c_texts/reading.c", _of_reading(layout))
     several = [line for item in layout.fields.about(2) for line in _matrix(item, layout)]
-    readings = _needed("\n".join([texts, *several]), own)
-    lines = [
-        *_head(layout),
-        f'#include "{prefix_of(layout.rulebook.name)}.h"',
-        "",
-        "#ifdef __FAST_MATH__",
-        '#error "numbers that are not known (NaN) take a compiler that keeps to IEEE 754"',
-        "#endif",
-        "",
-        *type_tables(layout),
-        "",
-        *rule_tables(layout),
-        "",
-        *text_tables(layout),
-        "",
-        readings,
-        own,
-        engine,
-    ]
-    return in_own_names("\n".join(lines), layout)
+    readings = _needed("\n".join([fixed("c_texts/readings.c"), *several]), own)
+    places: Places = {
+        "head": _head(layout),
+        "name": prefix_of(layout.rulebook.name),
+        **table_texts(layout),
+        "readings": readings,
+        "reading": own,
+    }
+    return in_own_names(filled("c_texts/monitor.c", places), layout)
 
 
 def cpp_header(layout: MonitorLayout) -> str:
     """The same monitor as a C++17 class; it needs the C header and source."""
-    name = prefix_of(layout.rulebook.name)
-    text = (_TEXTS / "monitor.hpp").read_text(encoding="utf-8").replace("rulec_.h", f"{name}.h")
-    return in_own_names("\n".join([*_head(layout), text]), layout)
+    places: Places = {"head": _head(layout), "name": prefix_of(layout.rulebook.name)}
+    return in_own_names(filled("c_texts/monitor.hpp", places), layout)
 
 
 def in_own_names(text: str, layout: MonitorLayout) -> str:
@@ -74,7 +65,7 @@ def _needed(texts: str, users: str) -> str:
         if not names or any(re.search(rf"\b{name}\b", users) for name in names):
             kept.insert(0, block)
             users += block
-    return "\n\n".join(kept) + "\n"
+    return "\n\n".join(kept)
 
 
 def _head(layout: MonitorLayout) -> Iterator[str]:
@@ -102,167 +93,104 @@ def head_lines(layout: MonitorLayout) -> Iterator[str]:
     yield f"compiled by {in_comment(f'rulec {book.rulec}{spot}')}"
 
 
-def _header(layout: MonitorLayout) -> Iterator[str]:
-    fields, rules = layout.fields, layout.rules
+def _of_header(layout: MonitorLayout) -> Places:
+    fields, rules, sizes = layout.fields, layout.rules, layout.array_sizes
     steps = [own.rule.step_s for own in rules if own.rule.step_s is not None]
-    yield from _head(layout)
-    yield from dedent("""\
-        #ifndef RULEC_MONITOR_H
-        #define RULEC_MONITOR_H
-
-        #include <stdbool.h>
-        #include <stddef.h>
-        #include <stdint.h>
-
-        #ifdef __cplusplus
-        extern "C" {
-        #endif
-
-        /* Verdicts, the best first (RV-LTL) */
-        #define RULEC_SATISFIED 0u    /* for good */
-        #define RULEC_HOLDS_SO_FAR 1u /* would be kept if this were the end */
-        #define RULEC_PENDING 2u      /* would be violated if this were the end */
-        #define RULEC_VIOLATED 3u     /* for good */
-
-        /* The status of a step; with any but the first, the state was refused. */
-        typedef uint8_t rulec_status;
-        #define RULEC_OK 0u
-        #define RULEC_NULL 1u              /* a pointer is NULL */
-        #define RULEC_BAD_TYPE 2u          /* an object's type is invalid */
-        #define RULEC_TWICE 3u             /* an object is given twice */
-        #define RULEC_TOO_MANY 4u          /* there are more than RULEC_MOST_OBJECTS objects */
-        #define RULEC_EXCLUDED_BY_FACTS 5u /* facts of the vocabulary exclude such a state */
-
-        /* An unknown signal (otherwise 0 or 1) or enumeration; invalid values count as unknown.
-         * Unknown numbers are NaN, infinity and anything beyond 2^53. */
-        #define RULEC_UNKNOWN 255u
-        #define RULEC_UNKNOWN_NUMBER (0x1p+1000)
-        """).splitlines()
-    yield f"#define RULEC_RULES {len(rules)}u"
-    yield f"#define RULEC_TYPES {len(fields.types)}u"
-    yield f"#define RULEC_SEATS {layout.n_seats}u /* objects that can be watched at a time */"
-    yield "#define RULEC_MOST_OBJECTS 60000u"
-    yield f"#define RULEC_N_SOURCES {len(layout.rulebook.sources) or 1}u"
-    if steps:
-        yield f"#define RULEC_STEP_S ({float(steps[0])!r}) /* from one state to the next */"
-    yield ""
-    for number, own in enumerate(rules):
-        about = f"{own.rule.strength}; {own.rule.cite}" if own.rule.cite else own.rule.strength
-        name = fields.constants[RULE, own.rule.name]
-        yield f"#define RULEC_{name} {number}u /* {in_comment(about)} */"
-    yield ""
-    yield "/* Types of objects; give each object its most specific type. */"
-    for number, kind in enumerate(fields.types):
-        first, end = layout.seats[kind]
-        seats = f"{end - first} seats: {first} to {end - 1}" if first < end else "no seats"
-        yield f"#define RULEC_{fields.constants[TYPE, kind]} {number}u /* {seats} */"
-    for item in fields.read:
-        if isinstance(item, Enumeration):
-            yield f"/* {in_comment(item.name)} */"
-            for number, value in enumerate(item.values):
-                yield f"#define RULEC_{fields.constants[item.name, value]} {number}u"
-    yield ""
-    yield from _input(layout)
-    yield ""
-    yield from _sizes(layout)
-    yield from (_TEXTS / "interface.h").read_text(encoding="utf-8").splitlines()
+    return {
+        "head": _head(layout),
+        "rules": len(rules),
+        "types": len(fields.types),
+        "seats": layout.n_seats,
+        "sources": len(layout.rulebook.sources) or 1,
+        "step": (
+            f"#define RULEC_STEP_S ({float(step)!r}) /* from one state to the next */"
+            for step in steps[:1]
+        ),
+        "rule_numbers": (
+            f"#define RULEC_{name} {number}u /* {in_comment(rules[number].about)} */"
+            for name, number in fields.numbered(RULE, fields.rules)
+        ),
+        "type_numbers": (
+            f"#define RULEC_{name} {number}u /* {_seats(*layout.seats[fields.types[number]])} */"
+            for name, number in fields.numbered(TYPE, fields.types)
+        ),
+        "value_numbers": (
+            line
+            for item in fields.enumerations()
+            for line in (
+                f"/* {in_comment(item.name)} */",
+                *(f"#define RULEC_{x} {n}u" for x, n in fields.numbered(item.name, item.values)),
+            )
+        ),
+        "own_fields": (_field(item, layout) for item in fields.about(1)),
+        "world_fields": _world_fields(layout),
+        "sizes": (
+            f"#define RULEC_{name} {size}u"
+            for name, size in sizes.items()
+            if name not in ("RULES", "TYPES", "SEATS")
+        ),
+        "own": sizes["WORLD_READS"],
+        "shared": layout.n_own_digits,
+        "together": TOGETHER,
+    }
 
 
-def _input(layout: MonitorLayout) -> Iterator[str]:
-    fields = layout.fields
-    yield "typedef struct {"
-    yield "    uint32_t id; /* constant for the same object */"
-    yield "    uint8_t type;"
-    yield from (f"    {_field(item, layout)}" for item in fields.about(1))
-    yield "} rulec_object;"
-    yield ""
-    yield "typedef struct {"
-    yield "    size_t n_objects;"
-    yield "    const rulec_object *objects; /* the objects that are present */"
-    yield from (f"    {_field(item, layout)}" for item in fields.about(0))
-    for item in fields.about(2):
+def _seats(first: int, end: int) -> str:
+    return f"{end - first} seats: {first} to {end - 1}" if first < end else "no seats"
+
+
+def _world_fields(layout: MonitorLayout) -> Iterator[str]:
+    yield from (_field(item, layout) for item in layout.fields.about(0))
+    for item in layout.fields.about(2):
         yield (
-            f"    const {_kind(item)} *{fields.identifiers[item.name]}; "
+            f"const {_SPELLING.kind(item)} *{layout.fields.identifiers[item.name]}; "
             f"/* {_about(item)}, for all choices of {len(item.parameters)} objects, the last index "
             "varying fastest; NULL: defaults */"
         )
-    yield "} rulec_input;"
 
 
 def _field(item: Declaration, layout: MonitorLayout) -> str:
-    return f"{_kind(item)} {layout.fields.identifiers[item.name]}; /* {_about(item)} */"
-
-
-def _kind(item: Declaration) -> str:
-    return "double" if isinstance(item, Quantity) else "uint8_t"
+    name = layout.fields.identifiers[item.name]
+    return f"{_SPELLING.kind(item)} {name}; /* {_about(item)} */"
 
 
 def _about(item: Declaration) -> str:
     return in_comment(f"{item.name}{meaning(item)}")
 
 
-def meaning(item: Declaration) -> str:
-    """What the values of a name are: about which objects, of which kind or unit, by default."""
-    match item:
-        case Signal():
-            kind = "signal"
-        case Enumeration():
-            kind = f"one of {len(item.values)} values"
-        case Quantity():
-            kind = f"in {item.unit}"
-    of = f" of each {item.parameters[0]}" if item.parameters else ""
-    default = "" if default_of(item) is None else f", default {default_of(item)}".lower()
-    return f"{of}: {kind}{default}"
-
-
-def default_of(item: Declaration) -> bool | float | str | None:
-    """The default of a name if the state does not give its value; None if there is none."""
-    default = item.default
-    return None if type(default) in UNKNOWN_TYPES else default
-
-
-def _sizes(layout: MonitorLayout) -> Iterator[str]:
-    sizes = layout.array_sizes
-    for name, size in sizes.items():
-        if name not in ("RULES", "TYPES", "SEATS"):
-            yield f"#define RULEC_{name} {size}u"
-    yield f"#define RULEC_OWN {sizes['WORLD_READS']}u /* where digits of objects on seats begin */"
-    yield f"#define RULEC_SHARED {layout.n_own_digits}u /* and those about several objects */"
-    yield "#define RULEC_SOURCES 16u"
-    yield f"#define RULEC_TOGETHER {TOGETHER}u"
-    yield ""
-
-
-def _reading_functions(layout: MonitorLayout) -> Iterator[str]:
-    yield from layout.definitions
+def _of_reading(layout: MonitorLayout) -> Places:
+    """How the input is read, and initialised."""
     world, own, together = layout.digits
-    yield "static void rulec_read_world(const rulec_input *in, uint16_t *digits)"
-    yield "{"
-    yield from _assignments(world, "in")
-    yield "}\n"
-    yield "static void rulec_read_own(const rulec_input *in, size_t one, uint16_t *digits)"
-    yield "{"
-    yield from _assignments(own, "in", "one")
-    yield "}\n"
-    yield "static uint16_t rulec_read_together("
-    yield "    const rulec_input *in, const size_t *who, uint16_t read)"
-    yield "{"
-    lines = ["uint16_t digits = 0u;"]
+    chosen = ["uint16_t digits = 0u;"]
     if together:
-        lines.append("switch (read) {")
+        chosen.append("switch (read) {")
         for number, expression in enumerate(together):
-            lines += [f"case {number}u:", f"    digits = {expression};", "    break;"]
-        lines += ["default:", "    break;", "}"]
-    lines += ignored_in_c(unread(["in", "who", "read"], lines))
-    yield from (f"    {line}" for line in [*lines, "return digits;"])
-    yield "}\n"
-    yield from _initialisers(layout)
+            chosen += [f"case {number}u:", f"    digits = {expression};", "    break;"]
+        chosen += ["default:", "    break;", "}"]
+    fields, names = layout.fields, layout.fields.identifiers
+
+    def inits(of: str, items: Iterable[Declaration], *, defaults: bool) -> list[str]:
+        return [
+            f"{of}->{names[item.name]} = {_SPELLING.initial(item, defaults=defaults)};"
+            for item in items
+        ]
+
+    none = [f"input->{names[item.name]} = NULL;" for item in fields.about(2)]
+    return {
+        "definitions": (line for one in layout.definitions for line in one.splitlines()),
+        "world": _assignments(world, "in"),
+        "own": _assignments(own, "in", "one"),
+        "together": [*chosen, *ignored_in_c(unread(["in", "who", "read"], chosen))],
+        "input_defaults": [*inits("input", fields.about(0), defaults=True), *none],
+        "input_unknown": [*inits("input", fields.about(0), defaults=False), *none],
+        "object_defaults": inits("object", fields.about(1), defaults=True),
+        "object_unknown": inits("object", fields.about(1), defaults=False),
+    }
 
 
-def _assignments(expressions: Sequence[str], *parameters: str) -> Iterator[str]:
+def _assignments(expressions: Sequence[str], *parameters: str) -> list[str]:
     lines = [f"digits[{number}u] = {text};" for number, text in enumerate(expressions)]
-    lines += ignored_in_c(unread([*parameters, "digits"], lines))
-    yield from (f"    {line}" for line in lines)
+    return [*lines, *ignored_in_c(unread([*parameters, "digits"], lines))]
 
 
 def _matrix(item: Declaration, layout: MonitorLayout) -> Iterator[str]:
@@ -272,45 +200,7 @@ def _matrix(item: Declaration, layout: MonitorLayout) -> Iterator[str]:
     for name in names[1:]:
         place = f"(({place}) * in->n_objects) + {name}"
     parameters = ", ".join(f"size_t {name}" for name in names)
-    yield f"static {_kind(item)} rulec_of_{field}(const rulec_input *in, {parameters})"
+    yield f"static {_SPELLING.kind(item)} rulec_of_{field}(const rulec_input *in, {parameters})"
     yield "{"
-    yield f"    return (in->{field} != NULL) ? in->{field}[{place}] : {_init(item, defaults=True)};"
+    yield f"    return (in->{field} != NULL) ? in->{field}[{place}] : {_SPELLING.initial(item)};"
     yield "}\n"
-
-
-def _init(item: Declaration, *, defaults: bool) -> str:
-    """The initialiser of a field: the default of its name, or else unknown."""
-    default = default_of(item) if defaults else None
-    match item:
-        case Quantity():
-            known = isinstance(default, int | float) and isfinite(default)
-            return float(default).hex() if known and default is not None else "RULEC_UNKNOWN_NUMBER"
-        case Enumeration():
-            if default is None:
-                return "(uint8_t)RULEC_UNKNOWN"
-            return f"(uint8_t){item.values.index(str(default))}u"
-        case Signal():
-            return (
-                "(uint8_t)RULEC_UNKNOWN" if default is None else f"(uint8_t){int(bool(default))}u"
-            )
-
-
-def _initialisers(layout: MonitorLayout) -> Iterator[str]:
-    fields = layout.fields
-    for suffix, defaults in (("defaults", True), ("unknown", False)):
-        yield f"void rulec_input_{suffix}(rulec_input *input)"
-        yield "{"
-        yield "    input->n_objects = 0u;"
-        yield "    input->objects = NULL;"
-        for item in fields.about(0):
-            yield f"    input->{fields.identifiers[item.name]} = {_init(item, defaults=defaults)};"
-        for item in fields.about(2):
-            yield f"    input->{fields.identifiers[item.name]} = NULL;"
-        yield "}\n"
-        yield f"void rulec_object_{suffix}(rulec_object *object, uint32_t id, uint8_t type)"
-        yield "{"
-        yield "    object->id = id;"
-        yield "    object->type = type;"
-        for item in fields.about(1):
-            yield f"    object->{fields.identifiers[item.name]} = {_init(item, defaults=defaults)};"
-        yield "}\n"

@@ -6,91 +6,52 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import accumulate
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE
+from rulec.code_generation.file_templates import Places
 from rulec.code_generation.monitor_layout import MonitorLayout, RuleLayout
 from rulec.code_generation.written_names import c_string, in_comment
-
-_RULE = """\
-typedef struct {
-    uint32_t first_cell;
-    uint32_t first_entry;
-    uint32_t first_instance;
-    uint32_t n_instances;
-    uint32_t first_word; /* of the sets of states */
-    uint16_t n_cells;
-    uint16_t n_classes;
-    uint16_t n_states;
-    uint16_t n_variables;
-    uint16_t last; /* variable, if there are any */
-    uint16_t first_together;
-    uint16_t n_together;
-    uint16_t seats_first[RULEC_VARIABLES];
-    uint16_t seats_end[RULEC_VARIABLES];
-    uint8_t types[RULEC_VARIABLES];
-    uint8_t start; /* the verdict before the first state */
-    uint8_t hard;
-    uint8_t facts; /* facts exclude some letters */
-} rulec_rule;
-"""
+from rulec.vocabulary import Vocabulary
 
 
-def type_tables(layout: MonitorLayout) -> Iterator[str]:
-    """Which types are subtypes of which, and the seats of each."""
+def table_texts(layout: MonitorLayout) -> Places:
+    """The tables in ``c_texts/monitor.c``.
+
+    They are which types are subtypes of which, with the seats of each; the cells and entries of all
+    rules, and where each rule's begin; names, articles, and digests of the sources.
+    """
     kinds, vocabulary = layout.fields.types, layout.fields.vocabulary
-    yield "/* By type, and the type of an object; nobody fits none. */"
-    yield "static const uint8_t rulec_fits[RULEC_TYPES][RULEC_TYPES + 1u] = {"
-    for of in kinds:
-        fits = [int(own == of or vocabulary.is_subtype(own, of)) for own in kinds]
-        yield f"    {{{_listed(f'{each}u' for each in [*fits, 0])}}},"
-    yield "};"
-    for name, place in (("first", 0), ("end", 1)):
-        seats = _listed(f"{layout.seats[kind][place]}u" for kind in kinds)
-        yield f"static const uint16_t rulec_{name}[RULEC_TYPES] = {{{seats}}};"
-
-
-def rule_tables(layout: MonitorLayout) -> Iterator[str]:
-    """The cells and entries of all rules, and where each rule's begin."""
-    rules, needed = layout.rules, layout.array_sizes
+    rules, needed, book = layout.rules, layout.array_sizes, layout.rulebook
     # Padding, so that even a wrong place reads within the array.
     behind = needed["NODES"] + needed["MOST_DIGIT"] + 1
-    yield from _stretches("cells", rules, [rule.cells for rule in rules], behind)
-    yield "/* The state reached times 4, and the verdict: by state and class of letters. */"
-    yield from _stretches("entries", rules, [rule.entries for rule in rules])
     together = [place for rule in rules for place in rule.together]
     together += [0] * max(1, *[len(rule.together) for rule in rules])
-    yield f"static const uint16_t rulec_together[{len(together)}u] = {{"
-    yield from _lines(together)
-    yield "};"
     sizes = [size for own in layout.sizes for size in own]
     world, own, _ = map(len, layout.sizes)
     sizes += [0] * (needed["PLACES"] + 1)
-    yield f"static const uint8_t rulec_sizes[{len(sizes)}u] = {{"
-    yield from _lines(sizes)
-    yield "};"
-    of = [0, *[world] * 6, world + own, *[0] * 8]
-    starts = _listed(f"{n}u" for n in of)
-    yield f"static const uint16_t rulec_sizes_of[RULEC_SOURCES] = {{{starts}}};"
-    yield ""
-    yield _RULE
-    yield "static const rulec_rule rulec_rules[RULEC_RULES] = {"
-    yield from _rows(layout)
-    yield "};"
-
-
-def text_tables(layout: MonitorLayout) -> Iterator[str]:
-    """Names, articles, and digests of the sources, as constants."""
-    book = layout.rulebook
     digests = [f"{source.name} {source.sha256}" for source in book.sources] or [""]
-    for name, size, texts in (
-        ("rule_names", "RULEC_RULES", [own.rule.name for own in layout.rules]),
-        ("rule_articles", "RULEC_RULES", [own.rule.cite for own in layout.rules]),
-        ("sources", "RULEC_N_SOURCES", digests),
-    ):
-        yield f"const char *const rulec_{name}[{size}] = {{"
-        for text in texts:
-            yield f"    {c_string(text)},"
-        yield "};"
-    numbers = _listed(f"{len(own.rule.variables)}u" for own in layout.rules)
-    yield f"const uint8_t rulec_rule_variables[RULEC_RULES] = {{{numbers}}};"
+    return {
+        "fits": (
+            f"{{{_listed([*(int(_fits(own, of, vocabulary)) for own in kinds), 0])}}},"
+            for of in kinds
+        ),
+        "first": _listed(layout.seats[kind][0] for kind in kinds),
+        "end": _listed(layout.seats[kind][1] for kind in kinds),
+        "cells": _stretches("cells", rules, [rule.cells for rule in rules], behind),
+        "entries": _stretches("entries", rules, [rule.entries for rule in rules]),
+        "n_together": len(together),
+        "together": _lines(together),
+        "n_sizes": len(sizes),
+        "sizes": _lines(sizes),
+        "sizes_of": _listed([0, *[world] * 6, world + own, *[0] * 8]),
+        "rules": _rows(layout),
+        "rule_names": (f"{c_string(own.rule.name)}," for own in rules),
+        "rule_articles": (f"{c_string(own.rule.cite)}," for own in rules),
+        "sources": (f"{c_string(text)}," for text in digests),
+        "rule_variables": _listed(len(own.rule.variables) for own in rules),
+    }
+
+
+def _fits(kind: str, of: str, vocabulary: Vocabulary) -> bool:
+    return kind == of or vocabulary.is_subtype(kind, of)
 
 
 def _rows(layout: MonitorLayout) -> Iterator[str]:
@@ -112,16 +73,13 @@ def _rows(layout: MonitorLayout) -> Iterator[str]:
             *(max(0, len(own.seats) - 1), together, len(own.together)),
         ]
         lists = [
-            _listed(f"{number}u" for number in (*column, *[0] * (n - len(column))))
+            _listed([*column, *[0] * (n - len(column))])
             for column in ([x for x, _ in own.seats], [x for _, x in own.seats], types)
         ]
         flags = own.start, int(own.rule.strength == "hard"), int(IMPOSSIBLE in machine.letters)
-        yield f"    /* {in_comment(own.rule.name)}: {in_comment(own.rule.cite)} */"
-        yield (
-            f"    {{{_listed(f'{number}u' for number in numbers)}, "
-            + ", ".join(f"{{{column}}}" for column in lists)
-            + f", {_listed(f'{flag}u' for flag in flags)}}},"
-        )
+        columns = ", ".join(f"{{{column}}}" for column in lists)
+        yield f"/* {in_comment(own.rule.name)}: {in_comment(own.rule.cite)} */"
+        yield f"{{{_listed(numbers)}, {columns}, {_listed(flags)}}},"
 
 
 def _stretches(
@@ -131,20 +89,20 @@ def _stretches(
     yield f"static const uint16_t rulec_{name}[{size}u] = {{"
     for own, stretch in zip(rules, stretches, strict=True):
         yield f"    /* {in_comment(own.rule.name)} */"
-        yield from _lines(stretch)
+        yield from (f"    {line}" for line in _lines(stretch))
     if behind:
         yield "    /* behind what is read */"
-    yield from _lines([0] * behind)
+    yield from (f"    {line}" for line in _lines([0] * behind))
     yield "};"
 
 
 def _lines(numbers: Sequence[int]) -> Iterator[str]:
     for start in range(0, len(numbers), 14):
-        yield "    " + "".join(f"{number}u, " for number in numbers[start : start + 14]).rstrip()
+        yield f"{_listed(numbers[start : start + 14])},"
 
 
-def _listed(items: Iterable[str]) -> str:
-    return ", ".join(items)
+def _listed(numbers: Iterable[int]) -> str:
+    return ", ".join(f"{number}u" for number in numbers)
 
 
 def _firsts(lengths: Iterable[int]) -> list[int]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -60,15 +60,22 @@ class InputFields:
         names_of = {}
         for kind, names in ((TYPE, self.types), (RULE, self.rules)):
             names_of.update({(kind, x): identifiers.of(kind, x, upper=True) for x in names})
-        for item in self.read:
-            if isinstance(item, Enumeration):
-                for value in item.values:
-                    names_of[item.name, value] = identifiers.of(item.name, value, upper=True)
+        for item in self.enumerations():
+            for value in item.values:
+                names_of[item.name, value] = identifiers.of(item.name, value, upper=True)
         return names_of
 
     def about(self, n_objects: int) -> Iterable[Declaration]:
         """The names about this number of objects; 2 means two or more."""
         return (item for item in self.read if min(len(item.parameters), 2) == n_objects)
+
+    def enumerations(self) -> Iterator[Enumeration]:
+        """The enumerations among the names."""
+        return (item for item in self.read if isinstance(item, Enumeration))
+
+    def numbered(self, kind: str, names: Sequence[str]) -> list[tuple[str, int]]:
+        """The constants for all names of a kind, as in ``constants``, with their numbers."""
+        return [(self.constants[kind, name], number) for number, name in enumerate(names)]
 
     def values_of(self, name: str) -> tuple[str, ...]:
         """The values of an enumeration."""

@@ -54,6 +54,11 @@ class RuleLayout:
     together: tuple[int, ...]
 
     @property
+    def about(self) -> str:
+        """The rule's strength, and the article that it cites."""
+        return f"{self.rule.strength}; {self.rule.cite}" if self.rule.cite else self.rule.strength
+
+    @property
     def n_instances(self) -> int:
         """The number of choices of seats."""
         return prod(end - first for first, end in self.seats)

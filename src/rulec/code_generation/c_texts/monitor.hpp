@@ -1,7 +1,8 @@
+@head@
 #ifndef RULEC_MONITOR_HPP
 #define RULEC_MONITOR_HPP
 
-#include "rulec_.h"
+#include "@name@.h"
 
 #include <cstdint>
 #include <iterator>

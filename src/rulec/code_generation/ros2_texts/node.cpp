@@ -9,7 +9,7 @@ namespace {
 
 class MonitorNode : public rclcpp::Node {
 public:
-    MonitorNode() : rclcpp::Node("rulec_monitor")
+    MonitorNode() : rclcpp::Node("@name@_monitor")
     {
         publisher_ = create_publisher<Verdict>("verdict", 10);
         subscription_ = create_subscription<State>("state", 10, [this](const State &state) {
@@ -24,9 +24,9 @@ public:
     }
 
 private:
-    using State = rulec_monitor::msg::State;
-    using Verdict = rulec_monitor::msg::Verdict;
-    rulec_monitor::Core<State, Verdict> core_;
+    using State = @name@_monitor::msg::State;
+    using Verdict = @name@_monitor::msg::Verdict;
+    @name@_monitor::Core<State, Verdict> core_;
     rclcpp::Publisher<Verdict>::SharedPtr publisher_;
     rclcpp::Subscription<State>::SharedPtr subscription_;
 };

@@ -1,3 +1,91 @@
+@head@
+#![no_std]
+// Not every rulebook uses all of this, and fields have its vocabulary's names.
+#![allow(dead_code, non_snake_case)]
+
+/// An unknown signal (otherwise 0 or 1) or enumeration.
+pub const UNKNOWN: u8 = 255;
+/// An unknown number, as are infinity and anything beyond 2^53.
+pub const UNKNOWN_NUMBER: f64 = f64::NAN;
+/// The most objects at a time.
+pub const MOST_OBJECTS: usize = 60_000;
+@sizes@
+/// The number of variables of each rule.
+static VARIABLES_OF: [usize; RULES] = [@variables@];
+
+/// The numbers of rules, of types of objects, and of the values of enumerations.
+pub mod names {
+    @names@
+}
+
+/// The names of the rules, the articles that they cite, and the sources' digests.
+@texts@
+
+/// An object, with an id that stays the same while it is present.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Object {
+    pub id: u32,
+    pub r#type: u8,
+    @own_fields@
+}
+
+/// The state of the world, and the objects that are present.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<'a> {
+    pub objects: &'a [Object],
+    @world_fields@
+}
+
+impl Object {
+    /// An object with every value its default.
+    #[must_use]
+    pub const fn defaults(id: u32, r#type: u8) -> Self {
+        Self { id, r#type@own_defaults@ }
+    }
+    /// An object with every value unknown.
+    #[must_use]
+    pub const fn unknown(id: u32, r#type: u8) -> Self {
+        Self { id, r#type@own_unknown@ }
+    }
+}
+
+impl<'a> Input<'a> {
+    /// A state with every value its default.
+    #[must_use]
+    pub const fn defaults(objects: &'a [Object]) -> Self {
+        Self { objects@world_defaults@ }
+    }
+    /// A state with every value unknown.
+    #[must_use]
+    pub const fn unknown(objects: &'a [Object]) -> Self {
+        Self { objects@world_unknown@ }
+    }
+}
+
+fn has_all_pairs(input: &Input) -> bool {
+    @pairs@
+    true
+}
+
+/// The input in C.
+#[repr(C)]
+struct CInput {
+    n_objects: usize,
+    objects: *const Object,
+    @c_fields@
+}
+
+impl CInput {
+    fn of(input: &Input) -> Self {
+        Self {
+            n_objects: input.objects.len(),
+            objects: input.objects.as_ptr(),
+            @c_values@
+        }
+    }
+}
+
 /// A verdict, the best first (RV-LTL).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {

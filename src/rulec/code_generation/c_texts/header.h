@@ -1,3 +1,65 @@
+@head@
+#ifndef RULEC_MONITOR_H
+#define RULEC_MONITOR_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Verdicts, the best first (RV-LTL) */
+#define RULEC_SATISFIED 0u    /* for good */
+#define RULEC_HOLDS_SO_FAR 1u /* would be kept if this were the end */
+#define RULEC_PENDING 2u      /* would be violated if this were the end */
+#define RULEC_VIOLATED 3u     /* for good */
+
+/* The status of a step; with any but the first, the state was refused. */
+typedef uint8_t rulec_status;
+#define RULEC_OK 0u
+#define RULEC_NULL 1u              /* a pointer is NULL */
+#define RULEC_BAD_TYPE 2u          /* an object's type is invalid */
+#define RULEC_TWICE 3u             /* an object is given twice */
+#define RULEC_TOO_MANY 4u          /* there are more than RULEC_MOST_OBJECTS objects */
+#define RULEC_EXCLUDED_BY_FACTS 5u /* facts of the vocabulary exclude such a state */
+
+/* An unknown signal (otherwise 0 or 1) or enumeration; invalid values count as unknown.
+ * Unknown numbers are NaN, infinity and anything beyond 2^53. */
+#define RULEC_UNKNOWN 255u
+#define RULEC_UNKNOWN_NUMBER (0x1p+1000)
+#define RULEC_RULES @rules@u
+#define RULEC_TYPES @types@u
+#define RULEC_SEATS @seats@u /* objects that can be watched at a time */
+#define RULEC_MOST_OBJECTS 60000u
+#define RULEC_N_SOURCES @sources@u
+@step@
+
+@rule_numbers@
+
+/* Types of objects; give each object its most specific type. */
+@type_numbers@
+@value_numbers@
+
+typedef struct {
+    uint32_t id; /* constant for the same object */
+    uint8_t type;
+    @own_fields@
+} rulec_object;
+
+typedef struct {
+    size_t n_objects;
+    const rulec_object *objects; /* the objects that are present */
+    @world_fields@
+} rulec_input;
+
+@sizes@
+#define RULEC_OWN @own@u /* where digits of objects on seats begin */
+#define RULEC_SHARED @shared@u /* and those about several objects */
+#define RULEC_SOURCES 16u
+#define RULEC_TOGETHER @together@u
+
 /* A verdict; where values are unknown, the best and the worst that it can be. */
 typedef struct {
     uint8_t best;

@@ -1,3 +1,68 @@
+@head@
+#include "@name@.h"
+
+#ifdef __FAST_MATH__
+#error "numbers that are not known (NaN) take a compiler that keeps to IEEE 754"
+#endif
+
+/* By type, and the type of an object; nobody fits none. */
+static const uint8_t rulec_fits[RULEC_TYPES][RULEC_TYPES + 1u] = {
+    @fits@
+};
+static const uint16_t rulec_first[RULEC_TYPES] = {@first@};
+static const uint16_t rulec_end[RULEC_TYPES] = {@end@};
+
+@cells@
+/* The state reached times 4, and the verdict: by state and class of letters. */
+@entries@
+static const uint16_t rulec_together[@n_together@u] = {
+    @together@
+};
+static const uint8_t rulec_sizes[@n_sizes@u] = {
+    @sizes@
+};
+static const uint16_t rulec_sizes_of[RULEC_SOURCES] = {@sizes_of@};
+
+typedef struct {
+    uint32_t first_cell;
+    uint32_t first_entry;
+    uint32_t first_instance;
+    uint32_t n_instances;
+    uint32_t first_word; /* of the sets of states */
+    uint16_t n_cells;
+    uint16_t n_classes;
+    uint16_t n_states;
+    uint16_t n_variables;
+    uint16_t last; /* variable, if there are any */
+    uint16_t first_together;
+    uint16_t n_together;
+    uint16_t seats_first[RULEC_VARIABLES];
+    uint16_t seats_end[RULEC_VARIABLES];
+    uint8_t types[RULEC_VARIABLES];
+    uint8_t start; /* the verdict before the first state */
+    uint8_t hard;
+    uint8_t facts; /* facts exclude some letters */
+} rulec_rule;
+
+static const rulec_rule rulec_rules[RULEC_RULES] = {
+    @rules@
+};
+
+const char *const rulec_rule_names[RULEC_RULES] = {
+    @rule_names@
+};
+const char *const rulec_rule_articles[RULEC_RULES] = {
+    @rule_articles@
+};
+const char *const rulec_sources[RULEC_N_SOURCES] = {
+    @sources@
+};
+const uint8_t rulec_rule_variables[RULEC_RULES] = {@rule_variables@};
+
+@readings@
+
+@reading@
+
 /* The machines. A rule has an instance for each choice of seats for its variables; an instance is
  * in one state of the rule's machine, or in one of several, if values are unknown.
  *
