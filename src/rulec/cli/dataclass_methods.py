@@ -2,15 +2,14 @@
 
 A command imports hundreds of dataclasses and makes objects of few. Python writes and compiles six
 methods for each on import, which is a fifth of the time of a short command. Here each method is
-written on first use; from then on it is an ordinary function. The first few objects of a class
-are made without its `__init__`, because writing one takes longer. Programs that import rulec as a
+written on first use; from then on it is an ordinary function. Programs that import rulec as a
 library get ordinary dataclasses.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import MISSING, FrozenInstanceError, fields
 from functools import partial
 from inspect import get_annotations  # also imported by `dataclasses`
@@ -61,7 +60,7 @@ def _late(
     make = _AS_PYTHON_DOES(init=False, repr=False, eq=False, slots=slots, kw_only=kw_only)
     cls: type = make(given)
     methods: dict[str, object] = {
-        "__init__": _UnwrittenInit(cls, "__init__", partial(_init_text, frozen=frozen)),
+        "__init__": _Unwritten(cls, "__init__", partial(_init_text, frozen=frozen)),
         "__repr__": _of_one(_Unwritten(cls, "__repr__", _repr_text)),
     }
     if eq:
@@ -87,6 +86,9 @@ class _Unwritten:
     name: str
     text: Callable[[type, dict[str, object]], str]
 
+    def __get__(self, item: object, owner: type) -> object:
+        return self.written().__get__(item, owner)
+
     def written(self) -> Any:
         """The method, which replaces this object from now on."""
         names: dict[str, object] = {"_MISSING": MISSING, "_set": object.__setattr__}
@@ -100,8 +102,9 @@ class _Unwritten:
         return method
 
 
-# Python looks these methods up to compare, hash or show objects, and drops whatever is raised while
-# it does so, such as by Ctrl-C. So they are found as functions, and written when they are called.
+# Whoever makes an object gets what is raised while `__init__` is looked up. Python looks the other
+# methods up to compare, hash or show objects, and drops whatever is raised while it does so, such
+# as by Ctrl-C. So these are found as functions, and written when they are called.
 
 
 def _of_one(method: _Unwritten) -> Callable[[Any], Any]:
@@ -128,59 +131,6 @@ def _name_after(method: _Unwritten, call: Any) -> None:
     call.__name__ = method.name
     call.__qualname__ = f"{method.cls.__qualname__}.{method.name}"
     call.__module__ = method.cls.__module__
-
-
-_FEW = 8
-"""Making this many objects without an `__init__` takes as long as writing one."""
-
-
-@dataclasses.dataclass(slots=True)
-class _UnwrittenInit(_Unwritten):
-    """An `__init__` that is written once there are more than a few objects.
-
-    Whoever makes an object gets what is raised while this is looked up.
-    """
-
-    n_objects: int = 0
-    _fields: Sequence[dataclasses.Field[Any]] = ()
-
-    def __get__(self, item: object, owner: type) -> object:
-        if item is None or self.n_objects >= _FEW:
-            return self.written().__get__(item, owner)
-        self.n_objects += 1
-        return partial(self._fill, item)
-
-    def _fill(self, item: Any, /, *given: object, **named: object) -> None:
-        values = self._values(given, named)
-        if values is None:
-            self.written()(item, *given, **named)  # raises the error about the arguments
-            return
-        for name, value in values.items():
-            object.__setattr__(item, name, value)
-        if hasattr(self.cls, "__post_init__"):
-            item.__post_init__()
-
-    def _values(
-        self, given: Sequence[object], named: Mapping[str, object]
-    ) -> dict[str, object] | None:
-        """The values of the fields; None for arguments that do not fit the method."""
-        self._fields = self._fields or fields(self.cls)
-        places = [item.name for item in self._fields if item.init and item.kw_only is not True]
-        arguments = {**dict(zip(places, given, strict=False)), **named}
-        if len(given) > len(places) or len(arguments) < len(given) + len(named):
-            return None
-        values = {}
-        for field in self._fields:
-            name = field.name
-            if field.init and name in arguments:
-                values[name] = arguments.pop(name)
-            elif field.default_factory is not MISSING:
-                values[name] = field.default_factory()
-            elif field.default is not MISSING:
-                values[name] = field.default
-            elif field.init:
-                return None
-        return None if arguments else values
 
 
 def _init_text(cls: type, names: dict[str, object], *, frozen: bool) -> str:
