@@ -1,1 +1,1 @@
-"""Parses a text again after an edit, reading only the part near the edit."""
+"""Parses a text again after an edit, reading only the items that differ."""

@@ -10,24 +10,37 @@ from itertools import accumulate
 from rulec.diagnostics import Diagnostic, Fix, Label, RulecError, Source, SourceLocation
 from rulec.files.source_detection import is_foreign
 from rulec.syntax import tree
-from rulec.syntax.assembly import assemble_file
+from rulec.syntax.assembly import Part, assemble_file
+from rulec.syntax.file_pieces import Piece, RulePieces
 from rulec.syntax.incremental.growing_source import GrowingSource
-from rulec.syntax.incremental.segments import Segment, Window, segments_of, shifted
 from rulec.syntax.messages.lookalikes import HIDES, hidden_meaning
-from rulec.syntax.parser import by_place, parse
-from rulec.syntax.scanner import checked, scan
+from rulec.syntax.parser import PieceReader, by_place, parse
+from rulec.syntax.scanner import Token, checked, scan
+from rulec.syntax.split_file import FileSplitter
 
 MOST_CHARACTERS = 1_000_000
 """Longer texts are always parsed as a whole."""
-
-_RUN_ON = 21
-"""A quoted text that is not closed is searched for in at most so many lines."""
 
 _MOST_GROWTH = 64
 """A source that is this many times longer than its text is rebuilt at once."""
 
 _LITTLE_GROWTH = 8
 """In a pause, a source is rebuilt if it is this many times longer than its text."""
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """Whole lines of a file, with the comments above them, and the items parsed from them.
+
+    ``line`` and ``start`` are where they begin in the growing source: a line from 1, and a
+    character. One that ``is_clean`` has no mistakes, and its parts whatever its surroundings are.
+    """
+
+    text: str
+    line: int
+    start: int
+    parts: tuple[Part, ...]
+    is_clean: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,21 +63,14 @@ class ParsedText:
     by_start: tuple[int, ...] = ()
     """The segments in their order in ``source``."""
 
-    def _segment_at(self, start: int) -> int | None:
-        """The number of the segment that contains a character of the source."""
-        where = bisect_right(self.by_start, start, key=lambda n: self.segments[n].start) - 1
-        if where < 0:
-            return None
-        number = self.by_start[where]
-        segment = self.segments[number]
-        return number if start <= segment.start + len(segment.text) else None
-
     def offset(self, start: int) -> int:
         """The character of the text for a character of the source."""
-        number = self._segment_at(start)
-        if number is None:
+        where = bisect_right(self.by_start, start, key=lambda n: self.segments[n].start) - 1
+        if where < 0:
             return start
-        return self.starts[number] + start - self.segments[number].start
+        number = self.by_start[where]
+        inside = start - self.segments[number].start
+        return self.starts[number] + inside if inside <= len(self.segments[number].text) else start
 
     def placed(self, place: SourceLocation) -> SourceLocation:
         """The place in the text for a place in the source."""
@@ -72,38 +78,29 @@ class ParsedText:
             return place
         where = bisect_right(self.by_start, place.line, key=lambda n: self.segments[n].line) - 1
         number = self.by_start[max(0, where)]
-        return shifted(place, 1 + self.lines[number] - self.segments[number].line)
+        down = 1 + self.lines[number] - self.segments[number].line
+        end = None if place.end_line is None else place.end_line + down
+        return replace(place, line=place.line + down, end_line=end) if down else place
 
     def in_text(self, mistake: Diagnostic) -> Diagnostic:
         """The diagnostic with its places in the text instead of the source."""
-        return self._moved(mistake, None) if self.segments else mistake
-
-    def _moved(self, mistake: Diagnostic, of: int | None) -> Diagnostic:
-        """A diagnostic with its places in the text; those of segment ``of`` move with it."""
-
-        def moved(place: SourceLocation) -> SourceLocation:
-            if of is None:
-                return self.placed(place)
-            if place.file != self.source.name:
-                return place
-            return shifted(place, 1 + self.lines[of] - self.segments[of].line)
+        if not self.segments:
+            return mistake
 
         def fixed(fix: Fix) -> Fix:
-            return replace(fix, place=moved(fix.place))
+            return replace(fix, place=self.placed(fix.place))
 
-        fix = mistake.fix
-        offers = tuple(replace(o, fixes=tuple(map(fixed, o.fixes))) for o in mistake.offers)
         return replace(
             mistake,
-            place=None if mistake.place is None else moved(mistake.place),
-            labels=tuple(Label(moved(label.place), label.message) for label in mistake.labels),
-            fix=None if fix is None else fixed(fix),
-            offers=offers,
+            place=None if mistake.place is None else self.placed(mistake.place),
+            labels=tuple(Label(self.placed(x.place), x.message) for x in mistake.labels),
+            fix=None if mistake.fix is None else fixed(mistake.fix),
+            offers=tuple(replace(x, fixes=tuple(map(fixed, x.fixes))) for x in mistake.offers),
         )
 
 
 def parsed_text(source: Source, before: ParsedText | None = None) -> ParsedText:
-    """Parse a text; parts that are unchanged since ``before``, under the same name, are reused.
+    """Parse a text; items that are unchanged since ``before``, under the same name, are reused.
 
     Tree and mistakes are those of ``parse``, except for the spans (see ``ParsedText``).
     """
@@ -111,21 +108,46 @@ def parsed_text(source: Source, before: ParsedText | None = None) -> ParsedText:
     if before is not None and before.text == text:
         return before
     try:
-        checked(source)
+        tokens = scan(checked(source))
     except RulecError:
         return _whole(source)
-    if len(text) > MOST_CHARACTERS or is_foreign(text):
+    if len(text) > MOST_CHARACTERS or is_foreign(text) or not tokens:
         return _whole(source)
-    try:
-        if before is not None and before.segments and isinstance(before.source, GrowingSource):
-            edited = _edited(before, before.source, text)
-            if edited is not None:
-                return edited
-        growing = GrowingSource(source.name, text)
-        segments = segments_of(Window(growing, text, 1, 0))
-    except RulecError:  # more tokens than there may be
+    growing = GrowingSource(source.name, "")
+    known: dict[str, list[Segment]] = {}
+    earlier = None if before is None else before.source
+    if isinstance(earlier, GrowingSource) and not _has_grown(earlier, text, _MOST_GROWTH):
+        growing = earlier
+        for segment in reversed(before.segments if before else ()):
+            known.setdefault(segment.text, []).append(segment)
+    splitter = FileSplitter(source, tokens)
+    reading = _Reading(PieceReader(source, tokens), growing)
+    segments = []
+    for group in _groups(splitter):
+        old = known.get(text[group.begin : group.end])
+        is_kept = old and old[-1].is_clean and not group.has_mistakes
+        segments.append(old.pop() if old and is_kept else reading.segment(group))
+    file, wrong_order = assemble_file(growing, [part for one in segments for part in one.parts])
+    if file.kind != "rulebook":
         return _whole(source)
-    return _assembled(growing, segments, text) or _whole(source)
+    order = sorted(range(len(segments)), key=lambda number: segments[number].start)
+    parsed = ParsedText(
+        text,
+        file,
+        (),
+        growing,
+        segments=tuple(segments),
+        lines=tuple(accumulate((one.text.count("\n") for one in segments[:-1]), initial=0)),
+        starts=tuple(accumulate((len(one.text) for one in segments[:-1]), initial=0)),
+        by_start=tuple(order),
+    )
+    if wrong_order:
+        # How to mend them depends on the text around, across segments.
+        return replace(parsed, mistakes=parse(source)[1])
+    mistakes = [*splitter.mistakes, *reading.plain.mistakes]
+    if HIDES.search(text.replace("\r\n", "\n")) or any(map(_is_foreign_word, tokens)):
+        mistakes += hidden_meaning(source, tokens)
+    return replace(parsed, mistakes=tuple(sorted(mistakes, key=by_place)))
 
 
 def _whole(source: Source) -> ParsedText:
@@ -133,75 +155,64 @@ def _whole(source: Source) -> ParsedText:
     return ParsedText(source.text, file, mistakes, source)
 
 
-def _assembled(source: GrowingSource, segments: Sequence[Segment], text: str) -> ParsedText | None:
-    """The file of the segments; None if it is not a rulebook, or empty."""
-    parts = [part for segment in segments for part in segment.parts]
-    if not parts:
-        return None
-    file, wrong_order = assemble_file(source, parts)
-    if file.kind != "rulebook":
-        return None
-    lines = (0, *accumulate(segment.lines() for segment in segments))
-    starts = (0, *accumulate(len(segment.text) for segment in segments))
-    order = sorted(range(len(segments)), key=lambda number: segments[number].start)
-    parsed = ParsedText(
-        text,
-        file,
-        (),
-        source,
-        segments=tuple(segments),
-        lines=lines[:-1],
-        starts=starts[:-1],
-        by_start=tuple(order),
-    )
-    mistakes = [
-        *(
-            parsed._moved(diagnostic, n)
-            for n, segment in enumerate(segments)
-            for diagnostic in segment.split
-        ),
-        *(
-            parsed._moved(diagnostic, n)
-            for n, segment in enumerate(segments)
-            for diagnostic in segment.read
-        ),
-        *map(parsed.in_text, wrong_order),
-    ]
-    if HIDES.search(text.replace("\r\n", "\n")) or any(segment.foreign for segment in segments):
-        plain = Source(source.name, text)
-        mistakes += hidden_meaning(plain, scan(plain))
-    return replace(parsed, mistakes=tuple(sorted(mistakes, key=by_place)))
+def _is_foreign_word(token: Token) -> bool:
+    return token.kind == "word" and not token.text.isascii()
 
 
-def _edited(before: ParsedText, source: GrowingSource, text: str) -> ParsedText | None:
-    """The text after an edit; None if all of it has to be parsed."""
-    if _has_grown(source, text, _MOST_GROWTH):
-        return None
-    old = before.segments
-    above = _alike(old, text)
-    below = _alike_at_end(old[above:], text, sum(len(segment.text) for segment in old[:above]))
-    first, last = _first(old, above), _last(old, len(old) - below)
-    while True:
-        lengths = [len(segment.text) for segment in old]
-        begin, end = sum(lengths[:first]), len(text) - sum(lengths[last:])
-        line, start = source.append(text[begin:end])
-        window = Window(
-            source,
-            text[begin:end],
-            line,
-            start,
-            above=old[first:above],
-            below=old[len(old) - below : last],
-        )
-        segments = segments_of(window)
-        holds_above = first == 0 or segments[0] is old[first]
-        holds_below = last == len(old) or segments[-1] is old[last - 1]
-        if holds_above and holds_below:
-            return _assembled(source, [*old[:first], *segments, *old[last:]], text)
-        if first == 0 and last == len(old):
-            return None
-        first = _first(old, max(0, first - 3))
-        last = _last(old, min(len(old), last + 3))
+@dataclass(frozen=True, slots=True)
+class _Group:
+    """The characters of a text from one item to the next that begins on its own line."""
+
+    begin: int
+    end: int
+    pieces: Sequence[Piece | RulePieces]
+    has_mistakes: bool
+
+
+def _groups(splitter: FileSplitter) -> list[_Group]:
+    tokens, text = splitter.tokens, splitter.source.text
+    groups: list[_Group] = []
+    begin = behind = n_mistakes = 0
+    pieces: list[Piece | RulePieces] = []
+    has_mistakes = False
+    for part in splitter.split():
+        if pieces:
+            behind = text.find("\n", behind) + 1
+            if 0 < behind <= tokens[part.first].start:
+                groups.append(_Group(begin, behind, pieces, has_mistakes))
+                begin, pieces, has_mistakes = behind, [], False
+        pieces.append(part)
+        has_mistakes |= len(splitter.mistakes) > n_mistakes
+        n_mistakes = len(splitter.mistakes)
+        behind = tokens[part.last - 1].end
+    has_mistakes |= len(splitter.mistakes) > n_mistakes
+    return [*groups, _Group(begin, len(text), pieces, has_mistakes)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    """Reads items into a growing source, and their mistakes by ``plain``, in the text itself."""
+
+    plain: PieceReader
+    growing: GrowingSource
+
+    def segment(self, group: _Group) -> Segment:
+        """A group as read anew."""
+        text = self.plain.source.text[group.begin : group.end]
+        line, start = self.growing.append(text)
+        first, last, down = group.pieces[0].first, group.pieces[-1].last, start - group.begin
+        # Pieces count tokens from the beginning of the text.
+        tokens = self.plain.tokens if not down else self.plain.tokens[:last]
+        for number in range(first, last) if down else ():
+            token = tokens[number]
+            tokens[number] = token._replace(start=token.start + down, end=token.end + down)
+        reader = PieceReader(self.growing, tokens)
+        parts = tuple(map(reader.part, group.pieces))
+        is_clean = not (reader.mistakes or group.has_mistakes)
+        if reader.mistakes:
+            for piece in group.pieces:
+                self.plain.part(piece)
+        return Segment(text, line, start, parts, is_clean=is_clean)
 
 
 def renewed(parsed: ParsedText) -> ParsedText:
@@ -213,70 +224,3 @@ def renewed(parsed: ParsedText) -> ParsedText:
 
 def _has_grown(source: Source, text: str, times: int) -> bool:
     return len(source.text) > times * (len(text) + 10_000)
-
-
-def _alike(segments: Sequence[Segment], text: str) -> int:
-    """How many segments the text begins with."""
-    at = 0
-    for number, segment in enumerate(segments):
-        if not text.startswith(segment.text, at):
-            return number
-        at += len(segment.text)
-    return len(segments)
-
-
-def _alike_at_end(segments: Sequence[Segment], text: str, least: int) -> int:
-    """How many segments the text ends with; they must not extend above character ``least``."""
-    end = len(text)
-    for number, segment in enumerate(reversed(segments)):
-        start = end - len(segment.text)
-        if start < least or not text.startswith(segment.text, start):
-            return number
-        end = start
-    return len(segments)
-
-
-def _first(segments: Sequence[Segment], changed: int) -> int:
-    """The first segment to parse again: nothing after it can change the segments before.
-
-    It is clean and ends a rule, and no segment with mistakes is close enough above it to be
-    affected by an unclosed quote.
-    """
-    first = max(0, changed - 1)
-    while first > 0:
-        near = _near_above(segments, min(first, changed))
-        if segments[first].is_clean and segments[first].closes and near is None:
-            break
-        first = first - 1 if near is None else min(near, first - 1)
-    return first
-
-
-def _near_above(segments: Sequence[Segment], first: int) -> int | None:
-    """A segment with mistakes that is no more lines above than an unclosed quote extends."""
-    lines = 0
-    for number in range(first - 1, -1, -1):
-        if not segments[number].is_clean:
-            return number
-        lines += segments[number].lines()
-        if lines > _RUN_ON:
-            break
-    return None
-
-
-def _last(segments: Sequence[Segment], changed: int) -> int:
-    """The segment before which to stop: the segments before it are unchanged."""
-    last = min(len(segments), changed + 1)
-    while last < len(segments):
-        behind = "".join(segment.text for segment in segments[changed:last])
-        quoted = '"' in behind or behind.count("\n") > _RUN_ON
-        rest = _wrong_above(segments[last:])
-        if segments[last - 1].is_clean and quoted and not rest:
-            break
-        last = last + (rest or 1)
-    return min(last, len(segments))
-
-
-def _wrong_above(segments: Sequence[Segment]) -> int:
-    """How many segments there are up to the last one with a mistake shown above it."""
-    reach = [number for number, segment in enumerate(segments, 1) if segment.reaches_before()]
-    return reach[-1] if reach else 0
