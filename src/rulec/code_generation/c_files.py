@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
 
 from rulec.code_generation.c_tables import table_texts
 from rulec.code_generation.field_spelling import FieldSpelling, meaning
-from rulec.code_generation.file_templates import Places, filled, fixed
 from rulec.code_generation.input_fields import RULE, TYPE
 from rulec.code_generation.monitor_layout import TOGETHER, MonitorLayout
 from rulec.code_generation.reading_code import ignored_in_c, unread
 from rulec.code_generation.written_names import in_comment, prefix_of
+from rulec.files.text_templates import Places, filled
 from rulec.vocabulary import Declaration
+
+_TEXTS = Path(__file__).parent / "c_texts"
 
 _SPELLING = FieldSpelling(
     "uint8_t",
@@ -26,14 +29,16 @@ _SPELLING = FieldSpelling(
 
 def c_header(layout: MonitorLayout) -> str:
     """The header: constants, types of input, state and verdict, and function declarations."""
-    return in_own_names(filled("c_texts/header.h", _of_header(layout)), layout)
+    return in_own_names(filled(_TEXTS / "header.h", _of_header(layout)), layout)
 
 
 def c_source(layout: MonitorLayout) -> str:
     """The source: tables, readings and the engine."""
-    own = filled("c_texts/reading.c", _of_reading(layout))
+    own = filled(_TEXTS / "reading.c", _of_reading(layout))
     several = [line for item in layout.fields.about(2) for line in _matrix(item, layout)]
-    readings = _needed("\n".join([fixed("c_texts/readings.c"), *several]), own)
+    readings = _needed(
+        "\n".join([(_TEXTS / "readings.c").read_text(encoding="utf-8"), *several]), own
+    )
     places: Places = {
         "head": _head(layout),
         "name": prefix_of(layout.rulebook.name),
@@ -41,13 +46,13 @@ def c_source(layout: MonitorLayout) -> str:
         "readings": readings,
         "reading": own,
     }
-    return in_own_names(filled("c_texts/monitor.c", places), layout)
+    return in_own_names(filled(_TEXTS / "monitor.c", places), layout)
 
 
 def cpp_header(layout: MonitorLayout) -> str:
     """The same monitor as a C++17 class; it needs the C header and source."""
     places: Places = {"head": _head(layout), "name": prefix_of(layout.rulebook.name)}
-    return in_own_names(filled("c_texts/monitor.hpp", places), layout)
+    return in_own_names(filled(_TEXTS / "monitor.hpp", places), layout)
 
 
 def in_own_names(text: str, layout: MonitorLayout) -> str:

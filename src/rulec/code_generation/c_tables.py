@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import accumulate
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE
-from rulec.code_generation.file_templates import Places
 from rulec.code_generation.monitor_layout import MonitorLayout, RuleLayout
 from rulec.code_generation.written_names import c_string, in_comment
+from rulec.files.text_templates import Places
 from rulec.vocabulary import Vocabulary
 
 

@@ -10,18 +10,18 @@ from typing import Literal, TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.code_generation.c_files import c_header, c_source, cpp_header
 from rulec.code_generation.code_messages import others_file
-from rulec.code_generation.file_templates import filled
 from rulec.code_generation.monitor_layout import MonitorLayout, monitor_layout
 from rulec.code_generation.ros2_files import ros2_texts
 from rulec.code_generation.rust_files import crate_texts
 from rulec.code_generation.written_names import prefix_of
 from rulec.files.file_sets import write_together
+from rulec.files.text_templates import filled
 from rulec.files.written_files import make_folder
 
 Language: TypeAlias = Literal["c", "rust", "ros2"]
 """The language of the files: C (and C++), or a Rust crate or ROS 2 package around the C."""
 
-
+_TEXTS = Path(__file__).parent / "c_texts"
 _BUILD_FILES = "Makefile", "CMakeLists.txt", "Cargo.toml", "build.rs", "package.xml", "src/lib.rs"
 """Files whose names do not tell which monitor they are of."""
 
@@ -36,10 +36,7 @@ def monitor_texts(layout: MonitorLayout) -> dict[str, str]:
         f"{name}.h": c_header(layout),
         f"{name}.c": c_source(layout),
         f"{name}.hpp": cpp_header(layout),
-        **{
-            file: filled(f"c_texts/{file}", {"name": name})
-            for file in ("Makefile", "CMakeLists.txt")
-        },
+        **{file: filled(_TEXTS / file, {"name": name}) for file in ("Makefile", "CMakeLists.txt")},
     }
 
 

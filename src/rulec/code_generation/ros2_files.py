@@ -7,14 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from keyword import kwlist
+from pathlib import Path
 
 from rulec.code_generation.c_files import c_header, c_source, head_lines, in_own_names
 from rulec.code_generation.field_spelling import FieldSpelling
-from rulec.code_generation.file_templates import Places, filled
 from rulec.code_generation.input_fields import RULE, TYPE
 from rulec.code_generation.monitor_layout import MonitorLayout
 from rulec.code_generation.written_names import Identifiers, in_comment, prefix_of
+from rulec.files.text_templates import Places, filled
 from rulec.vocabulary import Declaration, Quantity
+
+_TEXTS = Path(__file__).parent / "ros2_texts"
 
 _SPELLING = FieldSpelling("uint8", "float64", "255", "1.0e300")
 """A number beyond 2^53, so that a field left at this default is an unknown number."""
@@ -32,14 +35,14 @@ def ros2_texts(layout: MonitorLayout) -> dict[str, str]:
     name = prefix_of(layout.rulebook.name)
     named = {"name": name}
     return {
-        **{file: filled(f"ros2_texts/{text}", named) for file, text in _FIXED.items()},
+        **{file: filled(_TEXTS / f"{text}", named) for file, text in _FIXED.items()},
         "msg/Object.msg": _message("Object", _object_fields(layout), layout, *_types(layout)),
         "msg/State.msg": _message("State", _state_fields(layout), layout, *_values(layout, 0)),
         "msg/Verdict.msg": _message("Verdict", (), layout, *_rules(layout)),
         f"src/{name}.h": c_header(layout),
         f"src/{name}.c": c_source(layout),
         "src/core.hpp": _core(layout),
-        "src/node.cpp": in_own_names(filled("ros2_texts/node.cpp", named), layout),
+        "src/node.cpp": in_own_names(filled(_TEXTS / "node.cpp", named), layout),
     }
 
 
@@ -53,7 +56,7 @@ def message_fields(layout: MonitorLayout) -> dict[str, str]:
 def _message(kind: str, fields: Iterable[str], layout: MonitorLayout, *constants: str) -> str:
     head = (f"# {line}".rstrip() for line in head_lines(layout))
     places: Places = {"head": head, "constants": constants, "fields": fields}
-    return filled(f"ros2_texts/{kind}.msg", {**places, "rules": len(layout.rules)})
+    return filled(_TEXTS / f"{kind}.msg", {**places, "rules": len(layout.rules)})
 
 
 def _object_fields(layout: MonitorLayout) -> Iterator[str]:
@@ -115,7 +118,7 @@ def _core(layout: MonitorLayout) -> str:
             ),
         ],
     }
-    return in_own_names(filled("ros2_texts/core.hpp", places), layout)
+    return in_own_names(filled(_TEXTS / "core.hpp", places), layout)
 
 
 def _several(field: str, own: str, n_objects: int) -> Iterator[str]:

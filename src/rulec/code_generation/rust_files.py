@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from pathlib import Path
 
 from rulec.code_generation.c_files import c_header, c_source, head_lines, in_own_names
 from rulec.code_generation.field_spelling import FieldSpelling, meaning
-from rulec.code_generation.file_templates import filled
 from rulec.code_generation.input_fields import RULE, TYPE
 from rulec.code_generation.monitor_layout import MonitorLayout
 from rulec.code_generation.written_names import in_comment, prefix_of, rust_string
+from rulec.files.text_templates import filled
 from rulec.vocabulary import Declaration
+
+_TEXTS = Path(__file__).parent / "rust_texts"
 
 _SPELLING = FieldSpelling("u8", "f64", "UNKNOWN", "UNKNOWN_NUMBER")
 
@@ -28,7 +31,7 @@ def crate_texts(layout: MonitorLayout) -> dict[str, str]:
     """The files of the crate, by their paths in its folder."""
     name = prefix_of(layout.rulebook.name)
     return {
-        **{file: filled(f"rust_texts/{text}", {"name": name}) for file, text in _FIXED.items()},
+        **{file: filled(_TEXTS / f"{text}", {"name": name}) for file, text in _FIXED.items()},
         f"c/{name}.h": c_header(layout),
         f"c/{name}.c": c_source(layout),
         "src/lib.rs": rust_source(layout),
@@ -69,7 +72,7 @@ def rust_source(layout: MonitorLayout) -> str:
             ),
         ],
     }
-    return in_own_names(filled("rust_texts/monitor.rs", places), layout)
+    return in_own_names(filled(_TEXTS / "monitor.rs", places), layout)
 
 
 def _numbers(layout: MonitorLayout) -> Iterator[str]:

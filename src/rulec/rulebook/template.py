@@ -8,6 +8,7 @@ from pathlib import Path
 from textwrap import wrap
 
 from rulec.diagnostics import RulecError
+from rulec.files.text_templates import filled
 from rulec.rulebook.loader import parse_rulebook, read_trees, resolve_trees
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.rulebook_model import Rule, Rulebook
@@ -15,51 +16,8 @@ from rulec.rulebook.rules.rule_topics import by_group
 from rulec.rulebook.template_messages import no_name
 from rulec.syntax import decode, parse, tree
 
-_TEXT = """\
-# {name}: a rulebook to start from. `rulec check` says what is wrong in it, `rulec test` runs its
-# examples, `rulec list` shows the vocabularies whose words rules can use.
-
-rulebook {name}
-title   "What this rulebook is about"
-law     "The law that it puts into rules" as of {today}
-traffic right  # the near side, that of the kerb, is the right one
-use     road   # station, lateral, surface, congested; and types such as vehicle and pedestrian
-
-# A hard rule must never be violated, a soft rule may yield. It holds for every vehicle v.
-hard rule overtake_on_the_far_side (v: vehicle) {{
-  cite    "Article 1"
-  says    "Do not overtake on the side of the kerb."
-  require never (behind(v) then beside(v) and near_side_of(v) then in_front_of(v))
-  unless  congested throughout
-
-  # What the rule allows and what it forbids, state by state; what is not said has its default.
-  accept "on the far side" {{
-    behind(v) and same_lane(v);
-    beside(v) and far_side_of(v);
-    in_front_of(v) and same_lane(v)
-  }}
-  accept "in a queue" {{
-    behind(v) and near_side_of(v);
-    congested and beside(v) and near_side_of(v);
-    in_front_of(v) and near_side_of(v)
-  }}
-  reject "on the near side" {{
-    behind(v) and same_lane(v);
-    beside(v) and near_side_of(v);
-    in_front_of(v) and same_lane(v)
-  }}
-}}
-"""
-
-_UPON = """\
-# {name}: a rulebook that builds upon `{base}`. Take the # off the lines that you need.
-# `rulec check` says what is wrong in it, `rulec test` runs the examples, the inherited ones too.
-
-rulebook {name}
-extends {base}
-title   "What this rulebook is about"
-law     "The law that it puts into rules" as of {today}
-"""
+_NEW = Path(__file__).with_name("new_rulebook.txt")
+_UPON = Path(__file__).with_name("new_rulebook_upon.txt")
 
 _WIDTH = 96
 """The width of lists of names, in characters."""
@@ -71,7 +29,7 @@ def new_rulebook(name: str, today: date) -> str:
     Raises RulecError R0738 if a rulebook cannot have this name.
     """
     _refuse(name)
-    text = _TEXT.format(name=name, today=today.isoformat())
+    text = filled(_NEW, {"name": name, "today": today.isoformat()})
     parse_rulebook(text, f"{name}.rules")
     return text
 
@@ -84,7 +42,7 @@ def new_rulebook_upon(name: str, base: str, today: date, search_path: Sequence[P
     _refuse(name)
     trees = read_trees(base, search_path)
     inherited = resolve_trees(trees).rulebook
-    head = _UPON.format(name=name, base=base, today=today.isoformat())
+    head = filled(_UPON, {"name": name, "base": base, "today": today.isoformat()})
     text = "\n".join([head, *_changes(inherited, trees.books)])
     parse_rulebook(text, f"{name}.rules", search_path)
     return text

@@ -16,10 +16,12 @@ from pygments.formatters import HtmlFormatter
 from pygments.lexer import Lexer
 from pygments.lexers.diff import DiffLexer
 
+from rulec.files.text_templates import filled
 from rulec.report.text.markdown import anchors
 from rulec.report.text.page_policy import policy
 from rulec.report.text.pygments_lexer import RulecLexer
 
+_PAGE = Path(__file__).with_name("html_page.html")
 _STYLE = Path(__file__).with_name("html_page.css")
 
 _MOST_NESTED = 800
@@ -65,20 +67,14 @@ def as_html(
     shown = list(_wrapped(_folded(tokens, page), page.contents))
     body = parser.renderer.render(shown, parser.options, {})
     style = f"\n{_STYLE.read_text(encoding='utf-8')}"
-    return (
-        "<!DOCTYPE html>\n"
-        f'<html lang="{page.language}">\n'
-        "<head>\n"
-        '<meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        '<meta name="color-scheme" content="light dark">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{policy([style], [])}">\n'
-        f"<title>{escape(page.title)}</title>\n"
-        f"<style>{style}</style>\n"
-        "</head>\n"
-        f"<body>\n<main>\n{body}</main>\n</body>\n"
-        "</html>"
-    )
+    places = {
+        "language": page.language,
+        "policy": policy([style], []),
+        "title": escape(page.title),
+        "style": style,
+        "body": body,
+    }
+    return filled(_PAGE, places).removesuffix("\n")
 
 
 def _highlighted(text: str, language: str, _: str) -> str:

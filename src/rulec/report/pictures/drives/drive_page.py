@@ -6,6 +6,7 @@ import json
 from html import escape
 from pathlib import Path
 
+from rulec.files.text_templates import filled
 from rulec.report.pictures.drawing.picture_formats import as_svg, style_of
 from rulec.report.pictures.drawing.styles import DARK, LIGHT, Theme
 from rulec.report.pictures.drives.drive_picture import drive_picture
@@ -38,10 +39,7 @@ def drive_page(
         "data": text,
         "script": script,
     }
-    # A single pass over the template: inserted text is not searched for placeholders.
-    head, *parts = _beside("drive_page.html").split("{{")
-    pieces = (part.split("}}", 1) for part in parts)
-    return head + "".join(values[name] + rest for name, rest in pieces)
+    return filled(Path(__file__).with_name("drive_page.html"), values)
 
 
 def _beside(name: str) -> str:

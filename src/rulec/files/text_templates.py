@@ -1,4 +1,4 @@
-"""Fixed texts of written files, in the folders ``…_texts``, with places that are filled in."""
+"""Texts that stand in files of their own, with places that are filled in."""
 
 from __future__ import annotations
 
@@ -13,13 +13,8 @@ Places: TypeAlias = Mapping[str, int | str | Iterable[str]]
 _PLACE = re.compile(r"^([ ]*)@(\w+)@\n|@(\w+)@", re.MULTILINE)
 
 
-def fixed(name: str) -> str:
-    """A text without places, by its path from here."""
-    return (Path(__file__).parent / name).read_text(encoding="utf-8")
-
-
-def filled(name: str, places: Places) -> str:
-    """A text with its places filled in.
+def filled(file: Path, places: Places) -> str:
+    """The text of a file of the package with its places filled in.
 
     A place is ``@name@``. On a line of its own it stands for lines, if any, each as far in as it
     is. What is filled in is not searched for places.
@@ -33,4 +28,4 @@ def filled(name: str, places: Places) -> str:
         shown = str(given).splitlines() if isinstance(given, int | str) else given
         return "".join(f"{indent}{line}\n" for line in shown)
 
-    return _PLACE.sub(content, fixed(name))
+    return _PLACE.sub(content, file.read_text(encoding="utf-8"))
