@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-from rulec.diagnostics import Diagnostic, RulecError
+from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.ways_out import in_header
-from rulec.rulebook.files import search_path as search
+from rulec.rulebook.files.search_path import rulebook_texts
 from rulec.rulebook.files.words_in_files import words_of_vocabularies
 from rulec.rulebook.names.atom_messages import UNKNOWN_NAME
 
@@ -36,7 +35,8 @@ def with_words_elsewhere(
     if not any(names):
         return known
     # Each file is read once, however many names are unknown.
-    words, definitions = words_of_vocabularies(search_path), _definitions(search_path)
+    words = words_of_vocabularies(search_path)
+    definitions = {path.stem: _defined_in(text) for path, text in rulebook_texts(search_path)}
 
     def with_way_out(finding: Diagnostic, name: str) -> Diagnostic:
         for vocabulary, own in words.items():
@@ -70,15 +70,6 @@ def _unknown_name(finding: Diagnostic) -> str:
     return name
 
 
-def _definitions(search_path: Sequence[Path]) -> dict[str, frozenset[str]]:
-    """What each rulebook defines."""
-    defined = {}
-    for book in search.available_rulebooks(search_path):
-        with suppress(RulecError):
-            defined[book] = _defined_in(search.read_bytes(search.find_rulebook(book, search_path)))
-    return defined
-
-
 @lru_cache(maxsize=128)
-def _defined_in(text: bytes) -> frozenset[str]:
-    return frozenset(_DEFINITION.findall(text.decode(errors="replace")))
+def _defined_in(text: str) -> frozenset[str]:
+    return frozenset(_DEFINITION.findall(text))

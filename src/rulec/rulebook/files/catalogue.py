@@ -72,13 +72,8 @@ def _chain(reference: str, search_path: Sequence[Path]) -> list[tree.File]:
 
 def rulebooks_with_rule(name: str, search_path: Sequence[Path] = ()) -> list[str]:
     """The rulebooks whose own text has a rule of this name, not counting inherited rules."""
-    rule = re.compile(rb"\brule\s+%b\b" % re.escape(name.encode(errors="replace")))
-    names = []
-    for path in _rulebooks(search_path):
-        with suppress(RulecError):
-            if rule.search(search.read_bytes(path)):
-                names.append(path.stem)
-    return names
+    rule = re.compile(rf"\brule\s+{re.escape(name)}\b", re.ASCII)
+    return [path.stem for path, text in search.rulebook_texts(search_path) if rule.search(text)]
 
 
 def list_vocabularies(search_path: Sequence[Path] = ()) -> list[Entry]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -110,6 +110,16 @@ def available_rulebooks(search_path: Sequence[Path] = ()) -> tuple[str, ...]:
     return tuple(sorted(names))
 
 
+def rulebook_texts(
+    search_path: Sequence[Path] = (), names: Sequence[str] | None = None
+) -> Iterator[tuple[Path, str]]:
+    """The files and texts of the rulebooks of these names, or of all that can be read."""
+    for name in available_rulebooks(search_path) if names is None else names:
+        with suppress(RulecError):
+            path = find_rulebook(name, search_path)
+            yield path, read_bytes(path).decode(errors="replace")
+
+
 def available_vocabularies(
     search_path: Sequence[Path] = (), user: Path | None = None
 ) -> tuple[Path, ...]:
@@ -192,19 +202,18 @@ OWN_NAMES = {
 }
 """What inhabitants, neighbours and lawyers call the countries whose rulebooks ship."""
 
-_TITLE = re.compile(rb'^title[ \t]+"([^"\n]*)"', re.M)
+_TITLE = re.compile(r'^title[ \t]+"([^"\n]*)"', re.M)
 
 
 def _by_title(name: str, known: Sequence[str], search_path: Sequence[Path]) -> str:
     """The rulebooks whose title begins with a name, such as a country's; empty if there is none."""
     titled = []
-    for book in known:
-        with suppress(RulecError):
-            title = _TITLE.search(read_bytes(find_rulebook(book, search_path)))
-            shown = title[1].decode("utf-8", "replace") if title else ""
-            fits = len(name) > 3 and shown.casefold().startswith(name.casefold())
-            if fits or name.casefold() in OWN_NAMES.get(book, ()):
-                titled.append(f"`{book}` ({shown})")
+    for path, text in rulebook_texts(search_path, known):
+        title = _TITLE.search(text)
+        shown = title[1] if title else ""
+        fits = len(name) > 3 and shown.casefold().startswith(name.casefold())
+        if fits or name.casefold() in OWN_NAMES.get(path.stem, ()):
+            titled.append(f"`{path.stem}` ({shown})")
     return f"did you mean {' or '.join(titled)}?" if titled else ""
 
 

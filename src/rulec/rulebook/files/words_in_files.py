@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -52,19 +52,23 @@ def vocabularies_with(name: str, search_path: Sequence[Path] = ()) -> list[str]:
 
 def definitions_of_rulebooks(search_path: Sequence[Path] = ()) -> dict[Path, frozenset[str]]:
     """The definitions, parameters and options that the text of each rulebook itself has."""
-    return {path: frozenset(_DEFINED.findall(text)) for path, text in _texts(search_path)}
+    return {
+        path: frozenset(_DEFINED.findall(text)) for path, text in search.rulebook_texts(search_path)
+    }
 
 
 def rules_of_rulebooks(search_path: Sequence[Path] = ()) -> frozenset[str]:
     """The names of the rules that the texts of rulebooks have."""
-    return frozenset(name for _, text in _texts(search_path) for name in _RULE.findall(text))
+    return frozenset(
+        name for _, text in search.rulebook_texts(search_path) for name in _RULE.findall(text)
+    )
 
 
 def topics_of_rulebooks(search_path: Sequence[Path] = ()) -> dict[str, tuple[str, ...]]:
     """The topics that rulebooks declare, each with the rules that it lists."""
     return {
         name: tuple(_NAME.findall(rules))
-        for _, text in _texts(search_path)
+        for _, text in search.rulebook_texts(search_path)
         for block in _TOPICS.findall(text)
         for name, rules in _TOPIC.findall(block)
     }
@@ -77,7 +81,7 @@ def rules_reading(
 
     They may also read it by a name that is defined there, or in a rulebook that it extends.
     """
-    texts = {path.stem: text for path, text in _texts(search_path)}
+    texts = {path.stem: text for path, text in search.rulebook_texts(search_path)}
     bases = {book: _EXTENDS.findall(text) for book, text in texts.items()}
     rules: dict[str, dict[str, frozenset[str]]] = {}
     meanings: dict[str, dict[str, frozenset[str]]] = {}
@@ -100,10 +104,3 @@ def rules_reading(
         if own:
             found[book] = own
     return found
-
-
-def _texts(search_path: Sequence[Path]) -> Iterator[tuple[Path, str]]:
-    for name in search.available_rulebooks(search_path):
-        path = search.find_rulebook(name, search_path)
-        with suppress(RulecError):
-            yield path, search.read_bytes(path).decode(errors="replace")
