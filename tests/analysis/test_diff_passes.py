@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from rulec.analysis.counterexample import Contest, counterexample
 from rulec.analysis.diff.comparison_matrix import CONVERSE, growing_matrices
-from rulec.analysis.diff.distinct_names import with_distinct_names
 from rulec.analysis.diff.rule_comparison import (
     common_types,
     compare,
@@ -22,6 +21,7 @@ from rulec.analysis.diff.rulebook_comparison import (
     diff_rulebooks,
     rules_matching,
     setting_pairs,
+    with_distinct_names,
 )
 from rulec.analysis.lineage.rule_lineage import (
     BookHeader,

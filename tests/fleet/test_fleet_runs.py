@@ -26,11 +26,11 @@ from rulec.fleet.finding_columns import COLUMNS
 from rulec.fleet.judged_by import judged_by
 from rulec.fleet.runs import unit_slices
 from rulec.fleet.runs import work_units as units_module
+from rulec.fleet.runs.engines import judged_locally
 from rulec.fleet.runs.fleet_folder import FleetFolder
 from rulec.fleet.runs.fleet_inputs import fleet_inputs
 from rulec.fleet.runs.fleet_run import FleetSettings, run_fleet
 from rulec.fleet.runs.fleet_summary import as_text
-from rulec.fleet.runs.local_engine import judged_locally
 from rulec.fleet.runs.work_units import work_units
 from rulec.recordings.recording_format import RecordingSource
 from rulec.trace.formats.arrow.parquet import rows_of_columns

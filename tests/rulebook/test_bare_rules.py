@@ -3,7 +3,7 @@
 import pytest
 
 from rulec.resources import rulebooks_folder
-from rulec.rulebook.batch.bare_rules import bare_rules
+from rulec.rulebook.batch.batch_check import bare_rules
 from rulec.rulebook.reading.rulebook_reader import read_rulebook
 
 

@@ -10,7 +10,6 @@ from types import MappingProxyType
 from typing import Any
 
 from rulec.analysis.believable_states import declarations_read
-from rulec.analysis.diff.distinct_names import with_distinct_names
 from rulec.analysis.diff.rule_comparison import RuleComparison, RuleRelation, compare
 from rulec.analysis.lineage.rule_lineage import BookLineage, ConstantHistory, ConstantKind
 from rulec.analysis.shared_compilation import at_one_step, compile_shared
@@ -18,6 +17,7 @@ from rulec.analysis.shared_vocabulary import shared_vocabulary
 from rulec.analysis.trace_display import TraceTable, special_types, trace_table
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.logic.free_names import names_in
+from rulec.rulebook.files.edition_names import edition_names
 from rulec.rulebook.rulebook_model import Remark, Rule, Rulebook, cited_law
 from rulec.trace import Trace
 from rulec.value_display import Rows, short_repr
@@ -288,3 +288,18 @@ def _labelled(comparison: RuleComparison, first: str, second: str, rule: str) ->
         first_forbids=named(comparison.first_forbids, first, second),
         second_forbids=named(comparison.second_forbids, second, first),
     )
+
+
+def with_distinct_names(books: Sequence[Rulebook]) -> list[Rulebook]:
+    """The rulebooks, those of one name with their files, or else numbers, after it."""
+    names = edition_names([book.name for book in books], [_own_file(book) for book in books])
+    return [
+        book if book.name == name else replace(book, name=name)
+        for book, name in zip(books, names, strict=True)
+    ]
+
+
+def _own_file(book: Rulebook) -> str:
+    """The file of a rule that the rulebook has of its own; empty if there is none."""
+    spans = (rule.span for rule in book.rules if rule.book == book.name)
+    return next((span.source.name for span in spans if span is not None), "")

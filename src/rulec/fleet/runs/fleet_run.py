@@ -15,13 +15,16 @@ from rulec.files.left_alone import LeftAlone
 from rulec.fleet.carried_rulebook import CompiledRules, carried
 from rulec.fleet.judged_by import JudgedBy, judged_by
 from rulec.fleet.runs.drive_keys import memory_given_back
-from rulec.fleet.runs.fleet_engine import Engine
+from rulec.fleet.runs.engines import (
+    Engine,
+    judged_locally,
+    local_engine,
+    ray_engine,
+    spark_engine,
+)
 from rulec.fleet.runs.fleet_folder import FleetFolder
 from rulec.fleet.runs.fleet_inputs import fleet_inputs
 from rulec.fleet.runs.fleet_tally import FleetTally
-from rulec.fleet.runs.local_engine import judged_locally, local_engine
-from rulec.fleet.runs.ray_engine import ray_engine
-from rulec.fleet.runs.spark_engine import spark_engine
 from rulec.fleet.runs.unit_work import UnitWorker
 from rulec.fleet.runs.work_units import WorkUnit, work_units
 from rulec.recordings.recording_format import RecordingSource

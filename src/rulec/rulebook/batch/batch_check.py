@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -16,7 +17,6 @@ from rulec.diagnostics.fault_messages import contained
 from rulec.files.file_messages import NOTHING_LEFT
 from rulec.files.left_alone import LeftAlone
 from rulec.files.source_detection import beginning_of, first_word_at
-from rulec.rulebook.batch.bare_rules import bare_rules
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import EXTENDS_CIRCLE, NAME_NOT_FOUND
 from rulec.rulebook.files.source_walk import SUFFIX, FoundSources, sources_below
@@ -250,3 +250,29 @@ def _matching(pattern: str, excluded: Exclusion | None) -> FoundSources:
             )
         )
     return sources
+
+
+# What cites an empty text cites nothing.
+_COMMENT_OR_TEXT = re.compile(r'\bcite\s*"[ \t]*"|"[^"\n]*"|#[^\n]*')
+_RULE = re.compile(r"(?:^|[\s}])(override\s+)?(?:hard|soft)\s+rule\s+(\w+)|\bconfirm\s+rule\b")
+_CITE = re.compile(r"\bcite\b")
+_EXAMPLE = re.compile(r"\b(?:accept|reject)\b")
+
+
+def bare_rules(text: str) -> tuple[list[str], list[str]]:
+    """The rules that cite nothing, and those that have no example; overrides are left out.
+
+    They are found without parsing, for a remark on files without mistakes.
+    """
+    plain = _COMMENT_OR_TEXT.sub(" ", text)
+    heads = [*_RULE.finditer(plain)]
+    ends = [*[head.start() for head in heads], len(plain)][1:]
+    rules = [
+        (head[2], plain[head.end() : end])
+        for head, end in zip(heads, ends, strict=True)
+        if head[2] and not head[1]
+    ]
+    return (
+        [name for name, body in rules if not _CITE.search(body)],
+        [name for name, body in rules if not _EXAMPLE.search(body)],
+    )

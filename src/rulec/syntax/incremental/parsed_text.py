@@ -12,7 +12,6 @@ from rulec.files.source_detection import is_foreign
 from rulec.syntax import tree
 from rulec.syntax.assembly import Part, assemble_file
 from rulec.syntax.file_pieces import Piece, RulePieces
-from rulec.syntax.incremental.growing_source import GrowingSource
 from rulec.syntax.messages.lookalikes import HIDES, hidden_meaning
 from rulec.syntax.parser import PieceReader, by_place, parse
 from rulec.syntax.scanner import Token, checked, scan
@@ -26,6 +25,37 @@ _MOST_GROWTH = 64
 
 _LITTLE_GROWTH = 8
 """In a pause, a source is rebuilt if it is this many times longer than its text."""
+
+
+class GrowingSource(Source):
+    """The texts of a file's parts, in the order in which they were read.
+
+    Text that replaces a part is appended; the replaced text stays, unused. Each text consists of
+    whole lines. A source is equal only to itself, whatever is appended.
+    """
+
+    __slots__ = ()
+
+    def append(self, text: str) -> tuple[int, int]:
+        """Append lines; returns where they begin: line (from 1) and character (from 0)."""
+        starts = self._lines()
+        offset = len(self.text)
+        if offset and not self.text.endswith("\n"):
+            object.__setattr__(self, "text", self.text + "\n")
+            offset += 1
+            starts.append(offset)
+        first = len(starts)
+        at = 0
+        while (at := text.find("\n", at) + 1) > 0:
+            starts.append(offset + at)
+        object.__setattr__(self, "text", self.text + text)
+        return first, offset
+
+    def __eq__(self, other: object) -> bool:
+        return self is other
+
+    def __hash__(self) -> int:
+        return id(self)
 
 
 @dataclass(frozen=True, slots=True)
