@@ -9,10 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 from math import floor
+from typing import Any
 
 from rulec.logic import formula as ltl
+from rulec.logic.fold import Algebra, fold
 from rulec.logic.linear_comparison import stands
 from rulec.vocabulary import Enumeration, Vocabulary
 
@@ -52,8 +55,9 @@ class _Search:
         if self.left < 0:
             return True
         first: _Open | None = None
+        algebra = _algebra(known)
         for formula in self.formulas:
-            value = _truth(formula, known)
+            value = fold(formula, algebra)
             if value is False:
                 return False
             if isinstance(value, _Open) and first is None:
@@ -64,54 +68,42 @@ class _Search:
         return any(self.finds({**known, first.subject: value}) for value in values)
 
 
-def _truth(formula: ltl.Formula, known: Mapping[object, object]) -> bool | _Open:
-    match formula:
-        case ltl.Constant(value):
-            return value
-        case ltl.Atom():
-            subject = ltl.subject_of(formula)
-            known_value = known.get(subject)
-            return _Open(subject) if known_value is None else known_value == (formula.value or True)
-        case ltl.Comparison(terms, relation, limit):
-            number = known.get(terms)
-            return _Open(terms) if number is None else stands(number, relation, limit)  # type: ignore[arg-type]
-        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
-            return _negated(_truth(operand, known))
-        case ltl.Binary(operator, left, right) if operator in _OF_ONE_STATE:
-            first, second = _truth(left, known), _truth(right, known)
-            return _joined(operator, first, second)
-    known_value = known.get(formula)
-    return _Open(formula) if known_value is None else known_value is True
+def _algebra(known: Mapping[object, object]) -> Algebra[bool | _Open]:
+    """The truth of formulas in a state of which something is known, or what else decides it."""
 
+    def proposition(asked: ltl.Proposition) -> bool | _Open:
+        if isinstance(asked, ltl.Atom):
+            subject = ltl.subject_of(asked)
+            value = known.get(subject)
+            return _Open(subject) if value is None else value == (asked.value or True)
+        number: Any = known.get(asked.terms)
+        return _Open(asked.terms) if number is None else stands(number, asked.relation, asked.limit)
 
-_OF_ONE_STATE = frozenset(
-    (
-        *(ltl.BinaryOperator.AND, ltl.BinaryOperator.OR, ltl.BinaryOperator.IMPLIES),
-        *(ltl.BinaryOperator.IFF, ltl.BinaryOperator.XOR),
+    def anything(part: ltl.Formula, *_: object) -> bool | _Open:
+        value = known.get(part)
+        return _Open(part) if value is None else value is True
+
+    return Algebra(
+        proposition=proposition,
+        constant=bool,
+        negation=lambda value: value if isinstance(value, _Open) else not value,
+        conjunction=partial(_joined, settles=False),
+        disjunction=partial(_joined, settles=True),
+        equivalence=_equivalence,
+        identity=anything,
+        operation=anything,
     )
-)
 
 
-def _negated(value: bool | _Open) -> bool | _Open:
-    return value if isinstance(value, _Open) else not value
+def _joined(first: bool | _Open, second: bool | _Open, *, settles: bool) -> bool | _Open:
+    if first is settles or second is settles:
+        return settles
+    return first if isinstance(first, _Open) else second
 
 
-def _joined(
-    operator: ltl.BinaryOperator, first: bool | _Open, second: bool | _Open
-) -> bool | _Open:
-    match operator:
-        case ltl.BinaryOperator.IMPLIES:
-            return _joined(ltl.BinaryOperator.OR, _negated(first), second)
-        case ltl.BinaryOperator.AND | ltl.BinaryOperator.OR:
-            settles = operator is ltl.BinaryOperator.OR
-            if first is settles or second is settles:
-                return settles
-            return first if isinstance(first, _Open) else second
-    if isinstance(first, _Open):
-        return first
-    if isinstance(second, _Open):
-        return second
-    return (first is second) is (operator is ltl.BinaryOperator.IFF)
+def _equivalence(first: bool | _Open, second: bool | _Open) -> bool | _Open:
+    unknown = [value for value in (first, second) if isinstance(value, _Open)]
+    return unknown[0] if unknown else first is second
 
 
 def _values(
