@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.map_files import MAP_FORMATS
-from rulec.report.json_document import JsonDocument, JsonPart, as_indented
+from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 from rulec.report.text import markdown
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.terminal_text import broken, cut, table_lines
@@ -166,21 +166,7 @@ def as_json(listed: Sequence[ListedFormat]) -> str:
     """Write an object with the formats of recordings and of maps."""
     return as_indented(
         FormatsDocument(
-            recordings=[
-                RecordingFormatData(
-                    name=form.name,
-                    title=form.title,
-                    files=form.files,
-                    takes_map=form.takes_map,
-                    words=form.words,
-                )
-                for form in listed
-                if not form.is_map
-            ],
-            maps=[
-                MapFormatData(name=form.name, title=form.title, files=form.files)
-                for form in listed
-                if form.is_map
-            ],
+            recordings=[filled(RecordingFormatData, form) for form in listed if not form.is_map],
+            maps=[filled(MapFormatData, form) for form in listed if form.is_map],
         )
     )
