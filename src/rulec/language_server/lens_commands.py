@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Awaitable, Callable
 
 from lsprotocol import types as lsp
 
@@ -27,64 +28,57 @@ def add_commands(server: EditorSession) -> None:
     Compilation runs in the background, so that typing goes on. Answers are shown and returned.
     """
 
-    @server.command(lenses.RUN)
-    async def run(uri: str, rule: str) -> str:
-        subject = _rule_asked_about(server, uri, rule)
-        if isinstance(subject, str):
-            return _shown(server, subject)
-        answer = await _examples(server, subject)
-        return _shown(server, answer if isinstance(answer, str) else answer.in_words(rule))
+    def command(name: str) -> Callable[[_Ask], None]:
+        """Register what a command asks; a reason why it has no answer is shown, too."""
 
-    @server.command(lenses.ENGLISH)
+        def registered(ask: _Ask) -> None:
+            @server.command(name)
+            async def asked(uri: str, rule: str) -> str:
+                try:
+                    return await ask(uri, rule)
+                except (_NoAnswerError, RulecError) as reason:
+                    return _shown(server, str(reason))
+
+        return registered
+
+    @command(lenses.RUN)
+    async def run(uri: str, rule: str) -> str:
+        answer = await _examples(server, _rule_asked_about(server, uri, rule))
+        return _shown(server, answer.in_words(rule))
+
+    @command(lenses.ENGLISH)
     async def in_english(uri: str, rule: str) -> str:
-        subject = _rule_asked_about(server, uri, rule)
-        if isinstance(subject, str):
-            return _shown(server, subject)
-        _, book, of_rule = subject
+        _, book, of_rule = _rule_asked_about(server, uri, rule)
         return _shown(server, await asyncio.to_thread(english, book, of_rule))
 
-    @server.command(lenses.COMPARE)
+    @command(lenses.COMPARE)
     async def compare(uri: str, rule: str) -> str:
-        subject = _rule_asked_about(server, uri, rule)
-        if isinstance(subject, str):
-            return _shown(server, subject)
-        if len(subject[0].chain.books) < 2:
-            return _shown(server, "the rulebook extends no other")
-        names, book, of_rule = subject
+        names, book, of_rule = _rule_asked_about(server, uri, rule)
+        if len(names.chain.books) < 2:
+            raise _NoAnswerError("the rulebook extends no other")
         above = names.chain.books[-2].span.source.name
-        try:
-            with server.editor.as_shown():
-                parent = read_rulebook(above, (), book.at, book.traffic).rulebook
-            answer = await asyncio.to_thread(parent_answer, book, parent, rule)
-        except RulecError as error:
-            return _shown(server, str(error))
+        with server.editor.as_shown():
+            parent = read_rulebook(above, (), book.at, book.traffic).rulebook
+        answer = await asyncio.to_thread(parent_answer, book, parent, rule)
         server.answers.keep_few()
         server.answers.parents[lenses.parent_key(of_rule, names)] = answer
         server.refresh_lenses()
         return _shown(server, answer.text)
 
-    @server.command(lenses.INSERT)
+    @command(lenses.INSERT)
     async def insert(uri: str, rule: str) -> str:
-        subject = _rule_asked_about(server, uri, rule)
-        if isinstance(subject, str):
-            return _shown(server, subject)
-        found = await _examples(server, subject)
-        if isinstance(found, str):
-            return _shown(server, found)
+        await _examples(server, _rule_asked_about(server, uri, rule))
         # Typing goes on meanwhile: the place is that in the text of now.
-        subject = _rule_asked_about(server, uri, rule)
-        if isinstance(subject, str):
-            return _shown(server, subject)
-        names, _, of_rule = subject
+        names, _, of_rule = _rule_asked_about(server, uri, rule)
         answer = server.answers.of_examples(of_rule)
         if answer is None:
-            return _shown(server, f"{rule} has been changed meanwhile: ask again")
+            raise _NoAnswerError(f"{rule} has been changed meanwhile: ask again")
         missing = answer.missing[0] if answer.missing else ""
         change = lenses.inserted_example(names, rule, missing) if missing else None
         if not of_rule.examples:
-            return _shown(server, f"{rule} has no example: `rulec show` proposes the first ones")
+            raise _NoAnswerError(f"{rule} has no example: `rulec show` proposes the first ones")
         if change is None:
-            return _shown(server, f"{rule}: every edge is tested")
+            raise _NoAnswerError(f"{rule}: every edge is tested")
         if not _takes_edits(server):
             return _shown(server, missing)
         edit = workspace_edit({uri: [change]}, server.editor)
@@ -92,32 +86,32 @@ def add_commands(server: EditorSession) -> None:
         return missing
 
 
-_MISTAKES = "the rulebook has mistakes: fix them first"
+class _NoAnswerError(Exception):
+    """Why a command has no answer."""
+
+
+_Ask = Callable[[str, str], Awaitable[str]]
+"""Answers about a document, by its address, and a rule's name."""
 
 RuleInDocument = tuple[DocumentNames, Rulebook, Rule]
 
 
-def _rule_asked_about(server: EditorSession, uri: str, name: str) -> RuleInDocument | str:
-    """A document, its rulebook and a rule in it, or the reason why they are not available."""
+def _rule_asked_about(server: EditorSession, uri: str, name: str) -> RuleInDocument:
+    """A document, its rulebook and a rule in it. Raises _NoAnswerError if there are none."""
     known = server.names(uri)
-    if known is None:
-        return _MISTAKES
+    resolved = None if known is None else known[0].checked.resolved
+    if known is None or resolved is None or resolved.rulebook is None:
+        raise _NoAnswerError("the rulebook has mistakes: fix them first")
     names, _ = known
-    resolved = names.checked.resolved
-    if resolved is None or resolved.rulebook is None:
-        return _MISTAKES
     rule = lenses.rule_of(names, name)
     if rule is None:
-        return f"the rulebook has no rule `{name}`"
+        raise _NoAnswerError(f"the rulebook has no rule `{name}`")
     return names, resolved.rulebook, rule
 
 
-async def _examples(server: EditorSession, subject: RuleInDocument) -> ExampleAnswer | str:
+async def _examples(server: EditorSession, subject: RuleInDocument) -> ExampleAnswer:
     _, book, rule = subject
-    try:
-        answer = await asyncio.to_thread(example_answer, book, rule)
-    except RulecError as error:
-        return str(error)
+    answer = await asyncio.to_thread(example_answer, book, rule)
     server.answers.keep_few()
     server.answers.examples[rule.formula] = rule.examples, answer
     server.refresh_lenses()

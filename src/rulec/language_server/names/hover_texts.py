@@ -20,7 +20,7 @@ from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.names.referenced_names import formulas_of, parts_of
 from rulec.rulebook.overlay.rulebook_overlay import Value, in_force
 from rulec.syntax import tree
-from rulec.syntax.tree_printer import print_formula
+from rulec.syntax.tree_printer import print_formula, print_in_force, print_parameters
 
 
 def hover_text(names: DocumentNames, occurrence: Occurrence) -> str:
@@ -48,7 +48,8 @@ def _parts(names: DocumentNames, symbol: NamedSymbol) -> Iterator[str]:
             yield from _parameter(names, symbol)
         case "definition":
             item = laid.definitions[symbol.name]
-            yield _code(f"{_head(item)} =\n  {print_formula(item.body, 'written')}")
+            head = f"define {item.name.text}{print_parameters(item.parameters)}"
+            yield _code(f"{head} =\n  {print_formula(item.body, 'written')}")
             yield from described(item.span)
         case "variable":
             kind = _type_of(names, symbol)
@@ -93,14 +94,9 @@ def _rule(names: DocumentNames, name: str) -> Iterator[str]:
         yield f"Rule `{name}`, which this rulebook no longer has."
         return
     item = entry.item
-    heads = ", ".join(
-        f"{parameter.name.text}: {parameter.type.text}"
-        for parameter in item.variables
-        if parameter.type is not None
-    )
     level = f" in {item.level.text}" if item.level else ""
     weight = f" weight {item.weight.text}" if item.weight else ""
-    about = f"({heads})" if heads else ""
+    about = print_parameters(item.variables)
     yield _code(f"{item.strength or 'hard'} rule {name}{about}{level}{weight}")
     if item.says:
         yield item.says.value
@@ -112,17 +108,7 @@ def _rule(names: DocumentNames, name: str) -> Iterator[str]:
     if item.source:
         yield f"<{item.source.value}>" if "://" in item.source.value else item.source.value
     if item.in_force:
-        since, until = item.in_force.since, item.in_force.until
-        yield (
-            " ".join(
-                [
-                    "In force",
-                    *([f"from {since}"] if since else []),
-                    *([f"until {until}"] if until else []),
-                ]
-            )
-            + "."
-        )
+        yield f"{print_in_force(item.in_force).capitalize()}."
     if item.require is not None:
         yield _code(f"require {print_formula(item.require, 'written')}")
 
@@ -165,11 +151,7 @@ def _holds(value: Value, values: list[Value], day: str) -> bool:
 def _written(value: Value) -> str:
     item = value.item
     assert not isinstance(item.value, bool), "only an option is on or off"
-    dates = item.in_force
-    when = ""
-    if dates is not None:
-        when = f" from {dates.since}" if dates.since else ""
-        when += f" until {dates.until}" if dates.until else ""
+    when = print_in_force(item.in_force).removeprefix("in force") if item.in_force else ""
     return f"`{print_formula(item.value, 'written')}`{when}"
 
 
@@ -180,14 +162,6 @@ def value_text(number: NumberByCases) -> str:
         when = " and ".join(map(formula_text, conditions))
         parts.append(f"{linear.text} if {when}" if when else linear.text)
     return "; ".join(parts)
-
-
-def _head(item: tree.DefineItem) -> str:
-    about = ", ".join(
-        parameter.name.text + (f": {parameter.type.text}" if parameter.type else "")
-        for parameter in item.parameters
-    )
-    return f"define {item.name.text}{f'({about})' if about else ''}"
 
 
 def _type_of(names: DocumentNames, symbol: NamedSymbol) -> str:

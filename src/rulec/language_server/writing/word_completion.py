@@ -18,6 +18,7 @@ from rulec.settings import search_path
 from rulec.syntax import tree
 from rulec.syntax.keywords import CLAUSE_WORDS
 from rulec.syntax.messages.parse_context import spelling
+from rulec.syntax.tree_printer import print_parameter
 from rulec.vocabulary import Quantity
 from rulec.vocabulary.dimensions import DIMENSIONS, Dimension
 
@@ -342,10 +343,7 @@ def signature(names: DocumentNames, offset: int) -> lsp.SignatureHelp | None:
         return None
     definition = names.chain.names.constants.overlay.definitions.get(name)
     if definition is not None:
-        labels = [
-            parameter.name.text + (f": {parameter.type.text}" if parameter.type else "")
-            for parameter in definition.parameters
-        ]
+        labels = [*map(print_parameter, definition.parameters)]
         span = definition.span
     else:
         labels = types
