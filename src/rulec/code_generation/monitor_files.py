@@ -36,7 +36,10 @@ def monitor_texts(layout: MonitorLayout) -> dict[str, str]:
         f"{name}.h": c_header(layout),
         f"{name}.c": c_source(layout),
         f"{name}.hpp": cpp_header(layout),
-        **{file: filled(_TEXTS / file, {"name": name}) for file in ("Makefile", "CMakeLists.txt")},
+        **{
+            file: filled(_TEXTS / f"{file}.in", {"name": name})
+            for file in ("Makefile", "CMakeLists.txt")
+        },
     }
 
 

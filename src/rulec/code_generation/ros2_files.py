@@ -22,20 +22,15 @@ _TEXTS = Path(__file__).parent / "ros2_texts"
 _SPELLING = FieldSpelling("uint8", "float64", "255", "1.0e300")
 """A number beyond 2^53, so that a field left at this default is an unknown number."""
 
-_FIXED = {
-    "package.xml": "package.xml",
-    "CMakeLists.txt": "CMakeLists.txt",
-    "launch/monitor.launch.py": "launch.txt",
-}
-"""Files that depend on the monitor's name alone -> their texts."""
-
 
 def ros2_texts(layout: MonitorLayout) -> dict[str, str]:
     """The files of the package, by their paths in its folder."""
     name = prefix_of(layout.rulebook.name)
     named = {"name": name}
     return {
-        **{file: filled(_TEXTS / f"{text}", named) for file, text in _FIXED.items()},
+        "package.xml": filled(_TEXTS / "package.xml.in", named),
+        "CMakeLists.txt": filled(_TEXTS / "CMakeLists.txt.in", named),
+        "launch/monitor.launch.py": filled(_TEXTS / "monitor.launch.py.in", named),
         "msg/Object.msg": _message("Object", _object_fields(layout), layout, *_types(layout)),
         "msg/State.msg": _message("State", _state_fields(layout), layout, *_values(layout, 0)),
         "msg/Verdict.msg": _message("Verdict", (), layout, *_rules(layout)),

@@ -23,18 +23,18 @@ _OF_STATE = frozenset(
 )
 """The sizes of arrays in the monitor's state, by their names in the code."""
 
-_FIXED = {"Cargo.toml": "Cargo.toml", "build.rs": "build.rs", "tests/steps.rs": "steps.rs"}
-"""Files that depend on the monitor's name alone -> their texts."""
-
 
 def crate_texts(layout: MonitorLayout) -> dict[str, str]:
     """The files of the crate, by their paths in its folder."""
     name = prefix_of(layout.rulebook.name)
+    named = {"name": name}
     return {
-        **{file: filled(_TEXTS / f"{text}", {"name": name}) for file, text in _FIXED.items()},
+        "Cargo.toml": filled(_TEXTS / "Cargo.toml.in", named),
+        "build.rs": filled(_TEXTS / "build.rs", named),
         f"c/{name}.h": c_header(layout),
         f"c/{name}.c": c_source(layout),
         "src/lib.rs": rust_source(layout),
+        "tests/steps.rs": filled(_TEXTS / "steps.rs", named),
     }
 
 
