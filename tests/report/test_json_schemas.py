@@ -171,7 +171,7 @@ def test_a_compiled_rulebook_and_a_saved_monitor_keep_to_theirs(run, monkeypatch
     run(["compile", "esterle2019", "-o", str(tmp_path / "out")])
     compiled = json.loads((tmp_path / "out" / "esterle2019.json").read_text())
     validator("compiled").validate(compiled)
-    assert compiled["version"] == 6
+    assert compiled["version"] == 7
     path = str(tmp_path / "out" / "esterle2019.json")
     proofs = json.loads(run(["compile", "--check", path, "--json"]))
     validator("proofs").validate(proofs)
