@@ -161,7 +161,8 @@ def test_where_all_rows_are_there_a_gap_is_reported_and_the_others_are_judged(tr
 def test_another_step_is_reported_with_its_reason(traces, folder):
     column = traces.column_names.index("step_s")
     slower = traces.set_column(column, "step_s", pyarrow.array([0.25] * len(traces)))
-    found = FleetJudge(fleet_file(folder))(slower)
+    for_one_step = rulec.compile_rulebook(fleet_file(folder), step_s=0.1)
+    found = FleetJudge(for_one_step)(slower)
     rows = rows_of(found, "drive", "outcome", "because")
     assert len(rows) == 12
     (row,) = set(rows)

@@ -106,8 +106,24 @@ def in_layers(found, drive):
     every, last = round(per_layer), len(graph.layers) - 1
     if abs(per_layer - every) > 1e-6 or drive.arrays.n_states < every * last + 1:
         return None
-    arrays = drive.arrays.at(range(0, every * last + 1, every))
-    return replace(arrays, step_s=graph.step_s, ends="complete").trace()
+    trace = of_some_states(drive.arrays.trace(), range(0, every * last + 1, every))
+    return replace(trace, step_s=graph.step_s, ends="complete")
+
+
+def of_some_states(trace, chosen):
+    """The trace of some of its states, and the objects that are present in any of them."""
+    there = {}
+    for name in trace.objects:
+        first, last = trace.present.get(name, (0, len(trace.states) - 1))
+        there[name] = [n for n, state in enumerate(chosen) if first <= state <= last]
+    return replace(
+        trace,
+        objects={name: kind for name, kind in trace.objects.items() if there[name]},
+        states=tuple([trace.states[state] for state in chosen]),
+        present={
+            name: (own[0], own[-1]) for name, own in there.items() if 0 < len(own) < len(chosen)
+        },
+    )
 
 
 def on_an_edge(found, nodes, motion):
