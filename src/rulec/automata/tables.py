@@ -104,6 +104,14 @@ def build_machine(
     )
 
 
+def bits_at(places: Sequence[int]) -> int:
+    """The bit set of some places (at least one, ascending), in linear time."""
+    row = bytearray(places[-1] // 8 + 1)
+    for place in places:
+        row[place // 8] |= 1 << place % 8
+    return int.from_bytes(row, "little")
+
+
 def places_of(members: int) -> Iterator[int]:
     """The positions of the set bits; removing them one by one would be quadratic for large sets."""
     digits = f"{members:b}"[::-1]

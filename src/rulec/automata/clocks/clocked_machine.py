@@ -18,6 +18,7 @@ from rulec.automata.tables import (
     MOST_STEPS_AHEAD,
     SizeError,
     VerdictTable,
+    bits_at,
     build_machine,
     loop_verdicts,
 )
@@ -121,14 +122,18 @@ def _with_last_clock(table: MealyMonitor, codes: Sequence[int], span: Range) -> 
     table really waits for both. Raises SizeError.
     """
     half = len(table.letters) // 2
-    # By the class that is read if the clock is due, and if it is not: the letters, as bits
+    members: dict[tuple[int, int, int], list[int]] = {}
+    each = zip(codes, table.letters[:half], table.letters[half:], strict=False)
+    for letter, key in enumerate(each):
+        members.setdefault(key, []).append(letter)
+    # By the class that is read if the clock is not due, and if it is: the letters, as bits
     moves: dict[tuple[int, int, int], int] = {}
-    for letter, code in enumerate(codes[:half]):
+    for (code, *classes), letters in members.items():
         values = [register_after(span, due << 1, *_SIDES[code]) & 1 for due in (0, 1)]
-        idle, due = (table.letters[letter + half * value] for value in values)
+        idle, due = (classes[value] for value in values)
         if IMPOSSIBLE not in (idle, due):
             move = code, idle, due
-            moves[move] = moves.get(move, 0) | 1 << letter
+            moves[move] = moves.get(move, 0) | bits_at(letters)
     reach = _until_it_matters(table, moves)
     after = cache(partial(register_after, span))
     numbers = {(0, Register.at_first): 0}
@@ -181,9 +186,10 @@ def _settled(machine: MealyMonitor) -> MealyMonitor:
         zip(*machine.successors, strict=True), zip(*machine.outputs, strict=True), strict=True
     )
     settled = [loop_verdicts(list(zip(*column, strict=True)), bool) for column in columns]
-    classes = [0] * len(settled)
+    members: list[list[int]] = [[] for _ in settled]
     for letter, number in enumerate(machine.letters):
-        classes[number] |= 1 << letter
+        members[number].append(letter)
+    classes = [bits_at(letters) for letters in members]
     outputs = [list(row) for row in zip(*settled, strict=True)]
     rows = VerdictTable(classes, machine.successors, outputs)
     return build_machine(rows, (), len(machine.letters))

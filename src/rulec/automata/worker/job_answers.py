@@ -22,7 +22,7 @@ from rulec.automata.compiler_jobs import (
     Translated,
 )
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
-from rulec.automata.tables import SizeError, build_machine, places_of, rows_of
+from rulec.automata.tables import SizeError, build_machine, rows_of
 from rulec.automata.worker.random_words import agrees, outline, outlined
 from rulec.logic.bounds import bound_in_steps, in_steps
 from rulec.logic.codec import from_data, to_data
@@ -82,18 +82,16 @@ def _apart(job: Job, compiler: Compiler) -> ClockedMachine | Failed:
     every, possible = (1 << count_letters(job.reads)) - 1, compiler.possible(job)
     propositions = letters_with(job.reads, job.propositions)
     true_in = _letters_of(parts, propositions, every)
-    groups = _split([every if possible is None else possible], true_in.values())
-    groups.sort(key=lambda letters: letters & -letters)
-    n_groups, n_values = len(groups), 1 << len(asked)
+    groups, firsts = _groups(true_in.values(), every if possible is None else possible, job.reads)
+    n_groups, n_values = len(firsts), 1 << len(asked)
     n_letters = n_groups * n_values
     if n_letters > MOST_LETTERS:
         return Failed("apart")
     # A letter of the table is a group and a value of each clock, as bits.
-    firsts = [letters & -letters for letters in groups]
-    held_in: dict[Proposition, tuple[int, Sequence[int]]] = {
-        part: (sum([1 << n for n, first in enumerate(firsts) if first & own]), range(n_values))
-        for part, own in (true_in | propositions).items()
-    }
+    held_in: dict[Proposition, tuple[int, Sequence[int]]] = {}
+    for part, own in (true_in | propositions).items():
+        row = _row(own, len(groups))
+        held_in[part] = _bits([row[first] for first in firsts]), range(n_values)
     for place, clock in enumerate(asked):
         held = [values for values in range(n_values) if values >> place & 1]
         held_in[clock.atom] = (1 << n_groups) - 1, held
@@ -112,8 +110,7 @@ def _apart(job: Job, compiler: Compiler) -> ClockedMachine | Failed:
     translated = compiler.rest(job, job.formula, letters, n_letters)
     rows = rows_of(translated.automaton, sum([1 << letter for letter in met]))
     table = build_machine(rows, (), n_letters)
-    numbers = _numbered(groups, job.reads)
-    machine = ClockedMachine(job.reads, numbers, clocks, table, translated.hoa)
+    machine = ClockedMachine(job.reads, groups, clocks, table, translated.hoa)
     claim = _Claim(table, present, letters, job.semantics)
 
     def agree() -> bool:
@@ -128,18 +125,38 @@ def _apart(job: Job, compiler: Compiler) -> ClockedMachine | Failed:
     return machine
 
 
+def _row(members: int, n_letters: int) -> str:
+    """A set of letters, given as bits, with a 1 or a 0 for each: bit by bit it takes far longer."""
+    return f"{members:0{n_letters}b}"[::-1]
+
+
+def _bits(row: Sequence[str]) -> int:
+    return int("".join(reversed(row)), 2)
+
+
 def _codes(left: int, right: int, n_letters: int) -> tuple[int, ...]:
     """For each letter 1 if it is among the first ones, plus 2 if among the others, as bits."""
-    return tuple([(left >> n & 1) + 2 * (right >> n & 1) for n in range(n_letters)])
+    rows = zip(_row(left, n_letters), _row(right, n_letters), strict=True)
+    return tuple([int(one) + 2 * int(other) for one, other in rows])
 
 
-def _numbered(groups: Sequence[int], reads: Sequence[Read | NumberRead]) -> tuple[int, ...]:
-    """For each letter the number of its group, ``IMPOSSIBLE`` for those in none."""
-    numbers = [IMPOSSIBLE] * count_letters(reads)
-    for number, letters in enumerate(groups):
-        for letter in places_of(letters):
-            numbers[letter] = number
-    return tuple(numbers)
+def _groups(
+    sets: Iterable[int], possible: int, reads: Sequence[Read | NumberRead]
+) -> tuple[tuple[int, ...], list[int]]:
+    """For each letter the number of those that no set tells from it, and the first of each number.
+
+    ``IMPOSSIBLE`` for those that are not ``possible``.
+    """
+    n_letters = count_letters(reads)
+    numbers: dict[tuple[str, ...], int] = {}
+    groups, firsts = [IMPOSSIBLE] * n_letters, list[int]()
+    keys = zip(*[_row(members, n_letters) for members in (possible, *sets)], strict=True)
+    for letter, key in enumerate(keys):
+        if key[0] == "1":
+            groups[letter] = numbers.setdefault(key, len(numbers))
+            if groups[letter] == len(firsts):
+                firsts.append(letter)
+    return tuple(groups), firsts
 
 
 def _letters_of(
@@ -148,15 +165,6 @@ def _letters_of(
     """The letters in which each part of an outline is true, from those of its propositions."""
     of_letters = bit_sets(propositions, every)
     return {atom: fold(part, of_letters) for part, atom in parts.items()}
-
-
-def _split(groups: Iterable[int], sets: Iterable[int]) -> list[int]:
-    """The groups, as bits, split by sets."""
-    apart = list(groups)
-    for members in sets:
-        halves = [half for group in apart for half in (group & members, group & ~members)]
-        apart = [half for half in halves if half]
-    return apart
 
 
 def _written_out(formula: Formula) -> int:
@@ -215,20 +223,21 @@ def _prove(claim: _Claim) -> None:
     """Raise UnprovableError unless a machine judges all words as its formula does."""
     machine = claim.machine
     # Letters that neither the formula nor the table tells apart count as one: these are few.
+    rows = [_row(letters, len(machine.letters)) for letters in claim.true_in.values()]
     groups = [
-        (number, group)
-        for number, letters in enumerate(_classes_of(machine.letters))
-        for group in _split([letters], claim.true_in.values())
+        key
+        for key in dict.fromkeys(zip(machine.letters, *rows, strict=True))
+        if key[0] != IMPOSSIBLE
     ]
+    columns = list(zip(*groups, strict=True))
     places: dict[Formula, int] = {
-        atom: sum([1 << place for place, (_, members) in enumerate(groups) if members & letters])
-        for atom, letters in claim.true_in.items()
+        atom: _bits(column) for atom, column in zip(claim.true_in, columns[1:], strict=True)
     }
     prove_words(
         to_data(claim.formula),
         lambda atom: places[from_data(atom)],
         {
-            "letters": [number for number, _ in groups],
+            "letters": columns[0],
             "following": machine.successors,
             "accepting": machine.outputs,
             "dead": machine.rejecting_sink,
@@ -236,12 +245,3 @@ def _prove(claim: _Claim) -> None:
         },
         ends=claim.semantics == "finite",
     )
-
-
-def _classes_of(letters: Sequence[int]) -> list[int]:
-    """The letters of each class, as bits."""
-    rows = [bytearray(len(letters) // 8 + 1) for _ in range(max(letters) + 1)]
-    for letter, number in enumerate(letters):
-        if number != IMPOSSIBLE:
-            rows[number][letter // 8] |= 1 << letter % 8
-    return [int.from_bytes(row, "little") for row in rows]
