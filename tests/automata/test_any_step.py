@@ -139,6 +139,16 @@ def test_an_automaton_with_clocks_is_the_same_for_any_bound(tmp_path):
     assert len(bodies) == 1
 
 
+@pytest.mark.spot
+def test_rules_whose_automata_have_no_clocks_are_named(tmp_path, capsys):
+    path = tmp_path / "soon.rules"
+    path.write_text(UNTOLD)
+    assert main(["compile", str(path), "--step", "1", "-o", str(tmp_path), "--clocks"]) == 0
+    assert "without clocks: `some_time` (" in capsys.readouterr().err
+    assert "Rulec-Clock" not in (tmp_path / "some_time.hoa").read_text()
+    assert "Rulec-Clock" in (tmp_path / "soon.hoa").read_text()
+
+
 def test_a_rule_that_no_clock_tells_is_for_its_step_alone(tmp_path, capsys):
     (tmp_path / "soon.rules").write_text(UNTOLD)
     compiled = rulec.compile_rulebook(tmp_path / "soon.rules", step_s=0.5)

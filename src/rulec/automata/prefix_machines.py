@@ -45,7 +45,8 @@ def prefix_machines(
     requested but not installed, BudgetSpentError (R0718) if no ``time`` is left.
     """
     keys = {rule.name: (_key(rule, rulebook), rule.step_s) for rule in rulebook.rules}
-    if len(_KNOWN) + len(keys) > _MOST_KNOWN:
+    fresh = {key for key in keys.values() if key not in _KNOWN}
+    if fresh and len(_KNOWN) + len(fresh) > _MOST_KNOWN:
         _KNOWN.clear()
         _TIMED.clear()
     missing = []

@@ -158,6 +158,8 @@ def command(
                 )
                 if several:
                     _tell_step(compiled)
+                if clocks:
+                    _tell_without_clocks(folder, compiled)
                 _tell_others(folder, paths)
             else:
                 compiled = session.compile_rulebook(book, step_s=step_s)
@@ -199,6 +201,19 @@ def _tell_others(folder: Path, written: Sequence[Path]) -> None:
         print_remark(
             f"in {folder} stay automata of another rulebook or from before: {named(others)}"
         )
+
+
+def _tell_without_clocks(folder: Path, compiled: lazy.CompiledRulebook) -> None:
+    """Name the rules whose automata are for one step all the same."""
+    names = [
+        rule.name
+        for rule in compiled.rules
+        if rule.step_s is not None
+        and "\nRulec-Clock: " not in (folder / f"{rule.name}.hoa").read_text(encoding="utf-8")
+    ]
+    if names:
+        why = "a bound begins anywhere, or there is no Spot"
+        print_remark(f"without clocks: {named(names)} ({why})")
 
 
 def _sources_of_files(folder: Path) -> dict[str, str]:
