@@ -2,7 +2,6 @@
 
 import copy
 import json
-from fractions import Fraction
 from random import Random
 
 import msgspec
@@ -13,8 +12,9 @@ from rulec.automata.bundle import bundle_schema as schema
 from rulec.automata.bundle.bundle_file import to_json
 from rulec.automata.bundle.clocked_entries import timed_machine
 from rulec.automata.mealy_monitor import sink_of
-from rulec.validation.clock_proof import prove_clocks
-from rulec.validation.unprovable import UnprovableError
+from rulec.automata.second_compiler import with_automata
+from rulec.validation.clock_proof import proof_steps
+from rulec.validation.file_proof import proof_of
 
 RULES = (
     "always (p implies eventually[<= 1 s] q)",
@@ -29,15 +29,11 @@ def compiled(semantics):
     rules = "".join(f"hard rule r{n} {{ require {text} }}\n" for n, text in enumerate(RULES))
     source = f"rulebook book\nsemantics {semantics}\nsignal p, q\n{rules}"
     book = rulec.compile_rulebook(rulec.parse_rulebook(source), step_s=0.5)
-    return book, json.loads(to_json(book))["rules"]
+    return book, json.loads(to_json(with_automata(book)))
 
 
-def is_proved(entry, machine, *, ends):
-    try:
-        prove_clocks(entry, machine, Fraction(1, 2), ends=ends)
-    except UnprovableError:
-        return False
-    return True
+def is_proved(rule, book, clocked):
+    return not proof_of({**rule, "clocked": clocked}, book).because
 
 
 def changed(entry, chance):
@@ -62,15 +58,16 @@ def changed(entry, chance):
 
 @pytest.mark.parametrize("semantics", ["stutter", "finite"])
 def test_clocks_of_compiled_rules_are_proved(semantics):
-    for rule in compiled(semantics)[1]:
-        assert is_proved(rule["clocked"], rule["machine"], ends=semantics == "finite")
+    _, data = compiled(semantics)
+    for rule in data["rules"]:
+        assert is_proved(rule, data, rule["clocked"])
 
 
 @pytest.mark.parametrize("semantics", ["stutter", "finite"])
 def test_a_changed_one_is_proved_if_and_only_if_it_unrolls_to_the_same(semantics):
-    book, rules = compiled(semantics)
+    book, data = compiled(semantics)
     chance, outcomes = Random(semantics), []
-    for rule, entry in zip(book.rules, rules, strict=True):
+    for rule, entry in zip(book.rules, data["rules"], strict=True):
         for _ in range(60):
             other = changed(entry["clocked"], chance)
             read = msgspec.convert(other, schema.ClockedEntry)
@@ -81,7 +78,7 @@ def test_a_changed_one_is_proved_if_and_only_if_it_unrolls_to_the_same(semantics
                 timed = timed_machine(read, rule.machine.reads, "r", ends=semantics == "finite")
             except ValueError:
                 continue  # Such a file is refused, whatever it says at this step
-            same = timed.at(Fraction(1, 2)) == rule.machine
-            assert is_proved(other, entry["machine"], ends=semantics == "finite") is same
+            same = all(timed.at(step) == rule.timed.at(step) for step in proof_steps(entry["tree"]))
+            assert is_proved(entry, data, other) is same
             outcomes.append(same)
     assert 20 < sum(outcomes) < len(outcomes) - 50

@@ -1,4 +1,4 @@
-"""Proof that a machine which reads clocks is, at a step, the table that was proved.
+"""Proof that a machine which reads clocks judges words as its formula does, at two steps.
 
 A clock of ``left since[low .. high] right`` keeps how many steps ago right held, for each time
 since left was false; it holds if one of these is between low and high.
@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil, floor
+from math import ceil, floor, gcd, lcm
 from typing import Any, TypeAlias
 
+from rulec.validation.table_proof import FormulaMachine
 from rulec.validation.unprovable import exact, require
 
 MOST_PAIRS = 1 << 16
@@ -54,6 +55,8 @@ class _Clock:
             kept = tuple([min(age, self.low) for age in kept[-1:]])
         else:
             kept = tuple([age for age in kept if age <= self.high])
+            if self.low == 0:
+                kept = kept[:1]  # the youngest decides
         return kept, any(age >= self.low for age in kept)
 
 
@@ -119,41 +122,53 @@ class _Clocked:
         return target, settled
 
 
+def proof_steps(tree: Any) -> tuple[Fraction, ...]:
+    """The steps (s) at which clocks are proved: bounds of a formula fit the first, not the second.
+
+    So that no bound has many steps.
+    """
+    bounds = [number for number in _seconds(tree) if number]
+    whole = lcm(*[number.denominator for number in bounds])
+    fits = Fraction(gcd(*[int(number * whole) for number in bounds]) or 1, whole)
+    return fits, fits * 2 / 3
+
+
+def _seconds(tree: Any) -> Iterator[Fraction]:
+    if isinstance(tree, list):
+        bound = tree[-1]
+        if isinstance(bound, dict) and bound.get("unit") == "s":
+            yield from [exact(bound[end]) for end in ("from", "to") if bound[end] is not None]
+        for part in tree[1:]:
+            yield from _seconds(part)
+
+
 def prove_clocks(
-    entry: Mapping[str, Any],
-    table: Mapping[str, Any],
-    step: Fraction | None,
-    *,
-    ends: bool,
+    entry: Mapping[str, Any], formula: FormulaMachine, step: Fraction, *, ends: bool
 ) -> None:
-    """Raise UnprovableError unless a machine with clocks judges each word as a table does."""
-    groups, numbers = entry["groups"], table["letters"]
-    require(len(groups) == len(numbers), "its clocks do not fit the letters of its reads")
+    """Raise UnprovableError unless a machine with clocks judges each word as a formula does."""
     clocked = _Clocked(entry, step, ends=ends)
-    kinds = sorted({*zip(groups, numbers, strict=True)})
-    same = all((group < 0) is (number < 0) for group, number in kinds)
-    require(same, "its clocks leave out other letters than its table")
-    possible = [(group, number) for group, number in kinds if group >= 0]
-    behaviour = {group: clocked.behaviour(group) for group, _ in possible}
-    alike = {(behaviour[group], number): (group, number) for group, number in possible}
-    reached = {(0, clocked.start)}
-    for pair in (waiting := list(reached)):
-        for target in _moves(pair, [*alike.values()], clocked, table):
-            if target not in reached:
-                require(len(reached) < MOST_PAIRS, "its clocks have too many states")
-                reached.add(target)
-                waiting.append(target)
-
-
-def _moves(
-    pair: tuple[int, _State],
-    kinds: Sequence[tuple[int, int]],
-    clocked: _Clocked,
-    table: Mapping[str, Any],
-) -> Iterator[tuple[int, _State]]:
-    state, other = pair
-    for group, number in kinds:
-        after, verdict = clocked.after(other, group)
-        same = verdict is table["accepting"][state][number]
-        require(same, "its clocks judge a word otherwise than its table")
-        yield table["following"][state][number], after
+    # Letters that are read alike, whatever the clocks say, as bits; and one group of them
+    alike: dict[tuple[object, ...], tuple[int, bytearray]] = {}
+    behaviour: dict[int, tuple[object, ...]] = {}
+    for letter, group in enumerate(entry["groups"]):
+        if group >= 0:
+            key = behaviour.setdefault(group, clocked.behaviour(group))
+            _, row = alike.setdefault(key, (group, bytearray(len(entry["groups"]) // 8 + 1)))
+            row[letter // 8] |= 1 << letter % 8
+    kinds = [(group, int.from_bytes(row, "little")) for group, row in alike.values()]
+    same = sum([letters for _, letters in kinds]) == formula.possible
+    require(same, "its clocks leave out other letters than the facts")
+    reached = {(formula.progression.start, clocked.start)}
+    for state, other in (waiting := list(reached)):
+        for move in formula.moves(state):
+            for group, letters in kinds:
+                if letters & move.letters:
+                    after, verdict = clocked.after(other, group)
+                    require(
+                        verdict is move.kept, "its clocks judge a word otherwise than its formula"
+                    )
+                    pair = move.target, after
+                    if pair not in reached:
+                        require(len(reached) < MOST_PAIRS, "its clocks have too many states")
+                        reached.add(pair)
+                        waiting.append(pair)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from hashlib import sha256
 from typing import Any, Literal
 
-from rulec.validation.clock_proof import prove_clocks
+from rulec.validation.clock_proof import proof_steps, prove_clocks
 from rulec.validation.comparison_words import check_comparison
 from rulec.validation.cut_proof import prove_cut_table
 from rulec.validation.demands import Demands
@@ -111,12 +112,15 @@ def _prove(rule: Mapping[str, Any], book: Mapping[str, Any]) -> None:
     letters = Letters(machine["reads"], {item["name"]: item for item in declarations})
     possible = possible_letters(letters, book, rule)
     require(possible != 0, "its facts exclude every letter")
-    demands = Demands(possible)
-    step = None if rule["step_s"] is None else exact(rule["step_s"])
-    root = demands.read(tree, step, lambda atom: letters.of(atom) & possible)
     require(book["semantics"] in ("stutter", "finite"), "its semantics is not a known one")
-    progression = FormulaProgression(demands, root)
-    formula = FormulaMachine(progression, possible, ends=book["semantics"] == "finite")
+    ends = book["semantics"] == "finite"
+
+    def machine_at(step: Fraction | None) -> FormulaMachine:
+        demands = Demands(possible)
+        root = demands.read(tree, step, lambda atom: letters.of(atom) & possible)
+        return FormulaMachine(FormulaProgression(demands, root), possible, ends=ends)
+
+    formula = machine_at(None if rule["step_s"] is None else exact(rule["step_s"]))
     prove_table(formula, machine, letters)
     table = machine["letters"], machine["following"], machine["accepting"]
     same = rule.get("certificate", "") in ("", table_digest(*table))
@@ -125,8 +129,9 @@ def _prove(rule: Mapping[str, Any], book: Mapping[str, Any]) -> None:
     if rule.get("cut") is not None:
         prove_cut_table(formula, rule["cut"], letters, goes_on=_goes_on(rule))
     if rule.get("clocked") is not None:
-        prove_clocks(rule["clocked"], machine, step, ends=book["semantics"] == "finite")
-    prove_hoa(formula, rule["hoa"], tree, letters, ends=book["semantics"] == "finite")
+        for step in proof_steps(tree):
+            prove_clocks(rule["clocked"], machine_at(step), step, ends=ends)
+    prove_hoa(formula, rule["hoa"], tree, letters, ends=ends)
 
 
 def _goes_on(rule: Mapping[str, Any]) -> bool:
