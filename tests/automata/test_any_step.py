@@ -199,6 +199,10 @@ def _negative(clocked):
     clocked["clocks"][0]["from"] = "-1"
 
 
+def _ends_before_now(clocked):
+    clocked["clocks"][0]["to"] = "-1"
+
+
 def _no_operand(clocked):
     clocked["clocks"][0]["operands"][0] = 4
 
@@ -213,7 +217,16 @@ def _not_dead(clocked):
 
 @pytest.mark.parametrize(
     "damage",
-    [_without_clock, _in_no_group, _of_other_letters, _negative, _no_operand, _nowhere, _not_dead],
+    [
+        _without_clock,
+        _in_no_group,
+        _of_other_letters,
+        _negative,
+        _ends_before_now,
+        _no_operand,
+        _nowhere,
+        _not_dead,
+    ],
 )
 @pytest.mark.parametrize("part", ["own", "alone"])
 def test_clocks_that_do_not_fit_are_damage(folder, damage, part):

@@ -108,11 +108,7 @@ def _rule(rule: CompiledRule, prefixes: StoredPrefixes | None) -> schema.BundleR
         hoa=rule.hoa,
         cut=msgspec.UNSET if prefixes is None else _cut(prefixes.entries.get(rule.name)),
         clocked=clocked_entry(rule.timed if is_timed else None),
-        cut_clocked=None
-        if cut_clocked is None
-        else schema.CutClockedEntry(
-            clocked_entry(cut_clocked.own), clocked_entry(cut_clocked.alone)
-        ),
+        cut_clocked=None if cut_clocked is None else _cut_clocked(cut_clocked),
         weight=str(rule.weight),
         variables=_variables(rule.variables),
         step_s=None if rule.step_s is None else str(rule.step_s),

@@ -61,7 +61,7 @@ def timed_machine(
         len(read.groups) == prod(item.size for item in reads),
         min(read.groups, default=0) >= monitors.IMPOSSIBLE,
         all(len(clock.operands) == n_letters for clock in read.clocks),
-        all(bound.low >= 0 for bound in bounds),
+        all(end is None or end >= 0 for bound in bounds for end in (bound.low, bound.high)),
     ]
     require(all(fits), f"the clocks of rule `{rule}` have a row or number that does not fit")
     table = monitors.MealyMonitor(
