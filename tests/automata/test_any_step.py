@@ -3,6 +3,7 @@
 import json
 import multiprocessing
 import pickle
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -181,6 +182,13 @@ def test_what_is_too_large_for_a_step_is_not_judged(folder, monkeypatch):
 def test_a_bound_of_very_many_steps_is_too_large(folder):
     with pytest.raises(RulecError, match="R0401"):
         read_compiled(folder / "soon.json").at_step(Fraction(1, 10**6))
+
+
+def test_a_clock_that_begins_far_beyond_its_end_takes_no_memory(soon):
+    timed = rulec.compile_rulebook(soon, step_s=0.5).rules[2].timed
+    far = replace(timed.bounds[0], low=Fraction(10**13))
+    with pytest.raises(SizeError):
+        replace(timed, bounds=(far, *timed.bounds[1:])).at(Fraction(1, 3))
 
 
 def _without_clock(clocked):

@@ -101,7 +101,7 @@ class TimedMachine:
             range_of_bound(bound if step_s is None else bound_in_steps(bound, step_s))
             for bound in self.bounds
         ]
-        if any((span.high or span.low) > MOST_STEPS_AHEAD for span in spans):
+        if any(max(span.low, span.high or 0) > MOST_STEPS_AHEAD for span in spans):
             raise SizeError
         clocked, machine = self.clocked, self.clocked.table
         for codes, span in reversed([*zip(clocked.clocks.operands, spans, strict=True)]):
