@@ -275,7 +275,6 @@ hard rule h (c: car) { require always (%s) }"""
     [
         ("gap(c) >= headway", "`headway * pace`"),
         ("2 s < gap(c)", "`2 s * pace`"),
-        ("gap(c) / pace >= headway", "`gap(c) >= n * pace`"),
         ("pace <= 50 km/h if wet else 90 km/h", "`(50 km/h if wet else 90 km/h)`"),
     ],
 )

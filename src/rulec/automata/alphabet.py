@@ -38,7 +38,7 @@ def _read(together: Sequence[ltl.Proposition], vocabulary: Vocabulary) -> Read |
         passed = {side for each in comparisons for side in _sides(each) if side is not None}
         ascending = sorted(passed, key=lambda side: (side.limit, not side.inclusive))
         return NumberRead(first.terms, tuple(ascending))
-    declaration = vocabulary.declarations[first.name]
+    declaration = vocabulary.declarations.get(first.name)
     if not isinstance(declaration, Enumeration):
         return Read(first.name, first.arguments)
     mentioned = {atom.value for atom in together if isinstance(atom, ltl.Atom)}

@@ -11,6 +11,7 @@ from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.traces.recorded_drive import NoDrive
 from rulec.logic.free_names import names_in
 from rulec.monitoring.assumptions import Assumptions
+from rulec.monitoring.implied_values import names_behind
 from rulec.monitoring.moments.formula_moments import Moment, moments
 from rulec.monitoring.state_validation import check_objects, check_states, check_told
 from rulec.recordings.recording import Recording
@@ -64,7 +65,7 @@ def in_recording(
         file,
         traffic=query.traffic,
         vocabulary=query.vocabulary,
-        names=frozenset(names_in(query.rule.formula)),
+        names=names_behind(frozenset(names_in(query.rule.formula)), query.vocabulary),
     )
     for ego in selected.egos:
         for drive in selected.of(ego):

@@ -17,6 +17,7 @@ from rulec.monitoring.batch.contained_verify import judge_contained
 from rulec.monitoring.batch.findings import JudgedTrace
 from rulec.monitoring.batch.verify_arrays import answer_to
 from rulec.monitoring.fault_containment import without
+from rulec.monitoring.implied_values import names_behind, words_meant
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
 from rulec.monitoring.verdict import (
@@ -158,6 +159,7 @@ class RecordingVerdicts(Rows):
         """
         declared = self.rules.vocabulary.declarations.items()
         have = [name for name, item in declared if self.defaults or item.presumed]
+        words |= {*words_meant(self.rules.vocabulary, words)}
         missing = {rule.name: names_of(rule.formula) - words for rule in self.rules.rules}
         return {
             rule: tuple([name for name in have if name in names]) for rule, names in missing.items()
@@ -182,7 +184,7 @@ def names_read(rulebook: CompiledRulebook) -> frozenset[str]:
     if known is None:
         formulas = [rule.formula for rule in rulebook.rules]
         formulas += [axiom.formula for axiom in rulebook.axioms]
-        known = frozenset().union(*map(names_of, formulas))
+        known = names_behind(frozenset().union(*map(names_of, formulas)), rulebook.vocabulary)
         rulebook.prepared[names_read] = known
     return known
 
@@ -205,6 +207,7 @@ def some_rules(names: frozenset[str], rulebook: CompiledRulebook) -> SomeRules:
             known.clear()
         some = replace(rulebook, rules=tuple([x for x in rulebook.rules if x.name in names]))
         read = frozenset().union(*[names_of(rule.formula) for rule in some.rules])
+        read = names_behind(read, some.vocabulary)
         facts = related_facts(read, some.axioms)
         known[names] = SomeRules(some, read.union(*[names_of(fact.formula) for fact in facts]))
     return known[names]

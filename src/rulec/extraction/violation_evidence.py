@@ -15,6 +15,7 @@ from rulec.logic.formula import Comparison, Count, atoms_of
 from rulec.logic.free_names import names_in
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.explain.margins import Margin
+from rulec.monitoring.implied_values import names_behind, words_meant
 from rulec.monitoring.verdict import Violation
 from rulec.trace import Trace, Value
 
@@ -62,6 +63,9 @@ def evidence_of(
         violation, trace_for(violation, drive, rules), rules, drive.decided_by, repaired=False
     )
     read = dict.fromkeys(names_in(explained.rule.formula))
+    if meant := words_meant(rules.vocabulary, drive.arrays.told):
+        behind = names_behind(frozenset(read), rules.vocabulary)
+        read = dict.fromkeys([name for name in (*read, *sorted(behind)) if name not in meant])
     told = [name for name in read if name in drive.kinds and name not in assumed]
     partial = {name for name in told if _is_partial(drive, name)}
     declared = rules.vocabulary.declarations
@@ -117,6 +121,7 @@ def trace_for(violation: Violation, drive: Drive, rules: CompiledRulebook) -> Tr
     names |= {read.name for read in rule.machine.reads if isinstance(read, Read)}
     counts = any(isinstance(term, Count) for term in terms)
     part = arrays.part(names, arrays.objects.keys() if counts else {*violation.binding.values()})
+    names = {*names_behind(frozenset(names), rules.vocabulary)}
     # To be completed as the whole trace would be
     return replace(part, ends="cut" if arrays.is_partial else arrays.ends).trace()
 

@@ -8,6 +8,7 @@ from typing import Any, get_args
 
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, DISTANCE
+from rulec.logic.free_names import terms_of, variables_of
 from rulec.resource_limits import MOST_DIGITS
 
 DEEPEST = 250
@@ -30,7 +31,10 @@ def to_data(formula: ltl.Formula) -> Any:
     """
     match formula:
         case ltl.Atom(name, arguments, value):
-            return {"name": name, "variables": list(arguments), "value": value}
+            data = {"name": name, "variables": list(arguments), "value": value}
+            if isinstance(formula, ltl.Calculated):
+                data |= {"number": _number(formula.number), "relation": formula.relation}
+            return data
         case ltl.Comparison(terms, relation, limit, text):
             kept = {"relation": relation, "limit": str(limit), "text": text}
             return {"terms": terms_to_data(terms), **kept}
@@ -57,6 +61,17 @@ def _term(term: ltl.Term) -> dict[str, Any]:
             return {"count": variable, "type": type_name, "body": to_data(body)}
 
 
+def _number(number: ltl.NumberSum) -> list[Any]:
+    """The constant of a number, then pairs of a coefficient and a part."""
+    return [str(number.constant), *([str(own), _part(part)] for own, part in number.parts)]
+
+
+def _part(part: ltl.Term | ltl.Operation) -> Any:
+    if isinstance(part, ltl.Operation):
+        return [part.operator, _number(part.left), _number(part.right)]
+    return _term(part)
+
+
 def _bound(bound: ltl.Bound | None) -> list[dict[str, str | None]]:
     if bound is None:
         return []
@@ -75,6 +90,11 @@ def from_data(data: Any, depth: int = 0) -> ltl.Formula:
             len(data) == 3
         ):
             return ltl.Atom(name, _names(variables), value)
+        case {"name": str(name), "variables": variables, "value": None, "number": number} if (
+            len(data) == 5 and data.get("relation") in _RELATIONS
+        ):
+            own = _read_number(number, depth + 1)
+            return _calculation(name, _names(variables), own, _RELATIONS[data["relation"]])
         case {"terms": terms, "relation": str(relation), "limit": limit, "text": str(text)} if (
             len(data) == 4 and relation in _RELATIONS
         ):
@@ -85,6 +105,30 @@ def from_data(data: Any, depth: int = 0) -> ltl.Formula:
         case [str(operator), *rest] if operator in _OPERATORS:
             return _operation(_OPERATORS[operator], rest, depth + 1)
     raise ValueError("a formula is neither an atom, a comparison, a constant nor an operation")
+
+
+def _calculation(
+    name: str, arguments: tuple[str, ...], number: ltl.NumberSum, relation: ltl.Relation
+) -> ltl.Calculated:
+    places = {f"x{place}" for place in range(1, len(arguments) + 1)}
+    if {x for term in terms_of(number) for x in variables_of(term)} != places or " " not in name:
+        raise ValueError("a calculated number is about other objects than its comparison")
+    return ltl.Calculated(name, arguments, number=number, relation=relation)
+
+
+def _read_number(data: Any, depth: int) -> ltl.NumberSum:
+    if depth > DEEPEST or not isinstance(data, list) or not data:
+        raise ValueError("a number is none, or nested too deep")
+    constant, *parts = data
+    read: list[tuple[Fraction, ltl.Term | ltl.Operation]] = []
+    for part in parts:
+        match part:
+            case [coefficient, ["*" | "/" as operator, left, right]]:
+                sides = (_read_number(side, depth + 1) for side in (left, right))
+                read.append((number_from_data(coefficient), ltl.Operation(operator, *sides)))
+            case _:
+                read += terms_from_data([part], depth + 1)
+    return ltl.NumberSum(tuple(read), number_from_data(constant))
 
 
 def _operation(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
@@ -55,8 +56,23 @@ class Atom:
     value: str | None = None
 
     def __str__(self) -> str:
-        arguments = f"({', '.join(self.arguments)})" if self.arguments else ""
-        return f"{self.value or self.name}{arguments}"
+        return word_text(self.value or self.name, self.arguments)
+
+
+def word_text(name: str, arguments: Sequence[str]) -> str:
+    """``gap(v)``; a calculated comparison, which is no name, has its arguments inside."""
+    if " " in name:
+        names = {f"x{place}": argument for place, argument in enumerate(arguments, 1)}
+        return with_arguments(name, names)
+    return f"{name}({', '.join(arguments)})" if arguments else name
+
+
+def with_arguments(text: str, names: Mapping[str, str]) -> str:
+    """The text of a formula with other names of objects."""
+    return _ARGUMENT.sub(lambda found: found[1] + names.get(found[2], found[2]), text)
+
+
+_ARGUMENT = re.compile(r"([(,]\s*)(\w+)(?=\s*[,)])")
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +118,37 @@ class Comparison:
 
     def __str__(self) -> str:
         return self.text
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """The product of two numbers that change, or their quotient."""
+
+    operator: Literal["*", "/"]
+    left: NumberSum
+    right: NumberSum
+
+
+@dataclass(frozen=True, slots=True)
+class NumberSum:
+    """``sum of coefficient * part``, and a constant; quantities are in their declared units."""
+
+    parts: tuple[tuple[Fraction, Term | Operation], ...]
+    constant: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class Calculated(Atom):
+    """``number`` stands in ``relation`` to 0; the number is no sum of coefficients times terms.
+
+    Automata and analysis do not look into it: it is one proposition, and its spelling in a rulebook
+    is its ``name``. The ``arguments`` stand for the variables `x1`, `x2`, … in name and number.
+    """
+
+    number: NumberSum = NumberSum((), Fraction(0))
+    relation: Relation = "<"
+
+    __str__ = Atom.__str__
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
@@ -10,6 +9,7 @@ from functools import lru_cache
 
 from rulec.logic import formula as ltl
 from rulec.logic.linear_comparison import comparison
+from rulec.logic.printing import term_text
 
 
 def variables_of(part: ltl.Formula | ltl.Term) -> Iterator[str]:
@@ -36,6 +36,9 @@ def variables_of(part: ltl.Formula | ltl.Term) -> Iterator[str]:
 def names_in(part: ltl.Formula | ltl.Term) -> Iterator[str]:
     """The names of the declarations that are read, from left to right, with repetitions."""
     match part:
+        case ltl.Calculated(number=number):
+            for term in terms_of(number):
+                yield from names_in(term)
         case ltl.Atom(name) | ltl.QuantityTerm(name):
             yield name
         case ltl.Count(_, _, body):
@@ -58,10 +61,23 @@ def names_of(formula: ltl.Formula) -> frozenset[str]:
     return frozenset(names_in(formula))
 
 
+def terms_of(number: ltl.NumberSum) -> Iterator[ltl.Term]:
+    """The quantities and counts in a number, from left to right, with repetitions."""
+    for _, part in number.parts:
+        if isinstance(part, ltl.Operation):
+            yield from terms_of(part.left)
+            yield from terms_of(part.right)
+        else:
+            yield part
+
+
 def reads_in(formula: ltl.Formula) -> Iterator[ltl.Atom | ltl.Term]:
     """The atoms and the terms of comparisons, from left to right, with repetitions."""
     for proposition in ltl.atoms_of(formula):
-        if isinstance(proposition, ltl.Atom):
+        if isinstance(proposition, ltl.Calculated):
+            names = {f"x{place}": name for place, name in enumerate(proposition.arguments, 1)}
+            yield from (renamed_term(term, names) for term in terms_of(proposition.number))
+        elif isinstance(proposition, ltl.Atom):
             yield proposition
         else:
             yield from (term for _, term in proposition.terms)
@@ -81,13 +97,13 @@ def rename_variables(formula: ltl.Formula, names: Mapping[str, str]) -> ltl.Form
             # make terms equal.
             coefficients: dict[ltl.Term, Fraction] = {}
             for factor, term in terms:
-                renamed = _renamed_term(term, names)
+                renamed = renamed_term(term, names)
                 coefficients[renamed] = coefficients.get(renamed, Fraction(0)) + factor
             return comparison(
                 {term: factor for term, factor in coefficients.items() if factor},
                 relation,
                 limit,
-                _ARGUMENT.sub(lambda match: match[1] + names.get(match[2], match[2]), text),
+                ltl.with_arguments(text, names),
             )
         case ltl.Same(left, right):
             return ltl.Same(*_renamed((left, right), names))
@@ -101,10 +117,8 @@ def rename_variables(formula: ltl.Formula, names: Mapping[str, str]) -> ltl.Form
             )
 
 
-_ARGUMENT = re.compile(r"([(,]\s*)(\w+)(?=\s*[,)])")
-
-
-def _renamed_term(term: ltl.Term, names: Mapping[str, str]) -> ltl.Term:
+def renamed_term(term: ltl.Term, names: Mapping[str, str]) -> ltl.Term:
+    """The term with other variables, as ``rename_variables``."""
     match term:
         case ltl.QuantityTerm(name, arguments):
             return ltl.QuantityTerm(name, _renamed(arguments, names))
@@ -143,3 +157,32 @@ def _inputs(
             if fits(kind, read.type):
                 # The inputs of the body, for this object.
                 yield from _inputs(read.body, objects, fits, {**names, read.variable: name})
+
+
+def number_of(proposition: ltl.Calculated) -> ltl.NumberSum:
+    """The number that is compared with 0, of the proposition's own arguments."""
+    arguments = enumerate(proposition.arguments, 1)
+    return renamed_number(proposition.number, {f"x{place}": name for place, name in arguments})
+
+
+def renamed_number(number: ltl.NumberSum, names: Mapping[str, str]) -> ltl.NumberSum:
+    """The number with other variables, as ``rename_variables``."""
+    coefficients: dict[ltl.Term | ltl.Operation, Fraction] = {}
+    for factor, part in number.parts:
+        own: ltl.Term | ltl.Operation
+        if isinstance(part, ltl.Operation):
+            own = ltl.Operation(
+                part.operator, *(renamed_number(x, names) for x in (part.left, part.right))
+            )
+        else:
+            own = renamed_term(part, names)
+        coefficients[own] = coefficients.get(own, Fraction(0)) + factor
+    return number_sum(coefficients, number.constant)
+
+
+def number_sum(
+    coefficients: Mapping[ltl.Term | ltl.Operation, Fraction], constant: Fraction
+) -> ltl.NumberSum:
+    """A sum in normal form: parts sorted by their text."""
+    parts = sorted(coefficients.items(), key=lambda pair: term_text(pair[0]))
+    return ltl.NumberSum(tuple([(factor, part) for part, factor in parts]), constant)

@@ -15,6 +15,7 @@ from typing import Protocol, TypeAlias
 
 from rulec.logic import formula as ltl
 from rulec.logic.fold import Algebra, fold
+from rulec.logic.free_names import number_of as number_compared
 from rulec.logic.linear_comparison import stands, surely_stands
 from rulec.vocabulary import Vocabulary
 
@@ -39,6 +40,10 @@ class Between(Unknown):
 
     low: Fraction
     high: Fraction
+
+
+Interval: TypeAlias = tuple[Fraction, Fraction]
+"""The least and the greatest value that a number may have."""
 
 
 class PartialState(Protocol):
@@ -92,8 +97,7 @@ def number_of(term: ltl.Term, binding: ObjectBinding, state: PartialState) -> Fr
         case ltl.QuantityTerm(name, arguments):
             return state.number(name, tuple([binding[variable] for variable in arguments]))
         case ltl.Count():
-            objects = objects_counted(term, binding, state)
-            return objects if isinstance(objects, Unknown) else Fraction(len(objects))
+            return _reader_of(term)(binding, state)
 
 
 def objects_counted(
@@ -101,7 +105,13 @@ def objects_counted(
 ) -> tuple[str, ...] | Unknown:
     """The objects that satisfy the body of a count."""
     alias, evaluate = alias_of(count.variable, count.body), evaluator_of(count.body)
-    return _counted(count, alias, evaluate, binding, state)
+    result = []
+    for name, value in _counted(count, alias, evaluate, binding, state):
+        if isinstance(value, Unknown):
+            return value
+        if value:
+            result.append(name)
+    return tuple(result)
 
 
 def _counted(
@@ -110,8 +120,8 @@ def _counted(
     evaluate: Evaluator,
     binding: ObjectBinding,
     state: PartialState,
-) -> tuple[str, ...] | Unknown:
-    result = []
+) -> Iterator[tuple[str, bool | Unknown]]:
+    """The present objects of the counted type, and whether each satisfies the body."""
     fitting: dict[str, bool] = {}
     inner = dict(binding)
     present = state.objects
@@ -122,12 +132,7 @@ def _counted(
             fitting[type_name] = state.vocabulary.is_subtype(type_name, count.type)
         if fitting[type_name]:
             inner[count.variable] = name
-            value = evaluate(inner, state)
-            if isinstance(value, Unknown):
-                return value
-            if value:
-                result.append(name)
-    return tuple(result)
+            yield name, evaluate(inner, state)
 
 
 def alias_of(variable: str, formula: ltl.Formula) -> str | None:
@@ -191,7 +196,80 @@ def evaluator_of(formula: ltl.Formula) -> Evaluator:
 def _proposition(proposition: ltl.Proposition) -> Evaluator:
     if isinstance(proposition, ltl.Comparison):
         return _comparison(proposition)
+    if isinstance(proposition, ltl.Calculated):
+        return partial(_calculated, proposition)
     return _atom(proposition.name, proposition.arguments, proposition.value or True)
+
+
+def _calculated(
+    proposition: ltl.Calculated, binding: ObjectBinding, state: PartialState
+) -> bool | Unknown:
+    """Calculated from the quantities, unless the state tells the comparison itself."""
+    items = tuple([binding[variable] for variable in proposition.arguments])
+    told = state.value(proposition.name, items)
+    if isinstance(told, bool):
+        return told
+    unknown: list[Unknown] = []
+
+    def value_of(term: ltl.Term) -> Interval | None:
+        number = number_of(term, binding, state)
+        if not isinstance(number, Unknown):
+            return number, number
+        unknown.append(number)
+        return (number.low, number.high) if isinstance(number, Between) else None
+
+    surely = surely_compares(proposition, value_of)
+    if surely is not None:
+        return surely
+    return (
+        Unknown(unknown[0].name, unknown[0].objects)
+        if unknown
+        else Unknown(proposition.name, items)
+    )
+
+
+def surely_compares(
+    proposition: ltl.Calculated, value_of: Callable[[ltl.Term], Interval | None]
+) -> bool | None:
+    """Whether the comparison holds for all values that its terms may have, or for none.
+
+    None if that depends on them, or if something is divided by what may be 0. Values are taken as
+    independent of each other, even those of one quantity that occurs twice.
+    """
+    ends = _between(number_compared(proposition), value_of)
+    return None if ends is None else surely_stands(*ends, proposition.relation, Fraction(0))
+
+
+def _between(
+    number: ltl.NumberSum, value_of: Callable[[ltl.Term], Interval | None]
+) -> Interval | None:
+    low = high = number.constant
+    for factor, part in number.parts:
+        own = _of_part(part, value_of)
+        if own is None:
+            return None
+        first, last = (factor * end for end in own)
+        low, high = low + min(first, last), high + max(first, last)
+    return low, high
+
+
+def _of_part(
+    part: ltl.Term | ltl.Operation, value_of: Callable[[ltl.Term], Interval | None]
+) -> Interval | None:
+    if not isinstance(part, ltl.Operation):
+        return value_of(part)
+    left, right = _between(part.left, value_of), _between(part.right, value_of)
+    if left is None or right is None:
+        return None
+    if part.operator == "/":
+        if right[0] <= 0 <= right[1]:
+            return None
+        right = 1 / right[1], 1 / right[0]
+    if part.operator == "*" and part.left == part.right:
+        squares = [end * end for end in left]
+        return (Fraction(0) if left[0] < 0 < left[1] else min(squares)), max(squares)
+    ends = [own * other for own in left for other in right]
+    return min(ends), max(ends)
 
 
 def _atom(name: str, arguments: tuple[str, ...], expected: bool | str) -> Evaluator:
@@ -241,8 +319,16 @@ def _reader_of(term: ltl.Term) -> Callable[[ObjectBinding, PartialState], Fracti
     alias, evaluate = alias_of(term.variable, term.body), evaluator_of(term.body)
 
     def number(binding: ObjectBinding, state: PartialState) -> Fraction | Unknown:
-        objects = _counted(term, alias, evaluate, binding, state)
-        return objects if isinstance(objects, Unknown) else Fraction(len(objects))
+        sure, unknown = 0, list[Unknown]()
+        for _, value in _counted(term, alias, evaluate, binding, state):
+            if isinstance(value, Unknown):
+                unknown.append(value)
+            else:
+                sure += value
+        if not unknown:
+            return Fraction(sure)
+        least, most = Fraction(sure), Fraction(sure + len(unknown))
+        return Between(unknown[0].name, unknown[0].objects, least, most)
 
     return number
 

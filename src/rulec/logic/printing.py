@@ -83,10 +83,23 @@ def number_in_words(number: Fraction) -> str:
     return f"-{digits}" if number < 0 else digits
 
 
-def term_text(term: ltl.Term) -> str:
+def term_text(term: ltl.Term | ltl.Operation) -> str:
     """``gap(v)``, ``count v: vehicle (behind(v))``: the text by which terms are sorted."""
     match term:
+        case ltl.Operation(operator, left, right):
+            return f"({sum_text(left)}) {operator} ({sum_text(right)})"
         case ltl.QuantityTerm(name, arguments):
             return f"{name}({', '.join(arguments)})" if arguments else name
         case ltl.Count(variable, type_name, body):
             return f"count {variable}: {type_name} ({formula_text(body)})"
+
+
+def sum_text(number: ltl.NumberSum) -> str:
+    """``5/18 * speed + 3``: a number with the units of its quantities as declared."""
+    parts = [
+        term_text(part) if factor == 1 else f"{number_in_words(factor)} * {term_text(part)}"
+        for factor, part in number.parts
+    ]
+    if number.constant or not parts:
+        parts.append(number_in_words(number.constant))
+    return " + ".join(parts)

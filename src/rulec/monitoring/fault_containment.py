@@ -10,6 +10,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.fault_messages import NOT_FAULTS, fault_of, is_fault
 from rulec.logic.free_names import names_of
+from rulec.monitoring.implied_values import names_behind
 from rulec.monitoring.verdict import NotJudged, RuleNotJudged, Verdict
 
 Answer: TypeAlias = Verdict | NotJudged
@@ -80,7 +81,10 @@ def without_words(
     """
     if not faults:
         return book, []
-    read = {rule: faults.keys() & names_of(rule.formula) for rule in book.rules}
+    read = {
+        rule: faults.keys() & names_behind(names_of(rule.formula), book.vocabulary)
+        for rule in book.rules
+    }
     lost = [rule_lost(rule, faults[min(words)]) for rule, words in read.items() if words]
     axioms = [x for x in book.axioms if faults.keys().isdisjoint(names_of(x.formula))]
     kept = tuple([rule for rule in book.rules if not read[rule]])

@@ -1,24 +1,39 @@
-"""Values that a state omits and that axioms imply."""
+"""Values that states omit and that follow from others: by axioms, or by the meanings of words."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence, Set
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from operator import is_
 from typing import Any
 
+from rulec.automata.thresholds import exact_step
+from rulec.logic import formula as ltl
+from rulec.logic.bounds import in_steps
+from rulec.logic.fold import fold
+from rulec.logic.free_names import names_in
+from rulec.logic.kleene import ObjectBinding, Unknown, evaluator_of
 from rulec.monitoring.constant_values import values_in, with_constants
-from rulec.monitoring.state_view import put
+from rulec.monitoring.state_view import StateView, put, value_in
 from rulec.trace import State, Trace, TraceGraph
+from rulec.trace.partly_known.partly_known_values import Truth
+from rulec.trace.partly_known.temporal_operators import BitInstants
+from rulec.trace.trace_model import present_in
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
+from rulec.vocabulary.vocabulary_model import Meaning, choices
 
 
 def with_derived_values(
     trace: Trace, vocabulary: Vocabulary, where: Callable[[int], str] = "state {}".format
 ) -> Trace:
-    """The trace ``with_constants`` and ``with_implied_values``. Raises RulecError R0503."""
-    return with_implied_values(with_constants(trace, vocabulary, where), vocabulary)
+    """The trace with its constants, what facts imply, and the words that are defined.
+
+    Raises RulecError R0503.
+    """
+    trace = with_implied_values(with_constants(trace, vocabulary, where), vocabulary)
+    return with_defined_words(trace, vocabulary)
 
 
 def with_implied_values(trace: Trace, vocabulary: Vocabulary) -> Trace:
@@ -31,7 +46,8 @@ def with_implied_values(trace: Trace, vocabulary: Vocabulary) -> Trace:
 
 
 def with_implied_in_graph(graph: TraceGraph, vocabulary: Vocabulary) -> TraceGraph:
-    """The graph of valid states, extended by what follows by ``Vocabulary.implied``."""
+    """The graph of valid states, extended by what facts imply and by the words that are defined."""
+    graph = with_words_in_graph(graph, vocabulary)
     if not vocabulary.implied:
         return graph
     layers = [[with_implied_signals(state, vocabulary) for state in own] for own in graph.states]
@@ -74,3 +90,146 @@ def _mentions(value: Any, items: tuple[str, ...]) -> bool:
             return True
         value = value.get(item) if isinstance(value, Mapping) else None
     return value is not None
+
+
+def words_meant(vocabulary: Vocabulary, told: frozenset[str] | None) -> tuple[str, ...]:
+    """The words that their meanings give in traces of a source, in their order.
+
+    A source that names what it tells leaves out their names, but not the names that they are made
+    of; any other tells all words that have a default.
+    """
+    if not vocabulary.meanings:
+        return ()
+    if told is None:
+        declared = vocabulary.declarations
+        return tuple([name for name in vocabulary.meanings if declared[name].default is None])
+    known, meant = {*told}, []
+    for name, meaning in vocabulary.meanings.items():
+        if name not in told and known.issuperset(names_in(meaning.formula)):
+            known.add(name)
+            meant.append(name)
+    return tuple(meant)
+
+
+def names_behind(names: Sequence[str] | frozenset[str], vocabulary: Vocabulary) -> frozenset[str]:
+    """The names, and those that their meanings are made of."""
+    found = {*names}
+    for name in reversed([*vocabulary.meanings]):
+        if name in found:
+            found.update(names_in(vocabulary.meanings[name].formula))
+    return frozenset(found)
+
+
+def without_calculations(
+    names: Sequence[str], vocabulary: Vocabulary, untold: Set[str]
+) -> tuple[str, ...]:
+    """The names, with the untold quantities of comparisons that are calculated instead of these."""
+    found: dict[str, None] = {}
+    for name in names:
+        meaning = vocabulary.meanings.get(name)
+        if meaning is None or not isinstance(meaning.formula, ltl.Calculated):
+            found[name] = None
+        else:
+            found |= dict.fromkeys([x for x in names_in(meaning.formula) if x in untold])
+    return tuple(found)
+
+
+def with_defined_words(trace: Trace, vocabulary: Vocabulary) -> Trace:
+    """The trace of valid states, in which nothing is left to the meanings of words."""
+    for name in words_meant(vocabulary, trace.told):
+        meaning = vocabulary.meanings[name]
+        types = vocabulary.declarations[name].parameters
+        states = list(trace.states)
+        for items in choices(types, trace.objects, vocabulary, f"`{name}`"):
+            for place, value in _values(name, meaning, items, _Given(trace, vocabulary)):
+                states[place] = {**states[place], name: put(states[place].get(name), items, value)}
+        trace = replace(trace, states=tuple(states))
+    return trace
+
+
+def with_words_in_state(
+    state: State,
+    objects: Mapping[str, str],
+    told: frozenset[str] | None,
+    vocabulary: Vocabulary,
+) -> State:
+    """A state of a running trace, with words that their meanings give.
+
+    What these say of the past is unknown. A state that does not fit the vocabulary stays as it is.
+    """
+    try:
+        alone = Trace("", 1.0, objects, (state,), ends="cut", told=told)
+        return with_defined_words(alone, vocabulary).states[0]
+    except (LookupError, TypeError, AttributeError, AssertionError):
+        return state
+
+
+def with_words_in_graph(graph: TraceGraph, vocabulary: Vocabulary) -> TraceGraph:
+    """The graph of valid states, with words that their meanings give, as in a running trace."""
+    if not words_meant(vocabulary, graph.told):
+        return graph
+
+    def whole(layer: int, state: State) -> State:
+        there = present_in(layer, graph.objects, graph.present)
+        return with_words_in_state(state, there, graph.told, vocabulary)
+
+    layers = [[whole(layer, state) for state in own] for layer, own in enumerate(graph.states)]
+    return replace(graph, states=tuple(map(tuple, layers)))
+
+
+@dataclass(frozen=True, slots=True)
+class _Given:
+    """A trace, in whose states the meanings of words are sought."""
+
+    trace: Trace
+    vocabulary: Vocabulary
+
+    def truth(self, formula: ltl.Formula, binding: ObjectBinding, span: range) -> Truth[int]:
+        """The truth of a formula in a span of states, as bits from the first of these on."""
+        trace = self.trace
+        views = [
+            StateView(
+                trace.states[place],
+                present_in(place, trace.objects, trace.present),
+                self.vocabulary,
+            )
+            for place in span
+        ]
+
+        def proposition(asked: ltl.Proposition) -> Truth[int]:
+            evaluate, sure, possible = evaluator_of(asked), 0, 0
+            for place, view in enumerate(views):
+                value = evaluate(binding, view)
+                is_known = not isinstance(value, Unknown)
+                sure |= (value is True) << place
+                possible |= (value is True or not is_known) << place
+            return Truth(sure, possible)
+
+        ends = BitInstants(len(views), "cut" if trace.ends == "cut" else "over")
+        return fold(formula, ends.algebra(proposition))
+
+
+def _values(
+    name: str, meaning: Meaning, items: tuple[str, ...], given: _Given
+) -> list[tuple[int, Any]]:
+    """The places of the states that do not tell a word of these objects, and its values."""
+    trace = given.trace
+    spans = [trace.present.get(item, (0, len(trace.states) - 1)) for item in items]
+    first = max((span[0] for span in spans), default=0)
+    last = min((span[1] for span in spans), default=len(trace.states) - 1)
+    span, declared = range(first, last + 1), given.vocabulary.declarations[name]
+    untold = replace(declared, default=None)
+    places = [x for x in span if value_in(trace.states[x], name, items, untold) is None]
+    if not places:
+        return []
+    formula = _in_steps(meaning.formula, exact_step(trace.step_s))
+    binding = dict(zip(meaning.variables, items, strict=True))
+    truth = given.truth(formula, binding, span)
+    values: list[tuple[int, Any]] = []
+    for place in places:
+        sure, possible = (half >> place - first & 1 for half in (truth.sure, truth.possible))
+        values.append((place, UNKNOWN if sure != possible else bool(sure)))
+    return values
+
+
+_in_steps = lru_cache(maxsize=256)(in_steps)

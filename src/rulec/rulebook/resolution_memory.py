@@ -188,7 +188,7 @@ def _with_rules_of(trees: Trees, names: BookNames) -> BookNames:
     """The same names for other rules, which are applied to one another again."""
     symbols, old = names.symbols, names.constants
     spans = {**symbols.type_spans, **symbols.spans}
-    laid = overlay(trees.books, spans, unsure=old.overlay.unsure)
+    laid = overlay((*trees.vocabularies, *trees.books), spans, unsure=old.overlay.unsure)
     constants = ConstantsAndMacros(
         laid, old.at, old.traffic, numbers=old.numbers, broken=old.broken
     )

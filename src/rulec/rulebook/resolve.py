@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Container, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from rulec.diagnostics import Diagnostic, SourceLocation
 from rulec.rulebook.elaborate import rule_messages
@@ -37,6 +37,7 @@ from rulec.rulebook.rules.axiom_contradictions import (
 )
 from rulec.rulebook.rules.axioms import axioms_of, contradicted
 from rulec.rulebook.rules.implied_signals import with_implied
+from rulec.rulebook.rules.meanings import meanings_of, with_calculated
 from rulec.rulebook.rules.rule_elaboration import translate_rule
 from rulec.syntax import tree
 from rulec.vocabulary import Vocabulary
@@ -103,7 +104,7 @@ def names_of(
     symbols = symbol_table(files, opaque=opaque)
     mark_constant_and_presumed(symbols, files)
     unsure = opaque or not all(book.complete for book in books)
-    laid = overlay(books, {**symbols.type_spans, **symbols.spans}, unsure=unsure)
+    laid = overlay(files, {**symbols.type_spans, **symbols.spans}, unsure=unsure)
     sides: list[Traffic] = ["", *(book.traffic.side for book in books if book.traffic)]
     constants = ConstantsAndMacros(laid, at, traffic or sides[-1])
     levels, priorities, mistakes = pre_order([line for book in books for line in book.priorities])
@@ -112,6 +113,8 @@ def names_of(
     mistakes += check_constants_and_macros(symbols, constants)
     axioms, wrong_facts = axioms_of(files, symbols, constants)
     mistakes += wrong_facts
+    meanings, wrong_meanings = meanings_of(symbols, constants)
+    mistakes += wrong_meanings
     vocabulary = symbols.vocabulary(file.name.text if file.name else "")
     if not symbols.mistakes and (wrong_facts := all_contradictions(axioms, vocabulary)):
         mistakes += wrong_facts
@@ -123,7 +126,9 @@ def names_of(
         priorities=priorities,
         known_levels=known_levels,
         axioms=axioms,
-        vocabulary=with_implied(vocabulary, [axiom.formula for axiom in axioms]),
+        vocabulary=replace(
+            with_implied(vocabulary, [axiom.formula for axiom in axioms]), meanings=meanings
+        ),
         mistakes=tuple(mistakes),
     )
 
@@ -185,13 +190,16 @@ def with_rules(
     wrong = any(mistake.severity == "error" for mistake in mistakes)
     # A rulebook without rules is there to be extended.
     if whole and not wrong and laid.rules:
-        mistakes += _unused(books)
+        mistakes += _unused(books, laid.meanings)
     if file.name is None or wrong or not whole or len(good) < len(rules):
         return None, tuple(mistakes)
     semantics = [book.semantics.kind for book in books if book.semantics]
     rulebook = Rulebook(
         name=file.name.text,
-        vocabulary=names.vocabulary,
+        vocabulary=with_calculated(
+            names.vocabulary,
+            [*(rule.formula for rule in good), *(axiom.formula for axiom in names.axioms)],
+        ),
         rules=tuple(good),
         title=file.title.text.value if file.title else "",
         law=law.text.value if law else "",
@@ -259,7 +267,7 @@ def is_whole(file: tree.File) -> bool:
     return file.complete and not broken
 
 
-def _unused(books: Sequence[tree.File]) -> Iterator[Diagnostic]:
+def _unused(books: Sequence[tree.File], declared: Container[str]) -> Iterator[Diagnostic]:
     used = {name for book in books for item in book.items for name in names_used(item)}
     for item in books[-1].items:
         match item:
@@ -271,5 +279,5 @@ def _unused(books: Sequence[tree.File]) -> Iterator[Diagnostic]:
                 kind = "definition"
             case _:
                 continue
-        if name.text not in used:
+        if name.text not in used and name.text not in declared:
             yield rule_messages.unused_provision(kind, name)

@@ -171,13 +171,21 @@ def _no_rule(parts: Sequence[Part]) -> Iterable[Diagnostic]:
 
 def _not_for_a_vocabulary(parts: Sequence[Part]) -> Iterable[Diagnostic]:
     for part in parts[1:]:
-        if isinstance(part, tree.RuleItem | tree.Definition | tree.Listing | tree.HeaderLine):
+        misplaced = isinstance(part, tree.RuleItem | tree.Listing | tree.HeaderLine)
+        if misplaced or (isinstance(part, tree.Definition) and not is_of_words(part)):
             yield structure.MISPLACED_LINE.at(
                 _start(part.span),
-                "a vocabulary holds declarations only",
-                expected="expected a declaration",
+                "a vocabulary holds declarations and what its words mean",
+                expected="expected a declaration, `param` or `define`",
                 help="rules and header lines belong in a rulebook",
             )
+
+
+def is_of_words(item: tree.Definition) -> bool:
+    """Whether a vocabulary may have the item: a definition, or a parameter of definitions."""
+    return isinstance(item, tree.ParamItem) or (
+        isinstance(item, tree.DefineItem) and not item.again
+    )
 
 
 def _no_require(head: tree.RuleItem, span: Span) -> Diagnostic:

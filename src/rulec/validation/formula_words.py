@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
@@ -66,12 +67,19 @@ def _side(operator: str, tree: Any, *, chain: bool) -> str:
     return words if chain and tree[0] == operator else f"({words})"
 
 
+_ARGUMENT = re.compile(r"([(,]\s*)(\w+)(?=\s*[,)])")
+
+
 def _atom_words(atom: Mapping[str, Any]) -> str:
     if "terms" in atom:
         return str(atom["text"])
     if "same" in atom:
         return " = ".join(atom["same"])
-    name = atom["value"] or atom["name"]
+    name = str(atom["value"] or atom["name"])
+    if "number" in atom:
+        # A comparison that is calculated names its objects by their places
+        places = {f"x{place}": own for place, own in enumerate(atom["variables"], 1)}
+        return _ARGUMENT.sub(lambda found: f"{found[1]}{places.get(found[2], found[2])}", name)
     return f"{name}({', '.join(atom['variables'])})" if atom["variables"] else str(name)
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import permutations, product
 from types import MappingProxyType
+from typing import Any
 
 from rulec.resource_limits import CHOICES
 from rulec.value_display import short_repr
@@ -70,6 +71,18 @@ value, the default holds and verdicts mention it.
 """
 
 
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """What a signal means for the objects of its ``variables``, where no source tells it.
+
+    ``formula`` is one of `logic`, which stands above this room. It looks at the present and the
+    past only.
+    """
+
+    variables: tuple[str, ...]
+    formula: Any
+
+
 def values_of(declaration: Declaration) -> tuple[str, ...] | tuple[bool, ...]:
     """The values of an enumeration, in their order, or of a signal."""
     return declaration.values if isinstance(declaration, Enumeration) else (False, True)
@@ -96,11 +109,13 @@ class Vocabulary:
     declarations: Mapping[str, Declaration] = field(default_factory=lambda: MappingProxyType({}))
     implied: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: MappingProxyType({}))
     """Signal -> signals of the same objects that facts say it implies, where a state omits them."""
+    meanings: Mapping[str, Meaning] = field(default_factory=lambda: MappingProxyType({}))
+    """Signals that are defined, each after those that its meaning reads."""
 
     def __reduce__(self) -> tuple[type[Vocabulary], tuple[object, ...]]:
         # Read-only views of dictionaries cannot be pickled.
         own = self.name, dict(self.types), dict(self.declarations), dict(self.implied)
-        return Vocabulary, own
+        return Vocabulary, (*own, dict(self.meanings))
 
     @cached_property
     def enumeration_of(self) -> Mapping[str, Enumeration]:

@@ -34,8 +34,9 @@ from rulec.automata.bundle.cut_machines import (
 )
 from rulec.diagnostics import SourceLocation
 from rulec.logic import formula as ltl
-from rulec.logic.bounds import BOOLEAN, has_seconds, in_steps, operations_of
+from rulec.logic.bounds import BOOLEAN, PAST, has_seconds, in_steps, operations_of
 from rulec.logic.codec import from_data, number_from_data, terms_from_data
+from rulec.logic.free_names import names_in, terms_of
 from rulec.logic.opportunities import trigger_of
 from rulec.logic.printing import formula_text, term_text
 from rulec.rulebook.rulebook_model import (
@@ -48,6 +49,7 @@ from rulec.rulebook.rulebook_model import (
 )
 from rulec.rulebook.rules.implied_signals import with_implied
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
+from rulec.vocabulary.vocabulary_model import Meaning
 
 
 def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
@@ -74,6 +76,7 @@ def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
         priorities=_priorities(read),
         axioms=tuple(_axiom(fact, vocabulary) for fact in read.facts),
     )
+    vocabulary = replace(vocabulary, meanings=_meanings(read.vocabulary, vocabulary))
     known = with_implied(vocabulary, [axiom.formula for axiom in rulebook.axioms])
     rulebook = replace(rulebook, vocabulary=known)
     _check_names(rulebook)
@@ -180,6 +183,29 @@ def _check_vocabulary(vocabulary: Vocabulary) -> None:
             require(known, f"the default of `{declaration.name}` is not one of its values")
 
 
+def _meanings(read: schema.VocabularyEntry, vocabulary: Vocabulary) -> dict[str, Meaning]:
+    """The meanings of words, each of which reads no word that has its meaning later."""
+    found: dict[str, Meaning] = {}
+    for name, entry in read.meanings.items():
+        declared, formula, of = (
+            vocabulary.declarations.get(name),
+            from_data(entry.tree),
+            f"`{name}`",
+        )
+        fits = isinstance(declared, Signal) and len(declared.parameters) == len(entry.variables)
+        require(fits and len({*entry.variables}) == len(entry.variables), f"{of} cannot be defined")
+        _check_formula(formula, vocabulary, {*entry.variables}, of, counted=False)
+        require(formula_text(formula) == entry.formula, f"{of} has two different meanings")
+        is_past = all(part.operator in BOOLEAN | PAST for part in operations_of(formula))
+        require(is_past, f"the meaning of {of} looks ahead")
+        found[name] = Meaning(entry.variables, formula)
+    places = {name: place for place, name in enumerate(found)}
+    for name, meaning in found.items():
+        ordered = all(places.get(read, -1) < places[name] for read in names_in(meaning.formula))
+        require(ordered, f"`{name}` is defined by a word that is defined after it")
+    return found
+
+
 def _axiom(fact: schema.AxiomEntry, vocabulary: Vocabulary) -> CompiledAxiom:
     axiom = CompiledAxiom(
         tuple([Variable(name, type_name) for name, type_name in fact.variables]),
@@ -218,6 +244,10 @@ def _check_formula(
             case ltl.Atom() as atom:
                 known = _is_known(atom, vocabulary, variables)
                 require(known, f"{of} uses `{atom}`, which its vocabulary lacks")
+                if isinstance(atom, ltl.Calculated):
+                    places = {f"x{place}" for place in range(1, len(atom.arguments) + 1)}
+                    for term in terms_of(atom.number):
+                        _check_term(term, vocabulary, places, of)
             case ltl.Comparison(terms) as comparison:
                 normal = _is_normal(comparison)
                 require(normal, f"{of} compares numbers that are not in their normal form")

@@ -69,6 +69,12 @@ def entry_of(rulebook: CompiledRulebook) -> schema.BundleFile:
                 msgspec.convert(item, schema.ENTRY_OF[type(item)], from_attributes=True)
                 for item in vocabulary.declarations.values()
             ],
+            {
+                name: schema.MeaningEntry(
+                    own.variables, formula_text(own.formula), to_data(own.formula)
+                )
+                for name, own in vocabulary.meanings.items()
+            },
         ),
         facts=[_axiom(axiom) for axiom in rulebook.axioms],
         rules=[_rule(rule, prefixes) for rule in rulebook.rules],

@@ -71,12 +71,21 @@ ENTRY_OF: dict[type[Declaration], type[EnumerationEntry | SignalEntry | Quantity
 }
 
 
-class VocabularyEntry(_Strict):
-    """Types, each with its parent, and declarations."""
+class MeaningEntry(_Strict):
+    """What a signal means for the objects of its variables; ``tree`` is a formula."""
+
+    variables: tuple[str, ...]
+    formula: str
+    tree: Any
+
+
+class VocabularyEntry(_Strict, omit_defaults=True):
+    """Types, each with its parent, declarations, and the meanings of those that are defined."""
 
     name: str
     types: dict[str, str | None]
     declarations: list[EnumerationEntry | SignalEntry | QuantityEntry]
+    meanings: dict[str, MeaningEntry] = {}
 
 
 class ReadEntry(_Strict, tag="state", tag_field="kind"):

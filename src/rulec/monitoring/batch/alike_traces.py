@@ -13,6 +13,7 @@ from rulec.monitoring.batch.columns.line_columns import columnize_lines
 from rulec.monitoring.batch.trace_groups import (
     Names,
 )
+from rulec.monitoring.implied_values import words_meant
 from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import AlikeLines, LineBlock
 from rulec.trace.trace_columns import Array, Key, Layout, TraceColumns
@@ -130,6 +131,8 @@ def check_nothing_derived(columns: TraceColumns, vocabulary: Vocabulary) -> None
     for (name, _), values in columns.values.items():
         if name in vocabulary.constants and _changes(values, columns.layout):
             raise UnencodableError
+    if words_meant(vocabulary, None):
+        raise UnencodableError
     for cause, effects in vocabulary.implied.items():
         if any(_lacks(columns, cause, effect) for effect in effects):
             raise UnencodableError

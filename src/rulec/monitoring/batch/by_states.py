@@ -12,7 +12,7 @@ from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import as_answer, with_place
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.fault_containment import judged_apart
-from rulec.monitoring.implied_values import with_derived_values
+from rulec.monitoring.implied_values import with_derived_values, words_meant
 from rulec.monitoring.state_validation import check_objects, check_states, check_told
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
@@ -37,6 +37,8 @@ def judged_by_states(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     # A name that is unknown for all objects is unknown for each object without a value.
     trace = with_derived_values(spelled_out(trace, rulebook.vocabulary), rulebook.vocabulary)
     run = UncertainRun(trace, rulebook)
+    # What is calculated may be unknown although all else is known
+    is_partial = is_partial or bool(words_meant(rulebook.vocabulary, trace.told))
     if is_partial or trace.ends == "cut" or trace.told is not None:
         return run.verdict()
     check_counting_axioms(rulebook, len(trace.states), run.view, "state {}".format, trace.place)

@@ -14,7 +14,8 @@ from rulec.monitoring.batch.joined.joined_states import joined_states
 from rulec.monitoring.batch.joined.joined_traces import TraceKind
 from rulec.monitoring.batch.stacked.stacked_run import check_judgeable, judge_joined
 from rulec.monitoring.bindings import types_of
-from rulec.monitoring.implied_values import with_derived_values
+from rulec.monitoring.constant_values import with_constants
+from rulec.monitoring.implied_values import with_implied_values
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.verdict import Verdict
@@ -47,7 +48,8 @@ def derived_trace(trace: Trace, vocabulary: Vocabulary) -> Trace | None:
             return trace
         if any(state.get(name) is UNKNOWN for name in about for state in trace.states):
             trace = spelled_out(trace, vocabulary)
-        return with_derived_values(trace, vocabulary)
+        # Words that are defined are read from the arrays
+        return with_implied_values(with_constants(trace, vocabulary), vocabulary)
     except (TypeError, AttributeError, LookupError, RulecError):
         return None
 

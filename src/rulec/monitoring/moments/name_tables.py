@@ -20,15 +20,14 @@ from rulec.monitoring.state_view import value_in
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.trace import Trace
+from rulec.trace.partly_known.column_values import partly_known
 from rulec.trace.partly_known.partly_known_values import (
-    EnumeratedChoice,
     NameValues,
     Number,
-    Truth,
 )
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_columns import Array
-from rulec.vocabulary import Declaration, Enumeration, Quantity, Vocabulary
+from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from rulec.vocabulary.vocabulary_model import least_value
 from rulec.vocabulary.written_numbers import WrittenNumber
@@ -43,30 +42,6 @@ def at_places(rows: NameValues, chosen: Indices | None, states: Indices | None) 
         return half[(np.arange(len(half)) if chosen is None else chosen)[:, None], states]
 
     return rows.each(part)
-
-
-def partly_known(
-    declaration: Declaration | None, values: Array, upper: Array, unknown: Flags | None
-) -> NameValues:
-    """The values of a name: Booleans, numbers up to ``upper``, or places among those declared.
-
-    Where they are ``unknown`` their entries are meaningless.
-    """
-    if unknown is not None and not unknown.any():
-        unknown = None
-    if isinstance(declaration, Enumeration):
-        n_values = len(declaration.values)
-        kind = np.min_scalar_type(1 << n_values)
-        bits = np.array([1 << place for place in range(n_values)], dtype=kind)
-        if unknown is None:
-            return EnumeratedChoice(bits[values])
-        return EnumeratedChoice(np.where(unknown, bits.sum(dtype=kind), bits[values]))
-    if isinstance(declaration, Quantity):
-        if unknown is None:
-            return Number(values, upper)
-        return Number(np.where(unknown, -np.inf, values), np.where(unknown, np.inf, upper))
-    truth = Truth.known(values)
-    return truth if unknown is None else truth.unknown_at(unknown)
 
 
 class NameTables:

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from fractions import Fraction
 
 import numpy as np
 
-from rulec.array_types import Flags, Indices
-from rulec.automata.thresholds import ThresholdScale
+from rulec.array_types import Indices
 from rulec.logic import formula as ltl
 from rulec.logic.fold import fold
 from rulec.monitoring.batch.columns.column_numbers import (
     ComparisonSides,
     comparison_sides,
-    digits_of,
+    truth_between,
 )
 from rulec.monitoring.moments.name_tables import NameTables, at_places
 from rulec.trace.partly_known.partly_known_values import (
@@ -25,7 +23,6 @@ from rulec.trace.partly_known.partly_known_values import (
     Truth,
 )
 from rulec.trace.partly_known.row_stretches import RowStretches
-from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Enumeration
 
 
@@ -90,13 +87,7 @@ class RowEvaluation:
             ready = comparison_sides(comparison.terms, comparison.relation, comparison.limit)
             self.comparisons[id(comparison)] = ready
         parts = [(factor, self._term(term)) for factor, term in comparison.terms]
-        lows = [(f, part.low if f > 0 else part.high) for f, part in parts]
-        highs = [(f, part.high if f > 0 else part.low) for f, part in parts]
-        low = _digits(ready.scale, lows)
-        if all(lower is upper for (_, lower), (_, upper) in zip(lows, highs, strict=True)):
-            return Truth.known(ready.every.diagonal()[low])
-        high = _digits(ready.scale, highs)
-        return Truth(ready.every[low, high], ready.some[low, high])
+        return truth_between(ready, parts)
 
     def _term(self, term: ltl.Term) -> Number:
         if isinstance(term, ltl.QuantityTerm):
@@ -117,14 +108,3 @@ class RowEvaluation:
                 counts = inner.of(term.body) & there
                 count += Number(counts.sure, counts.possible)
         return count
-
-
-def _digits(ready: ThresholdScale, summands: list[tuple[Fraction, Array]]) -> Array:
-    """For each row and state the side of the limit that a sum is on."""
-    if ready.quantity is not None:
-        return digits_of(ready, summands, 0)
-    spread = np.broadcast_arrays(*[numbers for _, numbers in summands])
-    parts = [(factor, own.ravel()) for (factor, _), own in zip(summands, spread, strict=True)]
-    # A sum with an end that is not known has none either
-    ignored: Flags = np.logical_or.reduce([~np.isfinite(numbers) for _, numbers in parts])
-    return digits_of(ready, parts, parts[0][1].size, ignored).reshape(spread[0].shape)

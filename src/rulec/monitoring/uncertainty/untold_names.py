@@ -14,6 +14,7 @@ from typing import Any
 
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.outcome_machine import VIOLATED, OutcomeMachine, bits_of
+from rulec.monitoring.implied_values import words_meant
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
 from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
 from rulec.vocabulary import Enumeration, Vocabulary
@@ -39,6 +40,7 @@ def untold_names(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozens
     """The names that a source which provides ``told`` lacks, and that are not presumed."""
     if told is None:
         return frozenset()
+    told = frozenset((*told, *words_meant(vocabulary, told)))
     untold = []
     for name, item in vocabulary.declarations.items():
         if name not in told:

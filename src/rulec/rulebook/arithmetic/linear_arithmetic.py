@@ -1,4 +1,4 @@
-"""Numbers in formulas: sums of quantities and counts, exact, with a dimension.
+"""Numbers in formulas: sums of quantities, of counts, of products; exact, with a dimension.
 
 A number may depend on conditions: ``1.5 m if built_up else 2 m`` is one number in two cases, of
 which exactly one holds at any time.
@@ -7,12 +7,14 @@ which exactly one holds at any time.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import islice, product
 
 from rulec.logic import formula as ltl
+from rulec.logic.free_names import number_sum
 from rulec.logic.linear_comparison import comparison
+from rulec.rulebook.arithmetic.calculations import calculated, multiplication
 from rulec.vocabulary.dimensions import NUMBER, Dimension, Unit
 
 MOST_CASES = 64
@@ -28,14 +30,14 @@ SUM, PRODUCT, SIGN, PRIMARY = range(4)
 
 @dataclass(frozen=True, slots=True)
 class Linear:
-    """A sum of coefficients times terms, and a constant, in base units.
+    """A sum of coefficients times terms or operations, and a constant, in base units.
 
     ``dimension`` is None for a bare 0, which fits any dimension. ``text`` is how a rulebook would
     write it, ``binding`` the precedence of its outermost operator. ``share`` is the unit of a
     number without dimension, such as `%`; empty if written without a unit, None if neither is so.
     """
 
-    coefficients: Mapping[ltl.Term, Fraction]
+    coefficients: Mapping[ltl.Term | ltl.Operation, Fraction]
     constant: Fraction
     dimension: Dimension | None
     text: str
@@ -194,18 +196,34 @@ def _share_of_sum(left: Linear, right: Linear) -> str | None:
 
 
 def multiplied(left: Linear, right: Linear) -> Linear:
-    """The product of two numbers, at most one of which varies."""
+    """The product of two numbers."""
     text = f"{left.within(PRODUCT)} * {right.within(SIGN)}"
+    if left.coefficients and right.coefficients:
+        return _operation(multiplication(_sum_of(left), _sum_of(right)), left, right, text)
     return _times(right, left, text) if right.coefficients else _times(left, right, text)
 
 
 def divided(linear: Linear, divisor: Linear) -> Linear:
-    """The quotient by a constant other than 0."""
+    """The quotient by a number that is no constant 0."""
     text = f"{linear.within(PRODUCT)} / {divisor.within(SIGN)}"
     dimension = None if divisor.dimension is None else divisor.dimension**-1
+    if divisor.coefficients:
+        quotient = ltl.Operation("/", _sum_of(linear), _sum_of(divisor))
+        return _operation(quotient, linear, replace(divisor, dimension=dimension), text)
     # A number of percents is none of them: `slope / 1 %`.
     share = "" if divisor.share == "" else None
     return _times(linear, Linear({}, 1 / divisor.constant, dimension, "", share=share), text)
+
+
+def _sum_of(linear: Linear) -> ltl.NumberSum:
+    return number_sum(linear.coefficients, linear.constant)
+
+
+def _operation(operation: ltl.Operation, left: Linear, right: Linear, text: str) -> Linear:
+    dimension = None
+    if left.dimension is not None and right.dimension is not None:
+        dimension = left.dimension * right.dimension
+    return Linear({operation: Fraction(1)}, Fraction(0), dimension, text, PRODUCT)
 
 
 def _times(linear: Linear, factor: Linear, text: str) -> Linear:
@@ -240,9 +258,19 @@ def compared(left: NumberByCases, relation: ltl.Relation, right: NumberByCases) 
     if len(cases) > MOST_CASES:
         raise TooManyCasesError
     return any_of(
-        all_of([*conditions, comparison(linear.coefficients, relation, -linear.constant, text)])
+        all_of([*conditions, _comparison(linear, relation, text)])
         for conditions, linear, text in cases
     )
+
+
+def _comparison(linear: Linear, relation: ltl.Relation, text: str) -> ltl.Formula:
+    """``linear relation 0``."""
+    terms: dict[ltl.Term, Fraction] = {}
+    for part, factor in linear.coefficients.items():
+        if isinstance(part, ltl.Operation):
+            return calculated(_sum_of(linear), relation, text)
+        terms[part] = factor
+    return comparison(terms, relation, -linear.constant, text)
 
 
 def all_of(formulas: Iterable[ltl.Formula]) -> ltl.Formula:

@@ -239,12 +239,9 @@ def _arithmetic(node: tree.Arithmetic, scope: Scope) -> NumberByCases | None:
             return None
         sign = 1 if node.operator == "+" else -1
         return numbers.combined(left, right, partial(numbers.added, sign=sign))
-    if right.varies and (node.operator == "/" or left.varies):
-        scope.report(say.not_linear(node))
-        return None
     if node.operator == "*":
         return numbers.combined(left, right, numbers.multiplied)
-    if any(linear.constant == 0 for _, linear in right.cases):
+    if any(not linear.coefficients and linear.constant == 0 for _, linear in right.cases):
         scope.report(say.divided_by_zero(node))
         return None
     return numbers.combined(left, right, numbers.divided)

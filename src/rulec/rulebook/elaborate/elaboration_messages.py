@@ -42,15 +42,15 @@ OPERATOR_BEFORE_THEN = Code(
     good="rulebook example\nsignal a, b\nhard rule r { require never (a then b) }\n",
 )
 
-NOT_LINEAR = Code(
+DIVIDED_BY_ZERO = Code(
     "R0314",
-    title="two numbers that change are multiplied or divided",
-    why="Comparisons are linear: values of quantities can be added, subtracted, and multiplied or "
-    "divided by fixed numbers and parameters, except by 0.",
-    bad="rulebook example\nquantity gap in m default 100\nquantity speed in m/s default 0\n"
-    "hard rule r { require always gap / speed >= 2 s }\n",
-    good="rulebook example\nquantity gap in m default 100\nquantity speed in m/s default 0\n"
-    "hard rule r { require always gap >= 2 s * speed }\n",
+    title="a number is divided by 0",
+    why="Nothing can be divided by 0. Where a number that changes may be 0, comparisons of what is "
+    "divided by it are unknown.",
+    bad="rulebook example\nquantity gap in m default 100\n"
+    "hard rule r { require always gap / 0 >= 2 m }\n",
+    good="rulebook example\nquantity gap in m default 100\n"
+    "hard rule r { require always gap / 2 >= 2 m }\n",
 )
 
 MISPLACED_TEMPORAL_OPERATOR = Code(
@@ -67,7 +67,8 @@ MISPLACED_TEMPORAL_OPERATOR = Code(
 
 
 def kind_of(dimension: Dimension | None) -> str:
-    return "a number" if dimension is None else f"a {dimension.name}"
+    name = "number" if dimension is None else dimension.name
+    return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
 
 
 def short(node: tree.Formula) -> str:
@@ -242,26 +243,8 @@ def too_long(node: tree.NumberLiteral) -> Diagnostic:
     )
 
 
-def not_linear(node: tree.Arithmetic) -> Diagnostic:
-    if node.operator == "*":
-        why = "two numbers that change from state to state cannot be multiplied"
-        where = "on one side"
-        way_out = "multiply and divide by fixed numbers and parameters only"
-    else:
-        why = "a number that changes from state to state cannot be divided by"
-        where = "after `/`"
-        left, right = short(node.left), short(node.right)
-        way_out = f"for `{left} / {right} >= n` write `{left} >= n * {right}`"
-    return NOT_LINEAR.at(
-        node.span,
-        f"`{short(node)}`: {why}",
-        expected=f"expected a fixed number {where}",
-        help=way_out,
-    )
-
-
 def divided_by_zero(node: tree.Arithmetic) -> Diagnostic:
-    return NOT_LINEAR.at(
+    return DIVIDED_BY_ZERO.at(
         node.right.span,
         f"`{short(node)}` divides by 0",
         expected="expected a number other than 0",

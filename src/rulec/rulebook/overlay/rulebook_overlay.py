@@ -59,6 +59,8 @@ class Overlay:
     options: dict[str, bool] = field(default_factory=dict)
     parameters: dict[str, list[Value]] = field(default_factory=dict)
     definitions: dict[str, tree.DefineItem] = field(default_factory=dict)
+    meanings: dict[str, tree.DefineItem] = field(default_factory=dict)
+    """The definitions of declared words."""
     rules: dict[str, RuleEntry] = field(default_factory=dict)
     gone: dict[str, tree.Name] = field(default_factory=dict)
     """Where a rule was last dropped or declared silent."""
@@ -113,19 +115,9 @@ class Overlay:
                     self.parameters.setdefault(name.text, []).append(Value(item, level))
             case tree.SetItem():
                 self._set(item, file, level)
-            case tree.DefineItem(name, again=False):
-                if self._is_new(name, "definition"):
-                    self.definitions[name.text] = item
             case tree.DefineItem(name):
-                if name.text not in self.definitions:
-                    inherited = self._inherited(self.definitions, name)
-                    self._nothing(name, "definition", "redefine", inherited, file)
-                elif self._changes(name, "definition", "redefine"):
-                    before = self.definitions[name.text]
-                    if len(item.parameters) != len(before.parameters):
-                        self.mistakes.append(say.other_parameters(item, before))
-                    else:
-                        self.definitions[name.text] = item
+                is_declared = name.text in self.spans
+                self._define(item, self.meanings if is_declared else self.definitions, file)
             case tree.DropItem(name, because):
                 if self._is_inherited_rule(name, "drop", file):
                     del self.rules[name.text]
@@ -150,6 +142,22 @@ class Overlay:
                 self.unsure_rules |= item.word == "rule"
                 self.unsure |= item.nameless and item.word != "rule"
 
+    def _define(
+        self, item: tree.DefineItem, known: dict[str, tree.DefineItem], file: tree.File
+    ) -> None:
+        name = item.name
+        if not item.again:
+            if self._is_new(name, "definition"):
+                known[name.text] = item
+        elif name.text not in known:
+            inherited = self._inherited([*self.definitions, *self.meanings], name)
+            self._nothing(name, "definition", "redefine", inherited, file)
+        elif self._changes(name, "definition", "redefine"):
+            if len(item.parameters) != len(known[name.text].parameters):
+                self.mistakes.append(say.other_parameters(item, known[name.text]))
+            else:
+                known[name.text] = item
+
     def _is_new(self, name: tree.Name, kind: str) -> bool:
         if name.text in self.declared_at:
             known = self.declared_at[name.text]
@@ -158,7 +166,7 @@ class Overlay:
             else:
                 self.mistakes.append(say.inherited_name(name, kind, known))
             return False
-        if name.text in self.spans:
+        if kind != "definition" and name.text in self.spans:
             self.mistakes.append(twice("name", name, self.spans[name.text]))
             return False
         self.declared_at[name.text] = name

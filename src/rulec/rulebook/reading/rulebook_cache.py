@@ -13,6 +13,7 @@ from rulec.rulebook import rulebook_model as model
 from rulec.rulebook.files.search_path import Dependency
 from rulec.rulebook.reading.reading_cache import Basis, BookQuestion, recalled, remember_findings
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
+from rulec.vocabulary.vocabulary_model import Meaning
 
 MOST_BOOKS = 200
 """How many rulebooks are kept; the longest unused ones are removed first."""
@@ -23,6 +24,7 @@ RULE_KINDS: dict[type, ObjectKind] = {
     Source: ObjectKind(lambda source: (source.name, source.text), Source),
     **kinds_of_fields(
         (
+            *(ltl.Calculated, ltl.NumberSum, ltl.Operation, Meaning),
             *(ltl.Atom, ltl.QuantityTerm, ltl.Count, ltl.Comparison, ltl.Same, ltl.Constant),
             *(ltl.Unary, ltl.Binary, ltl.Bound, Span),
             *(model.Variable, model.Exemption, model.RuleParts, model.SourceFile, model.Rule),

@@ -36,7 +36,8 @@ def example_of(example: tree.ExampleItem, formula: ltl.Formula | None, scope: Sc
     needed: dict[Key, ltl.Atom | ltl.QuantityTerm] = {}
     if formula is not None:
         for term in required_inputs(formula, types, scope.symbols.fits):
-            if scope.symbols.items[term.name].default is None:
+            is_meant = term.name in scope.constants.overlay.meanings
+            if scope.symbols.items[term.name].default is None and not is_meant:
                 needed.setdefault((term.name, term.arguments), term)
     return Example(
         accepts=example.accepts,

@@ -116,6 +116,8 @@ def _values(
         if isinstance(proposition, ltl.Comparison):
             limits.setdefault(proposition.terms, set()).add(proposition.limit)
             continue
+        if isinstance(proposition, ltl.Calculated):
+            continue
         declaration = vocabulary.declarations[proposition.name]
         usual = declaration.default
         every = declaration.values if isinstance(declaration, Enumeration) else (False, True)

@@ -15,6 +15,7 @@ from rulec.automata.mealy_monitor import NumberRead, Threshold
 from rulec.automata.thresholds import ThresholdScale, exact, scale
 from rulec.logic import formula as ltl
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
+from rulec.trace.partly_known.partly_known_values import Number, Truth
 from rulec.trace.plain_arrays import places_among
 from rulec.trace.trace_columns import Array, smallest_unsigned
 from rulec.vocabulary import Declaration, Enumeration, Quantity
@@ -177,6 +178,28 @@ def comparison_sides(
         np.array([[sides.all() for sides in row] for row in pairs]),
         np.array([[sides.any() for sides in row] for row in pairs]),
     )
+
+
+def truth_between(ready: ComparisonSides, parts: Sequence[tuple[Fraction, Number]]) -> Truth:
+    """The truth of a comparison whose terms have these coefficients and values."""
+    lows = [(factor, part.low if factor > 0 else part.high) for factor, part in parts]
+    highs = [(factor, part.high if factor > 0 else part.low) for factor, part in parts]
+    low = _side_of(ready.scale, lows)
+    if all(lower is upper for (_, lower), (_, upper) in zip(lows, highs, strict=True)):
+        return Truth.known(ready.every.diagonal()[low])
+    high = _side_of(ready.scale, highs)
+    return Truth(ready.every[low, high], ready.some[low, high])
+
+
+def _side_of(ready: ThresholdScale, summands: list[tuple[Fraction, Array]]) -> Array:
+    """For each place the side of the limit that a sum is on."""
+    if ready.quantity is not None:
+        return digits_of(ready, summands, 0)
+    spread = np.broadcast_arrays(*[numbers for _, numbers in summands])
+    parts = [(factor, own.ravel()) for (factor, _), own in zip(summands, spread, strict=True)]
+    # A sum with an end that is not known has none either
+    ignored: Mask = np.logical_or.reduce([~np.isfinite(numbers) for _, numbers in parts])
+    return digits_of(ready, parts, parts[0][1].size, ignored).reshape(spread[0].shape)
 
 
 def alike_places(columns: Iterable[NDArray[Any]], n_places: int) -> NDArray[np.intp]:

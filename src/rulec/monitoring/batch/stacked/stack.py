@@ -14,14 +14,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rulec.array_types import Flags, Indices
-from rulec.automata.thresholds import EXACT_IN_FLOATS
+from rulec.automata.thresholds import EXACT_IN_FLOATS, exact_step
 from rulec.monitoring.batch.columns.encoded_columns import (
     UnencodableError,
     column_dtype,
     encode_values,
 )
+from rulec.monitoring.batch.columns.meant_columns import MeaningReader
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
 from rulec.monitoring.batch.stacked.stacked_pairs import StackedPairs
+from rulec.monitoring.implied_values import words_meant
+from rulec.trace.partly_known.column_values import partly_known
+from rulec.trace.partly_known.partly_known_values import NameValues
 from rulec.trace.plain_arrays import distinct
 from rulec.trace.trace_arrays import starts_of
 from rulec.trace.trace_columns import Array
@@ -83,6 +87,10 @@ class Stack:
         piece = traces.pieces[0]
         parts = piece.world, piece.about, piece.between
         self.arity = {name: n for n, part in enumerate(parts) for name in part}
+        self._kind = traces.kind
+        self._meant = words_meant(vocabulary, traces.kind.told)
+        for name in self._meant:
+            self.arity.setdefault(name, len(vocabulary.declarations[name].parameters))
         self._columns: dict[str, StackColumn] = {}
         self._ends: dict[str, tuple[float, float]] = {}
         self._of_type: dict[str, Flags] = {}
@@ -201,8 +209,58 @@ class Stack:
         if name not in self.arity:
             return None
         if name not in self._columns:
-            self._columns[name] = self._column(name)
+            is_meant = name in self._meant
+            self._columns[name] = self._meant_column(name) if is_meant else self._column(name)
         return self._columns[name]
+
+    def _meant_column(self, name: str) -> StackColumn:
+        """The column of a word, by its meaning where no state tells it."""
+        meaning = MeaningReader(
+            vocabulary=self.vocabulary,
+            named=self.named,
+            begins=self.begins,
+            starts=self.starts,
+            state_of=self.state_of,
+            of_type=self.cells_of_type,
+            step_s=exact_step(self._kind.step_s),
+            beyond="cut" if self._kind.ends == "cut" else "over",
+        ).of(self.vocabulary.meanings[name])
+        is_about = np.ones(len(meaning.sure), dtype=bool)
+        for kind in self.vocabulary.declarations[name].parameters:
+            is_about = self.of_type(kind)[self.object_of]
+        sure, possible = meaning.sure & is_about, meaning.possible & is_about
+        if self._is_told(name):
+            told = self._column(name)
+            untold = told.missing
+            if untold is None:
+                return told
+            unknown = np.zeros(len(sure), dtype=bool) if told.unknown is None else told.unknown
+            sure = np.where(untold, sure, told.values & ~unknown)
+            possible = np.where(untold, possible, told.values | unknown)
+        unknown = possible & ~sure
+        return StackColumn(sure, None, unknown if unknown.any() else None, None)
+
+    def _is_told(self, name: str) -> bool:
+        piece = self._pieces[0]
+        return any(name in part for part in (piece.world, piece.about, piece.between))
+
+    def named(self, name: str) -> NameValues:
+        """The values of a name in all states, or in all cells; its default where it is not given.
+
+        Raises UnencodableError.
+        """
+        declaration, column = self.vocabulary.declarations[name], self.column(name)
+        if column is not None:
+            values, unknown = column.values, either(column.unknown, column.missing)
+            upper = values if column.upper is None else column.upper
+            return partly_known(declaration, values, upper, unknown)
+        n_places = int((self.starts if declaration.parameters else self.begins)[-1])
+        default = self.default(name)
+        is_known = default is not None and default is not UNKNOWN
+        values = np.full(n_places, default if is_known else _anything(declaration))
+        return partly_known(
+            declaration, values, values, None if is_known else ~np.zeros(n_places, dtype=bool)
+        )
 
     @cached_property
     def columns(self) -> Mapping[str, StackColumn]:

@@ -1,0 +1,145 @@
+"""Words by their meanings: by arrays, by states, in a monitor, and calculated by hand."""
+
+from fractions import Fraction
+from itertools import product
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rulec import UNKNOWN, Interval, Monitor, Trace, compile_rulebook, parse_rulebook, verify
+from rulec.monitoring.batch.by_states import verify_by_states
+
+BOOK = compile_rulebook(
+    parse_rulebook(
+        """rulebook b
+type car
+quantity speed in km/h default 0
+quantity gap(c: car) in m default 1000
+quantity speed_of(c: car) in km/h default 0
+signal behind(c: car) default false
+signal slow default false
+signal close(c: car) default false
+param reaction : time = 1 s
+param braking : acceleration = 8 m/s^2
+define close(c: car) = behind(c) and
+  gap(c) < reaction * speed + (speed * speed - speed_of(c) * speed_of(c)) / (2 * braking)
+define slow = historically[<= 2 s] speed < 30 km/h and some c: car (close(c))
+hard rule keeps(c: car) { require always not close(c) }
+hard rule flows { require always not slow }
+hard rule headway(c: car) { require always (behind(c) implies gap(c) / speed >= 1 s) }
+"""
+    )
+)
+BASES = frozenset({"speed", "gap", "speed_of", "behind", "car"})
+TOLD = (None, BASES, BASES - {"speed_of"}, BASES | {"slow"})
+
+
+def numbers(most):
+    """Halves up to ``most``, some known only as an interval, some unknown."""
+    halves = st.integers(0, 2 * most).map(lambda n: n / 2)
+    widths = st.sampled_from((0.5, 2.0, 10.0))
+    between = st.tuples(halves, widths).map(lambda x: Interval(x[0], x[0] + x[1]))
+    return st.one_of(halves, halves, halves, between, st.just(UNKNOWN))
+
+
+TRUTHS = st.sampled_from((True, True, False, UNKNOWN))
+
+
+@st.composite
+def traces(draw, numbers=numbers, truths=TRUTHS):
+    objects = {f"o{n}": "car" for n in range(draw(st.integers(1, 3)))}
+    n_states, told = draw(st.integers(1, 5)), draw(st.sampled_from(TOLD))
+    present = {}
+    if len(objects) > 1 and draw(st.booleans()):
+        present["o1"] = (draw(st.integers(0, n_states - 1)), n_states - 1)
+    states = []
+    for n in range(n_states):
+        there = [x for x in objects if present.get(x, (0, 0))[0] <= n]
+        state = {
+            "speed": draw(numbers(100)),
+            "gap": {x: draw(numbers(60)) for x in there},
+            "behind": {x: draw(truths) for x in there},
+        }
+        if told is None or "speed_of" in told:
+            state["speed_of"] = {x: draw(numbers(100)) for x in there}
+        if told is not None and "slow" in told:
+            state["slow"] = draw(truths)
+        states.append(state)
+    step_s, ends = (
+        draw(st.sampled_from((1.0, 0.5, 0.7))),
+        draw(st.sampled_from(("complete", "cut"))),
+    )
+    return Trace("t", step_s, objects, tuple(states), present, ends=ends, told=told)
+
+
+@given(traces())
+def test_arrays_and_states_agree(trace):
+    assert verify(trace, BOOK) == verify_by_states(trace, BOOK)
+
+
+@given(traces())
+def test_a_monitor_finds_what_one_state_shows(trace):
+    """What a meaning says of the past is unknown there, so `flows` is left out."""
+    monitor = Monitor(BOOK, trace.step_s, told=trace.told, cut=trace.ends == "cut")
+    for state, objects in trace.steps():
+        monitor.step(state, objects)
+
+    def found(violations):
+        return {(x.rule, *x.binding.values(), x.step) for x in violations if x.rule != "flows"}
+
+    assert found(monitor.violations) == found(verify(trace, BOOK).violations)
+
+
+def ends_of(value):
+    return (value.low, value.high) if isinstance(value, Interval) else (value, value)
+
+
+def is_close(speed, gap, other):
+    """As the book says, in m and s, by fractions."""
+    own, theirs = (Fraction(x) * 5 / 18 for x in (speed, other))
+    return Fraction(gap) < own + (own * own - theirs * theirs) / 16
+
+
+KNOWN = st.integers(0, 200).map(lambda n: n / 2)
+
+
+@given(KNOWN, KNOWN, KNOWN)
+def test_a_known_state_is_calculated_by_hand(speed, gap, other):
+    state = {"speed": speed, "gap": {"c": gap}, "speed_of": {"c": other}, "behind": {"c": True}}
+    trace = Trace("t", 1.0, {"c": "car"}, (state,), told=BASES)
+    verdict = verify(trace, BOOK)
+    lost = {x.rule for x in verdict.violations}
+    assert ("keeps" in lost) == is_close(speed, gap, other)
+    assert ("flows" in lost) == (speed < 30 and is_close(speed, gap, other))
+    if speed:
+        assert ("headway" in lost) == (Fraction(gap) < Fraction(speed) * 5 / 18)
+    else:  # nothing can be divided by 0
+        assert [x.rule for x in verdict.open] == ["headway"]
+
+
+@given(numbers(100), numbers(60), numbers(100))
+def test_what_is_partly_known_holds_for_all_that_it_may_be(speed, gap, other):
+    """All corners of the intervals, and the speeds at which the difference turns."""
+    state = {"speed": speed, "gap": {"c": gap}, "speed_of": {"c": other}, "behind": {"c": True}}
+    verdict = verify(Trace("t", 1.0, {"c": "car"}, (state,), told=BASES), BOOK)
+    is_lost = "keeps" in {x.rule for x in verdict.violations}
+    is_open = "keeps" in {x.rule for x in verdict.open}
+    if UNKNOWN in (speed, gap, other):
+        assert is_open
+        return
+    # Closer with more speed, a smaller gap and a slower one ahead: the corners decide
+    corners = {is_close(*x) for x in product(*map(ends_of, (speed, gap, other)))}
+    assert (is_lost, is_open) == (corners == {True}, len(corners) == 2)
+
+
+def test_a_told_value_wins():
+    """Also in one state only, for one object only."""
+    state = {"speed": 100, "gap": {"c": 1}, "behind": {"c": True}, "close": {"c": False}}
+    assert "keeps" not in {x.rule for x in verify(trace_of(state), BOOK).violations}
+    # A table that does not say what it tells takes the default, as before
+    del state["close"]
+    assert "keeps" not in {x.rule for x in verify(trace_of(state), BOOK).violations}
+
+
+def trace_of(*states):
+    return Trace("t", 1.0, {"c": "car"}, states)
