@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
+from fractions import Fraction
 from types import MappingProxyType
+from typing import Any
 
 from rulec.diagnostics import did_you_mean, named
 from rulec.recordings.mending.short_holes import LONGEST_HOLE_S
 from rulec.scenario.recorded.lane_coordinates import TOUCHING_M
 from rulec.value_display import brief, short_repr
+from rulec.vocabulary import Vocabulary
 
 LARGEST = 1_000_000.0
 """Largest threshold (m, s or km/h): larger ones mean nothing on a road, and overflow."""
@@ -124,6 +127,27 @@ class Thresholds:
 
 
 USUAL = Thresholds()
+
+_SET_BY_BOOKS: Mapping[str, tuple[str, Fraction]] = {
+    "reaction_time": ("reaction_s", Fraction(1)),
+    "full_braking": ("braking_mps2", Fraction(1)),
+    "cycle_braking": ("cycle_braking_mps2", Fraction(1)),
+    "rail_braking": ("rail_braking_mps2", Fraction(1)),
+    "speed_to_stop_at_once": ("stops_at_once_kmh", Fraction(18, 5)),
+}
+"""Parameter of a vocabulary -> the threshold that it sets, and its unit's share of a base unit."""
+
+
+def thresholds_by(vocabulary: Vocabulary | None, given: Thresholds) -> Thresholds:
+    """The thresholds, with the numbers of a rulebook's law where the user has chosen no others."""
+    law = {} if vocabulary is None else vocabulary.parameters
+    own: dict[str, Any] = {
+        field: float(law[name] * units)
+        for name, (field, units) in _SET_BY_BOOKS.items()
+        if name in law and getattr(given, field) == getattr(USUAL, field)
+    }
+    return replace(given, **own) if own else given
+
 
 LEAST_S: Mapping[str, float] = MappingProxyType(
     dict.fromkeys(

@@ -206,9 +206,10 @@ def _calculated(
 ) -> bool | Unknown:
     """Calculated from the quantities, unless the state tells the comparison itself."""
     items = tuple([binding[variable] for variable in proposition.arguments])
-    told = state.value(proposition.name, items)
-    if isinstance(told, bool):
-        return told
+    if proposition.name in state.vocabulary.declarations:
+        told = state.value(proposition.name, items)
+        if isinstance(told, bool):
+            return told
     unknown: list[Unknown] = []
 
     def value_of(term: ltl.Term) -> Interval | None:

@@ -37,7 +37,7 @@ from rulec.rulebook.rules.axiom_contradictions import (
 )
 from rulec.rulebook.rules.axioms import axioms_of, contradicted
 from rulec.rulebook.rules.implied_signals import with_implied
-from rulec.rulebook.rules.meanings import meanings_of, with_calculated
+from rulec.rulebook.rules.meanings import meanings_of, parameters_of, with_calculated
 from rulec.rulebook.rules.rule_elaboration import translate_rule
 from rulec.syntax import tree
 from rulec.vocabulary import Vocabulary
@@ -127,7 +127,9 @@ def names_of(
         known_levels=known_levels,
         axioms=axioms,
         vocabulary=replace(
-            with_implied(vocabulary, [axiom.formula for axiom in axioms]), meanings=meanings
+            with_implied(vocabulary, [axiom.formula for axiom in axioms]),
+            meanings=meanings,
+            parameters=parameters_of(vocabularies, symbols, constants),
         ),
         mistakes=tuple(mistakes),
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cached_property
 from itertools import permutations, product
 from types import MappingProxyType
@@ -111,11 +112,13 @@ class Vocabulary:
     """Signal -> signals of the same objects that facts say it implies, where a state omits them."""
     meanings: Mapping[str, Meaning] = field(default_factory=lambda: MappingProxyType({}))
     """Signals that are defined, each after those that its meaning reads."""
+    parameters: Mapping[str, Fraction] = field(default_factory=lambda: MappingProxyType({}))
+    """What definitions depend on and a rulebook may set: numbers in base units."""
 
     def __reduce__(self) -> tuple[type[Vocabulary], tuple[object, ...]]:
         # Read-only views of dictionaries cannot be pickled.
         own = self.name, dict(self.types), dict(self.declarations), dict(self.implied)
-        return Vocabulary, (*own, dict(self.meanings))
+        return Vocabulary, (*own, dict(self.meanings), dict(self.parameters))
 
     @cached_property
     def enumeration_of(self) -> Mapping[str, Enumeration]:

@@ -23,14 +23,17 @@ from rulec.syntax.tree_printer import print_formula, print_parameters
 _Given = tree.OptionItem | tree.ParamItem | tree.SetItem | tree.DefineItem
 
 
-def book_lineage_of(chain: Sequence[tree.File], at: str) -> rule_lineage.BookLineage:
+def book_lineage_of(
+    chain: Sequence[tree.File], at: str, vocabularies: Sequence[tree.File] = ()
+) -> rule_lineage.BookLineage:
     """The lineage of rules and provisions in a chain of sound rulebooks, most general first.
 
-    The day ``at`` (ISO) decides which value of a parameter applies.
+    The day ``at`` (ISO) decides which value of a parameter applies. ``vocabularies`` have
+    parameters and definitions, too.
     """
     rules: dict[str, list[rule_lineage.LineageStep]] = {}
     provisions: dict[str, list[tuple[_Given, str]]] = {}
-    for file in chain:
+    for file in (*vocabularies, *chain):
         book = book_header(file).name
         for item in file.items:
             match item:
@@ -63,7 +66,8 @@ def read_with_lineage(
     """A rulebook, its lineage and its trees. Arguments and errors as for ``load_rulebook``."""
     trees = read_trees(reference, search_path)
     loaded = resolve_trees(trees, at)
-    return loaded, book_lineage_of(trees.books, loaded.rulebook.at), trees
+    lineage = book_lineage_of(trees.books, loaded.rulebook.at, trees.vocabularies)
+    return loaded, lineage, trees
 
 
 def book_header(file: tree.File) -> rule_lineage.BookHeader:

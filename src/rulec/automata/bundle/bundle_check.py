@@ -76,7 +76,12 @@ def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
         priorities=_priorities(read),
         axioms=tuple(_axiom(fact, vocabulary) for fact in read.facts),
     )
-    vocabulary = replace(vocabulary, meanings=_meanings(read.vocabulary, vocabulary))
+    own = read.vocabulary.parameters.items()
+    vocabulary = replace(
+        vocabulary,
+        meanings=_meanings(read.vocabulary, vocabulary),
+        parameters={name: number_from_data(value) for name, value in own},
+    )
     known = with_implied(vocabulary, [axiom.formula for axiom in rulebook.axioms])
     rulebook = replace(rulebook, vocabulary=known)
     _check_names(rulebook)

@@ -75,6 +75,7 @@ def entry_of(rulebook: CompiledRulebook) -> schema.BundleFile:
                 )
                 for name, own in vocabulary.meanings.items()
             },
+            {name: str(value) for name, value in vocabulary.parameters.items()},
         ),
         facts=[_axiom(axiom) for axiom in rulebook.axioms],
         rules=[_rule(rule, prefixes) for rule in rulebook.rules],

@@ -80,12 +80,16 @@ class MeaningEntry(_Strict):
 
 
 class VocabularyEntry(_Strict, omit_defaults=True):
-    """Types, each with its parent, declarations, and the meanings of those that are defined."""
+    """Types, each with its parent, declarations, and the meanings of those that are defined.
+
+    ``parameters`` are the numbers in base units, as fractions, that meanings depend on.
+    """
 
     name: str
     types: dict[str, str | None]
     declarations: list[EnumerationEntry | SignalEntry | QuantityEntry]
     meanings: dict[str, MeaningEntry] = {}
+    parameters: dict[str, str] = {}
 
 
 class ReadEntry(_Strict, tag="state", tag_field="kind"):

@@ -57,7 +57,7 @@ from rulec.extraction.traces.signal_arrays import (
     written,
 )
 from rulec.extraction.traces.tellable_types import told_types
-from rulec.extraction.traffic_thresholds import LEAST_S
+from rulec.extraction.traffic_thresholds import LEAST_S, thresholds_by
 from rulec.monitoring.assumptions import check_assumed
 from rulec.trace import Value
 from rulec.trace.trace_arrays import TraceArrays
@@ -148,6 +148,9 @@ def to_traces(
 
     Raises UnlikeDrivesError if several drives supply different signals.
     """
+    limits = thresholds_by(writer.vocabulary, context.thresholds)
+    if limits != context.thresholds:
+        context = replace(context, thresholds=limits, computed={})
     read, spans = _names_written(writer), context.spans
     known = ~np.isnan(context.extents.s_min)
 

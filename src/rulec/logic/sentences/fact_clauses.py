@@ -30,6 +30,10 @@ def facts_in_words(
     has_phrase = False
     for about, value, shown in facts:
         name, _, rest = about.partition("(")
+        if rest and not rest.endswith(")"):
+            # No word: a comparison that is calculated, or a word of one of two rulebooks
+            clauses.append(atom_clause(Atom(about), ENGLISH, holds=value is True))
+            continue
         items = tuple(rest.removesuffix(")").split(", ")) if rest else ()
         item = vocabulary.declarations.get(name)
         # An object's name may contain the separator of arguments.

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from types import MappingProxyType
 
 from rulec.diagnostics import Diagnostic
@@ -11,7 +12,8 @@ from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, PAST
 from rulec.logic.free_names import names_in, terms_of
 from rulec.rulebook.elaborate import meaning_messages as say
-from rulec.rulebook.elaborate.elaboration import truth
+from rulec.rulebook.elaborate.elaboration import number, truth
+from rulec.rulebook.elaborate.macro_expansion import parameter_value
 from rulec.rulebook.elaborate.scope import Scope, bound_variables
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
@@ -94,6 +96,20 @@ def _meaning(
     return Meaning(tuple(variables), formula)
 
 
+def parameters_of(
+    vocabularies: Sequence[tree.File], symbols: SymbolTable, constants: ConstantsAndMacros
+) -> Mapping[str, Fraction]:
+    """The values (in base units) of the parameters that vocabularies declare."""
+    found: dict[str, Fraction] = {}
+    for item in (item for file in vocabularies for item in file.items):
+        if isinstance(item, tree.ParamItem):
+            use = tree.AtomUse(item.name, span=item.name.span)
+            value = parameter_value(use, Scope(symbols, constants, {}, []), number)
+            if value is not None and value.is_constant:
+                found[item.name.text] = value.cases[0][1].constant
+    return MappingProxyType(found)
+
+
 def _looks_ahead(formula: ltl.Formula) -> Iterator[str]:
     """The operators about later states."""
     if isinstance(formula, ltl.Unary | ltl.Binary):
@@ -108,8 +124,7 @@ def _looks_ahead(formula: ltl.Formula) -> Iterator[str]:
 
 def with_calculated(vocabulary: Vocabulary, formulas: Iterable[ltl.Formula]) -> Vocabulary:
     """The vocabulary with a signal for each comparison in formulas that is calculated."""
-    meanings = [meaning.formula for meaning in vocabulary.meanings.values()]
-    found = {own.name: own for formula in (*formulas, *meanings) for own in _calculated(formula)}
+    found = {own.name: own for formula in formulas for own in _calculated(formula)}
     if not found:
         return vocabulary
     signals = {name: Signal(name, _types(own, vocabulary)) for name, own in found.items()}

@@ -1,0 +1,193 @@
+"""Words that two rulebooks define differently, as two words, one of which may imply the other.
+
+The same expression with another parameter is ordered by it, if no number in it is negative.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+
+from rulec.logic import formula as ltl
+from rulec.logic.free_names import rename_variables
+from rulec.rulebook.rulebook_model import Axiom, Rulebook, Variable
+from rulec.vocabulary import Signal
+from rulec.vocabulary.vocabulary_model import Meaning
+
+
+def told_apart(first: Rulebook, second: Rulebook) -> tuple[Rulebook, Rulebook]:
+    """The rulebooks, in which words with two meanings are two words with what is known of both."""
+    apart: dict[str, tuple[str, str]] = {}
+    axioms: list[Axiom] = []
+    for name, meaning in first.vocabulary.meanings.items():
+        other = second.vocabulary.meanings.get(name)
+        declared = first.vocabulary.declarations[name]
+        if other is None or declared != second.vocabulary.declarations.get(name):
+            continue
+        own, theirs = (_of_places(each) for each in (meaning, other))
+        if own != theirs and isinstance(declared, Signal):
+            names = apart[name] = (
+                _named(name, first.name, meaning),
+                _named(name, second.name, other),
+            )
+            variables = [Variable(f"x{n}", kind) for n, kind in enumerate(declared.parameters, 1)]
+            words = [ltl.Atom(word, tuple([own.name for own in variables])) for word in names]
+            for cause, effect in _implications((own, theirs), words):
+                implied = ltl.Binary(ltl.BinaryOperator.IMPLIES, cause, effect)
+                axioms.append(Axiom(tuple(variables), implied))
+    if not apart:
+        return first, second
+    first, second = (
+        _with_words(book, {name: own[which] for name, own in apart.items()}, apart, axioms)
+        for which, book in enumerate((first, second))
+    )
+    return first, second
+
+
+def _named(name: str, book: str, meaning: Meaning) -> str:
+    places = ", ".join(f"x{place}" for place in range(1, len(meaning.variables) + 1))
+    return f"{name}({places}) in {book}" if places else f"{name} in {book}"
+
+
+def _of_places(meaning: Meaning) -> ltl.Formula:
+    names = {name: f"x{place}" for place, name in enumerate(meaning.variables, 1)}
+    formula: ltl.Formula = rename_variables(meaning.formula, names)
+    return formula
+
+
+def _with_words(
+    book: Rulebook,
+    own: dict[str, str],
+    apart: dict[str, tuple[str, str]],
+    axioms: list[Axiom],
+) -> Rulebook:
+    """The rulebook with its ``own`` words in place of those that mean two things."""
+    declared = dict(book.vocabulary.declarations)
+    for name, both in apart.items():
+        declared |= {word: replace(declared[name], name=word) for word in both}
+    rules = tuple([replace(rule, formula=_with_names(rule.formula, own)) for rule in book.rules])
+    known = [replace(axiom, formula=_with_names(axiom.formula, own)) for axiom in book.axioms]
+    vocabulary = replace(book.vocabulary, declarations=declared)
+    return replace(book, vocabulary=vocabulary, rules=rules, axioms=(*known, *axioms))
+
+
+def _with_names(formula: ltl.Formula, names: dict[str, str]) -> ltl.Formula:
+    match formula:
+        case ltl.Calculated():
+            return formula
+        case ltl.Atom(name=name) if name in names:
+            return replace(formula, name=names[name])
+        case ltl.Comparison(terms):
+            return replace(formula, terms=tuple([(x, _in_count(own, names)) for x, own in terms]))
+        case ltl.Unary() | ltl.Binary():
+            return ltl.with_operands(formula, lambda operand: _with_names(operand, names))
+    return formula
+
+
+def _in_count(term: ltl.Term, names: dict[str, str]) -> ltl.Term:
+    if isinstance(term, ltl.Count):
+        return replace(term, body=_with_names(term.body, names))
+    return term
+
+
+def _implications(
+    formulas: tuple[ltl.Formula, ltl.Formula], words: list[ltl.Atom]
+) -> Iterator[tuple[ltl.Atom, ltl.Atom]]:
+    own, theirs = formulas
+    if _implies(own, theirs):
+        yield words[0], words[1]
+    if _implies(theirs, own):
+        yield words[1], words[0]
+
+
+def _implies(cause: ltl.Formula, effect: ltl.Formula) -> bool:
+    """Whether a formula surely implies one of the same form; False where the form tells nothing."""
+    if cause == effect:
+        return True
+    match cause, effect:
+        case ltl.Comparison(), ltl.Comparison() if cause.terms == effect.terms:
+            return _is_within(cause.relation, effect.relation, effect.limit - cause.limit)
+        case ltl.Calculated(), ltl.Calculated():
+            less = _ends(effect.number, cause.number)
+            return less is not None and _is_within(cause.relation, effect.relation, less)
+        case ltl.Unary(), ltl.Unary() if cause.operator is effect.operator:
+            return _in_order(cause, effect)
+        case ltl.Binary(), ltl.Binary() if cause.operator is effect.operator:
+            return _in_order(cause, effect)
+    return False
+
+
+_GROWS: dict[ltl.UnaryOperator | ltl.BinaryOperator, tuple[bool, ...]] = {
+    ltl.UnaryOperator.NOT: (False,),
+    ltl.UnaryOperator.ONCE: (True,),
+    ltl.UnaryOperator.HISTORICALLY: (True,),
+    ltl.UnaryOperator.PREVIOUSLY: (True,),
+    ltl.UnaryOperator.WEAK_PREVIOUSLY: (True,),
+    ltl.BinaryOperator.AND: (True, True),
+    ltl.BinaryOperator.OR: (True, True),
+    ltl.BinaryOperator.IMPLIES: (False, True),
+    ltl.BinaryOperator.SINCE: (True, True),
+}
+"""Whether an operation can only become true when its operand does; else only when it does not."""
+
+
+def _in_order(cause: ltl.Unary | ltl.Binary, effect: ltl.Unary | ltl.Binary) -> bool:
+    pairs = [
+        (part.operand,) if isinstance(part, ltl.Unary) else (part.left, part.right)
+        for part in (cause, effect)
+    ]
+    grows = _GROWS.get(cause.operator)
+    if grows is None:
+        return False
+    operands = zip(grows, *pairs, strict=True)
+    if not all(_implies(*((x, y) if up else (y, x))) for up, x, y in operands):
+        return False
+    return cause.bound == effect.bound or _is_looser(cause, effect)
+
+
+def _is_looser(cause: ltl.Unary | ltl.Binary, effect: ltl.Unary | ltl.Binary) -> bool:
+    """Whether another bound makes the effect no harder: `once` may look farther back."""
+    own, other = cause.bound, effect.bound
+    if own is None or other is None or (own.low, own.unit) != (other.low, other.unit):
+        return False
+    highs = [Fraction(10**9) if bound.high is None else bound.high for bound in (own, other)]
+    if cause.operator is ltl.UnaryOperator.HISTORICALLY:
+        return highs[1] <= highs[0]
+    loose = (ltl.UnaryOperator.ONCE, ltl.BinaryOperator.SINCE)
+    return cause.operator in loose and highs[0] <= highs[1]
+
+
+def _is_within(first: ltl.Relation, second: ltl.Relation, room: Fraction) -> bool:
+    """Whether a number in the first relation to a limit is in the second to one ``room`` higher."""
+    if first[0] != second[0] or first in ("=", "!="):
+        return False
+    room = room if first[0] == "<" else -room
+    return room > 0 or (room == 0 and (first == second or len(first) == 1))
+
+
+def _ends(number: ltl.NumberSum, other: ltl.NumberSum) -> Fraction | None:
+    """A number that has the sign of ``other - number``, whatever their parts are; else None."""
+    parts: dict[ltl.Term | ltl.Operation, Fraction] = {}
+    for sign, own in ((1, other), (-1, number)):
+        for factor, part in own.parts:
+            share, rest = _factored(part)
+            parts[rest] = parts.get(rest, Fraction(0)) + sign * factor * share
+    signs = {-1 if value < 0 else 1 for value in parts.values() if value}
+    constant = other.constant - number.constant
+    signs |= {-1 if constant < 0 else 1} if constant else set()
+    return Fraction(signs.pop() if signs else 0) if len(signs) < 2 else None
+
+
+def _factored(part: ltl.Term | ltl.Operation) -> tuple[Fraction, ltl.Term | ltl.Operation]:
+    """A product of multiples as a multiple of a product."""
+    if not isinstance(part, ltl.Operation):
+        return Fraction(1), part
+    share = Fraction(1)
+    sides: list[ltl.NumberSum] = []
+    for side in (part.left, part.right):
+        lead = side.parts[0][0]
+        share = share * lead if part.operator == "*" or not sides else share / lead
+        own = tuple([(factor / lead, each) for factor, each in side.parts])
+        sides.append(ltl.NumberSum(own, side.constant / lead))
+    return share, ltl.Operation(part.operator, sides[0], sides[1])

@@ -1,0 +1,83 @@
+"""Two rulebooks that define a word differently are compared by their definitions."""
+
+import pytest
+
+from rulec import parse_rulebook
+from rulec.analysis.diff.rulebook_comparison import diff_rulebooks
+
+WORDS = """rulebook {name}
+type car
+quantity speed in km/h default 0
+quantity gap(c: car) in m default 1000
+signal behind(c: car) default false
+signal wet default false
+signal near(c: car) default false
+signal slow default false
+{define}
+hard rule keeps(c: car) {{ require always not near(c) }}
+hard rule flows {{ require always not slow }}
+"""
+SIGHT = "define near(c: car) = gap(c) < {} * speed + speed * speed / (2 * {})"
+
+
+def relation(first, second, rule="keeps"):
+    books = [
+        parse_rulebook(WORDS.format(name=name, define=define))
+        for name, define in (("one", first), ("two", second))
+    ]
+    diff = diff_rulebooks(*books)
+    return {pair.name: pair.relation for pair in diff.pairs}[rule]
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "expected"),
+    [
+        (SIGHT.format("1 s", "8 m/s^2"), SIGHT.format("1 s", "8 m/s^2"), "equal"),
+        # Whoever needs longer to react, or brakes less, has to keep farther away
+        (SIGHT.format("1 s", "8 m/s^2"), SIGHT.format("2 s", "8 m/s^2"), "laxer"),
+        (SIGHT.format("1 s", "6 m/s^2"), SIGHT.format("1 s", "8 m/s^2"), "stricter"),
+        (SIGHT.format("2 s", "6 m/s^2"), SIGHT.format("1 s", "8 m/s^2"), "stricter"),
+        (SIGHT.format("2 s", "8 m/s^2"), SIGHT.format("1 s", "6 m/s^2"), "incomparable"),
+        ("define near(c: car) = gap(c) < 3 m", "define near(c: car) = gap(c) < 5 m", "laxer"),
+        (
+            "define near(c: car) = gap(c) <= 3 m",
+            "define near(c: car) = gap(c) < 3 m",
+            "stricter",
+        ),
+        (
+            "define near(c: car) = behind(c) and gap(c) < 5 m",
+            "define near(c: car) = behind(c) and gap(c) < 3 m",
+            "stricter",
+        ),
+        (
+            "define near(c: car) = not (behind(c) implies gap(c) >= 5 m)",
+            "define near(c: car) = not (behind(c) implies gap(c) >= 3 m)",
+            "stricter",
+        ),
+        (
+            "define near(c: car) = gap(c) < 5 m and once[<= 2 s] behind(c)",
+            "define near(c: car) = gap(c) < 5 m and once[<= 3 s] behind(c)",
+            "laxer",
+        ),
+        (
+            "define near(c: car) = historically[<= 2 s] gap(c) < 5 m",
+            "define near(c: car) = historically[<= 3 s] gap(c) < 5 m",
+            "stricter",
+        ),
+        ("define near(c: car) = gap(c) < 5 m", "define near(c: car) = wet", "incomparable"),
+    ],
+)
+def test_a_definition_is_ordered_by_its_numbers(first, second, expected):
+    assert relation(first, second) == expected
+    turned = {"laxer": "stricter", "stricter": "laxer"}
+    assert relation(second, first) == turned.get(expected, expected)
+
+
+def test_the_names_of_variables_say_nothing():
+    first = "define near(c: car) = gap(c) < 5 m"
+    assert relation(first, first.replace("(c", "(d")) == "equal"
+
+
+def test_other_rules_are_as_equal_as_before():
+    first, second = (f"define near(c: car) = gap(c) < {n} m" for n in (3, 5))
+    assert relation(first, second, "flows") == "equal"
