@@ -61,6 +61,8 @@ def atom_clause(atom: Atom, language: Language, *, holds: bool) -> str:
     if atom.value is not None:
         name = of_objects(atom.name, atom.arguments, language)
         return language.value[not holds].format(name, spoken(atom.value))
+    if " " in atom.name:
+        return language.atom[not holds].format(str(atom))
     if not atom.arguments:
         return language.atom[not holds].format(spoken(atom.name))
     of = listed(atom.arguments, language)

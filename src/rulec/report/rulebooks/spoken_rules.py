@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from string import ascii_uppercase
 
 from rulec.logic.fold import fold_constants
-from rulec.logic.formula import Atom, Constant, Count, Formula, Unary, UnaryOperator
+from rulec.logic.formula import Atom, Calculated, Constant, Count, Formula, Unary, UnaryOperator
 from rulec.logic.free_names import names_in, reads_in, rename_variables, variables_of
 from rulec.logic.one_point import plain, replaced
 from rulec.logic.sentences.english import ENGLISH
@@ -62,6 +62,7 @@ class _Speaker:
         self._rule, self._language = rule, language
         self._phrases = phrases_of(rulebook, language.code)
         self._fits = rulebook.vocabulary.is_subtype
+        self._meanings = rulebook.vocabulary.meanings
         self._own = {variable.name: variable.type for variable in rule.variables}
         self._kinds = {**counted_in(rule.formula), **self._own}
         self._names: dict[Formula, Atom] = {}
@@ -130,7 +131,11 @@ class _Speaker:
             if name.name == use.name:
                 given = dict(zip(name.arguments, use.arguments, strict=True))
                 return self._spoken(rename_variables(part, given), part)
-        return None
+        declared = self._meanings.get(use.name)
+        if declared is None or isinstance(declared.formula, Calculated):
+            return None
+        given = dict(zip(declared.variables, use.arguments, strict=True))
+        return self._spoken(rename_variables(declared.formula, given))
 
     def _name(self, use: Atom) -> Atom:
         """The name of a use of a definition: its words with the relations that it is given."""

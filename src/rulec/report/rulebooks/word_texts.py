@@ -194,6 +194,12 @@ def _data(word: FoundWord, readers: Readers) -> WordData:
 
 def _known(word: FoundWord) -> WordText:
     defined = definition_in(word.file, word.name)
+    declared = word.symbols.items.get(word.name)
+    if defined is not None and declared is not None:
+        text = word_text(word.name, word.symbols, recorded=tells_words(word.vocabularies))
+        means = "Where a source does not tell it, it means what it is defined as."
+        both = f"{text.declaration}\n{defined.span.text}"
+        return WordText(both, (*text.sentences, means, *described(defined.span)))
     if defined is not None:
         place = defined.span.place
         where = f"It stands in {place.file}, line {place.line}."
@@ -208,7 +214,7 @@ def _file_of(word: FoundWord) -> str:
 
 
 def _kind_of(word: FoundWord) -> str:
-    match definition_in(word.file, word.name):
+    match None if word.name in word.symbols.items else definition_in(word.file, word.name):
         case tree.DefineItem():
             return "a definition"
         case tree.ParamItem():
