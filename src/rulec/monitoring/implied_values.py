@@ -12,7 +12,6 @@ from rulec.automata.thresholds import exact_step
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import in_steps
 from rulec.logic.fold import fold
-from rulec.logic.free_names import names_in
 from rulec.logic.kleene import ObjectBinding, Unknown, evaluator_of
 from rulec.monitoring.constant_values import values_in, with_constants
 from rulec.monitoring.state_view import StateView, put, value_in
@@ -105,7 +104,7 @@ def words_meant(vocabulary: Vocabulary, told: frozenset[str] | None) -> tuple[st
         return tuple([name for name in vocabulary.meanings if declared[name].default is None])
     known, meant = {*told}, []
     for name, meaning in vocabulary.meanings.items():
-        if name not in told and known.issuperset(names_in(meaning.formula)):
+        if name not in told and known >= meaning.reads:
             known.add(name)
             meant.append(name)
     return tuple(meant)
@@ -116,7 +115,7 @@ def names_behind(names: Sequence[str] | frozenset[str], vocabulary: Vocabulary) 
     found = {*names}
     for name in reversed([*vocabulary.meanings]):
         if name in found:
-            found.update(names_in(vocabulary.meanings[name].formula))
+            found |= vocabulary.meanings[name].reads
     return frozenset(found)
 
 
@@ -130,7 +129,7 @@ def without_calculations(
         if meaning is None or not isinstance(meaning.formula, ltl.Calculated):
             found[name] = None
         else:
-            found |= dict.fromkeys([x for x in names_in(meaning.formula) if x in untold])
+            found |= dict.fromkeys(sorted(meaning.reads & untold))
     return tuple(found)
 
 

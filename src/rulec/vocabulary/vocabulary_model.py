@@ -77,11 +77,12 @@ class Meaning:
     """What a signal means for the objects of its ``variables``, where no source tells it.
 
     ``formula`` is one of `logic`, which stands above this room. It looks at the present and the
-    past only.
+    past only, and ``reads`` these names.
     """
 
     variables: tuple[str, ...]
     formula: Any
+    reads: frozenset[str]
 
 
 def values_of(declaration: Declaration) -> tuple[str, ...] | tuple[bool, ...]:

@@ -36,7 +36,7 @@ from rulec.diagnostics import SourceLocation
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, PAST, has_seconds, in_steps, operations_of
 from rulec.logic.codec import from_data, number_from_data, terms_from_data
-from rulec.logic.free_names import names_in, terms_of
+from rulec.logic.free_names import names_of, terms_of
 from rulec.logic.opportunities import trigger_of
 from rulec.logic.printing import formula_text, term_text
 from rulec.rulebook.rulebook_model import (
@@ -203,10 +203,10 @@ def _meanings(read: schema.VocabularyEntry, vocabulary: Vocabulary) -> dict[str,
         require(formula_text(formula) == entry.formula, f"{of} has two different meanings")
         is_past = all(part.operator in BOOLEAN | PAST for part in operations_of(formula))
         require(is_past, f"the meaning of {of} looks ahead")
-        found[name] = Meaning(entry.variables, formula)
+        found[name] = Meaning(entry.variables, formula, names_of(formula))
     places = {name: place for place, name in enumerate(found)}
     for name, meaning in found.items():
-        ordered = all(places.get(read, -1) < places[name] for read in names_in(meaning.formula))
+        ordered = all(places.get(read, -1) < places[name] for read in meaning.reads)
         require(ordered, f"`{name}` is defined by a word that is defined after it")
     return found
 

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from rulec.diagnostics import Diagnostic
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, PAST
-from rulec.logic.free_names import names_in, terms_of
+from rulec.logic.free_names import names_of, terms_of
 from rulec.rulebook.elaborate import meaning_messages as say
 from rulec.rulebook.elaborate.elaboration import number, truth
 from rulec.rulebook.elaborate.macro_expansion import parameter_value
@@ -50,7 +50,7 @@ def _place(
     """Put a word behind those that its meaning reads; the words of a circle, if there is one."""
     if name in above:
         return (*above[above.index(name) :], name)
-    for read in names_in(found[name].formula) if name not in ordered else ():
+    for read in sorted(found[name].reads) if name not in ordered else ():
         circle = _place(read, found, ordered, (*above, name)) if read in found else ()
         if circle:
             return circle
@@ -93,7 +93,7 @@ def _meaning(
     ahead = next(_looks_ahead(formula), None)
     if ahead is not None:
         mistakes.append(say.looks_ahead(item, ahead))
-    return Meaning(tuple(variables), formula)
+    return Meaning(tuple(variables), formula, names_of(formula))
 
 
 def parameters_of(
@@ -151,7 +151,7 @@ def _calculated(formula: ltl.Formula) -> Iterator[ltl.Calculated]:
 
 def _as_meaning(own: ltl.Calculated) -> Meaning:
     variables = tuple([f"x{place}" for place in range(1, len(own.arguments) + 1)])
-    return Meaning(variables, replace(own, arguments=variables))
+    return Meaning(variables, replace(own, arguments=variables), names_of(own))
 
 
 def _types(own: ltl.Calculated, vocabulary: Vocabulary) -> tuple[str, ...]:
