@@ -48,9 +48,28 @@ def vocabulary_tables(source: Source) -> str:
             *_word_table([word for word in words if word.about]),
             "\n## About ego and the world\n",
             *_word_table([word for word in words if not word.about]),
+            *_definitions(file.items),
             *_facts(file.items),
         ]
     )
+
+
+def _definitions(items: Sequence[tree.Item]) -> Iterator[str]:
+    """A section with what words mean where no source tells them, if the file has any."""
+    defined = [item for item in items if isinstance(item, tree.ParamItem | tree.DefineItem)]
+    if defined:
+        yield "\n## What words mean\n"
+        yield "Where a source does not tell a word, its definition does; a rulebook may `set` the"
+        yield "parameters and `redefine` the words.\n"
+        yield "```rulec"
+        yield from (dedented for item in defined for dedented in _dedented(item.span.text))
+        yield "```"
+
+
+def _dedented(text: str) -> Iterator[str]:
+    first, *rest = text.splitlines()
+    yield first
+    yield from (line.removeprefix("  ") for line in rest)
 
 
 def _facts(items: Sequence[tree.Item]) -> Iterator[str]:

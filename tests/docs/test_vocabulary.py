@@ -4,10 +4,10 @@ import pytest
 
 from rulec.diagnostics import RulecError, Source
 from rulec.syntax import decode, parse
-from rulec.syntax.tree import ConstantItem, FactItem, PresumedItem
+from rulec.syntax.tree import ConstantItem, DefineItem, FactItem, ParamItem, PresumedItem
 from tools.vocabulary_tables import ROAD, comment_above, vocabulary_tables
 
-MARKS = ConstantItem | PresumedItem | FactItem
+MARKS = ConstantItem | PresumedItem | FactItem | ParamItem | DefineItem
 ITEMS = [
     item
     for item in parse(decode(ROAD.name, ROAD.read_bytes()))[0].items

@@ -108,6 +108,8 @@ def _declared(item: tree.Item) -> Iterator[tree.Name]:
     match item:
         case tree.TypeItem(name) | tree.QuantityItem(name):
             yield name
+        case tree.ParamItem(name) | tree.DefineItem(name, again=False):
+            yield name
         case tree.SignalItem(signals):
             yield from (head.name for head in signals)
         case tree.EnumerationItem():

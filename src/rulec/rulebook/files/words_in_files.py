@@ -14,6 +14,14 @@ from rulec.syntax.keywords import RESERVED
 _NO_WORDS = re.compile(r"#[^\n]*|\([^()]*\)|\bin\s+\S+|\bdefault\s+\S+|\bvocabulary\s+\S+")
 """Comments, parameters, units, defaults, and the vocabulary's own name."""
 
+_BODY = re.compile(
+    r"^([ \t]*(?:define|param)[ \t]+\w+).*?"
+    r"(?=^[ \t]*(?:[#}]|(?:define|param|type|signal|quantity|fact|constant|presumed)\b"
+    r"|\w+\s*(?:\([^()]*\)\s*)?is\s+one\s+of\b)|\Z)",
+    re.MULTILINE | re.DOTALL,
+)
+"""A definition or a parameter, whose body declares nothing."""
+
 _DEFINED = re.compile(r"^[ \t]*(?:define|param|option)[ \t]+([^\W\d]\w*)", re.MULTILINE)
 
 _RULE = re.compile(r"^[ \t]*(?:hard|soft|override)[ \t]+rule[ \t]+([^\W\d]\w*)", re.MULTILINE)
@@ -41,6 +49,7 @@ def words_of_vocabularies(search_path: Sequence[Path] = ()) -> dict[str, frozens
     for path in search.available_vocabularies(search_path):
         with suppress(RulecError):
             text = search.read_bytes(path).decode(errors="replace")
+            text = _BODY.sub(r"\1 ", text)
             words_of[path.stem] = frozenset(_NAME.findall(_NO_WORDS.sub(" ", text))) - RESERVED
     return words_of
 
