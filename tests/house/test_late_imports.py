@@ -87,7 +87,6 @@ LATE = {
     ),
     "scenario/recorded/lane_coordinates.py": (1, "scenarios take 10 ms, not for recorded drives"),
     "scenario/scenario_files.py": (1, NUMPY),
-    "syntax/grammar.py": (1, "Lark takes 40 ms, only where the grammar has changed"),
     "syntax/parser.py": (1, MESSAGE),
     "trace/formats/arrow/parquet.py": (4, OPTIONAL),
     "trace/formats/json_lines.py": (2, NUMPY),

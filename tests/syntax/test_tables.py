@@ -14,10 +14,10 @@ from rulec.syntax.file_pieces import ExamplePieces, RulePieces, span_of
 from rulec.syntax.grammar import accepted_after, parse_piece
 from rulec.syntax.scanner import scan
 from rulec.syntax.split_file import FileSplitter
-from rulec.syntax.table_generation import STARTS, tables_of
 from rulec.syntax.tree_printer import print_whole
 from support.generators.syntax_trees import formulas
 from support.oracles.lark_parser import parsed_by_lark
+from tools.parser_tables import STARTS, tables_of
 
 GRAMMAR = grammar_file("rulec.lark").read_text(encoding="utf-8")
 FILE = grammar_file("rulec.tables.json").read_text(encoding="utf-8")
@@ -114,17 +114,17 @@ def test_nothing_may_follow_what_cannot_be_read():
 
 
 @pytest.mark.parametrize("content", [None, "", "{", "[]", "{}", '{"made_of": "abc"}'])
-def test_without_usable_tables_the_grammar_is_read(content, tmp_path, monkeypatch):
+def test_tables_of_another_grammar_are_refused(content, tmp_path, monkeypatch):
     def file(name):
         return Path(tmp_path, name)
 
     file("rulec.lark").write_text(GRAMMAR, encoding="utf-8")
     if content is not None:
         file("rulec.tables.json").write_text(content, encoding="utf-8")
-    before = parse_formula("p until q")
     monkeypatch.setattr(at_work, "grammar_file", file)
     at_work._tables.cache_clear()
     try:
-        assert parse_formula("p until q") == before
+        with pytest.raises((ValueError, OSError), match="rulec.tables.json"):
+            parse_formula("p until q")
     finally:
         at_work._tables.cache_clear()

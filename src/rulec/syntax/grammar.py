@@ -7,6 +7,7 @@ times as long, and 40 ms to load. A test compares both.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import TypeAlias
@@ -55,23 +56,13 @@ def accepted_after(start: Start, text: str) -> frozenset[str]:
 
 @cache
 def _tables() -> ParserTables:
-    """The tables, which are made anew if they are stale."""
+    """The tables, which `src/tools/parser_tables.py` makes of the grammar."""
     grammar = grammar_file("rulec.lark").read_text(encoding="utf-8")
-    try:
-        text = grammar_file("rulec.tables.json").read_text(encoding="utf-8")
-        ready = from_text(text, stamp(grammar))
-    except (OSError, ValueError):
-        ready = None
-    return ready or _made(grammar)
-
-
-def _made(grammar: str) -> ParserTables:
-    # Lark, 40 ms: only if somebody has changed the grammar.
-    from rulec.syntax.table_generation import tables_of
-
-    made = from_text(tables_of(grammar), stamp(grammar))
-    assert made is not None, "they are of this grammar"
-    return made
+    tables = grammar_file("rulec.tables.json").read_text(encoding="utf-8")
+    with suppress(ValueError):
+        if (ready := from_text(tables, stamp(grammar))) is not None:
+            return ready
+    raise ValueError("grammar/rulec.tables.json is not of grammar/rulec.lark; make it again")
 
 
 def _accepted(start: Start, text: str, begin: int, end: int) -> frozenset[str]:

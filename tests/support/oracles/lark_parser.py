@@ -7,7 +7,7 @@ from lark.exceptions import UnexpectedInput, UnexpectedToken
 
 from rulec.resources import grammar_file
 from rulec.syntax.parse_nodes import Mismatch, ParseLeaf, ParseNode
-from rulec.syntax.table_generation import lark_of
+from tools.parser_tables import lark_of
 
 
 @cache
