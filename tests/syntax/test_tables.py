@@ -124,7 +124,7 @@ def test_tables_of_another_grammar_are_refused(content, tmp_path, monkeypatch):
     monkeypatch.setattr(at_work, "grammar_file", file)
     at_work._tables.cache_clear()
     try:
-        with pytest.raises((ValueError, OSError), match="rulec.tables.json"):
+        with pytest.raises((ValueError, OSError), match=r"rulec\.tables\.json"):
             parse_formula("p until q")
     finally:
         at_work._tables.cache_clear()

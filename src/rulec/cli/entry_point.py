@@ -58,7 +58,6 @@ def _run() -> int:
         _prepare()
         if sys.argv[1:] == ["--version"] and _printed_version():
             return 0
-        lazy.write_when_called()  # before any module with dataclasses
         return lazy.main.main()
     except BaseException as problem:
         # Some imported modules turn an interrupt into errors of their own.

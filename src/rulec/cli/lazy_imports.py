@@ -41,7 +41,6 @@ if TYPE_CHECKING:
     from rulec.book_tests.example_coverage import RuleCoverage, uncovered_verdicts
     from rulec.book_tests.example_runs import ExampleRun, is_chosen
     from rulec.cli import main, usage_help
-    from rulec.cli.dataclass_methods import write_when_called
     from rulec.cli.recording_run import RecordingRun
     from rulec.cli.trace_run import TraceRun
     from rulec.cli.usage_help import unknown_verb, ways_out
