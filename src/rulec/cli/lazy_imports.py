@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from rulec.cli.trace_run import TraceRun
     from rulec.cli.usage_help import unknown_verb, ways_out
     from rulec.enforced_limits import enforced, limit_error
-    from rulec.extraction.moment_search import DriveMoments, in_recordings, in_traces
+    from rulec.extraction.moment_search import DriveMoments, Look, in_recordings, in_traces
     from rulec.extraction.selection import RequestedDrives, assumption_options
     from rulec.extraction.traffic_thresholds import threshold_options
     from rulec.files import file_messages
@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from rulec.monitoring.batch.by_states import rulebook_for_trace
     from rulec.monitoring.explain.explanation import Explanation, explain
     from rulec.monitoring.moments.drive_facts import DriveFacts, facts_of_many
+    from rulec.monitoring.moments.formula_moments import moments
     from rulec.monitoring.online import monitor_sources
     from rulec.monitoring.online.running_monitor import RunningMonitor
     from rulec.partition import NavigationGraph
@@ -90,7 +91,7 @@ if TYPE_CHECKING:
     from rulec.report.maneuvers.envelope_table import write_envelopes
     from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
     from rulec.report.maneuvers.maneuver_table import ManeuverCounts
-    from rulec.report.moments import moment_rows
+    from rulec.report.moments import moment_rows, word_values
     from rulec.report.pictures.drawing import picture_formats
     from rulec.report.pictures.drawing.picture_formats import Drawing
     from rulec.report.rates import rates_json, rates_table

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.fault_messages import contained, fault_of
@@ -17,6 +18,7 @@ from rulec.monitoring.state_validation import check_objects, check_states, check
 from rulec.recordings.recording import Recording
 from rulec.rulebook.query_model import FormulaQuery
 from rulec.trace import Trace
+from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_model import check_trace
 from rulec.value_display import short_repr
 
@@ -42,16 +44,28 @@ class DriveMoments:
         return round(self.start_s + state * self.step_s, 9)
 
 
+Look: TypeAlias = Callable[[Trace | TraceArrays, FormulaQuery], Sequence[Moment]]
+"""What is looked for in a drive: the moments of the formula, or the values of a word."""
+
+
 def in_recordings(
-    recordings: Iterable[Recording], query: FormulaQuery, wanted: RequestedDrives, file: str
+    recordings: Iterable[Recording],
+    query: FormulaQuery,
+    wanted: RequestedDrives,
+    file: str,
+    look: Look = moments,
 ) -> Iterator[DriveMoments | RulecError]:
     """The moments of each drive of several recordings; see ``in_recording``."""
     for recording in recordings:
-        yield from in_recording(recording, query, wanted, file)
+        yield from in_recording(recording, query, wanted, file, look)
 
 
 def in_recording(
-    recording: Recording, query: FormulaQuery, request: RequestedDrives, file: str
+    recording: Recording,
+    query: FormulaQuery,
+    request: RequestedDrives,
+    file: str,
+    look: Look = moments,
 ) -> Iterator[DriveMoments | RulecError]:
     """The moments of each drive, with each requested vehicle as ego in turn.
 
@@ -78,7 +92,7 @@ def in_recording(
             if any(arrays.faults):
                 continue  # it reads a word that was lost
             try:
-                found = moments(arrays, query)
+                found = look(arrays, query)
             except Exception as problem:
                 yield fault_of(problem, f"drive of `{arrays.id}`")
                 continue
@@ -93,7 +107,11 @@ def in_recording(
 
 
 def in_traces(
-    traces: Iterable[Trace | RulecError], query: FormulaQuery, assumed: Assumptions, file: str
+    traces: Iterable[Trace | RulecError],
+    query: FormulaQuery,
+    assumed: Assumptions,
+    file: str,
+    look: Look = moments,
 ) -> Iterator[DriveMoments | RulecError]:
     """The moments of each trace, or the error where a trace cannot be searched."""
     for item in traces:
@@ -102,12 +120,18 @@ def in_traces(
             continue
         try:
             with contained(f"trace `{item.id}`", SourceLocation(file)):
-                yield in_trace(item, query, assumed, file)
+                yield in_trace(item, query, assumed, file, look)
         except RulecError as error:
             yield error
 
 
-def in_trace(trace: Trace, query: FormulaQuery, assumed: Assumptions, file: str) -> DriveMoments:
+def in_trace(
+    trace: Trace,
+    query: FormulaQuery,
+    assumed: Assumptions,
+    file: str,
+    look: Look = moments,
+) -> DriveMoments:
     """The moments of a trace. Raises RulecError R0501 to R0506 for an invalid trace."""
     trace = assumed.applied(trace) if assumed else trace
     check_trace(trace)
@@ -121,5 +145,5 @@ def in_trace(trace: Trace, query: FormulaQuery, assumed: Assumptions, file: str)
         vehicle=trace.id,
         start_s=0.0,
         step_s=trace.step_s,
-        moments=moments(trace, query),
+        moments=look(trace, query),
     )

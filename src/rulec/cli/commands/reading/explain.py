@@ -2,22 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import click
 
 from rulec.cli import lazy_imports as lazy
+from rulec.cli.commands.traffic.find import moments_of
 from rulec.cli.exit_status import ExitStatus
+from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.recording_options import (
+    DrivesOptions,
+    RecordingOptions,
+    drives_options,
+    egos_option,
+    recording_or_trace_options,
+)
 from rulec.cli.options.shell_completion import complete_codes
 from rulec.cli.options.verb_class import Verb
-from rulec.cli.output import put_answer, width_of
+from rulec.cli.output import answer_lines, put_answer, width_of
 from rulec.cli.verb_table import FORMER, VERBS
-from rulec.diagnostics import any_of, first_of, nearest_name
+from rulec.diagnostics import RulecError, any_of, first_of, nearest_name
 from rulec.diagnostics.code import Code
+from rulec.logic.formula import Atom
 from rulec.report.findings import code_registry
+from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import print_remark
 from rulec.rulebook.batch.answer_cache import AnswerQuestion
 from rulec.rulebook.files.search_path import available_files, available_rulebooks
@@ -32,21 +46,48 @@ _SLIP = 3
 
 
 @click.command(cls=Verb)
-@click.argument("names", nargs=-1, metavar="[CODE|WORD]...", shell_complete=complete_codes)
+@click.argument(
+    "names", nargs=-1, metavar="[CODE|WORD]... [FILE]...", shell_complete=complete_codes
+)
 @click.option("--all", "every", is_flag=True, help="Explain every code.")
+@egos_option
+@drives_options
+@recording_or_trace_options
+@shared.rulebook_option(
+    "a word has the meaning of one rulebook",
+    "The rulebook (name or source) by which a WORD is read in FILE...  [default: road's own words]",
+    required=False,
+)
 @output_options(
     endings_of("full", "json", "markdown"),
     "the explanation: text, JSON or Markdown",
 )
-def command(names: tuple[str, ...], every: bool, to: Output) -> int:
+def command(
+    names: tuple[str, ...],
+    egos: tuple[str, ...],
+    rulebook: str | None,
+    to: Output,
+    *,
+    every: bool,
+    drives: DrivesOptions,
+    recorded: RecordingOptions,
+) -> int:
     """Explain each CODE, such as R0104: what it means, with a bad example and its correction.
 
     For a WORD of a vocabulary, such as `gap`, show how it is declared, what it means, which
     recordings provide it, and which rules read it; for a definition or a parameter of a rulebook,
     its text and its place. Vocabularies and rulebooks in the working folder are searched, too.
+
+    With FILE..., recorded traffic or traces, show the values of the first WORD there, drive by
+    drive, and where they are not known.
     """
     if every == bool(names):
         raise click.UsageError("give a code or a word, such as `R0104` or `gap`, or --all")
+    if len(names) > 1 and any(map(os.path.isfile, names[1:])):
+        found = partial(moments_of, egos=egos, drives=drives, recorded=recorded)
+        return _shown_values(names, rulebook or "", to, found)
+    if egos or rulebook:
+        raise click.UsageError("`--ego` and `-r` are for the values of a word in a FILE")
     question = ("explain", *names, repr((every, to.form, width_of(to))))
     explained = partial(_explained, names, to.form, width_of(to), every=every)
     text, unknown = AnswerQuestion(question, _places()).answer(explained)
@@ -54,6 +95,32 @@ def command(names: tuple[str, ...], every: bool, to: Output) -> int:
     for name in unknown:
         print_remark(f"rulec: {_unknown(name)}")
     return ExitStatus.after(answered=not unknown, failed=False)
+
+
+def _shown_values(
+    names: tuple[str, ...], rulebook: str, to: Output, found: Callable[..., Iterator[Any]]
+) -> int:
+    """Show the values of a word in files."""
+    word, complaints, complete = names[0], Complaints(), True
+    query = lazy.read_query("true", rulebook=rulebook, search_path=search_path())
+    known = {**query.vocabulary.enumeration_of, **query.vocabulary.declarations}
+    if word not in known:
+        raise click.UsageError(_unknown(word))
+    word = known[word].name
+    query = replace(query, rule=replace(query.rule, formula=Atom(word)))
+    as_text = partial(lazy.word_values.lines, name=word, width=width_of(to))
+    lines_of = lazy.word_values.json_lines if to.form == "json" else as_text
+    with answer_lines(to) as write:
+        look = partial(lazy.word_values.word_spans, name=word)
+        for drive in found(query, names[1:], look=look):
+            if isinstance(drive, RulecError):
+                complete = False
+                complaints.add(drive)
+                continue
+            for line in lines_of(drive):
+                write(line)
+    complaints.close()
+    return ExitStatus.after(answered=complete, failed=False)
 
 
 def _explained(

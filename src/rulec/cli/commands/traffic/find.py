@@ -121,7 +121,7 @@ def command(
 
     def found() -> Iterator[lazy.DriveMoments]:
         nonlocal complete
-        for drive in _moments(query, inputs.paths, egos, drives, recorded):
+        for drive in moments_of(query, inputs.paths, egos, drives, recorded):
             if isinstance(drive, RulecError):
                 complete = False
                 complaints.add(drive)
@@ -152,14 +152,20 @@ def command(
     return ExitStatus.after(answered=complete, failed=False)
 
 
-def _moments(
+def moments_of(
     query: FormulaQuery,
     paths: tuple[str, ...],
     egos: tuple[str, ...],
     drives: DrivesOptions,
     recorded: RecordingOptions,
+    *,
+    look: lazy.Look | None = None,
 ) -> Iterator[lazy.DriveMoments | RulecError]:
-    """The moments of all drives of all files, and the errors of those that could not be read."""
+    """The moments of all drives of all files, and the errors of those that could not be read.
+
+    Or whatever else one is to ``look`` for.
+    """
+    look = look or lazy.moments
     form = recorded.trace_format
     named = recorded.input_format is not None
     wanted = drives.requested(egos, query.vocabulary)
@@ -171,14 +177,18 @@ def _moments(
             with contained("not searched", SourceLocation(path)):
                 if form is None and (named or (not is_stream and is_recording(path))):
                     recordings = read_recordings(replace(source, path=Path(path)))
-                    yield from lazy.in_recordings(recordings, query, wanted, path)
+                    yield from lazy.in_recordings(recordings, query, wanted, path, look)
                     continue
                 if is_stream:
                     chunks = lazy.read_chunks(standard_input(), "standard input", form or "jsonl")
-                    yield from lazy.in_traces(chain.from_iterable(chunks), query, assumed, path)
+                    yield from lazy.in_traces(
+                        chain.from_iterable(chunks), query, assumed, path, look
+                    )
                     continue
                 with opened(Path(path)) as stream:
                     chunks = lazy.read_chunks(stream, path, form or lazy.format_of(path))
-                    yield from lazy.in_traces(chain.from_iterable(chunks), query, assumed, path)
+                    yield from lazy.in_traces(
+                        chain.from_iterable(chunks), query, assumed, path, look
+                    )
         except RulecError as error:
             yield error
