@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Set
-from dataclasses import replace
+from collections.abc import Container
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from math import prod
 
 from msgspec import UNSET
@@ -12,7 +13,7 @@ from msgspec.structs import astuple
 from rulec.automata import mealy_monitor as monitors
 from rulec.automata.alphabet import reads_of
 from rulec.automata.bundle import bundle_schema as schema
-from rulec.automata.bundle.any_step import AnyStep
+from rulec.automata.bundle.bundle_messages import AUTOMATON_TOO_LARGE
 from rulec.automata.bundle.clocked_entries import (
     check_sinks,
     check_table,
@@ -24,6 +25,7 @@ from rulec.automata.bundle.compiled_rulebook import (
     CompiledRule,
     CompiledRulebook,
     alike,
+    too_large_rule,
 )
 from rulec.automata.bundle.cut_machines import (
     BEGUN,
@@ -32,13 +34,15 @@ from rulec.automata.bundle.cut_machines import (
     TimedCut,
     looks_back,
 )
-from rulec.diagnostics import SourceLocation
+from rulec.automata.bundle.formula_check import check_formula
+from rulec.automata.tables import SizeError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN, PAST, has_seconds, in_steps, operations_of
 from rulec.logic.codec import from_data, number_from_data, terms_from_data
-from rulec.logic.free_names import names_of, terms_of
+from rulec.logic.free_names import names_of
 from rulec.logic.opportunities import trigger_of
-from rulec.logic.printing import formula_text, term_text
+from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import (
     Exemption,
     Rule,
@@ -48,8 +52,11 @@ from rulec.rulebook.rulebook_model import (
     Variable,
 )
 from rulec.rulebook.rules.implied_signals import with_implied
-from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
+from rulec.vocabulary import Enumeration, ObjectType, Signal, Vocabulary
 from rulec.vocabulary.vocabulary_model import Meaning
+
+MOST_STEPS = 100
+"""Results are kept for so many steps before all are discarded."""
 
 
 def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
@@ -199,7 +206,8 @@ def _meanings(read: schema.VocabularyEntry, vocabulary: Vocabulary) -> dict[str,
         )
         fits = isinstance(declared, Signal) and len(declared.parameters) == len(entry.variables)
         require(fits and len({*entry.variables}) == len(entry.variables), f"{of} cannot be defined")
-        _check_formula(formula, vocabulary, {*entry.variables}, of, counted=False)
+        own = {*entry.variables}
+        check_formula(formula, vocabulary, own, of, counted=False, is_meaning=True)
         require(formula_text(formula) == entry.formula, f"{of} has two different meanings")
         is_past = all(part.operator in BOOLEAN | PAST for part in operations_of(formula))
         require(is_past, f"the meaning of {of} looks ahead")
@@ -234,83 +242,9 @@ def _check_parts(
     require(len(names) == len(compiled.variables), f"{of} names a variable twice")
     for variable in compiled.variables:
         require(variable.type in vocabulary.types, f"{of} is about an unknown type")
-    _check_formula(compiled.formula, vocabulary, names, of, counted=False)
+    check_formula(compiled.formula, vocabulary, names, of, counted=False)
     same = formula_text(compiled.formula) == read.formula
     require(same, f"{of} has two different formulas")
-
-
-def _check_formula(
-    formula: ltl.Formula, vocabulary: Vocabulary, variables: Set[str], of: str, *, counted: bool
-) -> None:
-    """Check a formula; ``counted`` means that it is the body of a count."""
-    waiting = [formula]
-    while waiting:
-        match waiting.pop():
-            case ltl.Atom() as atom:
-                known = _is_known(atom, vocabulary, variables)
-                require(known, f"{of} uses `{atom}`, which its vocabulary lacks")
-                if isinstance(atom, ltl.Calculated):
-                    places = {f"x{place}" for place in range(1, len(atom.arguments) + 1)}
-                    for term in terms_of(atom.number):
-                        _check_term(term, vocabulary, places, of)
-            case ltl.Comparison(terms) as comparison:
-                normal = _is_normal(comparison)
-                require(normal, f"{of} compares numbers that are not in their normal form")
-                for _, term in terms:
-                    _check_term(term, vocabulary, variables, of)
-            case ltl.Same(left, right):
-                comparable = counted and {left, right} <= variables
-                require(
-                    comparable, f"{of} compares unknown variables, or compares outside of a count"
-                )
-            case ltl.Unary() | ltl.Binary() as operation:
-                now = not counted or operation.operator in BOOLEAN
-                require(now, f"{of} counts objects by what holds at other instants")
-                if isinstance(operation, ltl.Unary):
-                    waiting.append(operation.operand)
-                else:
-                    waiting += [operation.right, operation.left]
-
-
-def _is_known(atom: ltl.Atom, vocabulary: Vocabulary, variables: Set[str]) -> bool:
-    declaration = vocabulary.declarations.get(atom.name)
-    match declaration:
-        case Enumeration(values=values):
-            known = atom.value in values
-        case Signal():
-            known = atom.value is None
-        case _:
-            return False
-    about = len(declaration.parameters) == len(atom.arguments)
-    return known and about and set(atom.arguments) <= variables
-
-
-def _is_normal(comparison: ltl.Comparison) -> bool:
-    coefficients = [coefficient for coefficient, _ in comparison.terms]
-    texts = [term_text(term) for _, term in comparison.terms]
-    return (
-        len(texts) > 0
-        and coefficients[0] == 1
-        and 0 not in coefficients
-        and texts == sorted(texts)
-        and len({term for _, term in comparison.terms}) == len(texts)
-    )
-
-
-def _check_term(term: ltl.Term, vocabulary: Vocabulary, variables: Set[str], of: str) -> None:
-    match term:
-        case ltl.QuantityTerm(name, arguments):
-            declared = vocabulary.declarations.get(name)
-            require(
-                isinstance(declared, Quantity)
-                and len(declared.parameters) == len(arguments)
-                and set(arguments) <= variables,
-                f"{of} speaks of the quantity `{term_text(term)}`, which its vocabulary lacks",
-            )
-        case ltl.Count(variable, type_name, body):
-            known = type_name in vocabulary.types
-            require(known, f"{of} counts objects of the unknown type `{type_name}`")
-            _check_formula(body, vocabulary, variables | {variable}, of, counted=True)
 
 
 def _rule(rule: schema.BundleRule, vocabulary: Vocabulary, read: schema.BundleFile) -> CompiledRule:
@@ -357,7 +291,7 @@ def _check_rule(
         for part in (*formulas, rule.parts.condition):
             if part is not None:
                 of = f"a part of rule `{name}`"
-                _check_formula(part, vocabulary, variables, of, counted=False)
+                check_formula(part, vocabulary, variables, of, counted=False)
 
 
 def _rule_parts(read: schema.PartsEntry) -> RuleParts:
@@ -386,3 +320,62 @@ def _read(read: schema.ReadEntry | schema.NumberReadEntry) -> monitors.Read | mo
             for item in read.thresholds
         ),
     )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AnyStep:
+    """A ``Recompiler`` of a rulebook that was compiled for one step."""
+
+    book: CompiledRulebook
+    _known: dict[Fraction, CompiledRulebook] = field(default_factory=dict, repr=False)
+
+    def __call__(self, step_s: Fraction) -> CompiledRulebook:
+        """The rulebook for a step.
+
+        Raises RulecError R0401 for rules that are too large for it, R0507 for those without clocks.
+        """
+        book = self.judgeable_at(step_s)
+        if book.too_large:
+            raise RulecError(
+                [
+                    AUTOMATON_TOO_LARGE.at(
+                        None,
+                        f"rule `{left_out.name}` cannot be judged: {left_out.why}",
+                        help="longer steps mean fewer states; for a recording, every fifth state "
+                        "may be enough",
+                    )
+                    for left_out in book.too_large
+                ]
+            )
+        return book
+
+    def judgeable_at(self, step_s: Fraction) -> CompiledRulebook:
+        """The rulebook for a step, without rules too large for it. Raises R0507."""
+        if step_s not in self._known:
+            if len(self._known) >= MOST_STEPS:
+                self._known.clear()
+            self._known[step_s] = self._at(step_s)
+        return self._known[step_s]
+
+    def _at(self, step_s: Fraction) -> CompiledRulebook:
+        found = [(rule, _if_small(rule, step_s)) for rule in self.book.rules]
+        rules = [small for _, small in found if small is not None]
+        left_out = [too_large_rule(rule, step_s) for rule, small in found if small is None]
+        own = {id(rule) for rule in self.book.rules}
+        prefixes = self.book.prefixes
+        if isinstance(prefixes, StoredPrefixes):
+            prefixes = prefixes.at_other_steps([rule for rule in rules if id(rule) not in own])
+        return replace(
+            self.book,
+            rules=tuple(rules),
+            recompile=self,
+            prefixes=prefixes,
+            too_large=tuple(left_out),
+        )
+
+
+def _if_small(rule: CompiledRule, step_s: Fraction) -> CompiledRule | None:
+    try:
+        return rule.at(step_s)
+    except SizeError:
+        return None
