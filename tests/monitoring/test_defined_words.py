@@ -1,12 +1,25 @@
 """Words by their meanings: by arrays, by states, in a monitor, and calculated by hand."""
 
+from contextlib import suppress
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec import UNKNOWN, Interval, Monitor, Trace, compile_rulebook, parse_rulebook, verify
+from regression import ledger_traces
+from rulec import (
+    UNKNOWN,
+    Interval,
+    Monitor,
+    RulecError,
+    Trace,
+    compile_rulebook,
+    load_rulebook,
+    parse_rulebook,
+    verify,
+)
 from rulec.monitoring.batch.by_states import verify_by_states
 
 BOOK = compile_rulebook(
@@ -143,3 +156,21 @@ def test_a_told_value_wins():
 
 def trace_of(*states):
     return Trace("t", 1.0, {"c": "car"}, states)
+
+
+def test_a_national_book_by_arrays_and_by_states():
+    """Its rules are of every kind; where arrays do not tell, a trace is looked at by its states."""
+    book = compile_rulebook(load_rulebook("de"))
+    told = frozenset({*book.vocabulary.declarations, *book.vocabulary.types})
+    told -= {"safe_gap", "can_stop_at_once"}
+    known = [*ledger_traces.examples("de"), *ledger_traces.cases("de")]
+    judged = 0
+    for number, trace in enumerate(ledger_traces.randomized("de", known, 60)):
+        states = [{k: v for k, v in x.items() if k in told} for x in trace.states]
+        for state in states:
+            state.setdefault("speed", float(7 * number % 130))
+        trace = replace(trace, states=tuple(states), told=told)
+        with suppress(RulecError):  # a state that contradicts a fact
+            assert verify(trace, book) == verify_by_states(trace, book)
+            judged += 1
+    assert judged > 40

@@ -26,10 +26,10 @@ def write_traces(folder: Path, books: tuple[str, ...], n_random: int = N_RANDOM)
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
     for book in books:
-        known = [*_examples(book), *_cases(book)]
+        known = [*examples(book), *cases(book)]
         for kind, traces in (
             ("known", known),
-            ("random", list(_random(book, known, -(-n_random // len(BOOKS))))),
+            ("random", list(randomized(book, known, -(-n_random // len(BOOKS))))),
         ):
             path = folder / f"{book}.{kind}.jsonl"
             rulec.write_traces(traces, path)
@@ -37,20 +37,20 @@ def write_traces(folder: Path, books: tuple[str, ...], n_random: int = N_RANDOM)
     return paths
 
 
-def _examples(book: str) -> Iterator[Trace]:
+def examples(book: str) -> Iterator[Trace]:
     for rule in read(book).rulebook.rules:
         for number, example in enumerate(rule.examples):
             yield replace(example_trace(rule, example), id=f"{rule.name}.{number}", place=None)
 
 
-def _cases(book: str) -> Iterator[Trace]:
+def cases(book: str) -> Iterator[Trace]:
     traffic = read(book).rulebook.traffic
     for number, case in enumerate(CASES):
         if book in case["verdicts"]:
             yield replace(trace_of(case, traffic), id=f"case.{number}.{case['id']}")
 
 
-def _random(book: str, known: list[Trace], n_traces: int) -> Iterator[Trace]:
+def randomized(book: str, known: list[Trace], n_traces: int) -> Iterator[Trace]:
     """Known traces, changed: other orders and steps, values unknown, names untold, cut ends."""
     chance = Random(f"ledger of {book}")
     for number in range(n_traces):

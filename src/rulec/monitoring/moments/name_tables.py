@@ -15,7 +15,7 @@ from rulec.monitoring.batch.columns.encoded_columns import UnencodableError, enc
 from rulec.monitoring.batch.joined.joined_states import joined_states
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces
 from rulec.monitoring.batch.stacked.stack import Stack
-from rulec.monitoring.implied_values import with_derived_values
+from rulec.monitoring.implied_values import with_defined_words, with_derived_values
 from rulec.monitoring.state_view import value_in
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
@@ -124,7 +124,8 @@ class NameTables:
         declaration, values = self.vocabulary.declarations[name], list[Any]()
         for row in rows.tolist():
             items = [self._traces.names[item] for item in row]
-            states = self._traces.trace(row[0] // self._n_objects).states
+            trace = self._traces.trace(row[0] // self._n_objects)
+            states = with_defined_words(trace, self.vocabulary).states
             own = [value_in(state, name, items, declaration) for state in states]
             values += [*own, *own[-1:] * (self.n_states - len(own))]
         shape = len(rows), self.n_states

@@ -31,6 +31,7 @@ from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.stack_reader import StackReader
 from rulec.monitoring.batch.stacked.stacked_outcomes import StackedOutcomes, outcomes
 from rulec.monitoring.batch.stacked.stacked_rule import ReadKeys, StackedRule
+from rulec.monitoring.implied_values import with_defined_words
 from rulec.monitoring.state_validation import check_objects, check_told
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules, judged_rules
 from rulec.rulebook.rules.axiom_instances import counts
@@ -228,7 +229,8 @@ class _CloseLook:
         # Judging by states, 5 ms: only where arrays do not tell.
         from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 
-        return UncertainRun(self._trace(), self._rulebook)
+        trace = with_defined_words(self._trace(), self._rulebook.vocabulary)
+        return UncertainRun(trace, self._rulebook)
 
     def answer(self, rule: str, binding: Mapping[str, str]) -> ViolationOrOpen | None:
         return self._run.answer(rule, binding)
