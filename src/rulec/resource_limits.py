@@ -11,7 +11,7 @@ import os
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, named
@@ -108,6 +108,20 @@ COMPILING: Final = ResourceLimit(
     "split large rules into several, or use shorter bounds, or longer or fewer steps; a rulebook "
     "that a program compiles anew has this time anew",
 )
+
+
+@dataclass(slots=True)
+class CompilerTime:
+    """The processor time (s) that compilers have taken for a rulebook, and its limit."""
+
+    most_s: float = field(default_factory=COMPILING.value)
+    taken_s: float = 0.0
+
+    @property
+    def left_s(self) -> float:
+        """How much is left."""
+        return self.most_s - self.taken_s
+
 
 CUBES: Final = ResourceLimit(
     "cubes",

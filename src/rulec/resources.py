@@ -1,10 +1,17 @@
-"""Locations of rulec's own files, in a checkout or an installed package."""
+"""Rulec as it is installed: where its own files are, and how an extra is added."""
 
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterator
+from contextlib import suppress
+from functools import cache
+from importlib.util import find_spec
+from json import loads
 from pathlib import Path
+from shlex import quote
+from urllib.parse import unquote
 
 _PACKAGE = Path(__file__).resolve().parent
 
@@ -46,3 +53,24 @@ def emacs_mode() -> Path:
 def scenarios_folder() -> Path:
     """The folder of the built-in scenarios."""
     return _PACKAGE / "scenario" / "builtin"
+
+
+@cache
+def install_command(extra: str) -> str:
+    """A command such as ``pip install 'rulec[rates]'`` for this Python and rulec's origin.
+
+    The origin is the checkout or file that rulec was installed from; otherwise its name is used.
+    """
+    # Imported late (20 ms): only needed if a package is missing.
+    from importlib.metadata import PackageNotFoundError, distribution
+
+    python = quote(sys.executable)
+    # An environment made by uv has no pip.
+    pip = f"{python} -m pip install" if find_spec("pip") else f"uv pip install --python {python}"
+    with suppress(PackageNotFoundError, OSError, ValueError):
+        origin = loads(distribution("rulec").read_text("direct_url.json") or "{}")
+        if origin.get("url", "").startswith("file://"):
+            path = unquote(origin["url"].removeprefix("file://"))
+            editable = "-e " if origin.get("dir_info", {}).get("editable") else ""
+            return f"{pip} {editable}{quote(f'{path}[{extra}]')}"
+    return f"{pip} {quote(f'rulec[{extra}]')}"

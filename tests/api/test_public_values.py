@@ -19,7 +19,7 @@ import pytest
 
 import rulec
 from rulec.logic.formula import Comparison
-from rulec.version import install_command
+from rulec.resources import install_command
 
 TRACES = "docs/samples/traces.jsonl"
 RECORDING = Path("docs/samples/passing.fcd.xml")

@@ -16,6 +16,7 @@ from rulec.automata.worker.job_answers import answer_to
 from rulec.cache import kept_bytes
 from rulec.cache.cache_folder import cache_folder
 from rulec.cache.keeping import keeping
+from rulec.resource_limits import CompilerTime
 from rulec.rulebook.loader import parse_rulebook
 from support.asked_compilers import machine_by
 from support.remembered_machines import ASKED
@@ -100,7 +101,7 @@ def changed(name):
 
 @pytest.mark.parametrize("name", [one.name for one in fields(Job)])
 def test_another_job_is_asked_anew(asked, name):
-    questions = compiler._Asked(None, more_will_come=False, time=compiler.CompilerTime())
+    questions = compiler._Asked(None, more_will_come=False, time=CompilerTime())
     questions.answers([job()])
     questions.answers([changed(name)])
     assert len(asked) == 2

@@ -164,7 +164,7 @@ def test_another_overview_is_made_anew(folder, answered, capsys, options):
     "damage",
     [
         lambda path: path.write_bytes(path.read_bytes()[:-4]),
-        lambda path: path.write_bytes(path.read_bytes()[:-1] + b"?"),
+        lambda path: path.write_bytes(path.read_bytes()[:-1] + bytes([path.read_bytes()[-1] ^ 1])),
         lambda path: path.chmod(0o602),
         lambda path: path.parent.chmod(0o770),
     ],

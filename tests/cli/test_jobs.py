@@ -28,7 +28,7 @@ if "--multiprocessing-fork" in sys.orig_argv:
         marker = Path(path + "." + str(os.getpid()))
         if "odd" in path and len(list(marker.parent.glob("*.xml.*"))) < LEAST:
             marker.touch()
-            yield from list(judge(settings, path))[:1] if settings.lines else ()
+            yield from list(judge(settings, path))[:1] if settings.to_line else ()
             DEED
         yield from judge(settings, path)
     recording_judge.judge = odd

@@ -130,7 +130,7 @@ def test_without_cryptography_it_says_what_is_missing(folder, rules, capsys, mon
     def missing(*_):
         raise ImportError
 
-    monkeypatch.setattr("rulec.automata.bundle.minisign.has_signed", missing)
+    monkeypatch.setattr("rulec.automata.bundle.required_signature.has_signed", missing)
     status, err = asked(rules, folder / "key.pub", capsys)
     assert status == 2
     assert "R0414" in err

@@ -10,8 +10,8 @@ import pytest
 from rulec.cli.main import main
 from rulec.cli.usage_help import EXAMPLES
 from rulec.cli.verb_table import COMMANDS
+from rulec.resources import install_command
 from rulec.rulebook.files.words_in_files import words_of_vocabularies
-from rulec.version import install_command
 
 
 def said(capsys, *arguments):
@@ -241,7 +241,7 @@ def test_an_extra_is_installed_where_rulec_runs(origin, has_pip, command, monkey
             return None if origin is None else json.dumps(origin)
 
     monkeypatch.setattr(metadata, "distribution", lambda name: Installed())
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: object() if has_pip else None)
+    monkeypatch.setattr("rulec.resources.find_spec", lambda name: object() if has_pip else None)
     monkeypatch.setattr(sys, "executable", "PYTHON")
     install_command.cache_clear()
     try:

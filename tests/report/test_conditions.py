@@ -11,7 +11,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Threshold
 from rulec.logic.formula import Atom, Comparison, Count, QuantityTerm
 from rulec.report.automata.automaton_model import automaton_of
-from rulec.report.text.guard_text import GuardWording
+from rulec.report.verdicts.guard_text import GuardWording
 from support.generators.random_machines import READS, VOCABULARY, machines
 
 SPEED = {0: Fraction(2), 1: Fraction(3), 2: Fraction(4), 3: Fraction(7)}

@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rulec.cli.output import findings_in
 from rulec.diagnostics import Diagnostic, Label, Source, SourceLocation, Span
 from rulec.report.findings.code_registry import all_codes
 from rulec.report.findings.diagnostics_json import as_json
-from rulec.report.findings.finding_formats import FORMATS, as_annotations, as_lines, render
+from rulec.report.findings.finding_formats import FORMATS, as_annotations, as_lines
 from rulec.report.findings.sarif import as_sarif
 
 TEXT = "one\ntwo 🚗 three\n"
@@ -130,14 +131,14 @@ def test_sarif_says_when_a_file_could_not_be_read():
 
 @pytest.mark.parametrize("wanted", FORMATS)
 def test_every_format_of_something_and_of_nothing(wanted):
-    assert "R0202" in render(EVERY, wanted, color=False, complete=True)
-    empty = render([], wanted, color=False, complete=True)
+    assert "R0202" in findings_in(wanted, EVERY, color=False, complete=True)
+    empty = findings_in(wanted, [], color=False, complete=True)
     assert (empty == "") == (wanted in ("full", "concise", "github"))
 
 
 @pytest.mark.parametrize("wanted", FORMATS)
 def test_colour_is_for_people(wanted):
-    assert ("\x1b" in render(EVERY, wanted, color=True, complete=True)) == (wanted == "full")
+    assert ("\x1b" in findings_in(wanted, EVERY, color=True, complete=True)) == (wanted == "full")
 
 
 anything = st.text(max_size=30)

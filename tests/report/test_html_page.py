@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.report.text.html_page import MOST_UNFOLDED, PageTexts, as_html
-from rulec.report.text.markdown import Heading, code, escaped, fenced, table, written
+from rulec.report.text.html_page import as_html
+from rulec.report.text.markdown import Heading, PageTexts, code, escaped, fenced, table, written
+from rulec.report.text.page_body import MOST_UNFOLDED
 from support.oracles.page_policy import check_policy
 
 VOID = {"meta", "hr", "br"}

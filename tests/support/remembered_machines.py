@@ -11,6 +11,7 @@ from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.decision_diagrams import diagram_compiler
 from rulec.automata.worker import compiler_choice
 from rulec.automata.worker.machine_cache import MachineCache
+from rulec.resource_limits import CompilerTime
 from support.asked_compilers import machine_by
 
 Answers = tuple[list[Done | Failed | None], str]
@@ -36,7 +37,7 @@ def remembering(folder: Path) -> Callable[[Sequence[Job]], Answers]:
         *,
         more_will_come: bool = False,
         choice: str | None = None,
-        time: compiler.CompilerTime | None = None,
+        time: CompilerTime | None = None,
     ) -> Answers:
         is_usual = compiler._WORKER is _SCRIPT and compiler._worker is _WORKER
         if not is_usual or compiler._REQUIRE_CONFINED in os.environ or not jobs:

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 import rulec
-from rulec.batch import worker_pool
-from rulec.batch.jobs import Jobs
+from rulec.batch import recording_judge
+from rulec.batch.jobs import Jobs, LostTask
 from rulec.batch.recording_judge import JudgedRecording, JudgeSettings, judge_with_progress
 from rulec.diagnostics import RulecError
 from rulec.extraction import recording_parts
@@ -16,6 +16,7 @@ from rulec.extraction.selection import RequestedDrives
 from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
 from rulec.report.verdicts.recording_answer import AnswerLayout
+from rulec.report.verdicts.recording_json import as_json
 from rulec.rulebook.loader import parse_rulebook
 from support.worlds.stored import StoredWorld
 
@@ -49,8 +50,8 @@ def pieces(rules, jobs, to_explain, **more):
         to_explain=to_explain,
         every_part=False,
         layout=AnswerLayout(80),
-        lines=True,
         findings=True,
+        to_line=as_json,
     )
     counted = []
 
@@ -84,7 +85,7 @@ def test_parts_are_put_together(rules, to_explain, monkeypatch):
                 yield task, result
             tell(done)
 
-    monkeypatch.setattr(worker_pool, "in_order", here)
+    monkeypatch.setattr(recording_judge, "in_order", here)
     found, counted = pieces(rules, Jobs(2, alone_s=1.0), to_explain)
     # A part takes longer than that: other processes get all of them at once
     assert asked == [Jobs(2, alone_s=0.0)]
@@ -105,9 +106,9 @@ def test_a_part_whose_process_is_killed_twice(rules, monkeypatch):
 
     def killed(work, tasks, jobs, tell, lost):
         lost(tasks[0], 9)
-        yield tasks[0], worker_pool.LostTask(9)
+        yield tasks[0], LostTask(9)
 
-    monkeypatch.setattr(worker_pool, "in_order", killed)
+    monkeypatch.setattr(recording_judge, "in_order", killed)
     told = []
     (error,), _ = pieces(rules, Jobs(2), 0, lost=told.append)
     assert told == [9]

@@ -8,10 +8,10 @@ from multiprocessing import resource_tracker, util
 
 import pytest
 
-from rulec.batch import worker_pool
+from rulec.batch import worker_processes
 from rulec.batch.batch_messages import process_lost
-from rulec.batch.jobs import Jobs, available_processors, chosen_jobs
-from rulec.batch.worker_pool import LostTask, in_order
+from rulec.batch.jobs import Jobs, LostTask, available_processors, chosen_jobs
+from rulec.batch.worker_pool import in_order
 from rulec.cache.keeping import is_keeping, keeping
 from rulec.diagnostics import RulecError
 
@@ -68,7 +68,7 @@ def test_results_are_in_the_order_of_the_tasks(jobs):
 
 
 def test_more_results_than_may_wait(monkeypatch):
-    monkeypatch.setattr(worker_pool, "MOST_WAITING", 2)
+    monkeypatch.setattr(worker_processes, "MOST_WAITING", 2)
     found = list(in_order(partial(squares, 40), range(4), Jobs(3)))
     assert found == [(n, n * n + k) for n in range(4) for k in range(40)]
 
@@ -142,14 +142,14 @@ def test_a_mistake_is_raised_where_it_belongs():
 def test_no_process_stays_behind_when_the_caller_leaves():
     pools = []
 
-    class Noted(worker_pool._Pool):
+    class Noted(worker_processes.WorkerProcesses):
         def __init__(self, *arguments):
             super().__init__(*arguments)
             pools.append(self)
 
-    results = worker_pool.in_order(partial(squares, 3), range(9), Jobs(2))
+    results = in_order(partial(squares, 3), range(9), Jobs(2))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(worker_pool, "_Pool", Noted)
+        patch.setattr(worker_processes, "WorkerProcesses", Noted)
         assert next(results) == (0, 0)
         results.close()
     (pool,) = pools

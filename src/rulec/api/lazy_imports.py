@@ -69,8 +69,8 @@ if TYPE_CHECKING:
     from rulec.report.rulebooks.document_language import document_language
     from rulec.report.tests.example_text import missing_examples
     from rulec.report.text import html_page
-    from rulec.report.text.html_page import PageTexts
     from rulec.report.text.listing import Listed
+    from rulec.report.text.markdown import PageTexts
     from rulec.rulebook import template
     from rulec.rulebook.allowances import without_allowed
     from rulec.rulebook.batch import batch_check, batch_format

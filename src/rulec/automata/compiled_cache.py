@@ -22,12 +22,12 @@ from rulec.cache.cache_folder import tidy, usable_folder, write_own
 from rulec.cache.mapped_tables import mapped
 from rulec.cache.stored_objects import DAMAGED
 from rulec.diagnostics import Diagnostic, RulecError
+from rulec.resource_limits import CompilerTime
 from rulec.rulebook.files.search_path import Dependency
 from rulec.rulebook.reading.reading_cache import BookQuestion, basis_of
 from rulec.rulebook.reading.rulebook_reader import load_rulebook
 
 if TYPE_CHECKING:
-    from rulec.automata.compiler import CompilerTime
     from rulec.automata.outcome_machine import OutcomeMachine
     from rulec.automata.step_compilation import StepCompiler
     from rulec.rulebook.rulebook_model import Rulebook
@@ -186,9 +186,6 @@ class CachedSteps:
     def time(self) -> CompilerTime:
         """The time that compilers have for all of its steps and machines."""
         if self._time is None:
-            # Processes, 15 ms: only where something is compiled.
-            from rulec.automata.compiler import CompilerTime
-
             self._time = CompilerTime()
         return self._time
 

@@ -14,7 +14,7 @@ import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass
 from fractions import Fraction
 from typing import TypeAlias
 
@@ -39,7 +39,7 @@ from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import fitting_step, has_seconds, in_steps
 from rulec.logic.formula import Formula
 from rulec.logic.printing import time_in_words
-from rulec.resource_limits import COMPILING
+from rulec.resource_limits import CompilerTime
 from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, parts_of
 from rulec.rulebook.rules.axiom_instances import axiom_instances
 from rulec.rulebook.rules.exemptions import rule_trigger
@@ -167,19 +167,6 @@ def job_of(rule: CompiledRule, rulebook: CompiledRulebook) -> Job:
         groups=axiom_groups(propositions_of(rule.formula), instances, rulebook.vocabulary),
         step_s=rule.step_s,
     )
-
-
-@dataclass(slots=True)
-class CompilerTime:
-    """The processor time (s) that compilers have taken for a rulebook, and its limit."""
-
-    most_s: float = field(default_factory=COMPILING.value)
-    taken_s: float = 0.0
-
-    @property
-    def left_s(self) -> float:
-        """How much is left."""
-        return self.most_s - self.taken_s
 
 
 def answers_to(

@@ -22,7 +22,7 @@ from rulec.automata.bundle.cut_machines import (
     goes_on_from_before,
     looks_back,
 )
-from rulec.automata.compiler import CompilerTime, answers_to, job_of
+from rulec.automata.compiler import answers_to, job_of
 from rulec.automata.compiler_jobs import MOST_LETTERS, Done, Failed, Job
 from rulec.automata.mealy_monitor import MealyMonitor, Read
 from rulec.automata.outcome_machine import OutcomeMachine
@@ -30,6 +30,7 @@ from rulec.automata.tables import SizeError
 from rulec.automata.worker.compiler_messages import no_time
 from rulec.logic import formula as ltl
 from rulec.logic.semantics import Semantics
+from rulec.resource_limits import CompilerTime
 
 _KNOWN: dict[tuple[object, ...], OutcomeMachine | None] = {}
 _TIMED: dict[tuple[object, ...], TimedCut] = {}

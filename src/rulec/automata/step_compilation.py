@@ -14,12 +14,13 @@ from rulec.automata.bundle.compiled_rulebook import (
     is_too_large,
     too_large_rule,
 )
-from rulec.automata.compiler import CompilerTime, RulebookFormulas, build_all, lower
+from rulec.automata.compiler import RulebookFormulas, build_all, lower
+from rulec.automata.prefix_machines import prefix_machines
 from rulec.automata.tables import SizeError
 from rulec.diagnostics import RulecError
 from rulec.logic.bounds import has_seconds
 from rulec.logic.formula import Formula
-from rulec.resource_limits import STEPS
+from rulec.resource_limits import STEPS, CompilerTime
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 
 if TYPE_CHECKING:
@@ -121,9 +122,6 @@ class StepCompiler:
         return replace(self._header, rules=tuple(rules))
 
     def _prefixes(self, rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
-        # Takes 0.1 s to import with NumPy, and is needed only for cut traces.
-        from rulec.automata.prefix_machines import prefix_machines
-
         return prefix_machines(rulebook, self.time)
 
     def _compiled(self, rules: Sequence[Rule], step_s: Fraction | None) -> CompiledRulebook:

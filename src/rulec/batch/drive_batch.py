@@ -9,8 +9,8 @@ from io import BytesIO
 from typing import Any, TypeVar
 
 from rulec.batch.batch_messages import process_lost
-from rulec.batch.jobs import Jobs
-from rulec.batch.worker_pool import LostTask, in_order
+from rulec.batch.jobs import Jobs, LostTask
+from rulec.batch.worker_pool import in_order
 from rulec.diagnostics import SourceLocation
 from rulec.extraction.selection import RequestedDrives, SelectedDrives, selected_drives
 from rulec.extraction.traces.recorded_drive import Drive

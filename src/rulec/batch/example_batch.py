@@ -9,7 +9,8 @@ from pathlib import Path
 
 from rulec.automata.step_compilation import StepCompiler
 from rulec.batch.batch_messages import process_lost
-from rulec.batch.jobs import Jobs
+from rulec.batch.jobs import Jobs, LostTask
+from rulec.batch.worker_pool import in_order
 from rulec.book_tests.example_coverage import RuleCoverage, coverage
 from rulec.book_tests.example_runs import ExampleRun, is_chosen, run_rulebook_examples
 from rulec.diagnostics import RulecError, SourceLocation
@@ -58,9 +59,6 @@ def measured_runs(
     ``lost`` is called with a rulebook whose process was killed (and is started again), and the
     signal.
     """
-    # A browser's Python has no processes: imported only if several may be requested.
-    from rulec.batch.worker_pool import LostTask, in_order
-
     for rulebook, answer in in_order(partial(_measured, request), rulebooks, jobs, lost=lost):
         if isinstance(answer, LostTask):
             yield process_lost(rulebook, answer.signal_number, "tested")

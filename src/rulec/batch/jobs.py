@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from typing import TypeVar
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
 
 ALONE_S = 1.0
 """Work of fewer seconds is not worth starting a process, which takes about as long."""
@@ -15,6 +19,13 @@ class Jobs:
 
     processes: int
     alone_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class LostTask:
+    """A task whose process was killed twice before it was done; the signal, if known."""
+
+    signal_number: int | None
 
 
 def chosen_jobs(number: int | None) -> Jobs:

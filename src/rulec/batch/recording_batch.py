@@ -8,9 +8,9 @@ from functools import partial
 from pathlib import Path
 
 from rulec.batch.batch_messages import process_lost
-from rulec.batch.jobs import Jobs
+from rulec.batch.jobs import Jobs, LostTask
 from rulec.batch.recording_judge import JudgeSettings, Piece, judge
-from rulec.batch.worker_pool import LostTask, in_order
+from rulec.batch.worker_pool import in_order
 
 LARGE_BYTES = 1_000_000
 """Judging files of this total size (bytes) takes long enough to start processes at once."""

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.batch.batch_messages import process_lost
-from rulec.batch.jobs import Jobs
+from rulec.batch.jobs import Jobs, LostTask
+from rulec.batch.worker_pool import in_order
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import with_place
 from rulec.diagnostics.fault_messages import contained
@@ -19,32 +20,48 @@ from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.traces.lost_drives import lost_drive
 from rulec.extraction.traces.recorded_drive import NoDrive
-from rulec.monitoring.verdict import NotJudged
+from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.recordings.recording import Participant, Recording
 from rulec.recordings.recording_files import read_recordings
 from rulec.recordings.recording_format import RecordingSource
 from rulec.report.text.terminal_text import broken, visible
-from rulec.report.verdicts import verdict_report
 from rulec.report.verdicts.recording_answer import (
     MOST_SHOWN,
     AnswerLayout,
     RecordingAnswer,
     summary,
 )
-from rulec.report.verdicts.state_times import StateTimes
 from rulec.report.verdicts.violation_tally import ViolationTally
 from rulec.resource_limits import BudgetSpentError
+from rulec.trace.trace_arrays import TraceArrays
 
 if TYPE_CHECKING:
+    from rulec.batch.drive_accounts import DriveAccounts
     from rulec.monitoring.explain.explanation import Explanation
-    from rulec.report.findings.findings_of_drives import DriveFindings, GatheredFindings
+    from rulec.report.findings.findings_of_drives import GatheredFindings
     from rulec.report.findings.verdict_finding import RecordingFindings, VerdictFinding
 
 RowMaker: TypeAlias = Callable[
     [DriveVerdict | NoDrive, RecordingVerdicts, str, "Sequence[VerdictFinding] | None"],
     Iterator[Mapping[str, object]],
 ]
-"""Makes the table rows of a drive and its findings; it is sent to other processes."""
+"""Makes the table rows of a drive and its findings; like those below sent to other processes."""
+
+LineMaker: TypeAlias = Callable[
+    [
+        DriveVerdict | NoDrive,
+        RecordingVerdicts,
+        "Sequence[Explanation]",
+        frozenset[str] | None,
+    ],
+    str,
+]
+"""Makes the line of JSON of a drive, its explanations, and the rules without an opportunity."""
+
+IdleRules: TypeAlias = Callable[
+    [TraceArrays, CompiledRulebook, Verdict | NotJudged], frozenset[str] | None
+]
+"""Finds the rules that a drive gave no opportunity to violate."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,10 +70,9 @@ class JudgeSettings:
 
     ``source`` says how to read each file; its path is replaced. The first ``to_explain`` violations
     of each file are explained, part by part if ``every_part``. The results may be text in this
-    ``layout``, ``lines`` (of JSON, one per drive) and ``findings``. ``labels`` are names for files
+    ``layout``, lines of JSON (``to_line``) and ``findings``. ``labels`` are names for files
     whose paths mean nothing to a reader. ``to_rows``, if given, makes the rows of drives and rules
-    for tables of findings. ``idle`` asks which rules drives gave no opportunity to
-    violate.
+    for tables of findings, ``idle_rules`` finds those without an opportunity.
     """
 
     rules: CompiledRulebook
@@ -65,11 +81,11 @@ class JudgeSettings:
     to_explain: int
     every_part: bool
     layout: AnswerLayout | None
-    lines: bool
     findings: bool
+    to_line: LineMaker | None = None
     labels: Mapping[str, str] = field(default_factory=dict)
     to_rows: RowMaker | None = None
-    idle: bool = False
+    idle_rules: IdleRules | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,8 +191,14 @@ class _RecordingJudge:
         self._file = file
         self._verdicts = RecordingVerdicts(recording, settings.rules, settings.request, file)
         self._judged = _JudgedDrives()
-        self._findings = _findings(self._verdicts, file) if settings.findings else None
         self.left = left
+
+    @cached_property
+    def _accounts(self) -> DriveAccounts:
+        # Explanations and evidence, 40 ms: only where something is violated or findings are wanted.
+        from rulec.batch.drive_accounts import DriveAccounts
+
+        return DriveAccounts(self._verdicts, self._file)
 
     @property
     def parts(self) -> Sequence[RecordingPart]:
@@ -202,9 +224,6 @@ class _RecordingJudge:
 
         Raises RulecError R0708 if the process of a part is killed twice.
         """
-        # Processes, 15 ms: not if one process judges all.
-        from rulec.batch.worker_pool import LostTask, in_order
-
         parts, settings, file = self.parts, self._settings, self._file
         shared = replace(parts[0].recording, participants=())
         work = partial(_judged_part, settings, shared, file, 0)
@@ -232,7 +251,7 @@ class _RecordingJudge:
         judged = self._judged
         for answer in self._verdicts.answers():
             judged.pieces += self._of_drive(answer)
-        judged.findings = None if self._findings is None else self._findings.gathered
+        judged.findings = self._accounts.findings.gathered if self._settings.findings else None
         return judged
 
     def _take(self, later: _JudgedDrives) -> None:
@@ -242,8 +261,8 @@ class _RecordingJudge:
         for rule, findings in later.shown.items():
             own = self._judged.shown.setdefault(rule, [])
             own += findings[: MOST_SHOWN - len(own)]
-        if self._findings is not None and later.findings is not None:
-            self._findings.gathered.include(later.findings)
+        if later.findings is not None:
+            self._accounts.findings.gathered.include(later.findings)
 
     def _of_drive(self, answer: DriveVerdict | NoDrive) -> list[Piece]:
         try:
@@ -265,26 +284,22 @@ class _RecordingJudge:
             for fault in answer.answer.faults:
                 yield DriveProblem(with_place(fault, SourceLocation(self._file)))
             explained = self._explained(answer)
-        own = None if self._findings is None else self._findings.add(answer, explained)
+        wanted = self._settings.findings
+        own = self._accounts.findings.add(answer, explained) if wanted else None
         idle = self._idle(answer)
         if self._settings.layout is not None:
             self._show(answer, explained, own)
         if self._settings.to_rows is not None:
             judged.rows += self._settings.to_rows(answer, verdicts, self._file, own)
-        if self._settings.lines:
-            # JSON of explanations and evidence, 30 ms: only where it is wanted.
-            from rulec.report.verdicts import recording_json
-
-            yield recording_json.as_json(answer, verdicts, explained, idle)
+        if self._settings.to_line is not None:
+            yield self._settings.to_line(answer, verdicts, explained, idle)
         judged.tally.add(answer, [rule.name for rule in verdicts.rules.rules], idle or frozenset())
 
     def _idle(self, found: DriveVerdict | NoDrive) -> frozenset[str] | None:
         """The rules that a drive gave no opportunity to violate, if that is asked."""
-        if not self._settings.idle or isinstance(found, NoDrive):
+        idle_rules = self._settings.idle_rules
+        if idle_rules is None or isinstance(found, NoDrive):
             return None
-        # Opportunities, 20 ms a drive: only where they are asked for.
-        from rulec.monitoring.moments.drive_facts import idle_rules
-
         return idle_rules(found.drive.arrays, self._verdicts.rules, found.answer)
 
     def _show(
@@ -300,14 +315,10 @@ class _RecordingJudge:
             shown = self._judged.shown.setdefault(violation.rule, [])
             if len(shown) < MOST_SHOWN:
                 if findings is None:
-                    # Evidence, 20 ms: only where something is violated.
-                    from rulec.report.findings.findings_of_drives import violated
-
                     explanation = explained[number] if number < len(explained) else None
-                    own = violated(violation, answer.drive, self._verdicts, explanation)
+                    shown.append(self._accounts.finding(violation, answer.drive, explanation))
                 else:
-                    own = findings[number]
-                shown.append(own)
+                    shown.append(findings[number])
 
     def _whole(self) -> JudgedRecording:
         verdicts, judged = self._verdicts, self._judged
@@ -316,8 +327,8 @@ class _RecordingJudge:
             answer = RecordingAnswer(verdicts, judged.tally, judged.shown, self._settings.layout)
             text = answer.as_text()
         findings = None
-        if self._findings is not None:
-            findings = replace(self._findings.whole(), rows=tuple(judged.rows))
+        if self._settings.findings:
+            findings = replace(self._accounts.findings.whole(), rows=tuple(judged.rows))
         return JudgedRecording(
             self._file,
             verdicts.recording.name,
@@ -329,32 +340,17 @@ class _RecordingJudge:
 
     def _explained(self, result: DriveVerdict) -> list[Explanation]:
         """Explanations of a drive's first violations; their text is shown with the recording."""
-        verdict, drive, rules = result.answer, result.drive, self._verdicts.rules
+        verdict, drive = result.answer, result.drive
         assert not isinstance(verdict, NotJudged), "it has been judged"
         chosen = verdict.violations[: self.left]
         if not chosen:
             return []
-        # Explanations, 20 ms: only where something is violated.
-        from rulec.extraction.violation_evidence import trace_for, whom_of
-        from rulec.monitoring.explain.explanation import explain
-
         self.left -= len(chosen)
         self._judged.n_explained += len(chosen)
-        explained = [
-            explain(violation, trace_for(violation, drive, rules), rules, drive.decided_by)
-            for violation in chosen
-        ]
+        explained = self._accounts.explained(chosen, drive)
         if self._settings.layout is not None:
-            details = verdict_report.as_text(
-                verdict,
-                rules,
-                explained,
-                every_part=self._settings.every_part,
-                width=self._settings.layout.width,
-                doubts=False,
-                whom=[whom_of(explanation, drive) for explanation in explained],
-                times=StateTimes(drive.start_s, drive.arrays.step_s),
-            )
+            width, every_part = self._settings.layout.width, self._settings.every_part
+            details = self._accounts.details(result, explained, width=width, every_part=every_part)
             self._judged.blocks.append(f"\n{details}")
         return explained
 
@@ -371,13 +367,6 @@ def _judged_part(
     settings = replace(settings, request=replace(settings.request, egos=egos))
     recording = replace(shared, participants=participants)
     yield _RecordingJudge(settings, recording, file, left).judged_drives()
-
-
-def _findings(verdicts: RecordingVerdicts, file: str) -> DriveFindings:
-    # Evidence and its findings, 20 ms: only where they are wanted.
-    from rulec.report.findings.findings_of_drives import DriveFindings
-
-    return DriveFindings(verdicts, file)
 
 
 def in_short(judged: JudgedRecording, width: int) -> str:

@@ -7,8 +7,8 @@ from typing import Any
 
 from rulec.analysis.lint.questions import Question, Spread
 from rulec.batch.batch_messages import process_lost
-from rulec.batch.jobs import Jobs
-from rulec.batch.worker_pool import LostTask, in_order
+from rulec.batch.jobs import Jobs, LostTask
+from rulec.batch.worker_pool import in_order
 
 
 def spreading(jobs: Jobs, rulebook: str, lost: Callable[[int | None], object]) -> Spread | None:

@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     from rulec.language_server.server import serve
     from rulec.monitoring.batch.by_states import rulebook_for_trace
     from rulec.monitoring.explain.explanation import Explanation, explain
-    from rulec.monitoring.moments.drive_facts import DriveFacts, facts_of_many
+    from rulec.monitoring.moments.drive_facts import DriveFacts, facts_of_many, idle_rules
     from rulec.monitoring.moments.formula_moments import moments
     from rulec.monitoring.online import monitor_sources
     from rulec.monitoring.online.running_monitor import RunningMonitor
@@ -81,11 +81,15 @@ if TYPE_CHECKING:
     from rulec.report.automata.automaton_model import Automaton
     from rulec.report.findings import diagnostics_text
     from rulec.report.findings.code_registry import all_codes
+    from rulec.report.findings.diagnostics_json import as_json as diagnostics_as_json
     from rulec.report.findings.diagnostics_json import codes_as_json
     from rulec.report.findings.diagnostics_text import print_diagnostics
-    from rulec.report.findings.finding_tables import RowWriter
+    from rulec.report.findings.finding_mcap import McapWriter
+    from rulec.report.findings.finding_tables import FindingTable, RowWriter
     from rulec.report.findings.findings_of_drives import not_judged_file
     from rulec.report.findings.findings_of_traces import not_judged_trace, trace_findings
+    from rulec.report.findings.junit import JUnitWriter
+    from rulec.report.findings.sarif import SarifWriter, as_sarif
     from rulec.report.findings.verdict_finding import FindingContext, RecordingFindings
     from rulec.report.maneuvers import maneuver_json, maneuver_report, maneuver_table
     from rulec.report.maneuvers.envelope_table import write_envelopes
@@ -109,7 +113,7 @@ if TYPE_CHECKING:
     from rulec.report.rulebooks.comparison import diff_formats, matrix_report, topic_report
     from rulec.report.rulebooks.rule_page import RulePage, page_of
     from rulec.report.rulebooks.word_texts import readers_of, words_as_json
-    from rulec.report.tests import example_formats, example_text
+    from rulec.report.tests import example_json, example_junit, example_text
     from rulec.report.tests.example_text import Besides
     from rulec.report.text import listing
     from rulec.report.text.listing import Listed
@@ -117,6 +121,8 @@ if TYPE_CHECKING:
     from rulec.report.verdicts import running_verdicts, side_by_side, verdict_json, verdict_report
     from rulec.report.verdicts.batch_table import BatchTally
     from rulec.report.verdicts.recording_answer import AnswerLayout
+    from rulec.report.verdicts.recording_json import as_json as recording_line
+    from rulec.report.verdicts.violation_table import tables
     from rulec.resource_limits import in_force as limits_in_force
     from rulec.rulebook.batch.batch_check import find_sources, named_rulebooks
     from rulec.rulebook.batch.batch_fix import write_fixes

@@ -22,8 +22,12 @@ from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.fault_messages import fault_of
 from rulec.files.left_alone import LeftAlone, in_words
 from rulec.files.written_files import written_whole
-from rulec.report.findings.diagnostics_text import message_width, print_diagnostics
-from rulec.report.findings.finding_formats import render
+from rulec.report.findings.diagnostics_text import (
+    message_width,
+    print_diagnostics,
+    render_diagnostics,
+)
+from rulec.report.findings.finding_formats import as_annotations, as_lines
 from rulec.report.text.console import (
     PAGE_WIDTH,
     page_width,
@@ -215,6 +219,31 @@ def told_apart(references: Sequence[str]) -> dict[str, str]:
     return named
 
 
+def findings_in(
+    form: str,
+    diagnostics: Sequence[Diagnostic],
+    *,
+    color: bool,
+    complete: bool,
+    width: int = 0,
+) -> str:
+    """Diagnostics in a format of findings about rulebooks.
+
+    ``complete``: all inputs could be read; ``width`` is that of a terminal, 0 elsewhere.
+    """
+    match form:
+        case "concise":
+            return as_lines(diagnostics)
+        case "json":
+            return lazy.diagnostics_as_json(diagnostics)
+        case "github":
+            return as_annotations(diagnostics)
+        case "sarif":
+            return lazy.as_sarif(diagnostics, complete=complete)
+        case _:
+            return render_diagnostics(diagnostics, color, width=width).rstrip("\n")
+
+
 def print_findings(
     findings: Sequence[Diagnostic],
     unread: Sequence[Diagnostic],
@@ -227,9 +256,9 @@ def print_findings(
 
     ``nothing`` is the text if there are neither; ``fail_on`` is ``error`` or ``warning``.
     """
-    text = render(
-        findings,
+    text = findings_in(
         to.form,
+        findings,
         color=wants_color(sys.stdout),
         complete=not unread,
         width=0 if to.is_file else message_width(sys.stdout),

@@ -101,7 +101,7 @@ class RecordingRun:
             self.complete &= bool(piece.tally.judged)
             self.open_hard |= bool(piece.tally.open_hard)
             if self.to.wants_text:
-                is_short = several and not self.settings.idle
+                is_short = several and self.settings.idle_rules is None
                 first = in_short(piece, page_width()) if is_short else piece.answer
                 self.to.text("\n".join([first, *piece.explained]))
             if piece.findings is not None:

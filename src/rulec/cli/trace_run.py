@@ -162,16 +162,16 @@ class TraceRun:
         if self.to.wants_lines:
             self.to.line(lazy.verdict_json.as_json(verdict, used, explained))
         if says and self.to.wants_text:
-            text = verdict_report.as_text(
-                verdict,
-                used,
-                explained,
-                every_part=self.every_part,
-                width=page_width(),
-                times=StateTimes(step_s=step_of(traces, place)),
-            )
+            most, width = verdict_report.MOST_VIOLATIONS, page_width()
+            times = StateTimes(step_s=step_of(traces, place))
+            tables: list[str] = []
+            if explained:
+                tables = lazy.tables(
+                    explained[:most], used, width=width, every_part=self.every_part, times=times
+                )
+            text = verdict_report.as_text(verdict, used, tables, width=width, times=times)
             self.to.text(text)
-            shown = verdict.open[: verdict_report.MOST_VIOLATIONS]
+            shown = verdict.open[:most]
             self.pending |= any("not over" in result.because for result in shown)
         if self.to.wants_findings:
             findings += lazy.trace_findings(file, traces[place], verdict, used, explained)

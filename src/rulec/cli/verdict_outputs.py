@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from typing import IO
 
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.output_options import Endings, Output, endings_of
 from rulec.cli.output import answer_lines, output_stream
-from rulec.report.findings.finding_writers import ENDINGS, FindingWriter, finding_writer
+from rulec.report.findings.finding_writers import ENDINGS, FindingWriter
 from rulec.report.text.console import print_line, print_result
 from rulec.report.text.terminal_text import counted
 
@@ -68,6 +69,24 @@ class VerdictOutputs:
         self._findings += len(findings.findings)
         for writer, _ in self._writers:
             writer.add(findings)
+
+
+def finding_writer(
+    form: str, stream: IO[bytes], about: lazy.FindingContext, name: str
+) -> FindingWriter:
+    """The writer of a format, for a stream called ``name`` in messages.
+
+    Raises RulecError R0706 if Parquet is not available.
+    """
+    match form:
+        case "junit":
+            return lazy.JUnitWriter(stream, about)
+        case "sarif":
+            return lazy.SarifWriter(stream, about)
+        case "mcap":
+            return lazy.McapWriter(stream, about, name)
+        case _:
+            return lazy.FindingTable(form, stream, name, about.columns)
 
 
 @contextmanager

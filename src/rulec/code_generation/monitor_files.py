@@ -63,11 +63,10 @@ def write_monitor(
         if build_file in texts and not _is_own(folder / build_file, prefix_of(rulebook.name)):
             raise others_file(folder / build_file)
     if prove:
-        # These import NumPy and everything needed for judging.
-        from rulec.code_generation.compiled_c.c_library import CLibrary
+        # Imports NumPy and everything needed for judging.
         from rulec.code_generation.proof.monitor_proof import proof_report
 
-        texts[f"{prefix_of(rulebook.name)}_proof.txt"] = proof_report(CLibrary(layout))
+        texts[f"{prefix_of(rulebook.name)}_proof.txt"] = proof_report(layout)
     for inner in dict.fromkeys(Path(name).parent for name in texts):
         own = {Path(name).name: text for name, text in texts.items() if Path(name).parent == inner}
         make_folder(folder / inner)

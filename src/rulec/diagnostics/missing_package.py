@@ -5,7 +5,7 @@ from __future__ import annotations
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.diagnostic import RulecError
 from rulec.diagnostics.source_text import SourceLocation
-from rulec.version import install_command
+from rulec.resources import install_command
 
 
 def missing_package(

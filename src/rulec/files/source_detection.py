@@ -6,6 +6,8 @@ import codecs
 import re
 from typing import Final
 
+from rulec.diagnostics import nearest_name
+
 FILE_WORDS: Final = ("rulebook", "vocabulary")
 """The words with which a source begins, after comments."""
 
@@ -23,10 +25,7 @@ def is_foreign(text: str) -> bool:
     word = text[start:end]
     if word in FILE_WORDS or start == len(text):
         return False
-    # Imported late: 4 ms, rarely needed.
-    from difflib import get_close_matches
-
-    return not get_close_matches(word.casefold()[:40], FILE_WORDS, n=1, cutoff=_ALIKE)
+    return nearest_name(word[:40], FILE_WORDS, _ALIKE, longer=False) is None
 
 
 def beginning_of(data: bytes) -> str:

@@ -36,10 +36,7 @@ def rulebook_hash(rules: CompiledRulebook) -> str:
     compiled file, at any step: texts for people and automata do not count.
     """
     # Late import: the schema of compiled files (20 ms), which verdicts without a hash do not need.
-    import msgspec
-
-    # Late import, as above.
-    from rulec.automata.bundle.bundle_schema import ENTRY_OF
+    from rulec.automata.bundle.bundle_schema import as_builtins
 
     vocabulary = rules.vocabulary
     content = [
@@ -55,10 +52,7 @@ def rulebook_hash(rules: CompiledRulebook) -> str:
         sorted([_variables(axiom), formula_text(axiom.formula)] for axiom in rules.axioms),
         sorted(rules.priorities),
         sorted((item.name, item.parent or "") for item in vocabulary.types.values()),
-        [
-            msgspec.to_builtins(msgspec.convert(item, ENTRY_OF[type(item)], from_attributes=True))
-            for item in vocabulary.declarations.values()
-        ],
+        [as_builtins(item) for item in vocabulary.declarations.values()],
     ]
     return sha256(json.dumps(content, ensure_ascii=False).encode()).hexdigest()
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from rulec.partition.cell_graph import NavigationGraph
 from rulec.partition.cells.cell_model import Reach
-from rulec.partition.navigation_graph import COMFORTABLE, has_way_within
+from rulec.partition.navigation_graph import COMFORTABLE, has_way_within, within
 from rulec.scenario import MotionBounds
 
 if TYPE_CHECKING:
@@ -32,10 +32,9 @@ def least_braking_later(graph: NavigationGraph, others: OthersBeside) -> float |
     An obstacle is ahead if ego's body would meet it wherever it may be in its cell; it keeps its
     speed. For reachable sets the least speed and the least way count, so that nobody needs less.
     """
-    from rulec.partition.motion.reachable_graph import reachable  # NumPy, only if needed
 
     def is_enough(bounds: MotionBounds) -> bool:
-        kept = reachable(graph, bounds)
+        kept = within(graph, bounds)
         if not kept.leads_to_a_goal:
             return False
         ends = [kept.reach[-1][goal] for goal in kept.goals]

@@ -127,9 +127,14 @@ def has_way(scenario: Scenario, **options: Unpack[GraphOptions]) -> bool:
 
 def has_way_within(graph: NavigationGraph, bounds: MotionBounds) -> bool:
     """Whether a path of a graph remains within bounds of motion that are no wider than its own."""
+    return within(graph, bounds).leads_to_a_goal
+
+
+def within(graph: NavigationGraph, bounds: MotionBounds) -> NavigationGraph:
+    """The part of a graph that ego can drive within bounds of motion."""
     from rulec.partition.motion.reachable_graph import reachable  # NumPy, only if needed
 
-    return reachable(graph, bounds).leads_to_a_goal
+    return reachable(graph, bounds)
 
 
 def _has_way_with(most: float, graph: NavigationGraph) -> bool:

@@ -12,6 +12,7 @@ from rulec.planning.maneuvers import AS_WRITTEN, Maneuvers
 from rulec.planning.product.graph_instances import HARD
 from rulec.planning.product.graph_product import count_paths, explore
 from rulec.planning.product.node_transformers import node_transformers
+from rulec.planning.product.possible_instances import not_judged
 from rulec.planning.rule_instances import (
     SceneReading,
     bind_rules,
@@ -77,7 +78,4 @@ def _not_judged(
 ) -> tuple[RuleNotJudged, ...]:
     if paths.told is None:
         return ()
-    # Imported late: only if not everything is known.
-    from rulec.planning.product.possible_instances import not_judged
-
     return tuple(not_judged(paths, rules, past))

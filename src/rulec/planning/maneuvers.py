@@ -14,6 +14,7 @@ from rulec.automata.mealy_monitor import stutter_invariant
 from rulec.diagnostics.argument_kinds import checked_kinds
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import partial_names
+from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 from rulec.monitoring.uncertainty.untold_names import untold_names
 from rulec.monitoring.verdict import CarriedState, RuleNotJudged, Verdict, Violation
 from rulec.partition import NavigationGraph, dead_ends, emergencies
@@ -201,9 +202,6 @@ class Maneuvers(Rows):
         name = self.graph.scenario.name
         if not any(instance.readings for instance in every):
             return Verdict(name, violations(every, maneuver.nodes), not_judged=self.not_judged)
-        # Imported late (15 ms): only if not everything is known.
-        from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
-
         trace = trace_of(self.paths, maneuver.nodes, name)
         past = past_for(self.graph, self.paths, self.rules, (*HARD, *SOFT), self.after)
         return UncertainRun(trace, self.rules, past).verdict()

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from rulec.diagnostics.code import Code
 
+MOST_WORLDS = 10_000
+"""The most worlds that are examined one by one for a rule that counts objects."""
+
 TWO_PARTITIONS = Code(
     "R0405",
     title="a rulebook reads relations of two partitions",

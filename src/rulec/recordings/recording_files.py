@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import suppress
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,7 +30,6 @@ if TYPE_CHECKING:
     from rulec.recordings.recording import Recording
 
 _MOST_NAMED = 5
-_SAME_RATE = 0.02
 
 
 def is_recording(file: str) -> bool:
@@ -85,27 +83,10 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
 
 def _recordings(source: RecordingSource) -> Iterator[Recording]:
     # NumPy, only for those who have recordings.
-    from rulec.recordings.adjacency import with_side
-    from rulec.recordings.doubts.motion_doubts import with_doubts
-    from rulec.recordings.doubts.road_doubts import check_near
-    from rulec.trace.plain_arrays import keep_freed_memory
+    from rulec.recordings.doubts.examination import examination_of
 
-    keep_freed_memory()
     form = _format_of(source)
-
-    def looked_at(recording: Recording) -> Recording:
-        if form.takes_map:
-            check_near(recording, source.path)
-        rate = source.frame_rate
-        if rate is not None and abs(rate * recording.step_s - 1) > _SAME_RATE:
-            raise OTHER_CHOICE.error(
-                SourceLocation(str(source.path)),
-                f"`{source.path.name}` states its own time steps, of {recording.step_s:g} s",
-                help=f"leave out --frame-rate; `--frame-rate {1 / recording.step_s:g}` confirms it",
-            )
-        refused = partial(RECORDING.refused, source.path)
-        return with_doubts(with_side(recording), refused, sure=rate is not None)
-
+    examined = examination_of(source, takes_map=form.takes_map)
     if source.map_path is not None and not form.takes_map:
         raise OTHER_CHOICE.error(
             SourceLocation(str(source.path)),
@@ -113,13 +94,13 @@ def _recordings(source: RecordingSource) -> Iterator[Recording]:
             help="leave out --map, which is for recordings without roads of their own",
         )
     if source.scenario_id is None:
-        yield from map(looked_at, form.read(source))
+        yield from map(examined, form.read(source))
         return
     names = list(form.names(source.path)) if form.names is not None else []
     if form.names is None or source.scenario_id in names:
         for recording in form.read(source):
             if recording.name == source.scenario_id:
-                yield looked_at(recording)
+                yield examined(recording)
                 return
             names.append(recording.name)
     raise NOT_IN_RECORDING.error(

@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 from rulec.scenario.recorded.lane_coordinates import NARROWEST_LANE_M, lanes_along
 from rulec.scenario.recorded.reference_line import reference_line
-from rulec.scenario.scenario_model import MissingLane
 from support.builders.recordings import lanelet, recording, straight
 
 
@@ -53,7 +52,7 @@ def test_a_lane_that_ends_is_missing_from_there_on():
         (1, 3),
     )
     assert lanes.straight.tolist() == pytest.approx([-2, 2, 6])
-    assert lanes.missing(0, 100, 10) == (MissingLane(2, (30, 90)),)
+    assert lanes.missing(0, 100, 10) == ((2, (30, 90)),)
     assert lanes.existing_at(np.array([20.0, 60.0])).sum(axis=1).tolist() == [2, 1]
 
 
@@ -69,8 +68,8 @@ def test_a_lane_begins_where_it_is_wide_enough():
     )
     lanes = lanes_of([straight(1, 0, 80, left_of=2), wedge], (1,), ego_s=60)
     assert lanes.straight.tolist() == pytest.approx([-2, 2, 5])
-    ((gap),) = lanes.missing(0, 80, 0)
-    assert (gap.lane, gap.s) == (2, pytest.approx((0, 20), abs=1))
+    ((lane, gap),) = lanes.missing(0, 80, 0)
+    assert (lane, gap) == (2, pytest.approx((0, 20), abs=1))
     assert pytest.approx(1) == NARROWEST_LANE_M
 
 

@@ -65,10 +65,7 @@ def entry_of(rulebook: CompiledRulebook) -> schema.BundleFile:
         vocabulary=schema.VocabularyEntry(
             vocabulary.name,
             {item.name: item.parent for item in vocabulary.types.values()},
-            [
-                msgspec.convert(item, schema.ENTRY_OF[type(item)], from_attributes=True)
-                for item in vocabulary.declarations.values()
-            ],
+            [schema.entry_of(item) for item in vocabulary.declarations.values()],
             {
                 name: schema.MeaningEntry(
                     own.variables, formula_text(own.formula), to_data(own.formula)

@@ -71,6 +71,16 @@ ENTRY_OF: dict[type[Declaration], type[EnumerationEntry | SignalEntry | Quantity
 }
 
 
+def entry_of(declaration: Declaration) -> EnumerationEntry | SignalEntry | QuantityEntry:
+    """A declaration as it stands in a file."""
+    return msgspec.convert(declaration, ENTRY_OF[type(declaration)], from_attributes=True)
+
+
+def as_builtins(declaration: Declaration) -> Any:
+    """Its entry in values that JSON has."""
+    return msgspec.to_builtins(entry_of(declaration))
+
+
 class MeaningEntry(_Strict):
     """What a signal means for the objects of its variables; ``tree`` is a formula."""
 

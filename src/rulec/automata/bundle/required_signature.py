@@ -9,15 +9,18 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.bundle_messages import NO_CRYPTOGRAPHY, NO_KEY, NOT_SIGNED
+from rulec.automata.bundle.minisign import (
+    PublicKey,
+    SignatureFormatError,
+    detached_signature,
+    has_signed,
+    public_key,
+)
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.resource_limits import variable_set
-from rulec.version import install_command
-
-if TYPE_CHECKING:
-    from rulec.automata.bundle.minisign import PublicKey
+from rulec.resources import install_command
 
 VARIABLE = "RULEC_REQUIRE_SIGNED"
 """The path of a public key, or the key itself; unset or empty if no signature is required."""
@@ -44,9 +47,6 @@ def check_signed(path: Path, data: bytes) -> None:
     """
     if not (required := os.environ.get(VARIABLE)):
         return
-    # Takes 1 ms to import: only where a signature is required.
-    from rulec.automata.bundle.minisign import detached_signature, has_signed
-
     key = _key(required)
     beside = path.with_name(f"{path.name}.minisig")
     if not beside.is_file():
@@ -91,9 +91,6 @@ def _is_key(text: str) -> bool:
 
 
 def _key(required: str) -> PublicKey:
-    # As above.
-    from rulec.automata.bundle.minisign import SignatureFormatError, public_key
-
     try:
         path = Path(required)
         if (os.sep in required or path.suffix) and not path.exists() and not _is_key(required):

@@ -8,6 +8,7 @@ Python's modules and Spot's libraries have to be loaded.
 
 from __future__ import annotations
 
+import ctypes
 import os
 import struct
 import sys
@@ -54,9 +55,6 @@ def confine() -> Confinement:
     """
     if sys.platform != "linux":
         return Confinement(files=False, connections=False)
-    # Imported only by the worker, not by callers that read ``Confinement``.
-    import ctypes
-
     system = ctypes.CDLL(None)
     if system.prctl(_SET_NO_NEW_PRIVILEGES, 1, 0, 0, 0) != 0:
         return Confinement(files=False, connections=False)
@@ -81,9 +79,6 @@ def _without_files(system: Any) -> bool:
 
 
 def _without_connections(system: Any) -> bool:
-    # As above.
-    import ctypes
-
     machine = os.uname().machine
     if machine not in _DENIED or sys.maxsize < 2**32:
         return False

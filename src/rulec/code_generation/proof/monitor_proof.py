@@ -23,6 +23,7 @@ from rulec.code_generation.compiled_c.c_library import CLibrary
 from rulec.code_generation.monitor_layout import (
     MOST_VARIABLES,
     VERDICTS,
+    MonitorLayout,
     RuleLayout,
 )
 from rulec.code_generation.proof.both_monitors import BothMonitors
@@ -47,12 +48,12 @@ class ProofPart:
     differs: tuple[str, ...]
 
 
-def proof_report(library: CLibrary, n_states: int = USUAL_STATES) -> str:
+def proof_report(layout: MonitorLayout, n_states: int = USUAL_STATES) -> str:
     """The report on what was compared for a monitor, and how often, line by line.
 
-    Raises RulecError R0753 if something differs.
+    Raises RulecError R0751 and R0752 if it cannot be compiled, R0753 if something differs.
     """
-    layout = library.layout
+    library = CLibrary(layout)
     parts = list(proof_of(library, n_states))
     if wrong := [text for part in parts for text in part.differs]:
         raise differs(wrong)

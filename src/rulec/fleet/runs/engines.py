@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any, TypeAlias
 
-from rulec.batch.jobs import Jobs
-from rulec.batch.worker_pool import LostTask, in_order
+from rulec.batch.jobs import Jobs, LostTask
+from rulec.batch.worker_pool import in_order
 from rulec.fleet.fleet_messages import engine_missing, java_missing
 from rulec.fleet.runs.fleet_tally import FleetTally
 from rulec.fleet.runs.unit_work import UnitWorker
@@ -59,8 +59,7 @@ def _tallies(sent: bytes, units: Any) -> dict[str, list[bytes]]:
 def ray_engine() -> Engine:
     """Ray as an engine, on the current cluster or here. Raises RulecError R0713 without it."""
     try:
-        import ray  # an extra, and seconds
-        import ray.data  # as above
+        import ray.data  # an extra, and seconds
     except ImportError:
         raise engine_missing("ray", "ray[data]") from None
     return partial(_judged_by_ray, ray)

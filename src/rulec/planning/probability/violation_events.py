@@ -21,6 +21,7 @@ from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 from rulec.partition.prediction_worlds import PredictedPath
 from rulec.planning.maneuvers import Maneuvers
+from rulec.planning.planning_messages import MOST_WORLDS
 from rulec.planning.probability.event_probability import Event
 from rulec.planning.product.graph_instances import HARD, SOFT
 from rulec.planning.rule_instances import in_rule_words, past_for
@@ -28,9 +29,6 @@ from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.object_universe import counts_in
-
-MOST_WORLDS = 10_000
-"""The most worlds that are examined one by one for a rule that counts objects."""
 
 Lost = dict[tuple[str, ...], set[Event]]
 """For the objects (of the scenario) that a rule is about, the events in which it is violated."""

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.monitoring.bindings import Binding, Cast, binding_of, types_of
 from rulec.monitoring.uncertainty.lazy_bindings import ReadBits, doubtful_bindings
+from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
 from rulec.monitoring.verdict import CarriedState
 from rulec.planning.product.nodes_in_turn import NodesInTurn
 from rulec.trace import TraceGraph
@@ -27,9 +28,6 @@ def graph_bindings(
     cast = Cast(graph.objects, vocabulary, len(graph.states), graph.present)
     if not cast.has_many(types_of(rule)):
         return cast.bindings(rule)
-    # Imported late (10 ms): only if there are many choices.
-    from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
-
     nodes = NodesInTurn(graph)
     in_nodes = Cast(graph.objects, vocabulary, len(nodes.states), nodes.present)
     bindings = doubtful_bindings(

@@ -13,6 +13,8 @@ from pathlib import Path
 from typing import IO, NamedTuple
 from zlib import crc32
 
+import cramjam
+
 from rulec.files.read_files import opened
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.file_values import short
@@ -183,9 +185,6 @@ def _unpacked(packed: bytes, method: str, size: int) -> bytes:
     if not method:
         content = packed
     elif method in ("lz4", "zstd"):
-        # Few files use this packing
-        import cramjam
-
         buffer = bytearray(size)
         library = cramjam.lz4 if method == "lz4" else cramjam.zstd
         try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from array import array
 from dataclasses import dataclass, field
+from html import unescape
 
 from rulec.recordings.encodings.file_format import XmlFormat
 
@@ -59,18 +60,9 @@ def is_true(text: str) -> bool:
     return text.lower() in _TRUE
 
 
-def _unescaped(text: str) -> str:
-    if "&" not in text:
-        return text
-    # Imported late: it loads all HTML entities (3 ms), and few paths contain one.
-    from html import unescape
-
-    return unescape(text)
-
-
 def fcd_head(comment: str) -> FcdHead:
     """The part of the configuration in a comment that is used here."""
-    options = {name: _unescaped(value) for name, value in _OPTION.findall(comment)}
+    options = {name: unescape(value) for name, value in _OPTION.findall(comment)}
     routes, additional = (
         tuple(filter(None, map(str.strip, options.get(key, "").split(","))))
         for key in ("route-files", "additional-files")

@@ -8,8 +8,8 @@ from typing import Literal
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.guards import edges
 from rulec.diagnostics import SourceLocation
-from rulec.report.text.guard_text import GuardWording
 from rulec.report.text.terminal_text import visible
+from rulec.report.verdicts.guard_text import GuardWording
 from rulec.vocabulary import Vocabulary
 
 Fate = Literal["open", "violated", "satisfied"]

@@ -1,47 +1,15 @@
-"""Findings about rulebooks in each output format; formats with one line per finding are here."""
+"""The formats of findings about rulebooks, and those with one line per finding."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.source_text import address
 from rulec.files.read_files import from_here
-from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.report.text.terminal_text import visible
 
 FORMATS = ("full", "concise", "json", "github", "sarif")
-
-
-def render(
-    diagnostics: Sequence[Diagnostic],
-    output_format: str,
-    *,
-    color: bool,
-    complete: bool,
-    width: int = 0,
-) -> str:
-    """Render diagnostics in one of FORMATS.
-
-    ``complete``: all inputs could be read; ``width`` is that of a terminal, 0 elsewhere.
-    """
-    match output_format:
-        case "concise":
-            return as_lines(diagnostics)
-        case "json":
-            # msgspec takes 8 ms.
-            from rulec.report.findings.diagnostics_json import as_json
-
-            return as_json(diagnostics)
-        case "github":
-            return as_annotations(diagnostics)
-        case "sarif":
-            # The explanations of all codes, and urllib: 6 ms.
-            from rulec.report.findings.sarif import as_sarif
-
-            return as_sarif(diagnostics, complete=complete)
-        case _:
-            return render_diagnostics(diagnostics, color, width=width).rstrip("\n")
 
 
 def as_lines(diagnostics: Iterable[Diagnostic]) -> str:

@@ -16,6 +16,7 @@ from rulec.logic.printing import number_in_words
 from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
 from rulec.partition import Cell, NavigationGraph, envelope
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
+from rulec.planning.planning_messages import MOST_WORLDS
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.penalties import PenaltyRank
 from rulec.report.text.console import PAGE_WIDTH
@@ -271,9 +272,6 @@ def chance_lines(chances: RuleProbabilities) -> list[str]:
 
 def _of_rule(rule_probability: RuleProbability) -> str:
     if rule_probability.kept is None:
-        # Probabilities have been loaded where there are some.
-        from rulec.planning.probability.violation_events import MOST_WORLDS
-
         return f"not known: more than {MOST_WORLDS:,} worlds make a difference"
     bindings = rule_probability.bindings
     parts = [

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from time import monotonic
 from typing import TYPE_CHECKING, TextIO
 
 import click
@@ -15,10 +14,8 @@ from rulec.report.text.patience import doing
 from rulec.report.text.terminal_text import visible, wants_color
 
 if TYPE_CHECKING:
-    from rich.progress import Progress, TaskID
+    from rulec.report.text.progress_bar import ProgressBar
 
-
-REFRESH_S = 0.2
 
 PAGE_WIDTH = 80
 """The width of a text that is not shown on a terminal."""
@@ -64,38 +61,7 @@ def print_aside(text: str) -> None:
             click.echo(text, err=True, color=True)
 
 
-class _Bar:
-    """A progress bar, and text that scrolls above it.
-
-    A terminal shows both, so the bar is redrawn below the text. That happens a few times a second,
-    however many lines there are.
-    """
-
-    def __init__(self, bar: Progress, task: TaskID) -> None:
-        self._bar = bar
-        self._task = task
-        self._lines: list[str] = []
-        self._flushed = 0.0
-
-    def show(self, text: str) -> None:
-        self._lines.append(text)
-        if monotonic() - self._flushed > REFRESH_S:
-            self.flush()
-
-    def tell(self, done: float) -> None:
-        self._bar.update(self._task, completed=done)
-
-    def flush(self) -> None:
-        # rich takes 40 ms, and is only needed on terminals.
-        from rich.text import Text
-
-        if self._lines:
-            self._bar.console.print(Text.from_ansi("\n".join(self._lines)), soft_wrap=True)
-        self._lines.clear()
-        self._flushed = monotonic()
-
-
-_bar: _Bar | None = None
+_bar: ProgressBar | None = None
 
 
 @contextmanager
@@ -111,16 +77,10 @@ def progress(task: str, total: float | None) -> Iterator[Callable[[float], None]
             yield tell
         return
     # rich takes 40 ms, and is only needed on terminals.
-    from rich.console import Console
-    from rich.progress import MofNCompleteColumn, Progress
+    from rulec.report.text.progress_bar import progress_bar
 
-    columns = Progress.get_default_columns()
-    if total is None:
-        columns = (*columns[:2], MofNCompleteColumn())
-    with doing(""), Progress(*columns, console=Console(stderr=True), transient=True) as live:
-        _bar = _Bar(live, live.add_task(task, total=total))
+    with doing(""), progress_bar(task, total) as _bar:
         try:
             yield _bar.tell
         finally:
-            _bar.flush()
             _bar = None

@@ -17,6 +17,19 @@ CONTENTS = "Contents"
 """The heading of the list of contents of an English page."""
 
 
+@dataclass(frozen=True, slots=True)
+class PageTexts:
+    """A page's title, the heading above its list of contents, and its language.
+
+    What can be folded, which is long or below a heading of level 4, is open unless ``is_closed``.
+    """
+
+    title: str
+    contents: str = ""
+    language: str = "en"
+    is_closed: bool = False
+
+
 def escaped(text: str) -> str:
     """A text on one line, with Markdown's special characters escaped."""
     plain = _SIGNS.sub(r"\\\g<0>", visible(text))

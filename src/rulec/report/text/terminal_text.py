@@ -17,6 +17,17 @@ MOST_DIGITS = 30
 
 _PLAIN, _COLORED = "NO_COLOR", "FORCE_COLOR"
 
+_STYLES = {
+    "bold": "1",
+    "red": "31",
+    "green": "32",
+    "yellow": "33",
+    "blue": "34",
+    "magenta": "35",
+    "cyan": "36",
+}
+"""Words for styles of text -> what selects them on a terminal (ECMA-48)."""
+
 _JOINT, _SECOND_COLUMN = "\0", "\1"
 """Stand for a space at which no line may be broken, and for the second half of a wide character."""
 
@@ -76,17 +87,14 @@ def wants_color(stream: TextIO) -> bool:
 
 
 def styled(text: str, style: str, color: bool | None = None) -> str:
-    """A text in one of rich's styles, such as ``bold red``.
+    """A text in a style, such as ``bold red``.
 
     ``color``: whether escape sequences are allowed; None: as standard output wants it.
     """
     if not text or not (wants_color(sys.stdout) if color is None else color):
         return text
-    # 30 ms, and only on terminals.
-    from rich.color import ColorSystem
-    from rich.style import Style
-
-    return Style.parse(style).render(text, color_system=ColorSystem.STANDARD)
+    codes = ";".join(_STYLES[word] for word in style.split())
+    return f"\x1b[{codes}m{text}\x1b[0m" if codes else text
 
 
 def cell_width(text: str) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterator, Mapping, Sequence, Set
-from typing import TYPE_CHECKING, get_args
+from typing import get_args
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, TooLargeRule
 from rulec.logic.printing import number_in_words
@@ -14,10 +14,6 @@ from rulec.report.text.terminal_text import broken, counted, styled, visible
 from rulec.report.verdicts.outcome_cases import fewest_cases
 from rulec.report.verdicts.state_times import NUMBERS_ALONE, StateTimes
 from rulec.rulebook.rulebook_model import cited_law
-from rulec.rulebook.vocabulary_phrases import phrases_of
-
-if TYPE_CHECKING:
-    from rulec.monitoring.explain.explanation import Explanation
 
 MOST_CASES = 4
 """Number of cases shown for an open verdict."""
@@ -29,9 +25,8 @@ MOST_VIOLATIONS = 20
 def as_text(
     verdict: Verdict,
     rulebook: CompiledRulebook,
-    explained: Sequence[Explanation] = (),
+    explained: Sequence[str] = (),
     *,
-    every_part: bool = False,
     width: int = PAGE_WIDTH,
     doubts: bool = True,
     whom: Sequence[Sequence[str]] = (),
@@ -39,9 +34,9 @@ def as_text(
 ) -> str:
     """Write a trace's violations line by line below its name; with ``doubts`` also what is open.
 
-    ``explained`` are explanations of the first violations; each follows its line, folded to
-    ``width`` unless ``every_part`` is wanted. ``whom`` names for the first violations who caused
-    them, where their rules name no objects. ``times`` are the times of the states.
+    ``explained`` are texts that explain the first violations; each follows its line. ``whom`` names
+    for the first violations who caused them, where their rules name no objects. ``times`` are the
+    times of the states.
     """
     doubtful = [*_open_lines(verdict, rulebook), *_not_judged_lines(verdict)] if doubts else []
     doubtful = [line for text in doubtful for line in _wrapped(text, width)]
@@ -52,21 +47,12 @@ def as_text(
     rules = {rule.name: rule for rule in rulebook.rules}
     lines = [f"{visible(verdict.trace)}: {word}"]
     shown = verdict.violations[:MOST_VIOLATIONS]
-    phrases: Mapping[str, str] | None = None
     for number, violation in enumerate(shown):
         line = in_a_line(violation, rules[violation.rule], rulebook.name, times)
         because = ", ".join(whom[number]) if number < len(whom) else ""
         lines += _wrapped(f"{line}, because of {because}" if because else line, width)
         if number < len(explained):
-            # Explanations, 20 ms: only where there are some.
-            from rulec.report.verdicts import violation_table
-
-            if phrases is None:
-                phrases = phrases_of(rulebook)
-            options = violation_table.TableOptions(
-                width=width, every_part=every_part, phrases=phrases, times=times
-            )
-            lines.append(violation_table.as_text(explained[number], options))
+            lines.append(explained[number])
     if len(verdict.violations) > len(shown):
         text = f"and {len(verdict.violations) - len(shown):,} more; --json has them all"
         lines += _wrapped(text, width)

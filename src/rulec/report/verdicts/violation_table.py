@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from operator import itemgetter
 
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.thresholds import exact
 from rulec.logic.printing import number_in_words
 from rulec.logic.sentences.fact_clauses import facts_in_words
@@ -15,10 +16,11 @@ from rulec.monitoring.explain.explained_parts import Observation
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.explain.margins import Margin, number_with_error
 from rulec.report.text.console import PAGE_WIDTH
-from rulec.report.text.guard_text import GuardWording, runs
 from rulec.report.text.terminal_text import broken, styled, table_lines, visible
+from rulec.report.verdicts.guard_text import GuardWording, runs
 from rulec.report.verdicts.state_times import NUMBERS_ALONE, StateTimes
 from rulec.report.verdicts.table_folding import MOST_PARTS, clipped, fitting, folded, head, titled
+from rulec.rulebook.vocabulary_phrases import phrases_of
 from rulec.trace import Value
 from rulec.vocabulary.partial_values import Interval
 
@@ -58,6 +60,21 @@ class TableOptions:
 
 
 DEFAULT_OPTIONS = TableOptions()
+
+
+def tables(
+    explained: Sequence[Explanation],
+    rulebook: CompiledRulebook,
+    *,
+    width: int,
+    every_part: bool,
+    times: StateTimes,
+) -> list[str]:
+    """The text of each explanation in the words of a rulebook; see ``TableOptions``."""
+    if not explained:
+        return []
+    options = TableOptions(width, every_part, phrases_of(rulebook), times)
+    return [as_text(explanation, options) for explanation in explained]
 
 
 def as_text(explanation: Explanation, options: TableOptions = DEFAULT_OPTIONS) -> str:

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby, pairwise
 from operator import itemgetter
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy import intp
@@ -27,9 +26,6 @@ from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.reference_line import ReferenceLine, pieces_at
 from rulec.scenario.recorded.route import lanelet_length, lanes_beside
 from rulec.trace.plain_arrays import distinct, median
-
-if TYPE_CHECKING:
-    from rulec.scenario.scenario_model import MissingLane
 
 NARROWEST_LANE_M = 1.0
 """Where a lane is narrower than this (m), it has not begun yet or has ended."""
@@ -109,11 +105,13 @@ class Lanes:
     def _piece(self, s: Floats) -> NDArray[intp]:
         return np.minimum(self._borders.before(s), len(self.s) - 2)
 
-    def missing(self, start: float, end: float, shift: float) -> tuple[MissingLane, ...]:
-        """Where lanes are missing from ``start`` to ``end``; ``shift`` is subtracted from ``s``."""
-        # Imported late (10 ms), since recorded drives do not need it.
-        from rulec.scenario.scenario_model import MissingLane
+    def missing(
+        self, start: float, end: float, shift: float
+    ) -> tuple[tuple[int, tuple[float, float]], ...]:
+        """The lanes that are missing from ``start`` to ``end``, and where.
 
+        ``shift`` is subtracted from ``s``.
+        """
         missing = []
         for lane, column in enumerate(self.there.T, 1):
             pieces = zip(column.tolist(), pairwise(self.s.tolist()), strict=True)
@@ -121,7 +119,7 @@ class Lanes:
                 run = [piece for _, piece in group]
                 low, high = max(run[0][0], start), min(run[-1][1], end)
                 if not there and high - low > _HAIR_M:
-                    missing.append(MissingLane(lane, (low - shift, high - shift)))
+                    missing.append((lane, (low - shift, high - shift)))
         return tuple(missing)
 
 

@@ -31,6 +31,7 @@ from rulec.scenario.scenario_model import (
     Account,
     Choice,
     Ego,
+    MissingLane,
     Obstacle,
     Road,
     Scenario,
@@ -97,7 +98,8 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
     bounds = tuple(lanes.straight.tolist())
     crossings = crossings_along(recording, line, lanes, low, high)
     stretches = tuple(Stretch("crossing", (s0 - ego_s, s1 - ego_s)) for s0, s1 in crossings)
-    road = Road((low - ego_s, high - ego_s), bounds, stretches, lanes.missing(low, high, ego_s))
+    missing = tuple([MissingLane(*own) for own in lanes.missing(low, high, ego_s)])
+    road = Road((low - ego_s, high - ego_s), bounds, stretches, missing)
     at_s = start.step * recording.step_s
     motion = starts.ego_motion(recording, start, line.heading_at(ego_s), own, file)
     view = TrafficView(

@@ -310,10 +310,10 @@ def _judge_recordings(
         layout=lazy.AnswerLayout(page_width(), request.asked.why, source)
         if outputs.wants_text
         else None,
-        lines=outputs.wants_lines,
         findings=outputs.wants_findings,
+        to_line=lazy.recording_line if outputs.wants_lines else None,
         to_rows=None if to_rows is None else to_rows.of_answer,
-        idle=request.asked.why,
+        idle_rules=lazy.idle_rules if request.asked.why else None,
     )
     run = lazy.RecordingRun(settings, outputs, complaints)
     for problem in request.inputs.problems:

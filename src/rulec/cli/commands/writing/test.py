@@ -140,9 +140,13 @@ def _tested(
     if runs or to.form != "full":
         besides = lazy.Besides(unread, short, monotonic() - begun)
         width, in_full = width_of(to), wanted.in_full
-        text = lazy.example_formats.render(
-            runs, covered, to.form, besides, width=width, in_full=in_full
-        )
+        match to.form:
+            case "json":
+                text = lazy.example_json.as_json(runs, covered)
+            case "junit":
+                text = lazy.example_junit.as_junit(runs, covered, besides)
+            case _:
+                text = lazy.example_text.as_text(runs, covered, besides, width, in_full=in_full)
         put_answer(text, to)
     for sentence in short.values():
         print_remark(f"rulec: {sentence}")

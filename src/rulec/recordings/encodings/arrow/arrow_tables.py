@@ -27,7 +27,7 @@ from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.file_values import LARGEST, short
 from rulec.recordings.encodings.table_columns import Texts
 from rulec.trace.formats import arrow as arrays
-from rulec.trace.formats.arrow.parquet import without_arrow
+from rulec.trace.formats.arrow.parquet import arrow as arrow_modules
 
 MOST_ROWS = 5_000_000
 MOST_CELLS = 100_000_000
@@ -89,7 +89,7 @@ def read_table(path: Path, form: FileFormat, wanted: Wanted) -> ArrowTable:
     Raises RulecError R0610 for a file that is not of this format, is damaged or too large, or lacks
     a column, R0701 if it cannot be opened, R0706 without pyarrow.
     """
-    arrow = _arrow(path)
+    arrow, _ = arrow_modules(str(path), f"`{path.name}`")
     data = form.content(path)
     try:
         table = _read(arrow, data, path, form, wanted)
@@ -122,16 +122,6 @@ def read_table(path: Path, form: FileFormat, wanted: Wanted) -> ArrowTable:
     except (arrow.ArrowException, OSError, ValueError, KeyError, MemoryError) as reason:
         words = short(str(reason).partition(".")[0].partition("\n")[0])
         raise form.refused(path, f"it is damaged ({words})") from None
-
-
-def _arrow(path: Path) -> Any:
-    try:
-        import pyarrow  # an extra, and 0.1 s
-        import pyarrow.ipc  # as above
-        import pyarrow.parquet  # as above
-    except ImportError:
-        raise without_arrow(f"`{path.name}`", str(path)) from None
-    return pyarrow
 
 
 def _read(arrow: Any, data: bytes, path: Path, form: FileFormat, wanted: Wanted) -> Any:

@@ -14,7 +14,7 @@ from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.picture_messages import PNG_UNAVAILABLE
 from rulec.report.pictures.drawing.styles import STYLES, Theme, as_css
-from rulec.report.text.page_policy import policy
+from rulec.report.text.html_page import policy
 from rulec.report.text.terminal_text import visible
 
 Format = Literal["svg", "png", "pdf", "html"]

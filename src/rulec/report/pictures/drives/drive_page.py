@@ -12,7 +12,7 @@ from rulec.report.pictures.drawing.styles import DARK, LIGHT, Theme
 from rulec.report.pictures.drives.drive_picture import drive_picture
 from rulec.report.pictures.drives.drive_scene import DriveScene, SceneViolation
 from rulec.report.pictures.drives.scene_json import scene_data
-from rulec.report.text.page_policy import policy
+from rulec.report.text.html_page import policy
 from rulec.report.text.terminal_text import visible
 
 

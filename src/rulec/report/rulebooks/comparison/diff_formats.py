@@ -8,10 +8,12 @@ from rulec.analysis.diff.rulebook_comparison import RulebookDiff, RulePair
 from rulec.report.rulebooks.comparison import diff_overview, diff_text
 from rulec.report.rulebooks.comparison.diff_json import as_json
 from rulec.report.text.csv_text import csv_text
+from rulec.report.text.html_page import as_html
 from rulec.report.text.markdown import (
     CONTENTS,
     Block,
     Heading,
+    PageTexts,
     code,
     escaped,
     table,
@@ -32,9 +34,6 @@ def render(diff: RulebookDiff, output_format: str, width: int, *, in_full: bool)
         case "json":
             return as_json(diff)
         case "html":
-            # markdown-it and Pygments take 0.1 s.
-            from rulec.report.text.html_page import PageTexts, as_html
-
             texts = PageTexts(_title(diff), CONTENTS, is_closed=len(diff.pairs) > 1)
             return as_html(_as_markdown(diff), texts)
         case "markdown":

@@ -14,7 +14,8 @@ from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
 from rulec.report.rulebooks.comparison.diff_json import BookData
 from rulec.report.text.csv_text import csv_text
-from rulec.report.text.markdown import anchors, code, escaped
+from rulec.report.text.html_page import as_html
+from rulec.report.text.markdown import PageTexts, anchors, code, escaped
 from rulec.report.text.markdown import table as markdown_table
 from rulec.report.text.terminal_text import broken, stacked_tables, styled, visible
 from rulec.rulebook.rulebook_model import Strength
@@ -106,9 +107,6 @@ def render(matrix: ComparisonMatrix, form: str, width: int) -> str:
         case "markdown":
             return _as_markdown(matrix)
         case "html":
-            # markdown-it and Pygments take 0.1 s.
-            from rulec.report.text.html_page import PageTexts, as_html
-
             return as_html(_as_markdown(matrix), PageTexts(TITLE), cell_class=_cell_class)
         case _:
             return _as_text(matrix, width)

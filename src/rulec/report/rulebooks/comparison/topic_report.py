@@ -9,7 +9,16 @@ from itertools import groupby
 from rulec.report.rulebooks.document.book_document import NO_ADVICE
 from rulec.report.rulebooks.rule_list import as_json, first_provision, rules_named
 from rulec.report.text.csv_text import csv_text
-from rulec.report.text.markdown import CONTENTS, Block, Heading, escaped, with_contents, written
+from rulec.report.text.html_page import as_html
+from rulec.report.text.markdown import (
+    CONTENTS,
+    Block,
+    Heading,
+    PageTexts,
+    escaped,
+    with_contents,
+    written,
+)
 from rulec.report.text.terminal_text import broken, column_lines, cut, styled, visible
 from rulec.rulebook.rulebook_model import Rule, Rulebook, cited_law
 from rulec.rulebook.rules.rule_topics import by_group
@@ -55,9 +64,6 @@ def render(
         case "markdown":
             return _as_markdown(books, topic)
         case "html":
-            # markdown-it and Pygments take 0.1 s.
-            from rulec.report.text.html_page import PageTexts, as_html
-
             return as_html(_as_markdown(books, topic), PageTexts(_title(books, topic), CONTENTS))
         case _:
             return _as_text(books, topic, width, in_full=in_full)

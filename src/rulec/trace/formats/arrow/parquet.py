@@ -11,6 +11,7 @@ from typing import IO, TYPE_CHECKING, Any
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.missing_package import missing_package
 from rulec.files.read_files import opened
+from rulec.trace.formats import arrow as arrays
 from rulec.trace.formats.stream_lines import packed
 from rulec.trace.formats.table_reader import (
     TOLD,
@@ -70,11 +71,9 @@ def read_parquet(stream: IO[bytes], file: str) -> Iterator[Sequence[Trace | Rule
     except (pyarrow.ArrowException, OSError, ValueError) as reason:
         yield [_unreadable("the file", reason, file)]
         return
-    from rulec.trace.formats.arrow.arrow_blocks import cut  # loads Arrow, 0.1 s
-
     table = Table(tuple(schema.names), lambda value: value, lambda row: SourceLocation(file, row))
     problems = (pyarrow.ArrowException, OSError, ValueError)
-    yield from cut(_pieces(source, problems, file), table, 1, SourceLocation(file))
+    yield from arrays.cut(_pieces(source, problems, file), table, 1, SourceLocation(file))
 
 
 def _check_sizes(metadata: Any, file: str) -> None:
@@ -95,8 +94,6 @@ def _texts(schema: Any, pyarrow: Any) -> list[str]:
 def _pieces(
     source: Any, problems: tuple[type[Exception], ...], file: str
 ) -> Iterator[Piece | RulecError]:
-    from rulec.trace.formats.arrow.arrow_arrays import with_plain_texts  # loads Arrow, 0.1 s
-
     number = 0
     try:
         for batch in source.iter_batches(_ROWS_AT_ONCE):
@@ -108,7 +105,7 @@ def _pieces(
                     f"the column `{column}` has a text here", SourceLocation(file, number + row + 1)
                 )
                 return
-            yield with_plain_texts(batch)
+            yield arrays.with_plain_texts(batch)
             number += len(batch)
     except problems as reason:
         yield _unreadable(f"after row {number} the file", reason, file)
@@ -244,17 +241,14 @@ def write_parquet(
             writer.write_batch(pyarrow.record_batch(arrays, schema=schema))
 
 
-def arrow(file: str) -> tuple[Any, Any]:
-    """The modules ``pyarrow`` and ``pyarrow.parquet``. Raises RulecError R0706 if missing."""
+def arrow(file: str, task: str = "Parquet") -> tuple[Any, Any]:
+    """The modules ``pyarrow`` and ``pyarrow.parquet``, which a task requires.
+
+    Raises RulecError R0706 if they are missing.
+    """
     try:
-        import pyarrow  # an extra, and 0.1 s
-        from pyarrow import parquet  # an extra, and 0.1 s
+        import pyarrow.parquet  # an extra, and 0.1 s
     except ImportError:
-        raise without_arrow("Parquet", file) from None
-    return pyarrow, parquet
-
-
-def without_arrow(task: str, file: str) -> RulecError:
-    """Error R0706: ``task`` requires Arrow, which is not installed."""
-    place = SourceLocation(file)
-    return missing_package(PARQUET_UNAVAILABLE, task, "pyarrow", "parquet", place)
+        place = SourceLocation(file)
+        raise missing_package(PARQUET_UNAVAILABLE, task, "pyarrow", "parquet", place) from None
+    return pyarrow, pyarrow.parquet

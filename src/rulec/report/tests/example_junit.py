@@ -1,4 +1,4 @@
-"""Outcomes of examples in the requested format."""
+"""Outcomes of examples as JUnit XML."""
 
 from __future__ import annotations
 
@@ -12,33 +12,7 @@ from rulec.diagnostics.diagnostic import at
 from rulec.files.read_files import from_here
 from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.report.findings.junit import TAIL, JUnitCase, JUnitSuite, counts_of, head, suite_text
-from rulec.report.tests.example_text import Besides, as_text, coverage_lines, failures
-
-
-def render(
-    runs: Sequence[ExampleRun],
-    covered: Sequence[Sequence[RuleCoverage]] | None,
-    output_format: str,
-    besides: Besides,
-    *,
-    width: int,
-    in_full: bool,
-) -> str:
-    """Write runs as ``full``, ``json`` or ``junit``, with coverage unless it is None.
-
-    Text has a width in characters, and names every example only ``in_full``. ``besides`` are
-    written only as ``junit``, whose reader may see nothing but the file.
-    """
-    match output_format:
-        case "json":
-            # msgspec and its types take 9 ms.
-            from rulec.report.tests.example_json import as_json
-
-            return as_json(runs, covered)
-        case "junit":
-            return as_junit(runs, covered, besides)
-        case _:
-            return as_text(runs, covered, besides, width, in_full=in_full)
+from rulec.report.tests.example_text import Besides, coverage_lines, failures
 
 
 def as_junit(
