@@ -29,7 +29,7 @@ from rulec.logic.formula import (
     atoms_of,
 )
 from rulec.logic.semantics import holds
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, Variable
 from rulec.rulebook.rules.implied_signals import with_implied
 from rulec.trace import Trace

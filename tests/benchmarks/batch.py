@@ -22,7 +22,7 @@ from rulec.automata.second_compiler import with_automata
 from rulec.monitoring.batch.batch_verify import verify_columns
 from rulec.monitoring.batch.cell_verdicts import verify_cells
 from rulec.monitoring.batch.columns.column_states import shared_states
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from support.builders.trace_columns import columnize
 from support.oracles.bits.bit_verdicts import verify_on_bits
 from support.oracles.bits.trace_planes import Across

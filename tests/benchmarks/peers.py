@@ -14,7 +14,7 @@ from timing import in_turns, processor_time
 
 import rulec
 from rulec.monitoring.batch.cell_verdicts import verify_cells
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from support.oracles.bits.trace_planes import Across
 
 EVERY = 1500

@@ -26,8 +26,8 @@ from rulec.automata.thresholds import scale
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.batch.by_states import verify_or_reason
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.verdict import Verdict
-from rulec.monitoring.verify import verify
 from rulec.trace import Trace
 from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.partial_values import UNKNOWN

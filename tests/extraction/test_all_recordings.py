@@ -9,8 +9,8 @@ from rulec.extraction.recording_parts import egos_of
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.traces.recorded_drive import NoDrive
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.verdict import Verdict
-from rulec.monitoring.verify import verify
 from rulec.report.verdicts.violation_tally import ViolationTally
 from support.builders.recorded_data import RECORDINGS
 

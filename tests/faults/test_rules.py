@@ -126,6 +126,6 @@ def test_what_is_no_fault_stays_what_it_is(monkeypatch):
         def broken(*_, problem=problem):
             raise problem
 
-        monkeypatch.setattr("rulec.monitoring.batch.verify_joined.judge_joined", broken)
+        monkeypatch.setattr("rulec.monitoring.batch.verify.StackedRun", broken)
         with pytest.raises(type(problem)):
             rulec.verify(trace, PAPER)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.compiler import compile_rulebook
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace

@@ -6,7 +6,7 @@ Each is the finding's own, not an example of the book; ``test_defects`` holds th
 import pytest
 
 import rulec
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from rulec.trace import Trace
 from support.builders.national_books import compiled, read
 

@@ -5,7 +5,7 @@ Each row is what a recording showed, in the words of the books; `docs/looked_up.
 
 import pytest
 
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from rulec.trace import Trace
 from support.builders.national_books import compiled, read
 

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.automata.compiler import compile_rulebook
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from support.builders.national_books import compiled

@@ -23,9 +23,9 @@ from rulec.monitoring.batch.columns import column_states
 from rulec.monitoring.batch.columns.column_numbers import digits_of
 from rulec.monitoring.batch.columns.column_states import shared_states
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.limits import MonitoringLimits
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace

@@ -11,12 +11,12 @@ from hypothesis import assume, given
 from rulec.automata.compiler import compile_rulebook
 from rulec.logic.formula import Binary, BinaryOperator, Bound, Unary, UnaryOperator, atoms_of
 from rulec.logic.semantics import truth_values
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.explain import explained_states
 from rulec.monitoring.explain.explained_states import states_to_explain
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.limits import LIMITS, MonitoringLimits
 from rulec.monitoring.uncertainty.known_words import KnownLetters
-from rulec.monitoring.verify import verify
 from rulec.report.json_document import as_builtins
 from rulec.report.verdicts import violation_table as report
 from rulec.report.verdicts.verdict_json import explanation_data

@@ -5,10 +5,10 @@ import json
 import pytest
 
 from rulec import compile_rulebook
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.explain.margins import number_with_error
 from rulec.monitoring.verdict import ConditionalOutcome, OpenVerdict
-from rulec.monitoring.verify import verify
 from rulec.report.verdicts import verdict_json, violation_table
 from rulec.report.verdicts.verdict_report import open_in_words
 from rulec.trace import Trace

@@ -18,12 +18,12 @@ from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.joined.joined_columns import joined_columns
 from rulec.monitoring.batch.joined.joined_states import joined_states
 from rulec.monitoring.batch.stacked import instances, stacked_rule, stacked_run
-from rulec.monitoring.batch.stacked.stacked_run import judge_joined
+from rulec.monitoring.batch.stacked.stacked_run import StackedRun
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.rulebook_edition import edition_of
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.verdict import NotJudged
-from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
@@ -38,7 +38,7 @@ from support.generators.seeds import seeds
 
 def judged(joined, given_traces, compiled):
     """The verdicts of those that can be judged together."""
-    found = judge_joined(joined, compiled)
+    found = StackedRun(joined, compiled).judged()
     return {
         number: own.findings.verdict(
             own.number, trace.id, lambda name, x=trace: any(name in state for state in x.states)

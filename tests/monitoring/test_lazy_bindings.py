@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from rulec.api.named_monitor import Monitor
 from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.batch_verify import verify_chunk
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.online.monitor_sources import replay_trace
-from rulec.monitoring.verify import verify
 from rulec.planning.product.graph_instances import instances, violations
 from rulec.planning.product.graph_product import explore
 from rulec.planning.product.node_transformers import node_transformers

@@ -3,9 +3,9 @@
 import pytest
 
 from rulec import compile_rulebook
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.explain.margins import Margin
-from rulec.monitoring.verify import verify
 from rulec.report.verdicts import violation_table
 from rulec.trace import Trace
 from rulec.vocabulary.partial_values import UNKNOWN

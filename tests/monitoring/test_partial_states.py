@@ -11,10 +11,10 @@ import rulec
 from rulec.api.named_monitor import Monitor
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.online.four_valued import WORST_FIRST, best_of, worst_of
 from rulec.monitoring.uncertainty import uncertain_machine, untold_names
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
-from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.vocabulary.partial_values import UNKNOWN, Interval

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from rulec.automata.compiler import compile_rulebook
 from rulec.logic.formula import atoms_of
 from rulec.logic.semantics import holds
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.explain.nearest_satisfying import nearest_satisfying
 from rulec.monitoring.limits import LIMITS
-from rulec.monitoring.verify import verify
 from rulec.report.json_document import as_builtins
 from rulec.report.verdicts import violation_table as report
 from rulec.report.verdicts.verdict_json import explanation_data

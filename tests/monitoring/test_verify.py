@@ -10,8 +10,8 @@ from rulec.automata.compiler import compile_rulebook
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Atom, Constant, QuantityTerm, Unary, UnaryOperator
 from rulec.monitoring.batch.by_states import verify_or_reason
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.monitoring.verify import verify
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
 from rulec.vocabulary import Signal, Vocabulary
@@ -251,16 +251,14 @@ def test_values_are_only_needed_where_a_rule_reads_them():
 
 def test_one_bad_trace_does_not_stop_the_others():
     broken = RulecError(())
-    answers = [
-        verify_or_reason(item, RULES, verify) for item in (trace("ggg"), broken, trace("..."))
-    ]
+    answers = [verify_or_reason(item, RULES) for item in (trace("ggg"), broken, trace("..."))]
     assert [type(answer) for answer in answers] == [Verdict, NotJudged, NotJudged]
     assert (answers[1].trace, answers[2].trace) == (None, "t")
 
 
 def test_a_refusal_keeps_nothing_of_what_was_at_hand():
     """There may be one for each row of a file of millions."""
-    error = verify_or_reason(trace("..."), RULES, verify).error
+    error = verify_or_reason(trace("..."), RULES).error
     assert (error.__traceback__, error.__context__, error.__cause__) == (None, None, None)
     with pytest.raises(RulecError, match=error.diagnostics[0].code):
         raise error

@@ -7,7 +7,7 @@ import pytest
 from rulec import compile_rulebook
 from rulec.book_tests.example_runs import example_trace
 from rulec.cli.main import main
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from rulec.rulebook.reading.rulebook_reader import load_rulebook
 from rulec.trace import Trace
 

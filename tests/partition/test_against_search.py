@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from rulec import compile_rulebook, navigation_graph
 from rulec.diagnostics import RulecError
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from rulec.planning.product.graph_instances import instances
 from rulec.planning.product.graph_product import count_paths, explore
 from rulec.planning.product.node_transformers import node_transformers

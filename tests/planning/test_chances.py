@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from rulec import compile_rulebook
 from rulec.diagnostics import RulecError
 from rulec.monitoring import bindings
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from rulec.partition import navigation_graph
 from rulec.planning import evaluate
 from rulec.planning.probability import violation_events

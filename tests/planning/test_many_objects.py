@@ -23,7 +23,7 @@ from rulec.logic.formula import (
     Unary,
     UnaryOperator,
 )
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from rulec.planning.product.graph_instances import instances
 from rulec.planning.product.graph_product import explore
 from rulec.planning.product.node_transformers import node_transformers

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 
 from rulec import compile_rulebook, navigation_graph
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from rulec.planning import evaluate, partition_for
 from rulec.planning.ranking.penalties import PenaltyRank, ranks_of
 from rulec.trace.trace_model import paths, trace_of

@@ -7,8 +7,8 @@ from fractions import Fraction
 import pytest
 
 from rulec.automata.bundle.bundle_file import from_json, to_json
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.explain.explanation import explain
-from rulec.monitoring.verify import verify
 from rulec.report.findings.findings_of_traces import trace_findings
 from rulec.report.verdicts import verdict_json, verdict_report
 from rulec.trace import Trace

@@ -15,8 +15,8 @@ from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.diagnostics import RulecError
 from rulec.monitoring.batch import batch_verify
 from rulec.monitoring.batch.batch_verify import verify_items
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.moments.name_tables import tables_of
-from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.trace.formats import csv_table, json_lines

@@ -11,8 +11,8 @@ from rulec.automata.compiler import build_all, lower
 from rulec.logic.bounds import has_seconds, longest_divisor
 from rulec.logic.free_names import names_in
 from rulec.logic.one_point import plainly_counted
+from rulec.monitoring.batch.by_states import verify_by_states
 from rulec.monitoring.verdict import Violation
-from rulec.monitoring.verify import verify
 from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
@@ -33,7 +33,7 @@ class AnalyzedRule:
     def violations(self, trace: Trace, vocabulary: Vocabulary) -> tuple[Violation, ...]:
         """The violations of the rule by a trace in the words of a vocabulary."""
         alone = replace(self.rulebook, vocabulary=vocabulary, rules=(self.rule,))
-        return verify(trace, alone).violations
+        return verify_by_states(trace, alone).violations
 
 
 @dataclass(slots=True)

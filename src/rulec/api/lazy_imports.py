@@ -43,12 +43,12 @@ if TYPE_CHECKING:
     from rulec.ltl_export.ltl_files import write_ltl
     from rulec.monitoring.assumptions import Assumptions, check_assumed
     from rulec.monitoring.batch.batch_verify import verify_columns, verify_many
-    from rulec.monitoring.batch.by_states import verify_contained
+    from rulec.monitoring.batch.by_states import verify_by_states
     from rulec.monitoring.batch.cell_verdicts import verify_cells
+    from rulec.monitoring.batch.verify import verify
     from rulec.monitoring.explain.explanation import explain
     from rulec.monitoring.rulebook_edition import edition_of
     from rulec.monitoring.verdict import with_law
-    from rulec.monitoring.verify import verify
     from rulec.partition import NavigationGraph, envelope, navigation_graph
     from rulec.pipeline import compile_source
     from rulec.planning import SceneReading, evaluate, partition_for

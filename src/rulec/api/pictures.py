@@ -11,8 +11,8 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.monitoring.verify import verify
 from rulec.partition import NavigationGraph
 from rulec.planning import Maneuvers
 from rulec.planning.product.accepted_edges import accepted_edges

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rulec.extraction.recording_verdicts import RecordingVerdicts
     from rulec.extraction.selection import RequestedDrives
     from rulec.monitoring.assumptions import Assumptions
+    from rulec.monitoring.batch.by_states import TraceJudge
     from rulec.monitoring.batch.cell_verdicts import VerdictColumns
     from rulec.monitoring.verdict import NotJudged, Verdict
     from rulec.rates.drive_counts import GroupKey
@@ -36,6 +37,16 @@ if TYPE_CHECKING:
     from rulec.scoring.scores import Scores
     from rulec.scoring.traffic_world import TrafficWorld
     from rulec.trace.trace_columns import TraceCells, TraceColumns
+
+
+def _verifier() -> TraceJudge:
+    """What judges a trace: in arrays, or by its states where there is no NumPy, as in a browser."""
+    try:
+        return lazy.verify
+    except ModuleNotFoundError as missing:
+        if missing.name != "numpy":
+            raise
+        return lazy.verify_by_states
 
 
 class TraceVerbs(SessionSettings):
@@ -103,7 +114,7 @@ class TraceVerbs(SessionSettings):
         if assumptions is not None:
             lazy.check_assumed(assumptions.values, compiled.vocabulary, "values")
             trace = assumptions.applied(trace)
-        judged = lazy.verify_contained(trace, compiled, lazy.verify)
+        judged = _verifier()(trace, compiled)
         return replace(judged, law=lazy.edition_of(compiled))
 
     def _judged(

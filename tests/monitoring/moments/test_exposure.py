@@ -13,10 +13,10 @@ from hypothesis import Phase, given, settings
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.batch_verify import verify_items
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.moments import drive_facts
 from rulec.monitoring.moments.drive_facts import facts_of, facts_of_many
 from rulec.monitoring.moments.exposure import Exposure
-from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.trace.formats.trace_files import kinds_in, read_chunks, write_traces

@@ -6,8 +6,8 @@ from hypothesis import Phase, given, settings
 
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
-from rulec.monitoring.verify import verify
 from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.full_vocabulary import WORLD
 from support.builders.rulebooks import compile_here

@@ -9,7 +9,7 @@ import rulec
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.batch_verify import verify_many
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from rulec.trace import Trace
 from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.rulebooks import compile_here

@@ -10,7 +10,7 @@ from hypothesis import Phase, given, settings
 from rulec.automata.bundle.cut_machines import stored
 from rulec.logic.bounds import PAST, operations_of, range_of
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.trace import Trace

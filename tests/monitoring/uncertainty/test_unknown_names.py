@@ -7,8 +7,8 @@ import pytest
 from rulec import compile_rulebook
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.batch.batch_verify import verify_chunk
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.explain.explanation import explain
-from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary

@@ -3,7 +3,7 @@
 import pytest
 
 from rulec import compile_rulebook
-from rulec.monitoring.verify import verify
+from rulec.monitoring.batch.verify import verify
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Polyline
 from rulec.report.pictures.trace_picture import ribbon_entries, ribbon_picture
 from rulec.report.pictures.trace_ribbon import ValueRun, ribbon, value_style

@@ -9,10 +9,12 @@ from pathlib import Path
 
 from rulec.automata.bundle.bundle_file import from_json, to_json
 from rulec.cli.main import main
+from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.batch.by_states import verify_or_reason
+from rulec.monitoring.batch.verify import verify
 from rulec.monitoring.batch.verify_arrays import verify_arrays
-from rulec.monitoring.verify import verify
+from rulec.monitoring.verdict import NotJudged
 from rulec.trace.formats.trace_files import kinds_in, read_chunks, write_traces
 from rulec.vocabulary import Enumeration, Quantity, Signal
 from support.builders.array_traces import CannotSayError, in_arrays
@@ -31,7 +33,14 @@ def by_oracle(rulebook, compiled, trace):
 
 
 def one_by_one(rulebook, compiled, traces):
-    return [told(verify_or_reason(trace, compiled, verify)) for trace in traces]
+    return [told(_verified(trace, compiled)) for trace in traces]
+
+
+def _verified(trace, compiled):
+    try:
+        return verify(trace, compiled)
+    except RulecError as error:
+        return NotJudged(trace.id, error)
 
 
 def state_by_state(rulebook, compiled, traces):

@@ -30,13 +30,9 @@ from rulec.monitoring.batch.columns.column_states import shared_states
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.joined.joined_columns import joined_columns
 from rulec.monitoring.batch.joined.joined_traces import TraceKind
-from rulec.monitoring.batch.stacked.stacked_run import judge_joined
+from rulec.monitoring.batch.stacked.stacked_run import StackedRun, check_judgeable
 from rulec.monitoring.batch.trace_groups import under_own_names
-from rulec.monitoring.batch.verify_joined import (
-    IRREGULAR,
-    derived_trace,
-    verdicts_together,
-)
+from rulec.monitoring.batch.verify import IRREGULAR, derived_trace, verdicts_together
 from rulec.monitoring.bindings import Cast, types_of
 from rulec.monitoring.fault_containment import said
 from rulec.monitoring.limits import LIMITS
@@ -47,6 +43,7 @@ from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import LineBlock
 from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
 from rulec.trace.trace_columns import TraceColumns
+from rulec.trace.trace_model import check_frame, check_presence
 
 _MADE_TOGETHER = 1 << 12
 """How many reasons for refusing traces are built at once.
@@ -101,18 +98,29 @@ def _verify_chunk(items: Sequence[Trace | RulecError], rulebook: CompiledRuleboo
     for place, item in enumerate(items):
         # What is no trace, or has a constant that changes, is judged alone.
         if isinstance(item, Trace):
-            trace = derived_trace(item, rulebook.vocabulary)
+            trace = _readable(item, rulebook)
             if trace is not None:
                 kind = TraceKind(trace.step_s, trace.ends, trace.told)
                 kinds.setdefault(kind, []).append((place, trace))
-    for placed in kinds.values():
-        verdicts = verdicts_together([trace for _, trace in placed], rulebook)
-        for (place, _), verdict in zip(placed, verdicts, strict=True):
-            answers[place] = verdict
+    for kind, placed in kinds.items():
+        with suppress(*IRREGULAR):
+            check_judgeable(kind, rulebook)
+            verdicts = verdicts_together([trace for _, trace in placed], rulebook)
+            for (place, _), verdict in zip(placed, verdicts, strict=True):
+                answers[place] = verdict
     return [
         verify_or_reason(item, rulebook) if answer is None else answer
         for item, answer in zip(items, answers, strict=True)
     ]
+
+
+def _readable(trace: Trace, rulebook: CompiledRulebook) -> Trace | None:
+    """The trace with what follows from its values; None if only its states can tell."""
+    with suppress(TypeError, AttributeError, LookupError, RulecError):
+        check_frame(trace)
+        check_presence(trace)
+        return derived_trace(trace, rulebook)
+    return None
 
 
 def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
@@ -228,7 +236,7 @@ def _verify_alike(
             own_names = under_own_names(violations, objects, names)
             answers[alike.places[number]] = Verdict(alike.ids(number), own_names)
         return
-    judged = judge_joined(joined_columns(alike, rules.vocabulary), rules)
+    judged = StackedRun(joined_columns(alike, rules.vocabulary), rules).judged()
     for place, own in zip(alike.places, judged, strict=True):
         if own is not None:
             says = partial(alike.says, own.number)

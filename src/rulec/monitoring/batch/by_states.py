@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import wraps
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
@@ -25,6 +26,30 @@ TraceJudge = Callable[[Trace, CompiledRulebook], Verdict]
 """Judges a trace by a rulebook, in arrays or by its states."""
 
 
+def containing_faults(judge: TraceJudge) -> TraceJudge:
+    """The judge; a fault of rulec in it costs only the rules that it is in."""
+
+    @wraps(judge)
+    def contained(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
+        try:
+            return judge(trace, rulebook)
+        except Exception as problem:
+            if isinstance(problem, RulecError) or not isinstance(trace, Trace):
+                raise
+            check_frame(trace)  # a trace of wrong kinds is the caller's fault, and is said again
+            (answer,) = judged_apart(
+                lambda traces, rules: [judge(one, rules) for one in traces],
+                [trace],
+                rulebook.fitted_to(trace.step_s),
+            )
+        if isinstance(answer, NotJudged):
+            raise answer.error
+        return answer
+
+    return contained
+
+
+@containing_faults
 def verify_by_states(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     """As ``verify`` in every respect, but state by state: for what arrays do not tell."""
     check_trace(trace)
@@ -84,29 +109,7 @@ def _at(place: SourceLocation | None, problem: Diagnostic) -> Diagnostic:
     return replace(problem, place=place, labels=(*here, *problem.labels))
 
 
-def verify_contained(
-    trace: Trace, rulebook: CompiledRulebook, judge: TraceJudge = verify_by_states
-) -> Verdict:
-    """The verdict on a trace; a fault of rulec costs only the rules that it is in."""
-    try:
-        return judge(trace, rulebook)
-    except Exception as problem:
-        if isinstance(problem, RulecError) or not isinstance(trace, Trace):
-            raise
-        check_frame(trace)  # a trace of wrong kinds is the caller's fault, and is said again
-        (answer,) = judged_apart(
-            lambda traces, rules: [judge(one, rules) for one in traces],
-            [trace],
-            rulebook.fitted_to(trace.step_s),
-        )
-    if isinstance(answer, NotJudged):
-        raise answer.error
-    return answer
-
-
-def verify_or_reason(
-    item: Trace | RulecError, rulebook: CompiledRulebook, judge: TraceJudge = verify_by_states
-) -> Verdict | NotJudged:
+def verify_or_reason(item: Trace | RulecError, rulebook: CompiledRulebook) -> Verdict | NotJudged:
     """Verify one trace of many, and return an error instead of raising it.
 
     In place of a trace, ``item`` may be the error that prevented reading one.
@@ -114,7 +117,7 @@ def verify_or_reason(
     if isinstance(item, RulecError):
         return NotJudged(None, item)
     try:
-        return verify_contained(item, rulebook, judge)
+        return verify_by_states(item, rulebook)
     except BudgetSpentError:
         raise
     except RulecError as error:

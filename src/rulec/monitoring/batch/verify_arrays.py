@@ -14,7 +14,7 @@ from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.findings import JudgedTrace
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind, side_by_side
-from rulec.monitoring.batch.stacked.stacked_run import judge_joined
+from rulec.monitoring.batch.stacked.stacked_run import StackedRun
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.trace.shared_columns import SharedColumns
 from rulec.trace.trace_arrays import TraceArrays
@@ -52,7 +52,7 @@ def judge_arrays(
         found: Sequence[JudgedTrace | None] = [None] * len(places)
         with suppress(UnencodableError, RulecError):
             together = JoinedTraces.of_arrays([traces[x] for x in places], rulebook.vocabulary)
-            found = judge_joined(together, rulebook)
+            found = StackedRun(together, rulebook).judged()
         for place, own in zip(places, found, strict=True):
             answers[place] = own or _by_states(traces[place], rulebook)
     return [answer for answer in answers if answer is not None]

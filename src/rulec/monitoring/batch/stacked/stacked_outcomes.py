@@ -71,10 +71,10 @@ def outcomes(
     """All choices for which a rule is not kept.
 
     They are sifted three times, ever more exactly: letters in any order (``doubtful_instances``),
-    the machine on what each read allows by itself (``_doubtful_words``), the machine on what they
-    allow together. A known letter is a set of one, of which best and worst outcome are the same.
-    In traces that are ``suspects`` all choices are examined for letters that axioms exclude. Raises
-    UnencodableError.
+    the machine on what each read allows by itself, the machine on what they allow together: fewer
+    letters, so that this need not be found out for choices that are kept before. A known letter is
+    a set of one, of which best and worst outcome are the same. In traces that are ``suspects`` all
+    choices are examined for letters that axioms exclude. Raises UnencodableError.
     """
     instances = doubtful_instances(rule, reader)
     if rule.facts and suspects.any():
@@ -82,28 +82,17 @@ def outcomes(
     if not len(instances.traces):
         return
     for chosen in _by_unknown_constants(rule, reader, instances, rulebook):
-        words = _doubtful_words(rule, reader, chosen, suspects)
-        if words is None:
+        alternatives = _letters_apart(rule, reader, chosen)
+        doubtful = suspects[chosen.instances.traces]
+        for _, _, letters in alternatives:
+            doubtful |= ~_are_kept_by_machine(rule, letters, chosen.bounds)
+        if not doubtful.any():
             continue
-        if len(words.bounds) <= FEW_WORDS:
-            yield _few(words)
-            continue
-        is_odd = np.logical_or.reduceat(words.odd, words.bounds[:-1])
-        alternatives = [stretches(letters, words.bounds) for letters in words.letters]
-        first_alike = _first_alike(words.letters, words.bounds)
-        # An odd choice has a word of its own
-        by_itself = is_odd | is_odd[first_alike]
-        first_alike = np.where(by_itself, np.arange(len(is_odd)), first_alike)
-        answers: dict[int, Answer | None] = dict.fromkeys(is_odd.nonzero()[0].tolist())
-        is_told = is_odd.copy()
-        different = distinct(first_alike[~is_odd]).tolist()
-        of_each = [rule.answers(rows, ends, different) for rows, ends in alternatives]
-        for place, *of_word in zip(different, *of_each, strict=True):
-            answer = answers[place] = _combined(of_word)
-            is_told[place] = answer.worst != KEPT
-        places = is_told[first_alike].nonzero()[0]
-        answers_at = [answers[first] for first in first_alike[places].tolist()]
-        yield StackedOutcomes(words, places.tolist(), answers_at)
+        if not doubtful.all():
+            chosen = chosen.part(rule, reader, doubtful.nonzero()[0])
+            alternatives = _letters_apart(rule, reader, chosen)
+        words = _letters_together(rule, reader, chosen, alternatives)
+        yield _few(words) if len(words.bounds) <= FEW_WORDS else _many(words)
 
 
 def _few(words: StackedWords) -> StackedOutcomes:
@@ -123,6 +112,26 @@ def _few(words: StackedWords) -> StackedOutcomes:
         places.append(place)
         answers.append(answer)
     return StackedOutcomes(words, places, answers)
+
+
+def _many(words: StackedWords) -> StackedOutcomes:
+    """The outcomes of many words, each distinct one evaluated once."""
+    is_odd = np.logical_or.reduceat(words.odd, words.bounds[:-1])
+    alternatives = [stretches(letters, words.bounds) for letters in words.letters]
+    first_alike = _first_alike(words.letters, words.bounds)
+    # An odd choice has a word of its own
+    by_itself = is_odd | is_odd[first_alike]
+    first_alike = np.where(by_itself, np.arange(len(is_odd)), first_alike)
+    answers: dict[int, Answer | None] = dict.fromkeys(is_odd.nonzero()[0].tolist())
+    is_told = is_odd.copy()
+    different = distinct(first_alike[~is_odd]).tolist()
+    of_each = [words.rule.answers(rows, ends, different) for rows, ends in alternatives]
+    for place, *of_word in zip(different, *of_each, strict=True):
+        answer = answers[place] = _combined(of_word)
+        is_told[place] = answer.worst != KEPT
+    places = is_told[first_alike].nonzero()[0]
+    answers_at = [answers[first] for first in first_alike[places].tolist()]
+    return StackedOutcomes(words, places.tolist(), answers_at)
 
 
 def _first_alike(
@@ -229,34 +238,12 @@ def _by_unknown_constants(
         yield replace(own_part, unknown=which, supposed=supposed, is_exact=is_exact)
 
 
-def _doubtful_words(
-    rule: StackedRule, reader: StackReader, chosen: _Chosen, suspects: Flags
-) -> StackedWords | None:
-    """The words of the choices that are not surely kept, judging each read separately.
-
-    Reads together allow fewer letters than separately, so for the other choices this need not be
-    found out.
-    """
-    alternatives = _alternatives(rule, reader, chosen)
-    doubtful = suspects[chosen.instances.traces]
-    for _, _, letters in alternatives:
-        doubtful |= ~_are_kept_by_machine(rule, letters, chosen.bounds)
-    if not doubtful.any():
-        return None
-    if not doubtful.all():
-        chosen = chosen.part(rule, reader, doubtful.nonzero()[0])
-        alternatives = _alternatives(rule, reader, chosen)
-    return _entangled_words(rule, reader, chosen, alternatives)
-
-
-_Alternative: TypeAlias = tuple[Mapping[Subject, Value], Sequence[Numbers], NDArray[np.intp]]
+_Letters: TypeAlias = tuple[Mapping[Subject, Value], Sequence[Numbers], NDArray[np.intp]]
 """The supposed values, and the numbers of reads and of letters."""
 
 
-def _alternatives(
-    rule: StackedRule, reader: StackReader, chosen: _Chosen
-) -> Sequence[_Alternative]:
-    """The letters for all supposed values, judging each read separately."""
+def _letters_apart(rule: StackedRule, reader: StackReader, chosen: _Chosen) -> Sequence[_Letters]:
+    """The letters for all supposed values, from what each read allows by itself."""
     alternatives = []
     for values in chosen.supposed:
         instead = {}
@@ -301,11 +288,11 @@ def _are_kept_by_machine(
     return kept[first_alike]
 
 
-def _entangled_words(
+def _letters_together(
     rule: StackedRule,
     reader: StackReader,
     chosen: _Chosen,
-    alternatives: Sequence[_Alternative],
+    alternatives: Sequence[_Letters],
 ) -> StackedWords:
     """The words of choices, with the letters that their reads allow together."""
     spots = chosen.spots

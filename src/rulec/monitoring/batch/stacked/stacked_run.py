@@ -46,21 +46,16 @@ _MOST_EXAMINED = 1 << 20
 """Of traces that contradict facts at most so many pairs of objects times states are examined."""
 
 
-def judge_joined(traces: JoinedTraces, rulebook: CompiledRulebook) -> Sequence[JudgedTrace | None]:
-    """The traces with their findings; None for those that must be judged by their states.
-
-    Raises RulecError or UnencodableError where this holds for all of them.
-    """
-    return _StackedRun(traces, rulebook).judged()
-
-
 def check_judgeable(kind: TraceKind, rulebook: CompiledRulebook) -> None:
     """Raise RulecError or UnencodableError if no traces of this kind can be judged together."""
     _ready_for(kind, rulebook.fitted_to(kind.step_s))
 
 
-class _StackedRun:
-    """The judgement of traces of one kind. Raises RulecError, UnencodableError."""
+class StackedRun:
+    """The judgement of traces of one kind, each rule on all of them together.
+
+    Raises RulecError or UnencodableError if all of them must be judged by their states.
+    """
 
     def __init__(self, traces: JoinedTraces, rulebook: CompiledRulebook) -> None:
         self._rulebook = rules = rulebook.fitted_to(traces.kind.step_s)
@@ -80,7 +75,7 @@ class _StackedRun:
         self._odd: set[int] = set()
 
     def judged(self) -> list[JudgedTrace | None]:
-        """The judged traces with their findings, and None for irregular ones."""
+        """The traces with their findings; None for those that must be judged by their states."""
         simple = self._ready.simple_rules(frozenset(self._stack.untold(self._ready.names)))
         suspects = self._suspects(contradicted(simple.facts, self._reader))
         busy = simple.busy(self._reader)
