@@ -24,12 +24,15 @@ class LetterSets:
         self._diagram = diagram
         self._meanings = meanings
         self._widths = [len(row) for row in meanings]
-        # The numbers of node sets before the first read and after each read.
-        self._places: list[dict[int, int]] = [{} for _ in range(len(meanings))]
-        self._places.append({diagram.start: 0})
+        # The numbers of node sets before the first read, which are letters, and after each read:
+        # from 1 on, since 0 stands for those that have not been met.
+        self._places: list[dict[int, int]] = [{} for _ in meanings]
+        self._places.append({diagram.start: 1 if meanings else 0})
         self._sets: list[int] = []
         self._several = [np.array([mask & (mask - 1) != 0 for mask in row]) for row in meanings]
-        self._tables = [np.full((0, len(row)), -1, dtype=np.intp) for row in meanings]
+        # What is behind a read: a number of a node set times the width of the next read's table,
+        # or the number after that of a letter.
+        self._tables = [np.zeros((2, len(row)), dtype=np.intp) for row in meanings]
 
     @property
     def sets(self) -> list[int]:
@@ -64,38 +67,45 @@ class LetterSets:
 
         One for all if they are equal.
         """
-        here: Numbers = 0
+        if not columns:
+            return 0
+        here: Numbers = self._widths[-1]
         for read in range(len(columns) - 1, -1, -1):
-            column = columns[read]
-            # A single number for all letters may also be an array without axes
-            if not isinstance(column, int) and not column.ndim:
-                column = column.item()
-            here = self._behind(read, here, column)
-        return here
+            entry = here + _plain(columns[read])
+            table = self._tables[read]
+            here = table.item(entry) if isinstance(entry, int) else table.take(entry)
+        is_met = here != 0 if isinstance(here, int) else np.count_nonzero(here) == here.size
+        return here - 1 if is_met else self._met_first(columns)
 
-    def _behind(self, read: int, here: Numbers, column: Numbers) -> Numbers:
-        """The node sets behind a read, by number, times the width of the next read's table."""
-        width, n_before = self._widths[read], len(self._places[read + 1])
-        table = self._tables[read]
-        if len(table) < n_before:
-            more = np.full((2 * n_before - len(table), width), -1, dtype=np.intp)
-            table = self._tables[read] = np.concatenate([table, more])
-        entry = here + column
-        if isinstance(entry, int) and (known := table.item(entry)) >= 0:
-            return known
-        result = np.asarray(table.take(entry))
-        if result.min(initial=0) >= 0:
-            return result
-        unmet = result < 0
-        # There may be very many entries, while the table is small.
-        is_missing = np.zeros(table.size, dtype=bool)
-        is_missing[np.asarray(entry)[unmet]] = True
-        missing = is_missing.nonzero()[0]
-        before, places = list(self._places[read + 1]), self._places[read]
-        for number in missing.tolist():
-            nodes = self._diagram.step(
-                read, before[number // width], self._meanings[read][number % width]
-            )
-            next_width = self._widths[read - 1] if read else 1
-            table.ravel()[number] = next_width * places.setdefault(nodes, len(places))
-        return table.item(entry) if isinstance(entry, int) else table.take(entry)
+    def _met_first(self, columns: Sequence[Numbers]) -> Numbers:
+        """The numbers of letters of which some have not been met."""
+        here: Numbers = self._widths[-1]
+        for read in range(len(columns) - 1, -1, -1):
+            entry = here + _plain(columns[read])
+            # There may be very many entries, while the table is small.
+            is_there = np.zeros(self._tables[read].size, dtype=bool)
+            is_there[entry] = True
+            before = list(self._places[read + 1])
+            width = self._widths[read]
+            for number in (is_there & (self._tables[read].ravel() == 0)).nonzero()[0].tolist():
+                self._fill(read, number, before[number // width - 1])
+            here = self._tables[read].take(entry)
+        return int(here) - 1 if not np.ndim(here) else here - 1
+
+    def _fill(self, read: int, number: int, before: int) -> None:
+        """Find what is behind a read, for a place in its table and the nodes before."""
+        places, meanings = self._places[read], self._meanings[read]
+        nodes = self._diagram.step(read, before, meanings[number % len(meanings)])
+        place = places.setdefault(nodes, len(places) + (read > 0))
+        if not read:
+            self._tables[0].ravel()[number] = place + 1
+            return
+        table = self._tables[read - 1]
+        self._tables[read].ravel()[number] = place * table.shape[1]
+        if place >= len(table):
+            self._tables[read - 1] = np.concatenate([table, np.zeros_like(table)])
+
+
+def _plain(column: Numbers) -> Numbers:
+    """A single number for all letters may also be an array without axes."""
+    return column if isinstance(column, int) or column.ndim else int(column)
