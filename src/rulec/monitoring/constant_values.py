@@ -115,11 +115,18 @@ def agreed_value(first: Any, second: Any) -> Any:
 def _filled(
     states: Sequence[State], name: str, stated: _Stated, present: Mapping[str, tuple[int, int]]
 ) -> Iterator[State]:
-    last = len(states) - 1
+    whole = 0, len(states) - 1
+    stretches = [
+        ([present.get(item, whole) for item in subject], subject, value)
+        for subject, (value, _) in stated.items()
+    ]
     for number, state in enumerate(states):
-        filled: Any = state.get(name)
-        for subject, (value, _) in stated.items():
-            stretches = (present.get(item, (0, last)) for item in subject)
-            if all(begins <= number <= ends for begins, ends in stretches):
-                filled = put(filled, subject, value)
-        yield state if filled == state.get(name) else {**state, name: filled}
+        given: Any = state.get(name)
+        filled: Any = dict(given) if isinstance(given, Mapping) else given
+        for spans, subject, value in stretches:
+            if all(begins <= number <= ends for begins, ends in spans):
+                if len(subject) == 1 and type(filled) is dict:
+                    filled[subject[0]] = value
+                else:
+                    filled = put(filled, subject, value)
+        yield state if filled == given else {**state, name: filled}

@@ -61,7 +61,7 @@ def with_implied_signals(state: State, vocabulary: Vocabulary) -> State:
     implied = vocabulary.implied
     if implied.keys().isdisjoint(state):
         return state
-    filled: dict[str, Any] = dict(state)
+    filled: dict[str, Any] = {}
     ahead = [
         (cause, items)
         for cause in implied.keys() & state.keys()
@@ -70,10 +70,11 @@ def with_implied_signals(state: State, vocabulary: Vocabulary) -> State:
     while ahead:
         cause, items = ahead.pop()
         for effect in implied.get(cause, ()):
-            if not _mentions(filled.get(effect), items):
-                filled[effect] = put(filled.get(effect), items, True)
+            known = filled.get(effect, state.get(effect))
+            if not _mentions(known, items):
+                filled[effect] = put(known, items, True)
                 ahead.append((effect, items))
-    return state if filled == state else filled
+    return {**state, **filled} if filled else state
 
 
 def _true_of(given: Any, depth: int) -> list[tuple[str, ...]]:

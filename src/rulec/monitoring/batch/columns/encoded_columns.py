@@ -41,7 +41,7 @@ class PartlyKnown(NamedTuple):
 def encode_partly_known(values: Sequence[Any], declaration: Declaration) -> PartlyKnown:
     """Encode values, of which some may be unknown or intervals. Raises UnencodableError."""
     kinds = set(map(type, values))
-    unknown = upper = None
+    unknown = None
     if UnknownValue in kinds:
         if Interval not in kinds:
             column, unknown = _with_unknown(values, kinds, declaration)
@@ -50,10 +50,11 @@ def encode_partly_known(values: Sequence[Any], declaration: Declaration) -> Part
         anything = least_value(declaration)
         values = [anything if value is UNKNOWN else value for value in values]
     if Interval in kinds:
-        highest = [value.high if type(value) is Interval else value for value in values]
-        upper = encode_values(highest, declaration)
-        values = [value.low if type(value) is Interval else value for value in values]
-    return PartlyKnown(encode_values(values, declaration), upper, unknown)
+        ends = [value.low if type(value) is Interval else value for value in values]
+        ends += [value.high if type(value) is Interval else value for value in values]
+        both = encode_values(ends, declaration)
+        return PartlyKnown(both[: len(values)], both[len(values) :], unknown)
+    return PartlyKnown(encode_values(values, declaration), None, unknown)
 
 
 def _with_unknown(
@@ -67,27 +68,30 @@ def _with_unknown(
     own = values_of(declaration)
     if not kinds <= {type(own[0]), UnknownValue}:
         raise UnencodableError
-    places: dict[Any, int] = {value: place for place, value in enumerate(own)}
-    places[UNKNOWN] = len(own)
-    try:
-        numbers = np.fromiter(
-            map(places.__getitem__, values), smallest_unsigned(len(places)), len(values)
-        )
-    except KeyError:
-        raise UnencodableError from None
+    numbers = _places((*own, UNKNOWN), values)
     unknown = numbers == len(own)
     numbers[unknown] = 0
     return numbers.astype(column_dtype(declaration)), unknown
+
+
+def _places(among: tuple[Any, ...], values: Sequence[Any]) -> Array:
+    """The places of values among others. Raises UnencodableError."""
+    places = {value: place for place, value in enumerate(among)}
+    try:
+        return np.fromiter(
+            map(places.__getitem__, values), smallest_unsigned(len(among)), len(values)
+        )
+    except KeyError:
+        raise UnencodableError from None
 
 
 def encode_values(values: Sequence[Any], declaration: Declaration) -> Array:
     """Encode values. Raises UnencodableError for invalid values and unusual types."""
     kinds = set(map(type, values))
     if isinstance(declaration, Enumeration):
-        places = {value: place for place, value in enumerate(declaration.values)}
-        if kinds != {str} or not places.keys() >= set(values):
+        if kinds != {str}:
             raise UnencodableError
-        return np.fromiter(map(places.__getitem__, values), column_dtype(declaration), len(values))
+        return _places(declaration.values, values)
     if isinstance(declaration, Signal):
         if kinds != TRUTHS:
             raise UnencodableError

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import accumulate, chain, pairwise, repeat
+from itertools import accumulate, chain, groupby, pairwise, repeat
 from operator import itemgetter
 from typing import Any, TypeAlias
 
@@ -41,23 +41,28 @@ def joined_states(traces: Sequence[Trace], vocabulary: Vocabulary) -> JoinedTrac
     columns = PieceColumns()
     pairs: list[tuple[int, int]] = []
     of_pairs: list[tuple[Declaration, Sequence[Sequence[_ByObject]]]] = []
-    for name in set().union(*states):
+    suits: dict[str, Flags] = {}
+    names = list(set().union(*states))
+    for name, given in zip(names, _of_all(states, names), strict=True):
         declaration = vocabulary.declarations.get(name)
         if declaration is None or len(declaration.parameters) > 2:
             raise UnencodableError
-        given = _of_each(states, name)
         kinds = declaration.parameters
         if not kinds:
             columns.add(given, declaration)
             continue
+        kind = kinds[0]
         maps = [
-            _by_objects(given[begin:end], cast.fitting(kinds[0]))
+            _by_objects(given[begin:end], cast.fitting(kind))
             for cast, (begin, end) in zip(casts, pairwise(bounds), strict=True)
         ]
-        if len(kinds) == 1:
-            columns.add(*_about_objects(maps, declaration, casts))
-        else:
+        if len(kinds) == 2:
             of_pairs.append((declaration, maps))
+            continue
+        if kind not in suits:
+            own = [item in cast.fitting(kind) for cast in casts for item in cast.trace.objects]
+            suits[kind] = np.array(own, dtype=bool)
+        columns.add(_about_objects(maps, casts), declaration, suits[kind])
     if of_pairs:
         pairs = _add_pairs(of_pairs, casts, columns)
     example = traces[0]
@@ -93,6 +98,15 @@ class _TraceObjects:
         return [present.get(item, whole) for item in self.trace.objects]
 
     @cached_property
+    def together(self) -> Sequence[tuple[slice, list[str]]]:
+        """The objects in their order, by stretches of states in which some are present."""
+        objects = zip(self.spans, self.trace.objects, strict=True)
+        return [
+            (slice(first, last + 1), [item for _, item in own])
+            for (first, last), own in groupby(objects, key=itemgetter(0))
+        ]
+
+    @cached_property
     def _fitting(self) -> dict[str, frozenset[str]]:
         return {}
 
@@ -117,12 +131,14 @@ def _by_object(value: Any, fitting: frozenset[str]) -> _ByObject:
     raise UnencodableError
 
 
-def _of_each(maps: Sequence[Mapping[str, Any]], key: str) -> list[Any]:
-    """What each of these has under a key."""
+def _of_all(maps: Sequence[Mapping[str, Any]], keys: Sequence[str]) -> Iterable[Sequence[Any]]:
+    """For each key what each of these has under it."""
     try:
-        return list(map(itemgetter(key), maps))
+        if len(keys) > 1 and len(maps):
+            return list(zip(*map(itemgetter(*keys), maps), strict=True))
+        return [list(map(itemgetter(key), maps)) for key in keys]
     except KeyError:
-        return [own.get(key, NOT_GIVEN) for own in maps]
+        return ([own.get(key, NOT_GIVEN) for own in maps] for key in keys)
 
 
 def _by_objects(values: Sequence[Any], fitting: frozenset[str]) -> Sequence[_ByObject]:
@@ -133,17 +149,14 @@ def _by_objects(values: Sequence[Any], fitting: frozenset[str]) -> Sequence[_ByO
 
 
 def _about_objects(
-    maps: Sequence[Sequence[_ByObject]], declaration: Declaration, casts: Sequence[_TraceObjects]
-) -> tuple[list[Any], Declaration, Flags]:
-    """A name's values for each object in each of its states, and the objects it can be about."""
+    maps: Sequence[Sequence[_ByObject]], casts: Sequence[_TraceObjects]
+) -> list[Any]:
+    """A name's values for each object in each of its states."""
     values: list[Any] = []
-    suits: list[bool] = []
     for cast, of_trace in zip(casts, maps, strict=True):
-        fitting = cast.fitting(declaration.parameters[0])
-        for item, (first, last) in zip(cast.trace.objects, cast.spans, strict=True):
-            suits.append(item in fitting)
-            values += _of_each(of_trace[first : last + 1], item)
-    return values, declaration, np.array(suits, dtype=bool)
+        for states, items in cast.together:
+            values += chain.from_iterable(_of_all(of_trace[states], items))
+    return values
 
 
 _OfPairs: TypeAlias = tuple[Declaration, Sequence[Sequence[_ByObject]]]

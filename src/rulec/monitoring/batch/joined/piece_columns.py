@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,9 @@ import numpy as np
 from rulec.array_types import Flags, Indices
 from rulec.monitoring.batch.columns.encoded_columns import PartlyKnown, encode_partly_known
 from rulec.monitoring.batch.joined.joined_traces import JoinedPiece
+from rulec.monitoring.state_validation import TRUTHS
 from rulec.trace.trace_columns import Array
-from rulec.vocabulary import Declaration, Enumeration
+from rulec.vocabulary import Declaration, Enumeration, Signal
 from rulec.vocabulary.vocabulary_model import least_value
 
 NOT_GIVEN = object()
@@ -30,13 +32,20 @@ class PieceColumns:
         self._bounds: dict[str, tuple[Array, Array]] = {}
         self._only: dict[str, Flags] = {}
         self._texts: dict[str, tuple[str, ...]] = {}
+        self._truths: tuple[dict[str, Sequence[bool]], ...] = ({}, {}, {})
 
     def add(
         self, values: Sequence[Any], declaration: Declaration, suits: Flags | None = None
     ) -> None:
         """Add a name's values, some ``NOT_GIVEN``; ``suits``: the objects that it can be about."""
-        absent: Flags | None = None
-        if NOT_GIVEN in values:
+        kinds, absent = set(map(type, values)), None
+        if kinds == TRUTHS and isinstance(declaration, Signal):
+            # Most names are, and one array of all of them takes fewer calls
+            self._truths[len(declaration.parameters)][declaration.name] = values
+            if suits is not None:
+                self._only[declaration.name] = suits
+            return
+        if type(NOT_GIVEN) in kinds:
             absent = np.array([value is NOT_GIVEN for value in values], dtype=bool)
             anything = least_value(declaration)
             values = [anything if value is NOT_GIVEN else value for value in values]
@@ -65,6 +74,13 @@ class PieceColumns:
 
     def piece(self, n_objects: int, pairs: Indices) -> JoinedPiece:
         """The piece of these columns."""
+        for part, truths in zip(
+            (self._world, self._about, self._between), self._truths, strict=True
+        ):
+            rows = [*truths.values()]
+            length = len(rows[0]) if rows else 0
+            flat = np.fromiter(chain.from_iterable(rows), bool, len(rows) * length)
+            part |= zip(truths, flat.reshape(len(rows), length), strict=True)
         return JoinedPiece(
             self._world,
             self._about,

@@ -16,11 +16,14 @@ from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Indices
 from rulec.monitoring.batch.columns.column_numbers import Mask
-from rulec.monitoring.batch.stacked.stack import FEW, Stack
+from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.trace.plain_arrays import distinct, ranges
+
+FEW = 1 << 12
+"""With at most so many cells, letters are computed in all of them."""
 
 _MOST_TOGETHER = 1 << 20
 """The most states of pairs that are evaluated at once."""
@@ -144,7 +147,8 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
         if not _are_busy(rule, rule.letters.numbers(uncounted)).any():
             return _NO_INSTANCES
     if len(rule.variables) == 1 and stack.starts[-1] <= FEW:
-        return _of_objects((_doubtful_of_few(rule, reader),), stack)
+        few = _doubtful_of_few(rule, reader)
+        return _of_objects((few,), stack) if len(few) else _NO_INSTANCES
     every = rule.letters.numbers(numbers_at(rule, reader, None))
     busy = _are_busy(rule, every)
     if not busy.any():
@@ -214,10 +218,9 @@ def _doubtful_of_few(rule: StackedRule, reader: StackReader) -> Indices:
 
     Letters are computed in all cells, since there are few.
     """
-    stack, (variable,), (kind,) = reader.stack, rule.variables, rule.types
-    spots = reader.every_cell_of(variable)
+    stack, (kind,) = reader.stack, rule.types
     numbers = [
-        read.unknown if read.is_composed else reader.numbers(read, spots) for read in rule.reads
+        read.unknown if read.is_composed else reader.in_every_cell(read) for read in rule.reads
     ]
     begins = stack.are_first.nonzero()[0]
     objects = stack.object_of[begins]

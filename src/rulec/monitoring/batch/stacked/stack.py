@@ -6,7 +6,7 @@ for each state in which an object is present, object by object.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from math import isfinite
 from typing import Any, NamedTuple
@@ -32,9 +32,6 @@ from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 from rulec.vocabulary.vocabulary_model import least_value
-
-FEW = 1 << 12
-"""Columns with at most so many values are stacked before reduction, which takes fewer calls."""
 
 _NOWHERE = np.zeros(0, dtype=bool)
 
@@ -94,6 +91,7 @@ class Stack:
         self._columns: dict[str, StackColumn] = {}
         self._ends: dict[str, tuple[float, float]] = {}
         self._of_type: dict[str, Flags] = {}
+        self._types_met: dict[str, bool] = {}
         self._whole_types: dict[str, bool] = {}
         self._cells_of_type: dict[str, Indices] = {}
         self._states_of_type: dict[str, Indices] = {}
@@ -129,7 +127,10 @@ class Stack:
 
     def has_type(self, kind: str) -> bool:
         """Whether some object is of a type or one of its subtypes."""
-        return any(self.vocabulary.is_subtype(own, kind) for own in self.kinds)
+        if kind not in self._types_met:
+            is_subtype = self.vocabulary.is_subtype
+            self._types_met[kind] = any(is_subtype(own, kind) for own in self.kinds)
+        return self._types_met[kind]
 
     def cells_of_type(self, kind: str) -> Indices:
         """The cells of the objects of a type."""
@@ -265,9 +266,26 @@ class Stack:
     @cached_property
     def columns(self) -> Mapping[str, StackColumn]:
         """The columns of all names in the traces. Raises UnencodableError."""
+        if len(self._pieces) == 1:
+            self._columns |= self._whole_signals()
         for name in self.arity:
             self.column(name)
         return self._columns
+
+    def _whole_signals(self) -> dict[str, StackColumn]:
+        """The signals of the only piece that are known in all states, of all objects."""
+        (piece,), declarations = self._pieces, self.vocabulary.declarations
+        others = set().union(*self._flagged, self._partly, piece.texts)
+        return {
+            name: StackColumn(values, None, None, None)
+            for arity, part in enumerate((piece.world, piece.about))
+            for name, values in part.items()
+            if name not in others
+            and values.dtype == bool
+            and isinstance(own := declarations.get(name), Signal)
+            and len(own.parameters) == arity
+            and all(map(self._all_are, own.parameters))
+        }
 
     def ends(self, name: str) -> tuple[float, float] | None:
         """The least and greatest number of a quantity; None if some are unknown or none is given.
@@ -285,13 +303,18 @@ class Stack:
     def _flagged(self) -> tuple[set[str], set[str]]:
         """The names with an unknown value, and those with an absent one, in the only piece."""
         (piece,) = self._pieces
-        return _names(piece.unknown, np.any), _names(piece.absent, np.any)
+        # Bytes are looked at faster than arrays, however short
+        dark, absent = (
+            {name for name, own in flags.items() if 1 in own.tobytes()}
+            for flags in (piece.unknown, piece.absent)
+        )
+        return dark, absent
 
     @cached_property
     def _partly(self) -> set[str]:
         """The names that are given for some objects only, in the only piece."""
         (piece,) = self._pieces
-        return piece.only.keys() - _names(piece.only, np.all)
+        return {name for name, own in piece.only.items() if 0 in own.tobytes()}
 
     def default(self, name: str) -> Any:
         """The default of a name, encoded as in columns; None if it has none."""
@@ -315,7 +338,7 @@ class Stack:
         upper = None
         if isinstance(declaration, Enumeration):
             values = self._places(name, declaration, parts)
-            is_fit = int(values.max(initial=0)) < len(declaration.values)
+            is_fit = not len(values) or np.maximum.reduce(values) < len(declaration.values)
             unfit = _NOWHERE if is_fit else values >= len(declaration.values)
         elif isinstance(declaration, Signal):
             values = _end_to_end(parts)
@@ -446,20 +469,6 @@ def _joined(
     return joined if joined.any() else None
 
 
-def _names(flags: Mapping[str, Flags], some: Callable[..., Flags]) -> set[str]:
-    """The names for which all, or any, flags are set."""
-    chosen: set[str] = set()
-    lengths = dict(zip(flags, map(len, flags.values()), strict=True))
-    for length in set(lengths.values()):
-        names = [name for name, own in lengths.items() if own == length]
-        if length > FEW:
-            chosen.update([name for name in names if some(flags[name])])
-        else:
-            are_set = some(np.array([flags[name] for name in names]), axis=1).tolist()
-            chosen.update([name for name, is_set in zip(names, are_set, strict=True) if is_set])
-    return chosen
-
-
 def _end_to_end(parts: Sequence[Array]) -> Array:
     return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
@@ -467,7 +476,9 @@ def _end_to_end(parts: Sequence[Array]) -> Array:
 def _ends(low: Array, high: Array | None) -> tuple[float, float]:
     """The least and the greatest number; NaN if one is."""
     most = low if high is None else high
-    return (low.min().item(), most.max().item()) if len(low) else (0.0, 0.0)
+    if not len(low):
+        return 0.0, 0.0
+    return np.minimum.reduce(low).item(), np.maximum.reduce(most).item()
 
 
 def either(first: Flags | None, second: Flags | None) -> Flags | None:

@@ -38,7 +38,7 @@ class Spots(NamedTuple):
     """States of the stack, with the cells of the variables' objects in each.
 
     ``whole`` means all states, or all cells, in their order; with a ``kind``, the cells of all
-    objects of that type (of any type if it is empty).
+    objects of that type.
     """
 
     states: Indices
@@ -59,6 +59,7 @@ class StackReader:
         self.stack = stack
         self._numbers: dict[int, Array | int] = {}
         self._of_kind: dict[tuple[int, str], Array] = {}
+        self._in_cells: dict[int, Numbers] = {}
         self._changes: dict[int, Flags | None] = {}
         self._digits: dict[int, int] = {}
         self.met_values = MetValues(stack)
@@ -67,10 +68,6 @@ class StackReader:
     @cached_property
     def _every_cell(self) -> Indices:
         return np.arange(self.stack.starts[-1])
-
-    def every_cell_of(self, variable: str) -> Spots:
-        """All cells, for one variable."""
-        return Spots(self.stack.state_of, {variable: self._every_cell}, whole=True, kind="")
 
     def numbers(self, read: StackedRead, spots: Spots | None) -> Numbers:
         """The numbers of a read at some spots, or in all states; a single number if all are equal.
@@ -94,6 +91,16 @@ class StackReader:
             is_every = bool(read.variables) and len(own) == len(numbers)
             self._of_kind[key] = numbers if is_every else numbers.take(own)
         return self._of_kind[key]
+
+    def in_every_cell(self, read: StackedRead) -> Numbers:
+        """The numbers of a read of at most one object in all cells. Raises UnencodableError."""
+        numbers = self._in_cells.get(read.key)
+        if numbers is None:
+            numbers = self.numbers(read, None)
+            if isinstance(numbers, np.ndarray) and not read.variables:
+                numbers = numbers.take(self.stack.state_of)
+            self._in_cells[read.key] = numbers
+        return numbers
 
     def changes(self, read: StackedRead) -> Flags | None:
         """The cells where a read's number differs from the cell before; None if there are none.
@@ -174,7 +181,8 @@ class StackReader:
             return read.meanings.index(digits)
         every = Spots(self._every_state, {}, whole=True)
         if read.variables:
-            every = self.every_cell_of(read.variables[0])
+            cells = {read.variables[0]: self._every_cell}
+            every = Spots(self.stack.state_of, cells, whole=True)
         numbers = self._of(read, every)
         if isinstance(read.read, Read):
             met = self.met_values.values(read.names[0])

@@ -234,12 +234,12 @@ class StackedRule:
         every = np.bitwise_or.reduceat(own, begins)
         last = np.empty_like(every)
         last[:-1], last[-1:] = own.take(begins[1:] - 1), own[-1:]
-        if len(begins) <= FEW_WORDS:
-            words = zip(every.tolist(), last.tolist(), strict=True)
-            return np.array([self._keep(*word) for word in words], dtype=bool)
         # Most words are kept, and a word is certainly kept if every word of its letters is
         if self._keep(*(int(np.bitwise_or.reduce(classes)) for classes in (every, last))):
             return np.ones(len(begins), dtype=bool)
+        if len(begins) <= FEW_WORDS:
+            words = zip(every.tolist(), last.tolist(), strict=True)
+            return np.array([self._keep(*word) for word in words], dtype=bool)
         examples, which = different_pairs(every, last)
         keys = zip(every[examples].tolist(), last[examples].tolist(), strict=True)
         return np.array([self._keep(*key) for key in keys], dtype=bool)[which]

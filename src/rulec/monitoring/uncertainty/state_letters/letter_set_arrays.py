@@ -71,17 +71,18 @@ class LetterSets:
             return 0
         here: Numbers = self._widths[-1]
         for read in range(len(columns) - 1, -1, -1):
-            entry = here + _plain(columns[read])
-            table = self._tables[read]
+            entry, table = here + columns[read], self._tables[read]
             here = table.item(entry) if isinstance(entry, int) else table.take(entry)
-        is_met = here != 0 if isinstance(here, int) else np.count_nonzero(here) == here.size
-        return here - 1 if is_met else self._met_first(columns)
+        if isinstance(here, np.ndarray):
+            return here - 1 if np.count_nonzero(here) == here.size else self._met_first(columns)
+        # A single number for all letters may also be an array without axes
+        return int(here) - 1 if here else self._met_first(columns)
 
     def _met_first(self, columns: Sequence[Numbers]) -> Numbers:
         """The numbers of letters of which some have not been met."""
         here: Numbers = self._widths[-1]
         for read in range(len(columns) - 1, -1, -1):
-            entry = here + _plain(columns[read])
+            entry = here + columns[read]
             # There may be very many entries, while the table is small.
             is_there = np.zeros(self._tables[read].size, dtype=bool)
             is_there[entry] = True
@@ -90,7 +91,7 @@ class LetterSets:
             for number in (is_there & (self._tables[read].ravel() == 0)).nonzero()[0].tolist():
                 self._fill(read, number, before[number // width - 1])
             here = self._tables[read].take(entry)
-        return int(here) - 1 if not np.ndim(here) else here - 1
+        return here - 1 if isinstance(here, np.ndarray) else int(here) - 1
 
     def _fill(self, read: int, number: int, before: int) -> None:
         """Find what is behind a read, for a place in its table and the nodes before."""
@@ -104,8 +105,3 @@ class LetterSets:
         self._tables[read].ravel()[number] = place * table.shape[1]
         if place >= len(table):
             self._tables[read - 1] = np.concatenate([table, np.zeros_like(table)])
-
-
-def _plain(column: Numbers) -> Numbers:
-    """A single number for all letters may also be an array without axes."""
-    return column if isinstance(column, int) or column.ndim else int(column)
