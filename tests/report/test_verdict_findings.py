@@ -16,7 +16,7 @@ import rulec
 from rulec.cli.verdict_outputs import finding_writer
 from rulec.diagnostics import RulecError
 from rulec.monitoring.explain.margins import Margin
-from rulec.report.findings.finding_writers import ENDINGS
+from rulec.report.findings.finding_formats import ENDINGS
 from rulec.report.findings.mcap_file_writer import JsonChannel, TimedMessage, write_mcap
 from rulec.report.findings.verdict_finding import (
     COLUMNS,

@@ -140,7 +140,8 @@ class CachedSteps:
         self._own = own
         self._given = own.vocabulary, own.axioms, own.sources, *own.rules
         self._steps = steps
-        self._time = None if steps is None else steps.time
+        self.time = CompilerTime() if steps is None else steps.time
+        """The time that compilers have for all of its steps and machines."""
         self._answers: dict[str, CompiledRulebook | RulecError] = {}
 
     def __reduce__(self) -> tuple[type[CachedSteps], tuple[object, ...]]:
@@ -181,13 +182,6 @@ class CachedSteps:
         if compiled.sources == self._own.sources:
             file.write(text, compiled)
         return _cached(compiled, self, file)
-
-    @property
-    def time(self) -> CompilerTime:
-        """The time that compilers have for all of its steps and machines."""
-        if self._time is None:
-            self._time = CompilerTime()
-        return self._time
 
     def _compiler(self) -> StepCompiler:
         if self._steps is None:

@@ -20,7 +20,7 @@ from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.traces.lost_drives import lost_drive
 from rulec.extraction.traces.recorded_drive import NoDrive
-from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.monitoring.verdict import NotJudged
 from rulec.recordings.recording import Participant, Recording
 from rulec.recordings.recording_files import read_recordings
 from rulec.recordings.recording_format import RecordingSource
@@ -33,7 +33,6 @@ from rulec.report.verdicts.recording_answer import (
 )
 from rulec.report.verdicts.violation_tally import ViolationTally
 from rulec.resource_limits import BudgetSpentError
-from rulec.trace.trace_arrays import TraceArrays
 
 if TYPE_CHECKING:
     from rulec.batch.drive_accounts import DriveAccounts
@@ -47,21 +46,11 @@ RowMaker: TypeAlias = Callable[
 ]
 """Makes the table rows of a drive and its findings; like those below sent to other processes."""
 
-LineMaker: TypeAlias = Callable[
-    [
-        DriveVerdict | NoDrive,
-        RecordingVerdicts,
-        "Sequence[Explanation]",
-        frozenset[str] | None,
-    ],
-    str,
-]
-"""Makes the line of JSON of a drive, its explanations, and the rules without an opportunity."""
+LineMaker: TypeAlias = Callable[..., str]
+"""``recording_json.as_json``."""
 
-IdleRules: TypeAlias = Callable[
-    [TraceArrays, CompiledRulebook, Verdict | NotJudged], frozenset[str] | None
-]
-"""Finds the rules that a drive gave no opportunity to violate."""
+IdleRules: TypeAlias = Callable[..., frozenset[str]]
+"""``drive_facts.idle_rules``."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from typing import IO
 from rulec.cli import lazy_imports as lazy
 from rulec.cli.options.output_options import Endings, Output, endings_of
 from rulec.cli.output import answer_lines, output_stream
-from rulec.report.findings.finding_writers import ENDINGS, FindingWriter
+from rulec.report.findings.finding_formats import ENDINGS, FindingWriter
 from rulec.report.text.console import print_line, print_result
 from rulec.report.text.terminal_text import counted
 

@@ -13,9 +13,8 @@ from rulec.diagnostics.fault_messages import fault_of
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
 from rulec.logic.free_names import names_of
-from rulec.monitoring.batch.contained_verify import judge_contained
 from rulec.monitoring.batch.findings import JudgedTrace
-from rulec.monitoring.batch.verify_arrays import answer_to
+from rulec.monitoring.batch.verify_arrays import answer_to, judge_contained
 from rulec.monitoring.fault_containment import without
 from rulec.monitoring.implied_values import names_behind, words_meant
 from rulec.monitoring.rulebook_edition import edition_of

@@ -25,7 +25,7 @@ from rulec.extraction.recording_verdicts import (
     some_rules,
 )
 from rulec.extraction.traces.recorded_drive import Drive, NoDrive
-from rulec.monitoring.batch.contained_verify import answers_contained
+from rulec.monitoring.batch.verify_arrays import answers_contained
 from rulec.monitoring.verdict import (
     NotJudged,
     OpenVerdict,

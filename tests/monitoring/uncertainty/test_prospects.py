@@ -8,7 +8,7 @@ from hypothesis import given
 from rulec.automata.mealy_monitor import Read
 from rulec.automata.outcome_machine import KEPT, VIOLATED, OutcomeMachine, bits_of
 from rulec.monitoring.uncertainty import uncertain_machine
-from rulec.monitoring.uncertainty.prospects import Prospects
+from rulec.monitoring.uncertainty.run_pairs import Prospects
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses, PossibleWord
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 from support.generators.seeds import seeds

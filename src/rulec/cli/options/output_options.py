@@ -24,7 +24,7 @@ from rulec.files.file_messages import OVERWRITES_INPUT
 from rulec.files.read_files import from_here
 from rulec.files.work_trees import is_ordinary
 from rulec.files.written_files import refuse_unwritable
-from rulec.report.findings.finding_writers import ENDINGS
+from rulec.report.findings.finding_formats import ENDINGS
 from rulec.report.text.console import print_remark
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])

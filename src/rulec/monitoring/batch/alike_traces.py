@@ -5,18 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rulec.diagnostics import RulecError
-from rulec.monitoring.batch.columns.block_columns import BlockGroup, columnize_block
+from rulec.monitoring.batch.columns.block_columns import (
+    BlockGroup,
+    columnize_block,
+    encode_column,
+)
 from rulec.monitoring.batch.columns.column_states import trace_at
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
-from rulec.monitoring.batch.columns.line_columns import columnize_lines
-from rulec.monitoring.batch.trace_groups import (
-    Names,
-)
+from rulec.monitoring.batch.trace_groups import Names
 from rulec.monitoring.implied_values import words_meant
 from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import AlikeLines, LineBlock
-from rulec.trace.trace_columns import Array, Key, Layout, TraceColumns
+from rulec.trace.trace_columns import Array, Key, Layout, TraceColumns, layout_of
 from rulec.trace.trace_model import Ending
 from rulec.vocabulary import Enumeration, Vocabulary
 
@@ -69,7 +73,7 @@ def traces_of_group(group: BlockGroup, vocabulary: Vocabulary) -> AlikeTraces:
 
 def traces_of_lines(block: LineBlock, lines: AlikeLines, vocabulary: Vocabulary) -> AlikeTraces:
     """The traces of some lines of a block. Raises UnencodableError."""
-    order, columns = columnize_lines(lines, vocabulary)
+    order, columns = _columnized(lines, vocabulary)
     check_nothing_derived(columns, vocabulary)
     headings = [lines.headings[place] for place in order.tolist()]
     places = lines.lines[order].tolist()
@@ -161,3 +165,36 @@ def _lacks(columns: TraceColumns, cause: str, effect: str) -> bool:
         for (name, items), truths in values.items()
         if name == cause
     )
+
+
+def _columnized(
+    lines: AlikeLines, vocabulary: Vocabulary
+) -> tuple[NDArray[np.int64], TraceColumns]:
+    """The traces as columns, with the first one's objects, and which trace is at each position.
+
+    Raises UnencodableError.
+    """
+    order = (-lines.lengths).argsort(kind="stable")
+    layout = layout_of(lines.lengths[order])
+    rank = np.empty(len(order), dtype=np.int64)
+    rank[order] = np.arange(len(order))
+    # Reorder from trace by trace to step by step.
+    step = np.arange(layout.n_states) - (lines.lengths.cumsum() - lines.lengths).repeat(
+        lines.lengths
+    )
+    rows = np.empty(layout.n_states, dtype=np.int64)
+    rows[layout.starts[step] + rank.repeat(lines.lengths)] = np.arange(layout.n_states)
+    example = lines.headings[order[0]]
+    objects = tuple(example.objects.items())
+    columns: dict[Key, Array] = {}
+    for (name, places), column in lines.columns.items():
+        declaration = vocabulary.declarations.get(name)
+        if declaration is None or len(places) != len(declaration.parameters):
+            raise UnencodableError
+        items = [objects[place] for place in places]
+        for (_, kind), wanted in zip(items, declaration.parameters, strict=True):
+            if not vocabulary.is_subtype(kind, wanted):
+                raise UnencodableError
+        values = encode_column(column, rows, declaration)
+        columns[name, tuple([item for item, _ in items])] = values
+    return order, TraceColumns(layout, columns, example.objects, {}, example.step_s)

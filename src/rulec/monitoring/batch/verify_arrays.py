@@ -1,6 +1,6 @@
 """Verification of traces in arrays, with the same verdicts as ``verify`` on their states.
 
-Any irregular trace is judged by its states.
+Any irregular trace is judged by its states; a fault of rulec costs little.
 """
 
 from __future__ import annotations
@@ -11,16 +11,19 @@ from typing import TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError
+from rulec.garbage_collection import no_garbage_collection
 from rulec.monitoring.batch.columns.encoded_columns import UnencodableError
 from rulec.monitoring.batch.findings import JudgedTrace
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind, side_by_side
 from rulec.monitoring.batch.stacked.stacked_run import StackedRun
+from rulec.monitoring.fault_containment import judged_apart, without, without_words
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.trace.shared_columns import SharedColumns
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_columns import Array
 
 Answer: TypeAlias = Verdict | NotJudged
+Judged: TypeAlias = JudgedTrace | Answer
 
 
 def verify_arrays(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Answer]:
@@ -29,18 +32,16 @@ def verify_arrays(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> 
     return [answer_to(own, trace) for own, trace in zip(judged, traces, strict=True)]
 
 
-def answer_to(judged: JudgedTrace | Answer, trace: TraceArrays) -> Answer:
+def answer_to(judged: Judged, trace: TraceArrays) -> Answer:
     """The answer for a trace that has been judged."""
     if isinstance(judged, JudgedTrace):
         return judged.findings.verdict(judged.number, trace.id, trace.says)
     return judged
 
 
-def judge_arrays(
-    traces: Sequence[TraceArrays], rulebook: CompiledRulebook
-) -> list[JudgedTrace | Answer]:
+def judge_arrays(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Judged]:
     """The same as ``verify_arrays``, but verdicts are built on demand by ``answer_to``."""
-    answers: list[JudgedTrace | Answer | None] = [None] * len(traces)
+    answers: list[Judged | None] = [None] * len(traces)
     groups: dict[object, list[int]] = {}
     known: dict[int, frozenset[str]] = {}
     for place in side_by_side(traces):
@@ -73,3 +74,36 @@ def _by_states(trace: TraceArrays, rulebook: CompiledRulebook) -> Answer:
     from rulec.monitoring.batch.by_states import verify_or_reason
 
     return verify_or_reason(trace.trace(), rulebook)
+
+
+@no_garbage_collection()
+def judge_contained(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> Sequence[Judged]:
+    """As ``judge_arrays``; rules that read a word which a fault has cost are not judged."""
+    whole = iter(_judged([trace for trace in traces if not trace.faults], rulebook))
+    return [_without_words(x, rulebook) if x.faults else next(whole) for x in traces]
+
+
+def answers_contained(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Answer]:
+    """The answer to each trace by ``judge_contained``."""
+    judged = judge_contained(traces, rulebook)
+    return [answer_to(own, trace) for own, trace in zip(judged, traces, strict=True)]
+
+
+def _judged(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> Sequence[Judged]:
+    try:
+        return judge_arrays(traces, rulebook)
+    except Exception:
+        return judged_apart(verify_arrays, traces, rulebook)
+
+
+def _without_words(trace: TraceArrays, rulebook: CompiledRulebook) -> Answer:
+    known = rulebook.prepared.setdefault(_without_words, {})
+    words = frozenset(trace.faults)
+    if words not in known:
+        known[words] = without_words(rulebook, trace.faults)[0]
+    (judged,) = _judged([trace], known[words])
+    answer = answer_to(judged, trace)
+    if not isinstance(answer, Verdict):
+        return answer
+    _, lost = without_words(rulebook, trace.faults)
+    return without(answer, lost, [*trace.faults.values()])

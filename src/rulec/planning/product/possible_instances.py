@@ -14,7 +14,8 @@ from typing import TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import KEPT, VIOLATED, SetMonitor
 from rulec.monitoring.axiom_violations import check_counting_axioms
-from rulec.monitoring.bindings import Binding
+from rulec.monitoring.bindings import Binding, Cast, binding_of, types_of
+from rulec.monitoring.uncertainty.lazy_bindings import ReadBits, doubtful_bindings
 from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleLetters
 from rulec.monitoring.uncertainty.suppositions import (
     Suppositions,
@@ -23,10 +24,10 @@ from rulec.monitoring.uncertainty.suppositions import (
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
 from rulec.monitoring.uncertainty.untold_names import untold_names, untold_types, with_untold
 from rulec.monitoring.verdict import NO_PAST, CarriedState, RuleNotJudged
-from rulec.planning.product.graph_bindings import graph_bindings
 from rulec.planning.product.graph_instance import GraphInstance, Readings, SetMachine
 from rulec.planning.product.nodes_in_turn import NodesInTurn
 from rulec.trace import Trace, TraceGraph
+from rulec.vocabulary import Vocabulary
 
 MOST_SETS = 1 << 10
 """The most sets of states distinguished; of further ones everything is assumed possible."""
@@ -113,7 +114,7 @@ class PossibleNodes:
         graph, machine = self._graph, uncertain_machine(rule, None)
         read = self._letters.bits_of(rule)
         alike: dict[_Alike, list[Binding]] = {}
-        for binding in graph_bindings(rule, graph, self._vocabulary, read, past):
+        for binding in _bindings(rule, graph, self._vocabulary, read, past):
             about = (rule.name, tuple(binding.objects.values()))
             # What is settled is read, too, so that impossible nodes get noticed.
             words, is_exact = self._words(rule, machine, binding)
@@ -223,3 +224,25 @@ def readings(
         surely.append(kept)
         perhaps.append(not_lost)
     return Readings(SetMachine(successors, surely), SetMachine(successors, perhaps), is_exact)
+
+
+def _bindings(
+    rule: CompiledRule,
+    graph: TraceGraph,
+    vocabulary: Vocabulary,
+    read: ReadBits,
+    past: CarriedState,
+) -> Iterator[Binding]:
+    """A rule's bindings, with their layers; ``read`` reads the states of ``NodesInTurn``.
+
+    Raises RulecError R0718 if there are too many, even of those that matter.
+    """
+    cast = Cast(graph.objects, vocabulary, len(graph.states), graph.present)
+    if not cast.has_many(types_of(rule)):
+        return cast.bindings(rule)
+    nodes = NodesInTurn(graph)
+    in_nodes = Cast(graph.objects, vocabulary, len(nodes.states), nodes.present)
+    bindings = doubtful_bindings(
+        rule, in_nodes, read, uncertain_machine(rule, None).idle, past.begun(rule.name)
+    )
+    return (binding_of(own.objects, graph.present, len(graph.states)) for own in bindings)

@@ -1,15 +1,40 @@
-"""The formats of findings about rulebooks, and those with one line per finding."""
+"""The formats of findings, and those of findings about rulebooks with one line for each."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Protocol
 
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.source_text import address
 from rulec.files.read_files import from_here
 from rulec.report.text.terminal_text import visible
 
+if TYPE_CHECKING:
+    from rulec.report.findings.verdict_finding import RecordingFindings
+
 FORMATS = ("full", "concise", "json", "github", "sarif")
+
+
+ENDINGS: Mapping[str, tuple[str, ...]] = {
+    "jsonl": (".jsonl", ".ndjson"),
+    "csv": (".csv",),
+    "parquet": (".parquet", ".pq"),
+    "junit": (".xml",),
+    "sarif": (".sarif", ".sarif.json"),
+    "mcap": (".mcap",),
+}
+"""Name of a format -> the endings of its files."""
+
+
+class FindingWriter(Protocol):
+    """Writes findings to a stream: recording by recording, then the end."""
+
+    def add(self, recording: RecordingFindings) -> None:
+        """Add the findings of a recording. Raises RulecError."""
+
+    def close(self) -> None:
+        """Write the end. Raises RulecError."""
 
 
 def as_lines(diagnostics: Iterable[Diagnostic]) -> str:

@@ -16,7 +16,7 @@ from rulec.logic.fold import fold
 from rulec.logic.free_names import names_in, reads_in
 from rulec.logic.kleene import ObjectBinding
 from rulec.monitoring.batch.columns.column_numbers import Mask, comparison_sides, digits_of
-from rulec.monitoring.batch.columns.column_truths import KLEENE_COLUMNS, UNKNOWN
+from rulec.monitoring.batch.stacked.met_values import KLEENE_COLUMNS, UNKNOWN
 from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.trace.trace_columns import Array, TraceColumns
 from rulec.vocabulary import Enumeration, Vocabulary

@@ -9,12 +9,25 @@ import numpy as np
 
 from rulec.logic import formula as ltl
 from rulec.logic.fold import Algebra, fold
-from rulec.monitoring.batch.columns.column_truths import FALSE, KLEENE_COLUMNS, TRUE, UNKNOWN
 from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.trace.partly_known.partly_known_values import Truth
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN_VALUE
 from rulec.vocabulary.partial_values import PartialValue
+
+TRUE, FALSE = Truth.known(np.array(True)), Truth.known(np.array(False))
+UNKNOWN = Truth(FALSE.sure, TRUE.sure)
+
+KLEENE_COLUMNS: Algebra[Truth] = Algebra(
+    proposition=lambda _: UNKNOWN,
+    constant=lambda value: Truth.known(np.asarray(value)),
+    negation=Truth.__invert__,
+    conjunction=Truth.__and__,
+    disjunction=Truth.__or__,
+    equivalence=Truth.same_as,
+    identity=lambda _: TRUE,
+)
+"""The operators; the values of propositions depend on the columns."""
 
 _BITS = {bits: 1 << np.arange(bits, dtype=f"u{bits // 8}") for bits in (8, 64)}
 """For each number the bit at its place."""
@@ -71,7 +84,7 @@ class MetValues:
     @property
     def _anywhere(self) -> Algebra[Truth]:
         # Not stored: a reference cycle would keep all columns alive after their verdicts.
-        return replace(KLEENE_COLUMNS, proposition=self._truth, identity=lambda _: TRUE)
+        return replace(KLEENE_COLUMNS, proposition=self._truth)
 
     def _truth(self, part: ltl.Proposition) -> Truth:
         if isinstance(part, ltl.Comparison):

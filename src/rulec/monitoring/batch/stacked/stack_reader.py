@@ -21,8 +21,7 @@ from rulec.monitoring.batch.columns.column_numbers import (
     numbers_between,
     partial_values,
 )
-from rulec.monitoring.batch.columns.column_truths import KLEENE_COLUMNS, TRUE, UNKNOWN
-from rulec.monitoring.batch.stacked.met_values import MetValues
+from rulec.monitoring.batch.stacked.met_values import KLEENE_COLUMNS, UNKNOWN, MetValues
 from rulec.monitoring.batch.stacked.stack import Stack, StackColumn, either
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRead
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
@@ -286,7 +285,7 @@ class StackReader:
                 return self._compared(part, spots, about)
             return self._atom(part, spots, (about,) * len(part.arguments))
 
-        own = replace(KLEENE_COLUMNS, proposition=proposition, identity=lambda _: TRUE)
+        own = replace(KLEENE_COLUMNS, proposition=proposition)
         return fold(formula, own)
 
     def _compared(self, comparison: ltl.Comparison, spots: Spots, about: str) -> Truth:

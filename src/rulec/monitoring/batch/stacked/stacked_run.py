@@ -24,13 +24,20 @@ from rulec.monitoring.batch.findings import (
     ViolationOrOpen,
 )
 from rulec.monitoring.batch.joined.joined_traces import JoinedTraces, TraceKind
-from rulec.monitoring.batch.stacked.contradictions import contradicted
+from rulec.monitoring.batch.stacked.contradictions import (
+    LinkedFacts,
+    contradicted,
+    linked,
+)
 from rulec.monitoring.batch.stacked.open_reasons import StackedReasons
-from rulec.monitoring.batch.stacked.simple_rules import SimpleRules
 from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.stack_reader import StackReader
 from rulec.monitoring.batch.stacked.stacked_outcomes import StackedOutcomes, outcomes
-from rulec.monitoring.batch.stacked.stacked_rule import ReadKeys, StackedRule
+from rulec.monitoring.batch.stacked.stacked_rule import (
+    ReadKeys,
+    StackedRead,
+    StackedRule,
+)
 from rulec.monitoring.implied_values import with_defined_words
 from rulec.monitoring.state_validation import check_objects, check_told
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules, judged_rules
@@ -41,6 +48,9 @@ from rulec.vocabulary import Vocabulary
 if TYPE_CHECKING:
     from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 
+
+_MOST_KEPT = 1 << 10
+"""How many combinations of all reads' digits are kept before all are discarded."""
 
 _MOST_EXAMINED = 1 << 20
 """Of traces that contradict facts at most so many pairs of objects times states are examined."""
@@ -159,6 +169,47 @@ class StackedRun:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class _SimpleRules:
+    """The ``rules`` that can be judged on arrays, by number, and the linked ``facts`` about them.
+
+    ``reads`` are the distinct reads, and ``places`` those of each rule's reads among them. The
+    rules that may have an effect are cached by the digits that all reads have anywhere.
+    """
+
+    rules: Mapping[int, StackedRule]
+    facts: Sequence[LinkedFacts]
+    reads: Sequence[StackedRead]
+    places: Mapping[int, Sequence[int]]
+    _busy: dict[tuple[int, ...], frozenset[int]] = field(default_factory=dict, init=False)
+
+    @staticmethod
+    def of(rules: Mapping[int, StackedRule]) -> _SimpleRules:
+        """These rules with their reads."""
+        facts = dict.fromkeys(fact for rule in rules.values() for fact in rule.facts)
+        reads = {read.digits_key: read for rule in rules.values() for read in rule.reads}
+        place_of = {key: place for place, key in enumerate(reads)}
+        places = {
+            number: tuple([place_of[read.digits_key] for read in rule.reads])
+            for number, rule in rules.items()
+        }
+        return _SimpleRules(rules, tuple(linked(tuple(facts))), tuple(reads.values()), places)
+
+    def busy(self, reader: StackReader) -> frozenset[int]:
+        """The numbers of the rules that may be violated or open. Raises UnencodableError."""
+        digits = reader.digits_of(self.reads)
+        busy = self._busy.get(digits)
+        if busy is None:
+            if len(self._busy) >= _MOST_KEPT:
+                self._busy.clear()
+            busy = self._busy[digits] = frozenset(
+                number
+                for number, rule in self.rules.items()
+                if not rule.machine.idle.of_cube([digits[k] for k in self.places[number]])
+            )
+        return busy
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class _ReadyRules:
     """What is the same for all traces of one kind.
 
@@ -170,13 +221,13 @@ class _ReadyRules:
     rules: Sequence[StackedRule]
     names: frozenset[str]
     defaults: dict[str, Any] = field(default_factory=dict, init=False)
-    _simple: dict[frozenset[str], SimpleRules] = field(default_factory=dict, init=False)
+    _simple: dict[frozenset[str], _SimpleRules] = field(default_factory=dict, init=False)
 
-    def simple_rules(self, untold: frozenset[str]) -> SimpleRules:
+    def simple_rules(self, untold: frozenset[str]) -> _SimpleRules:
         """The rules that can be evaluated on arrays if some names are missing, usually all."""
         known = self._simple.get(untold)
         if known is None:
-            known = self._simple[untold] = SimpleRules.of(
+            known = self._simple[untold] = _SimpleRules.of(
                 {
                     number: rule
                     for number, rule in enumerate(self.rules)

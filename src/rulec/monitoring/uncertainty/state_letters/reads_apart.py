@@ -9,7 +9,9 @@ read for each object that may count.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from fractions import Fraction
+from functools import cached_property
 from itertools import product
 from math import prod
 from typing import Any, NamedTuple, TypeAlias
@@ -17,15 +19,20 @@ from typing import Any, NamedTuple, TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
 from rulec.logic import formula as ltl
+from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions.completions import (
     Digits,
     added,
     digit_of_count,
+    joint_digits,
 )
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
-from rulec.monitoring.uncertainty.state_letters.joint_values import MOST_KNOWN, values_at
-from rulec.monitoring.uncertainty.state_letters.part_table import PartTable
-from rulec.monitoring.uncertainty.state_letters.read_digits import Cube, Letters
+from rulec.monitoring.uncertainty.state_letters.joint_values import (
+    MOST_KNOWN,
+    JointValues,
+    values_at,
+)
+from rulec.monitoring.uncertainty.state_letters.read_digits import Cube, Letters, read_digits
 from rulec.monitoring.uncertainty.state_letters.related_facts import FactInstance, instances_of
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     PartialView,
@@ -35,7 +42,8 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     subjects_of_read,
 )
 from rulec.valuations.connections import connected
-from rulec.vocabulary.partial_values import UNKNOWN, OneOf, PartialValue
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, OneOf, PartialValue
 from rulec.vocabulary.vocabulary_model import values_of
 
 MOST_SUPPOSED = 1 << 8
@@ -55,7 +63,7 @@ class _Part(NamedTuple):
 
     reads: tuple[int, ...]
     values: Callable[[Any], tuple[Any, ...]]
-    table: PartTable
+    table: _PartTable
 
 
 PartNumber: TypeAlias = "tuple[Callable[[Any], tuple[Any, ...]], Callable[[tuple[Any, ...]], int]]"
@@ -69,7 +77,7 @@ class KnownParts:
     """The cached ``tables`` of the parts of all rules."""
 
     def __init__(self) -> None:
-        self.tables: dict[object, PartTable] = {}
+        self.tables: dict[object, _PartTable] = {}
 
 
 class ReadsApart:
@@ -199,7 +207,7 @@ class ReadsApart:
 
     def _table(
         self, pieces: Sequence[_Piece], subjects: Sequence[Subject], facts: Sequence[FactInstance]
-    ) -> PartTable:
+    ) -> _PartTable:
         """The table of a part, with its objects numbered so that equal parts have one."""
         binding, everybody = self._binding, self._everybody
         items = [item for _, items in subjects for item in items]
@@ -227,7 +235,7 @@ class ReadsApart:
         key = tuple(reads), about, formulas, (*own.items(),), (*objects.items(),)
         tables = self._known_parts.tables
         if key not in tables:
-            tables[key] = PartTable(
+            tables[key] = _PartTable(
                 reads,
                 about,
                 own,
@@ -254,3 +262,75 @@ def _may_be(value: PartialValue | None, values: Sequence[Any]) -> Sequence[Parti
     """
     among = values if value is UNKNOWN else value.values if isinstance(value, OneOf) else None
     return [value] if among is None else [OneOf(frozenset({own})) for own in among]
+
+
+class _PartDigits(NamedTuple):
+    """The joint digits of a part's reads; ``exact`` if each of them is possible.
+
+    ``known`` are their digits, if each read by itself has only one.
+    """
+
+    known: Digits | None
+    joint: frozenset[Digits]
+    exact: bool
+
+
+class _PartTable:
+    """The possible digits of some reads by the values of their ``subjects``, numbered."""
+
+    def __init__(
+        self,
+        reads: Sequence[Read | NumberRead],
+        subjects: Sequence[Subject],
+        binding: Mapping[str, str],
+        facts: Sequence[FactInstance],
+        objects: Mapping[str, str],
+        *,
+        vocabulary: Vocabulary,
+    ) -> None:
+        self._reads, self._ready = reads, [read_digits(read) for read in reads]
+        self._subjects, self._binding, self._facts = subjects, binding, facts
+        self._objects, self._vocabulary = objects, vocabulary
+        self.possible: list[_PartDigits] = []
+        self._numbers: dict[_PartDigits, int] = {}
+        self._known: dict[tuple[object, ...], int] = {}
+
+    def number(self, values: tuple[PartialValue | None, ...]) -> int:
+        """The place among ``possible`` of the digits for these values. Raises MissingValueError."""
+        known = self._known.get(values)
+        if known is None:
+            if len(self._known) >= MOST_KNOWN:
+                self._known.clear()
+            possible = self._possible(values)
+            known = self._known[values] = self._numbers.setdefault(possible, len(self.possible))
+            if known == len(self.possible):
+                self.possible.append(possible)
+        return known
+
+    @cached_property
+    def _joint_values(self) -> JointValues | None:
+        """The reads by the joint values of their subjects, if these are few words."""
+        everybody = StateView({}, self._objects, self._vocabulary)
+        with suppress(LookupError):
+            return JointValues(self._reads, self._subjects, self._facts, self._binding, everybody)
+        return None
+
+    def _possible(self, values: Sequence[PartialValue | None]) -> _PartDigits:
+        if self._joint_values is not None:
+            # Missing values and contradictions of axioms are found below.
+            with suppress(LookupError):
+                return _PartDigits(*self._joint_values.digits(values), exact=True)
+        state = self._state(values)
+        digits = [read.in_state(self._binding, state) for read in self._ready]
+        known = None
+        if all(own & (own - 1) == 0 for own in digits):
+            known = tuple([own.bit_length() - 1 for own in digits])
+            # Only axioms can exclude what each read by itself is sure of.
+            if not self._facts or UNKNOWN_TYPES.isdisjoint(map(type, values)):
+                return _PartDigits(known, frozenset({known}), True)
+        possible = joint_digits(self._reads, self._binding, state, self._facts)
+        return _PartDigits(known, possible.digits, possible.exact)
+
+    def _state(self, values: Sequence[PartialValue | None]) -> StateView:
+        given = with_values({}, dict(zip(self._subjects, values, strict=True)))
+        return StateView(given, self._objects, self._vocabulary)
