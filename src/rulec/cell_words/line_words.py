@@ -18,7 +18,7 @@ from rulec.cell_words.ego_boxes import EgoBoxes, column
 from rulec.cell_words.place_words import LOOSE_M, Words, hull, lanes_of
 from rulec.cell_words.probe_drives import EVERY_M, ProbeDrives
 from rulec.cell_words.road_frame import LaneLight, RoadFrame
-from rulec.extraction.signals.map.line_signals import COLOURS, colour_at
+from rulec.extraction.signals.map.line_signals import COLOURS, colours_at
 from rulec.extraction.signals.map.stop_lines import LINE_REACH_M
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
@@ -104,8 +104,8 @@ class LineWords:
         begin = end = start_s / step_s
         if since_s:
             begin -= (since_s + _CROSSING_S) / step_s + 2
-        steps = range(start + floor(begin + _HAIR), start + ceil(end - _HAIR) + 1)
-        shown = {colour_at(light.lights, step) for light in lights for step in steps}
+        steps = np.arange(start + floor(begin + _HAIR), start + ceil(end - _HAIR) + 1)
+        shown = {colour for x in lights for colour in colours_at(x.lights, steps).tolist()}
         if "" in shown:
             return UNKNOWN
         dark = said == _DARK or (isinstance(said, OneOf) and _DARK in said.values)

@@ -7,29 +7,35 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Any, Protocol, TypeVar
+from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar
 
 from rulec.extraction.drive_context import DriveContext
 
 Found = TypeVar("Found")
+Asked = ParamSpec("Asked")
 
 
 class Once(Protocol):
-    """Makes a function compute its result once."""
+    """Makes a function compute its result once for each choice of its further arguments."""
 
-    def __call__(self, compute: Callable[[DriveContext], Found]) -> Callable[[DriveContext], Found]:
+    def __call__(
+        self, compute: Callable[Concatenate[DriveContext, Asked], Found]
+    ) -> Callable[Concatenate[DriveContext, Asked], Found]:
         """The function that does so."""
 
 
 def _once(kept_by: Callable[[DriveContext], dict[Any, Any]], *, along_road: bool = False) -> Once:
     """Results are kept in a dictionary of the context's, with ``along_road`` one for each road."""
 
-    def once_for(compute: Callable[[DriveContext], Found]) -> Callable[[DriveContext], Found]:
+    def once_for(
+        compute: Callable[Concatenate[DriveContext, Asked], Found],
+    ) -> Callable[Concatenate[DriveContext, Asked], Found]:
         @wraps(compute)
-        def found(context: DriveContext) -> Found:
-            known, key = kept_by(context), (compute, context.road) if along_road else compute
+        def found(context: DriveContext, /, *asked: Asked.args, **named: Asked.kwargs) -> Found:
+            known, of = kept_by(context), context.road if along_road else None
+            key = compute, of, asked
             if key not in known:
-                known[key] = compute(context)
+                known[key] = compute(context, *asked, **named)
             value: Found = known[key]
             return value
 

@@ -334,6 +334,6 @@ def test_who_goes_first_is_what_the_net_says(path):
                 ) > np.radians(135)
                 across = way.turned * far > np.radians(45) >= its_way.turned * far
                 if first is not None and towards and across and junction.meeting(own, other):
-                    assert goes_first(drawn, way, its_way) == bool(first & its_way.names)
+                    assert goes_first(way, its_way) == bool(first & its_way.names)
                     pairs += 1
     assert pairs or path.name.startswith(("motorway", "roundabout", "zebra"))

@@ -8,7 +8,7 @@ import pytest
 
 from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
-from rulec.extraction.tracks.at_junctions.junctions import approaches, junctions_of
+from rulec.extraction.tracks.at_junctions.junctions import junctions_of
 from rulec.recordings.recording import Recording, TrackState
 from rulec.recordings.sumo.lanelets import net_lanelets
 from rulec.recordings.sumo.net import read_net
@@ -500,11 +500,11 @@ def test_who_yields_to_one_from_the_side_is_what_the_net_says(path):
 
 
 def _gives_way(drawn, way):
-    return any(entry.signs & {"YIELD", "STOP"} for entry in approaches(drawn, way))
+    return any(entry.signs & {"YIELD", "STOP"} for entry in way.approaches)
 
 
 def _is_lit(drawn, way):
-    return any(entry.lights for entry in approaches(drawn, way))
+    return any(entry.lights for entry in way.approaches)
 
 
 @pytest.mark.parametrize(

@@ -301,7 +301,8 @@ def _beside_elsewhere(context: DriveContext, offset: Floats) -> NDArray[intp]:
 @once
 def gap(context: DriveContext) -> Floats:
     """The distance (m) along the road between bodies, 0 where they overlap along it."""
-    return np.maximum(way_along(context), 0.0)
+    gaps: Floats = np.maximum(way_along(context), 0.0)
+    return gaps
 
 
 @once

@@ -197,7 +197,8 @@ def about_the_middle(context: DriveContext) -> Flags:
     no state on both halves need lead to those on the other.
     """
     there, perhaps = oncoming_side(context)
-    return there | perhaps | on_both_halves(context)
+    about: Flags = there | perhaps | on_both_halves(context)
+    return about
 
 
 def sides_beyond_far_edge(context: DriveContext, bodies: RoadExtents) -> tuple[Floats, Floats]:

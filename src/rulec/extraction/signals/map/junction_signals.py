@@ -28,7 +28,6 @@ from rulec.extraction.signals.map.stop_lines import (
 from rulec.extraction.signals.measured_numbers import own_front
 from rulec.extraction.signals.signal_columns import SignalColumns, WorldSignal
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.at_junctions.junctions import all_have_to_stop
 from rulec.recordings.encodings.speed_units import KMH_PER_MPS
 from rulec.recordings.recording import STOP_SIGNS, STRAIGHT_ON
 
@@ -92,8 +91,7 @@ def _all_way_stop(context: DriveContext) -> SignalColumns:
         return SignalColumns()
     all_stop, unknown = np.zeros((2, context.states), dtype=bool)
     for passage in own_passages(context):
-        junction = context.surroundings.passages.junctions[passage.junction]
-        stop = all_have_to_stop(context.recording, junction)
+        stop = context.surroundings.passages.junctions[passage.junction].all_have_to_stop
         all_stop[approach(context, passage)] = stop is True
         unknown[approach(context, passage)] = stop is None
     return SignalColumns({"all_way_stop": all_stop}, unknown={"all_way_stop": unknown})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 from itertools import pairwise
@@ -16,6 +16,7 @@ from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.signal_columns import ObjectSignal
+from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.extraction.tracks.at_junctions.junctions import JunctionWay
 from rulec.recordings.recording import Lanelet
 from rulec.scenario.recorded.reference_line import turn
@@ -43,14 +44,17 @@ class Leads(Enum):
 class JunctionAhead:
     """A junction on ego's road, from ``low`` to ``high``, and where each lane before it leads.
 
-    ``turned`` is the angle (rad) by which ego's road turns there. ``lit``: it may have lights.
+    ``heading`` and ``turned`` are the direction in which ego's road comes there, and the angle by
+    which it turns (rad). ``lit``: it may have lights. ``numbers``: the map's junctions there.
     """
 
     low: float
     high: float
+    heading: float
     turned: float
     leads: Sequence[Leads]
     lit: bool
+    numbers: frozenset[int]
 
 
 @once_a_road
@@ -79,7 +83,7 @@ def _junctions_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
         lights = [light for lanelet in row if lanelet is not None for light in lanelet.lights]
         told = "light" in context.recording.complete or map_contents(context).lights
         lit = bool(lights) or not told
-        yield JunctionAhead(low, high, turned, tuple(leads), lit)
+        yield _ahead(context, (low, high), turned=turned, leads=leads, lit=lit)
 
 
 def _forks_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
@@ -98,7 +102,22 @@ def _forks_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
             parts &= all(abs(turn(onward, _end_heading(known[x]))) > _PARTS_RAD for x in others)
             leads.append(Leads.ELSEWHERE if parts else Leads.ALONG)
         if Leads.ELSEWHERE in leads:
-            yield JunctionAhead(place, place, 0.0, tuple(leads), lit=False)
+            yield _ahead(context, (place, place), turned=0.0, leads=leads, lit=False)
+
+
+def _ahead(
+    context: DriveContext,
+    at: tuple[float, float],
+    *,
+    turned: float,
+    leads: Sequence[Leads],
+    lit: bool,
+) -> JunctionAhead:
+    (heading,) = context.road.line.headings_at(np.array([at[0] - _HAIR_M])).tolist()
+    known = _junctions_with(context)
+    found = [known[name] for name in context.road.ids_between(*at) if name in known]
+    numbers = frozenset[int]().union(*found)
+    return JunctionAhead(*at, heading, turned, tuple(leads), lit, numbers)
 
 
 def _end_heading(lanelet: Lanelet) -> float:
@@ -142,10 +161,12 @@ def leads_elsewhere(context: DriveContext) -> ObjectSignal:
     for junction in junctions_ahead(context):
         there = context.relevant & (others.s <= junction.high)
         there &= junction.low - others.s_max <= reach
-        for row in there.any(axis=1).nonzero()[0].tolist():
-            surely, perhaps = _on_another_way(context, row, junction)
-            elsewhere[row] |= there[row] & surely
-            unknown[row] |= there[row] & perhaps
+        for row in there.any(axis=1).nonzero()[0].tolist() if junction.numbers else ():
+            for passage in _passages_at(context, row, junction):
+                inside = (context.columns >= passage.first) & (context.columns <= passage.last)
+                surely, perhaps = _is_on_another_way(context, passage, junction)
+                elsewhere[row] |= there[row] & inside & surely
+                unknown[row] |= there[row] & inside & perhaps
         # One that waits there may be past the place where the junction begins for ego
         near = context.on_lanes & (others.s <= junction.high)
         near &= junction.low - others.s_max <= reach
@@ -186,41 +207,47 @@ def _parted_at_the_end(context: DriveContext) -> tuple[float, Flags]:
     return begin, parted
 
 
+def _passages_at(context: DriveContext, row: int, junction: JunctionAhead) -> Iterator[Passage]:
+    """A participant's passages of a junction on ego's road."""
+    passages = context.surroundings.passages.of_row.get(int(context.tracks.rows[row]), ())
+    return (passage for passage in passages if passage.junction in junction.numbers)
+
+
 def _turns_off(context: DriveContext, row: int, junction: JunctionAhead) -> bool | None:
     """Whether a participant leaves ego's road at a junction; None if its track does not show it."""
-    passages = context.surroundings.passages
-    inside = context.road.ids_between(junction.low, junction.high)
-    for passage in passages.of_row.get(int(context.tracks.rows[row]), ()):
-        same = passages.junctions[passage.junction]
-        if passage.sure and any(inside & way.names for way in same.ways):
-            return not _goes_along(context, passages.way(passage), junction.turned)
+    for passage in _passages_at(context, row, junction):
+        if passage.sure:
+            way = context.surroundings.passages.way(passage)
+            return not _goes_along(context, way, junction.turned)
     return None
 
 
-def _on_another_way(
-    context: DriveContext, row: int, junction: JunctionAhead
-) -> tuple[Flags, Flags]:
-    """Masks of states in which a participant is in a junction on another way, and perhaps is.
+def _is_on_another_way(
+    context: DriveContext, passage: Passage, junction: JunctionAhead
+) -> tuple[bool, bool]:
+    """Whether a participant passes a junction on another way than ego's, and perhaps does.
 
     It came on another road, as its direction then shows, or it turns differently. Perhaps: where
     its track does not show its way.
     """
-    passages, own_row = context.surroundings.passages, int(context.tracks.rows[row])
-    own_ways = context.road.ids_between(junction.low, junction.high)
-    surely, perhaps = np.zeros((2, context.states), dtype=bool)
-    (own,) = context.road.line.headings_at(np.array([junction.low - _HAIR_M])).tolist()
-    for passage in passages.of_row.get(own_row, ()):
-        if not any(own_ways & way.names for way in passages.junctions[passage.junction].ways):
-            continue
-        inside = (context.columns >= passage.first) & (context.columns <= passage.last)
-        begins = passage.first == int(passages.tracks.present[own_row].argmax())
-        came = abs(turn(own, passage.heading)) > np.radians(context.thresholds.turned_deg)
-        leaves = not _goes_along(context, passages.way(passage), junction.turned)
-        if (came and not begins) or (passage.sure and (came or leaves)):
-            surely |= inside
-        elif not passage.sure and (begins or leaves):
-            perhaps |= inside
-    return surely, perhaps
+    passages = context.surroundings.passages
+    begins = passage.first == int(passages.tracks.present[passage.row].argmax())
+    turned = abs(turn(junction.heading, passage.heading))
+    came = bool(turned > np.radians(context.thresholds.turned_deg))
+    leaves = not _goes_along(context, passages.way(passage), junction.turned)
+    surely = (came and not begins) or (passage.sure and (came or leaves))
+    return surely, not surely and not passage.sure and (begins or leaves)
+
+
+@once_a_recording
+def _junctions_with(context: DriveContext) -> Mapping[str, Collection[int]]:
+    """Lanelet -> the numbers of the map's junctions on whose ways it is."""
+    found: dict[str, set[int]] = defaultdict(set)
+    for number, junction in enumerate(context.surroundings.passages.junctions):
+        for way in junction.ways:
+            for name in way.names:
+                found[name].add(number)
+    return found
 
 
 @once_a_recording

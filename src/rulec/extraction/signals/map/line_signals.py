@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
 from rulec.extraction.computed_once import once
@@ -11,8 +13,8 @@ from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.junction_signals import way_not_known
 from rulec.extraction.signals.map.stop_lines import (
     around_crossing,
-    ends_at_line,
     has_line,
+    lines_on_road,
     may_have_passed,
     may_pass,
     may_stop_beyond,
@@ -143,6 +145,7 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
         lights = lights_of(context.recording, context.road, piece, lane)
         if not lights:
             continue
+        by_way = by_lane = light_shown(context, piece, lane)
         unseen = may_have_passed(context, last) & on_lane
         unsure = unseen | (may_pass(context, last) & on_lane)
         crossed = passes(context, last) & ~unsure
@@ -151,11 +154,16 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
         while_crossing = around_crossing(context, front, (first, last))
         every = context.road.lanelet(piece, lane).lights
         several = way_not_known(context) if len(every) > len(lights) else crosses & False
-        for state in ((ahead | crossed) & on_lane).nonzero()[0].tolist():
+        if several.any():
+            by_lane = colours_at(every, context.steps)
+        decided = (ahead | crossed) & on_lane
+        shows = np.where(several, by_lane, by_way)
+        colours = np.where(decided & ~crossed & ~unseen, shows, colours)
+        for state in (decided & (crossed | unseen)).nonzero()[0].tolist():
             own = every if several[state] else lights
             around = while_crossing(state) if crossed[state] else None
             moments = around or (state,)
-            shown = {_colour(context, own, moment) for moment in moments}
+            shown = set((by_lane if several[state] else by_way)[[*moments]].tolist())
             if crossed[state] and around is None:
                 shown.add("")
             if unseen[state]:
@@ -177,7 +185,7 @@ def _colours_unseen(
     steps = int(unseen_steps(context)[context.spans.number[state]])
     until = int(context.steps[state])
     since = max(until - steps, context.surroundings.tracks.first)
-    return {colour_at(lights, step) for step in range(since, until)}
+    return set(colours_at(lights, np.arange(since, until)).tolist())
 
 
 def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags) -> list[int]:
@@ -190,25 +198,24 @@ def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags
     came_from = np.where(context.spans.columns > context.spans.first, np.roll(lane, 1), lane)
     found = set[int]()
     for piece, row in enumerate(context.road.rows):
-        lit = {
-            k
-            for k, lanelet in enumerate(row)
-            if lanelet is not None
+        lit = [
+            lane
+            for own_piece, lane, lanelet in lines_on_road(context)
+            if own_piece == piece
+            and row[lane] is not None
             and lanelet.lights
-            and lights_of(context.recording, context.road, piece, k)
-            and ends_at_line(context, piece, k)
-        }
-        for k in sorted(lit) if len(row) > row.count(None) + 1 else ():
+            and lights_of(context.recording, context.road, piece, lane)
+        ]
+        for k in lit if len(row) > row.count(None) + 1 else ():
             inside = (own.left_of_max[0, :, k] > reach) & (own.left_of_min[0, :, k + 1] < -reach)
             beside = (inside | context.spans.before(inside) | (came_from == k)) & (lane != k)
             if not beside.any():
                 continue
             line = stop_line(context, piece, k)
             moments = around_crossing(context, own_front(context), line)
-            lights = lights_of(context.recording, context.road, piece, k)
+            colour = light_shown(context, piece, k)
             for state in (beside & passes(context, line[1])).nonzero()[0].tolist():
-                around = moments(state) or ()
-                shown = {_colour(context, lights, moment) for moment in around} or {""}
+                shown = set(colour[[*(moments(state) or ())]].tolist()) or {""}
                 # Ego's own lane has no line there, or ego came from beside to the one farther on
                 past = int(lane[state]) not in lit or came_from[state] == k
                 differs = past and not shown <= {"green_light", "no_light"}
@@ -234,14 +241,28 @@ def lights_of(
     return lanelet.lights
 
 
-def _colour(context: DriveContext, lights: tuple[Light | ObservedLight, ...], state: int) -> str:
-    return colour_at(lights, int(context.steps[state]))
+@once
+def light_shown(context: DriveContext, piece: int, lane: int) -> NDArray[np.str_]:
+    """What the lights for the way on of a lane show, by state."""
+    return colours_at(lights_of(context.recording, context.road, piece, lane), context.steps)
 
 
-def colour_at(lights: tuple[Light | ObservedLight, ...], step: int) -> str:
-    """What lights show at a time step; empty where it is unknown or differs."""
-    shown = {COLOURS.get(light.colour_at(step), "") for light in lights}
-    return shown.pop() if len(shown) == 1 else ""
+def colours_at(lights: tuple[Light | ObservedLight, ...], steps: NDArray[intp]) -> NDArray[np.str_]:
+    """What lights show at some time steps; empty where it is unknown or differs."""
+    shown = [_colours_of(light, steps) for light in lights] or [np.full(len(steps), "")]
+    alike = np.logical_and.reduce([colours == shown[0] for colours in shown])
+    return np.where(alike, shown[0], "")
+
+
+def _colours_of(light: Light | ObservedLight, steps: NDArray[intp]) -> NDArray[np.str_]:
+    if isinstance(light, ObservedLight):
+        shown = [light.colour_at(step) for step in steps.tolist()]
+        return np.array([COLOURS.get(colour, "") for colour in shown], dtype=np.str_)
+    colours, durations = zip(*light.phases, strict=True)
+    ends = np.cumsum(durations)
+    phases = ends.searchsorted((steps - light.begin) % ends[-1], "right")
+    shows: NDArray[np.str_] = np.array([COLOURS.get(colour, "") for colour in colours])[phases]
+    return shows
 
 
 line_signals = SignalPasses(

@@ -52,7 +52,7 @@ from rulec.extraction.signals.signal_columns import (
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
-from rulec.extraction.tracks.at_junctions.junctions import Junction, approaches, before_joining
+from rulec.extraction.tracks.at_junctions.junctions import before_joining
 from rulec.scenario.recorded.reference_line import turn
 
 _SIDES = (*FROM_SIDES, ONCOMING)
@@ -164,7 +164,7 @@ def approach(context: DriveContext, passage: Passage) -> slice:
     ways = passages.travelled[passage.row]
     near = ways[passage.first] - ways[shift : passage.first + 1] <= context.thresholds.approach_m
     first = passage.first - shift - int(near.sum()) + 1 if len(near) else 0
-    enters = passages.front_enters(passage)
+    enters = passages.front_enters[passage]
     before = [x.first for x in passages.of_row[passage.row] if x.first < passage.first]
     entered = [min(column + 1, enters) - shift for column in before]
     return slice(max(first, 0, *entered), min(passage.last - shift + 1, _next(context, passage)))
@@ -174,7 +174,7 @@ def _next(context: DriveContext, passage: Passage) -> int:
     """The last state before ego's front is in the next junction, or one past all states."""
     passages = context.surroundings.passages
     later = [x for x in passages.of_row[passage.row] if x.first > passage.first]
-    enters = [passages.front_enters(x) - context.first_column for x in later[:1]]
+    enters = [passages.front_enters[x] - context.first_column for x in later[:1]]
     # The middle of a long body may cut the next one's corner and never be in it
     first, last = (
         int(np.clip(column - context.first_column, 0, context.states - 1))
@@ -206,18 +206,15 @@ def _roads(context: DriveContext) -> SignalColumns:
     unregulated, own, others, priority = _ROADS
     unknown = {name: astray(context) for name in _ROADS}
     for passage in own_passages(context):
-        junction, span = (
-            context.surroundings.passages.junctions[passage.junction],
-            _until_out(context, passage),
-        )
+        junction = context.surroundings.passages.junctions[passage.junction]
+        span, way = _until_out(context, passage), junction.ways[passage.way]
         columns[unregulated][span] = junction.regulated is False
         for name in _ROADS:
             unknown[name][span] = False
         unknown[unregulated][span] = junction.regulated is None
-        columns[own][span], columns[others][span] = _ending_roads(junction, passage)
-        entries = approaches(context.recording, context.surroundings.passages.way(passage))
-        has_sign = any(entry.signs & _PRIORITY for entry in entries)
-        may_have = any(entry.untold_signs & _PRIORITY for entry in entries)
+        columns[own][span], columns[others][span] = junction.ending_roads[passage.way]
+        has_sign = any(entry.signs & _PRIORITY for entry in way.approaches)
+        may_have = any(entry.untold_signs & _PRIORITY for entry in way.approaches)
         columns[priority][span], unknown[priority][span] = has_sign, may_have and not has_sign
     if not _tells_priority(context):
         del columns[priority], unknown[priority]
@@ -227,23 +224,6 @@ def _roads(context: DriveContext) -> SignalColumns:
 def _tells_priority(context: DriveContext) -> bool:
     signs = map_contents(context).signs
     return "PRIORITY" in context.recording.complete or bool(_PRIORITY & signs)
-
-
-def _ending_roads(junction: Junction, passage: Passage) -> tuple[bool, bool]:
-    """Whether ego's road ends at the junction, and whether the one that it meets there does.
-
-    A road ends if no way goes straight on from it. It meets one that goes on if a way does across.
-    """
-    own = junction.ways[passage.way]
-    others = [
-        way
-        for way in junction.ways
-        if not way.on_rails
-        and np.pi / 4 < abs(turn(own.headings[0], way.headings[0])) < 3 * np.pi / 4
-    ]
-    on = [junction.goes_straight(way) for way in others]
-    straight = junction.goes_straight(own)
-    return not straight and any(on), straight and bool(on) and not any(on)
 
 
 def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
@@ -257,7 +237,7 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
     for other in passages.through[own.junction]:
         if other.row == own.row or other.last < span.start + shift:
             continue
-        if other.first > waits and passages.front_enters(other) > waits:
+        if other.first > waits and passages.front_enters[other] > waits:
             continue
         met = passages.junctions[own.junction].meeting(own.way, other.way)
         if met is None:
@@ -301,7 +281,7 @@ def _turned_in_later(context: DriveContext, own: Passage, other: Passage) -> boo
     passages, moved_in = context.surroundings.passages, drives_in(context, own, own.last)
     least = np.radians(context.thresholds.turned_deg)
     return any(
-        moved_in < passages.front_enters(before) < other.first
+        moved_in < passages.front_enters[before] < other.first
         and abs(passages.way(before).turned) > least
         for before in passages.of_row[other.row]
         if before.junction != own.junction
@@ -330,7 +310,7 @@ def _kinds(
     if sides := _sides(context, own, other):
         from_side = ONCOMING not in sides
         ways = map(context.surroundings.passages.way, (own, other))
-        settled = from_side and is_settled(context.recording, *ways)
+        settled = from_side and is_settled(*ways)
         unsure = settled is None or (not from_side and may_have_to_stop(context, own, other))
         if not settled:
             yield sides, not (unsure or on_rails)

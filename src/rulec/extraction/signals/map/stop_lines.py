@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from math import ceil, floor
 from typing import NamedTuple
 
@@ -34,14 +34,26 @@ class OwnLine(NamedTuple):
     last: float
 
 
+@once_a_road
+def lines_on_road(context: DriveContext) -> Sequence[tuple[int, int, Lanelet]]:
+    """The piece, the lane and the lanelet of each line of ego's road, the farthest first."""
+    road = context.road
+    return [
+        (piece, lane, road.lanelet(piece, lane))
+        for piece in range(len(road.rows) - 1, -1, -1)
+        for lane in range(len(road.rows[piece]))
+        if _ends_at_line(context, piece, lane)
+    ]
+
+
 def own_lines(context: DriveContext, counts: Callable[[Lanelet], object]) -> Iterator[OwnLine]:
     """The lines of the lanelets that count, in lanes that ego is ever in, the farthest first."""
-    for piece in range(len(context.road.rows) - 1, -1, -1):
-        for lane in distinct(context.ego_lane).tolist():
-            counted = counts(context.road.lanelet(piece, lane))
-            if counted and ends_at_line(context, piece, lane):
-                line = stop_line(context, piece, lane)
-                yield OwnLine(piece, lane, context.ego_lane == lane, *line)
+    lines = lines_on_road(context)
+    lanes = distinct(context.ego_lane).tolist() if lines else ()
+    for piece, lane, lanelet in lines:
+        if lane in lanes and counts(lanelet):
+            line = stop_line(context, piece, lane)
+            yield OwnLine(piece, lane, context.ego_lane == lane, *line)
 
 
 def has_stop_sign(lanelet: Lanelet) -> bool:
@@ -49,6 +61,7 @@ def has_stop_sign(lanelet: Lanelet) -> bool:
     return bool(STOP_SIGNS & lanelet.signs)
 
 
+@once
 def passes(context: DriveContext, line: float) -> Flags:
     """Mask of ego crossing a line; again only if it was back by more than places' errors."""
     front, spans = own_front(context), context.spans
@@ -59,6 +72,7 @@ def passes(context: DriveContext, line: float) -> Flags:
     return enters & ~again
 
 
+@once
 def may_pass(context: DriveContext, line: float) -> Flags:
     """Mask of states in which it is unknown whether ego has crossed a line.
 
@@ -193,7 +207,7 @@ def drawn_lines(context: DriveContext) -> dict[tuple[int, str], float]:
     return dict(zip(drawn, places.tolist(), strict=True))
 
 
-def ends_at_line(context: DriveContext, piece: int, lane: int) -> bool:
+def _ends_at_line(context: DriveContext, piece: int, lane: int) -> bool:
     """Whether a lanelet has a stop sign or a light, and these stand at its end.
 
     The map may have cut a lane in pieces and state for each what holds on it: the line is at the
@@ -217,6 +231,7 @@ def has_line(lanelet: Lanelet) -> bool:
     return bool(lanelet.lights or lanelet.lights_to or STOP_SIGNS & lanelet.signs)
 
 
+@once_a_road
 def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, float]:
     """The places along the road between which the line of a lanelet is.
 

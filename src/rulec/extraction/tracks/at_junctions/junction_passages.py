@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -54,7 +54,7 @@ class Passage:
 
     ``way`` is the number of the way; ``sure`` is False if it may be another one. ``heading`` is the
     direction (rad) of approach when the front got there: the participant may have turned by the
-    time its middle is in the junction.
+    time its middle is in the junction. ``occupied`` keeps what ``JunctionPassages.occupied`` found.
     """
 
     row: int
@@ -64,6 +64,7 @@ class Passage:
     first: int
     last: int
     heading: float
+    occupied: dict[Interval, tuple[float | None, float | None]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,6 +129,8 @@ class JunctionPassages:
         # Facts about the map and about each row need not be derived again
         joined.__dict__["_areas"] = self._areas
         joined.__dict__["_first_meetings"] = self._first_meetings
+        fronts = zip(moved, map(other.front_enters.__getitem__, own), strict=True)
+        joined.__dict__["front_enters"] = {**self.front_enters, **dict(fronts)}
         for name in ("lengths", "travelled"):
             values = getattr(self, name), getattr(other, name)[row : row + 1]
             joined.__dict__[name] = np.concatenate(values)
@@ -181,9 +184,14 @@ class JunctionPassages:
 
         Interpolated between columns; None where the recording ends before.
         """
+        if interval not in passage.occupied:
+            passage.occupied[interval] = self._occupied(passage, interval)
+        return passage.occupied[interval]
+
+    def _occupied(self, passage: Passage, interval: Interval) -> tuple[float | None, float | None]:
         low, high = interval
         half = self.lengths[passage.row] / 2
-        middle, first = self._places(passage), self.front_enters(passage)
+        middle, first = self._places(passage), self.front_enters[passage]
         # The front of a long body gets there long before its middle is in the junction
         travelled = self.travelled[passage.row]
         came = travelled[passage.first] - travelled[first : passage.first]
@@ -198,9 +206,11 @@ class JunctionPassages:
         front = self._places(passage)[-1] + self.lengths[passage.row] / 2
         return max(place - float(front), 0.0)
 
-    def front_enters(self, passage: Passage) -> int:
-        """``front_came`` for the first column of a passage."""
-        return self.front_came(passage.row, passage.first)
+    @cached_property
+    def front_enters(self) -> Mapping[Passage, int]:
+        """``front_came`` for the first column of each passage."""
+        passages = (passage for own in self.of_row.values() for passage in own)
+        return {passage: self.front_came(passage.row, passage.first) for passage in passages}
 
     def front_came(self, row: int, first: int) -> int:
         """The last column in which one was at least half its length before where it is in another.

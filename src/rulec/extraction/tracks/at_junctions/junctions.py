@@ -52,13 +52,17 @@ Interval = tuple[float, float]
 class JunctionWay:
     """A way through a junction: its lanelets end to end, from the junction's entry to its exit.
 
-    ``entries`` and ``exits`` are the lanelets before and after it. ``road_headings``: the
-    directions (rad) in which the road arrives and leaves, if not those of the way's ends.
+    ``entries`` and ``exits`` are the lanelets before and after it; ``before``: the former, as far
+    as the map has them, and ``approaches``: these and, where they are short, those before them.
+    ``road_headings``: the directions (rad) in which the road arrives and leaves, if not those of
+    the way's ends.
     """
 
     lanelets: tuple[Lanelet, ...]
     entries: frozenset[str]
     exits: frozenset[str]
+    before: tuple[Lanelet, ...] = ()
+    approaches: tuple[Lanelet, ...] = ()
     road_headings: tuple[float, float] | None = None
 
     @cached_property
@@ -78,17 +82,17 @@ class JunctionWay:
         first, last = self.lanelets[0].centre, self.lanelets[-1].centre
         return _heading(first[:2]), _heading(last[-2:])
 
-    @property
+    @cached_property
     def turned(self) -> float:
         """The angle (rad) by which the way turns to the left."""
         return float(turn(*(self.road_headings or self.headings)))
 
-    @property
+    @cached_property
     def names(self) -> frozenset[str]:
         """The ids of the way's lanelets."""
         return frozenset(lanelet.id for lanelet in self.lanelets)
 
-    @property
+    @cached_property
     def on_rails(self) -> bool:
         """Whether only rail vehicles use the way."""
         return all("rail" in lanelet.types for lanelet in self.lanelets)
@@ -125,13 +129,40 @@ class Junction:
             self._met[way, other] = _meeting(self.ways[way], self.ways[other])
         return self._met[way, other]
 
-    def goes_straight(self, way: JunctionWay) -> bool:
-        """Whether the road that the way comes from continues straight beyond the junction."""
-        return any(
-            abs(turn(way.headings[0], other.headings[0])) < _TURNED and abs(other.turned) < _TURNED
-            for other in self.ways
-            if not other.on_rails
-        )
+    @cached_property
+    def ending_roads(self) -> tuple[tuple[bool, bool], ...]:
+        """For each way, whether its road ends here, and whether the one that it meets here does.
+
+        A road ends if no way goes straight on from it. It meets one that goes on if a way does
+        across.
+        """
+        on_wheels = [way for way in self.ways if not way.on_rails]
+        begins = np.array([way.headings[0] for way in self.ways])
+        others = np.array([way.headings[0] for way in on_wheels])
+        away = np.abs(turn(begins[:, None], others))
+        goes_straight = np.array([abs(way.turned) < _TURNED for way in on_wheels], dtype=bool)
+        straight = ((away < _TURNED) & goes_straight).any(axis=1)
+        is_met = (away > np.pi / 4) & (away < 3 * np.pi / 4)
+        on = straight[[not way.on_rails for way in self.ways]]
+        goes_on = (is_met & on).any(axis=1)
+        ends = straight & is_met.any(axis=1) & ~goes_on
+        return tuple(zip((~straight & goes_on).tolist(), ends.tolist(), strict=True))
+
+    @cached_property
+    def all_have_to_stop(self) -> bool | None:
+        """Whether every road to the junction has a stop sign; None if unknown.
+
+        The signs of roads that begin at the map's edge are unknown.
+        """
+        ways = [way for way in self.ways if not way.on_rails]
+        signs = [{sign for entry in way.approaches for sign in entry.signs} for way in ways]
+        if any(ALL_STOP in sign for sign in signs):
+            return True
+        lacks = [way.entries and "STOP" not in sign for sign, way in zip(signs, ways, strict=True)]
+        untold = [any("STOP" in entry.untold_signs for entry in way.approaches) for way in ways]
+        if any(missing and not may for missing, may in zip(lacks, untold, strict=True)):
+            return False
+        return None if any(lacks) or not all(way.entries for way in ways) else True
 
 
 def before_joining(way: JunctionWay, other: JunctionWay) -> tuple[Lanelet, ...]:
@@ -184,13 +215,13 @@ def junctions_of(recording: Recording) -> tuple[Junction, ...]:
     )
     junctions, marked = [], marks_junctions(recording)
     for name, lanelets in members.items():
-        ways = tuple(_ways({lanelet.id: lanelet for lanelet in lanelets}))
+        ways = tuple(_ways({lanelet.id: lanelet for lanelet in lanelets}, recording.lanelets))
         if not marked:
             ways = tuple(
                 [replace(way, road_headings=_road_headings(recording, way)) for way in ways]
             )
-        regulated = _regulated(recording, lanelets, ways)
-        if regulated is None and told and not _may_be_regulated(recording, ways):
+        regulated = _regulated(lanelets, ways)
+        if regulated is None and told and not _may_be_regulated(ways):
             regulated = False
         junctions.append(Junction(name, ways, regulated))
     return tuple(junctions)
@@ -219,7 +250,7 @@ def _junction_ids(recording: Recording) -> dict[str, str]:
     return named
 
 
-def _ways(members: Mapping[str, Lanelet]) -> Iterator[JunctionWay]:
+def _ways(members: Mapping[str, Lanelet], known: Mapping[str, Lanelet]) -> Iterator[JunctionWay]:
     def onward(chain: tuple[Lanelet, ...]) -> Iterator[tuple[Lanelet, ...]]:
         inside = [members[x] for x in chain[-1].successors if x in members]
         inside = [x for x in inside if x not in chain]
@@ -231,10 +262,14 @@ def _ways(members: Mapping[str, Lanelet]) -> Iterator[JunctionWay]:
     for lanelet in members.values():
         entries = [x for x in lanelet.predecessors if x not in members]
         if entries or not lanelet.predecessors:
+            names = frozenset(entries)
+            before = tuple([known[x] for x in names if x in known])
+            short = [x for x in before if line_length(x.centre) < _SHORT_M]
+            further = [known[x] for entry in short for x in entry.predecessors if x in known]
             for chain in onward((lanelet,)):
-                exits = [x for x in chain[-1].successors if x not in members]
+                exits = frozenset(x for x in chain[-1].successors if x not in members)
                 if _is_no_corner(chain):
-                    yield JunctionWay(chain, frozenset(entries), frozenset(exits))
+                    yield JunctionWay(chain, names, exits, before, (*before, *further))
 
 
 def _road_headings(recording: Recording, way: JunctionWay) -> tuple[float, float]:
@@ -260,15 +295,13 @@ def _is_no_corner(chain: tuple[Lanelet, ...]) -> bool:
     return all(np.hypot(*(b.centre[0] - a.centre[-1])) < 1.0 for a, b in pairwise(chain))
 
 
-def _regulated(
-    recording: Recording, lanelets: list[Lanelet], ways: tuple[JunctionWay, ...]
-) -> bool | None:
+def _regulated(lanelets: list[Lanelet], ways: tuple[JunctionWay, ...]) -> bool | None:
     """True if signs or lights determine priority, False if the map says that nothing does."""
     if any("unregulated" in lanelet.types for lanelet in lanelets):
         return False
     if any(lanelet.first is not None for lanelet in lanelets):
         return True
-    entries = [entry for way in ways for entry in approaches(recording, way)]
+    entries = [entry for way in ways for entry in way.approaches]
     signed = any(
         entry.signs & REGULATING or any(map(is_there, entry.lights))
         for entry in (*entries, *lanelets)
@@ -276,46 +309,21 @@ def _regulated(
     return True if signed else None
 
 
-def all_have_to_stop(recording: Recording, junction: Junction) -> bool | None:
-    """Whether every road to a junction has a stop sign; None if unknown.
-
-    The signs of roads that begin at the map's edge are unknown.
-    """
-    ways = [way for way in junction.ways if not way.on_rails]
-    before = [approaches(recording, way) for way in ways]
-    signs = [{sign for entry in lanes for sign in entry.signs} for lanes in before]
-    if any(ALL_STOP in sign for sign in signs):
-        return True
-    untold = [any("STOP" in entry.untold_signs for entry in lanes) for lanes in before]
-    lacks = [way.entries and "STOP" not in sign for sign, way in zip(signs, ways, strict=True)]
-    if any(missing and not may for missing, may in zip(lacks, untold, strict=True)):
-        return False
-    return None if any(lacks) or not all(way.entries for way in ways) else True
-
-
-def _may_be_regulated(recording: Recording, ways: tuple[JunctionWay, ...]) -> bool:
+def _may_be_regulated(ways: tuple[JunctionWay, ...]) -> bool:
     """Whether a junction may have unobserved lights, or signs whose place is unknown."""
-    entries = [entry for way in ways for entry in approaches(recording, way)]
+    entries = [entry for way in ways for entry in way.approaches]
     return any(
         entry.untold_signs & REGULATING or not all(map(is_there, entry.lights)) for entry in entries
     )
 
 
 def entry_lights(
-    recording: Recording, way: JunctionWay
+    way: JunctionWay,
 ) -> Iterator[tuple[Lanelet, tuple[Light | ObservedLight, ...]]]:
     """Each lanelet right before a way, with its light for the way, or all of its lights."""
-    for entry in (recording.lanelets[x] for x in way.entries if x in recording.lanelets):
+    for entry in way.before:
         own = entry.lights_to.get(way.lanelets[0].id)
         yield entry, (own,) if own else entry.lights
-
-
-def approaches(recording: Recording, way: JunctionWay) -> list[Lanelet]:
-    """The lanelets before a way, and those before them where they are short."""
-    known = recording.lanelets
-    near = [known[x] for x in way.entries if x in known]
-    short = [x for x in near if line_length(x.centre) < _SHORT_M]
-    return near + [known[x] for entry in short for x in entry.predecessors if x in known]
 
 
 def places_along(line: shapely.LineString, places: NDArray[np.object_]) -> NDArray[np.float64]:

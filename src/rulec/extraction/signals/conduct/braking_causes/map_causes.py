@@ -21,7 +21,7 @@ from rulec.extraction.signals.conduct.braking_causes.others_around import (
     without_followers,
 )
 from rulec.extraction.signals.map.level_crossing_signals import level_crossings
-from rulec.extraction.signals.map.line_signals import colour_at, lights_of
+from rulec.extraction.signals.map.line_signals import light_shown, lights_of
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.map.stop_lines import has_stop_sign, own_lines
 from rulec.extraction.signals.map.zone_signals import crossings_lit
@@ -48,6 +48,7 @@ _SEES_GREEN_S = 1.0
 
 _GO, _STOP, _UNTOLD = 1, 2, 3
 _TELLS = {"green_light": _GO, "red_light": _STOP, "amber_light": _STOP, "no_light": 0}
+_TELLING = [*_TELLS.values()]
 
 _HAIR_M = 0.01
 
@@ -127,11 +128,10 @@ def _lights_ahead(context: DriveContext, asked: Flags, reach: Floats) -> NDArray
     road, front, recording = context.road, own_front(context), context.recording
     told = np.zeros(context.states, dtype=intp)
     for line in own_lines(context, lambda at: at.lights) if asked.any() else ():
-        lights = lights_of(recording, road, line.piece, line.lane)
-        ahead = asked & line.on_lane & (front <= line.last) & (front > line.first - reach)
-        for state in ahead.nonzero()[0].tolist() if lights else ():
-            colour = colour_at(lights, int(context.steps[state]))
-            told[state] = _TELLS.get(colour, _UNTOLD)
+        if lights_of(recording, road, line.piece, line.lane):
+            ahead = asked & line.on_lane & (front <= line.last) & (front > line.first - reach)
+            shown = light_shown(context, line.piece, line.lane)[ahead]
+            told[ahead] = np.select([shown == colour for colour in _TELLS], _TELLING, _UNTOLD)
     return told
 
 

@@ -13,7 +13,6 @@ from rulec.extraction.signals.map.right_of_way.held_up import DRIVES_MPS
 from rulec.extraction.signals.map.right_of_way.oncoming_priority import SLOWEST_MPS
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
-from rulec.extraction.tracks.at_junctions.junctions import all_have_to_stop
 
 ARRIVALS = ("arrived_together", "other_arrived_first", "other_in_junction")
 
@@ -31,8 +30,7 @@ def order_of_arrival(
     """
     step_s, together_s = context.recording.step_s, context.thresholds.together_s
     leads_s = [(own.first - other.first) * step_s]
-    junction = context.surroundings.passages.junctions[own.junction]
-    if all_have_to_stop(context.recording, junction):
+    if context.surroundings.passages.junctions[own.junction].all_have_to_stop:
         leads_s.append((_stops(context, own) - _stops(context, other)) * step_s)
     together = {abs(lead_s) <= together_s for lead_s in leads_s}
     earlier = {lead_s > together_s for lead_s in leads_s}

@@ -110,7 +110,7 @@ def _held_up_until(
     train, late_s = is_train(context, own, other.row), (at - until) * step_s
     if late_s < (limits.held_up_s if train else limits.yielding_s):
         drove_on = ego.gone or _drives_on(context, own, comes)
-        moved_in = min(max(passages.front_enters(own), first), last)
+        moved_in = min(max(passages.front_enters[own], first), last)
         late = (at - enters) * step_s > _LATE_S and _stood(context, own, enters, until)
         late |= _catches_up(context, ego, other, at, left_m)
         # The meeting place is wider than the bodies, and where ways join it is longer. One that
@@ -308,7 +308,7 @@ def drives_in(context: DriveContext, own: Passage, last: int) -> int:
     """The column in which ego drives in: where it moves off, if it waits there until ``last``."""
     passages = context.surroundings.passages
     waits = (passages.tracks.speed[own.row, own.first : last + 1] < SLOWEST_MPS).nonzero()[0]
-    return own.first + int(waits[-1]) if len(waits) else passages.front_enters(own)
+    return own.first + int(waits[-1]) if len(waits) else passages.front_enters[own]
 
 
 def _decides(context: DriveContext, own: Passage, enters: int) -> int:

@@ -8,18 +8,12 @@ from math import cos, radians, sin
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.tracks.at_junctions.junction_passages import Passage
-from rulec.extraction.tracks.at_junctions.junctions import (
-    JunctionWay,
-    all_have_to_stop,
-    approaches,
-    entry_lights,
-)
+from rulec.extraction.tracks.at_junctions.junctions import JunctionWay, entry_lights
 from rulec.recordings.recording import (
     ALL_STOP,
     GIVE_WAY_SIGNS,
     STOP_SIGNS,
     Points,
-    Recording,
     is_there,
 )
 
@@ -53,7 +47,7 @@ def gives_way_to(context: DriveContext, own: Passage, other: Passage) -> bool:
     return (
         turns_far(context, own)
         and not turns_far(context, other)
-        and goes_first(context.recording, way_of(own), way_of(other))
+        and goes_first(way_of(own), way_of(other))
         and not _came_at_red(context, other)
         and not _stopped_later(context, own, other)
     )
@@ -64,30 +58,27 @@ def _stopped_later(context: DriveContext, own: Passage, other: Passage) -> bool:
     later_s = (other.first - own.first) * context.recording.step_s
     if later_s <= context.thresholds.together_s:
         return False
-    junction = context.surroundings.passages.junctions[own.junction]
-    return all_have_to_stop(context.recording, junction) is True
+    return context.surroundings.passages.junctions[own.junction].all_have_to_stop is True
 
 
-def goes_first(recording: Recording, own: JunctionWay, other: JunctionWay) -> bool:
+def goes_first(own: JunctionWay, other: JunctionWay) -> bool:
     """True unless the map says that the other way, which is oncoming, gives way to one's own."""
     first = own.lanelets[0].first
     if first is not None:
         return bool(first & other.names)
     its, mine = (
-        any(entry.signs & GIVE_WAY_SIGNS for entry in approaches(recording, way))
-        for way in (other, own)
+        any(entry.signs & GIVE_WAY_SIGNS for entry in way.approaches) for way in (other, own)
     )
     return mine or not its
 
 
-def is_settled(recording: Recording, own: JunctionWay, other: JunctionWay) -> bool | None:
+def is_settled(own: JunctionWay, other: JunctionWay) -> bool | None:
     """Whether signs stop both ways, and the map says that one's own does not have to wait.
 
     None if they do and the map does not say which has to: then signs give priority to neither.
     """
     stopped = [
-        any(entry.signs & _ONE_GIVES_WAY for entry in approaches(recording, way))
-        for way in (own, other)
+        any(entry.signs & _ONE_GIVES_WAY for entry in way.approaches) for way in (own, other)
     ]
     if not all(stopped):
         return False
@@ -108,7 +99,7 @@ def _shown(context: DriveContext, other: Passage) -> Iterator[str | None]:
     """
     passages = context.surroundings.passages
     since = context.steps_in(_CLEARED_S)
-    for entry, lights in entry_lights(context.recording, passages.way(other)):
+    for entry, lights in entry_lights(passages.way(other)):
         crossed = _crossed(context, other, entry.stop_line)
         columns = range(other.first - since, other.first + 1)
         if crossed is not None:
@@ -137,9 +128,9 @@ def may_have_to_stop(context: DriveContext, own: Passage, other: Passage) -> boo
     passages, step_s = context.surroundings.passages, context.recording.step_s
     if (other.first - own.first) * step_s <= context.thresholds.together_s:
         return False
-    if all_have_to_stop(context.recording, passages.junctions[own.junction]) is False:
+    if passages.junctions[own.junction].all_have_to_stop is False:
         stop_signs = STOP_SIGNS & (context.recording.complete | map_contents(context).signs)
-        by_entry = entry_lights(context.recording, passages.way(other))
+        by_entry = entry_lights(passages.way(other))
         if stop_signs or any(is_there(light) for _, lights in by_entry for light in lights):
             return False
     since = max(other.first - round(_STOPPED_S / step_s), 0)

@@ -22,7 +22,6 @@ from rulec.extraction.tracks.at_junctions.junction_passages import Passage
 from rulec.extraction.tracks.at_junctions.junctions import (
     Junction,
     JunctionWay,
-    approaches,
     entry_lights,
 )
 from rulec.recordings.recording import GIVE_WAY_SIGNS, LIMIT_SIGN, STOP_SIGNS
@@ -184,8 +183,8 @@ def _slows_for_limit(context: DriveContext, braking: _Braking) -> bool:
 
 def _is_told_to_stop(context: DriveContext, passage: Passage, braking: _Braking) -> bool:
     """Whether a stop sign, or a light that is not green, stops a participant at a junction."""
-    way, recording = context.surroundings.passages.way(passage), context.recording
-    signs = any(entry.signs & STOP_SIGNS for entry in approaches(recording, way))
+    way = context.surroundings.passages.way(passage)
+    signs = any(entry.signs & STOP_SIGNS for entry in way.approaches)
     return signs or any(colour != "green" for colour in _shown(context, way, braking))
 
 
@@ -205,10 +204,9 @@ def _meets_another(context: DriveContext, passage: Passage, braking: _Braking) -
 
 def _may_have_to_wait(context: DriveContext, passage: Passage, braking: _Braking) -> bool:
     """Whether a sign or the order of the ways may tell a participant to give way at a junction."""
-    way, recording = context.surroundings.passages.way(passage), context.recording
-    entries = approaches(recording, way)
-    may_give_way = any((entry.signs | entry.untold_signs) & GIVE_WAY_SIGNS for entry in entries)
-    if may_give_way or turns_far(context, passage):
+    way = context.surroundings.passages.way(passage)
+    told = [entry.signs | entry.untold_signs for entry in way.approaches]
+    if any(signs & GIVE_WAY_SIGNS for signs in told) or turns_far(context, passage):
         return True
     # Where lights are green they order the ways, and not what the map says without them
     if any(True for _ in _shown(context, way, braking)):
@@ -234,7 +232,7 @@ def _shown(context: DriveContext, way: JunctionWay, braking: _Braking) -> Iterat
     """What the lights at a way's entry show while a participant brakes."""
     begin = context.surroundings.passages.tracks.first
     columns = range(begin + braking.first, begin + braking.slowest + 1)
-    for _, lights in entry_lights(context.recording, way):
+    for _, lights in entry_lights(way):
         for light in lights:
             yield from map(light.colour_at, columns)
 
