@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
 
 import numpy as np
+import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
-from rulec.extraction.computed_once import once
+from rulec.extraction.computed_once import once, once_a_map
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import SHOULDER, map_contents
 from rulec.extraction.signals.measured_numbers import own_widths
@@ -224,17 +226,24 @@ def _on_a_lane_beside(context: DriveContext, asked: NDArray[intp]) -> Flags:
     hard shoulder is beyond the edge of the carriageway, whether or not it is on the map.
     """
     found = np.zeros(context.states, dtype=bool)
-    own = {lanelet.id for row in context.road.rows for lanelet in row if lanelet is not None}
-    every = context.recording.lanelets.values() if asked.size else ()
-    lanes = [lane for lane in every if is_lane(lane) and not _is_shoulder(lane)]
-    areas = [lanelet_area(lane) for lane in lanes if lane.id not in own]
+    names, areas = _lane_areas(context) if asked.size else ((), ())
     if areas:
+        own = {lanelet.id for row in context.road.rows for lanelet in row if lanelet is not None}
+        is_outside = ~np.isin(names, [*own])
         half, heading = own_widths(context)[asked] / 2, context.ego.heading[0, asked]
         for side in (-half, half):
             x = context.ego.x[0, asked] - side * np.sin(heading)
             y = context.ego.y[0, asked] + side * np.cos(heading)
-            found[asked[places_in(areas, x, y)[0]]] = True
+            states, lanes = places_in(areas, x, y)
+            found[asked[states[is_outside[lanes]]]] = True
     return found
+
+
+@once_a_map
+def _lane_areas(context: DriveContext) -> tuple[Sequence[str], Sequence[shapely.Geometry]]:
+    """The ids and the areas of the map's lanes without hard shoulders."""
+    lanes = [x for x in context.recording.lanelets.values() if is_lane(x) and not _is_shoulder(x)]
+    return [lane.id for lane in lanes], [lanelet_area(lane) for lane in lanes]
 
 
 def _half_across(context: DriveContext) -> Floats:

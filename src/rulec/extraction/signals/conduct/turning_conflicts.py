@@ -8,7 +8,13 @@ left, and comes less than ``held_up_s`` after it, as on crossing ways in junctio
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.array_types import Flags, Floats
 from rulec.extraction.drive_context import DriveContext
@@ -29,6 +35,9 @@ _BEFORE_M = 8.0
 _STRAIGHT_RAD = np.radians(30.0)
 _CREEPS_MPS = 0.5
 
+_Cells: TypeAlias = "int | tuple[int | NDArray[intp], int]"
+"""A participant's row, at all times; or rows and a column."""
+
 
 @drive_by_drive
 def _turns_in_way_of(context: DriveContext) -> SignalColumns:
@@ -40,43 +49,73 @@ def _turns_in_way_of(context: DriveContext) -> SignalColumns:
         way = context.surroundings.passages.way(passage)
         turned, at_ring = way.turned, (way.entries | way.exits | way.names) & ring
         if least < abs(turned) < np.pi - least and not at_ring:
-            for row, whole in enumerate(context.tracks.rows.tolist()):
-                found = _conflict(context, passage, whole, np.sign(turned))
-                if found is not None:
-                    first, last, known = found
-                    (met if known and passage.sure else unsure)[row, first : last + 1] = True
+            for row, (first, last, known) in _conflicts(context, passage, float(np.sign(turned))):
+                (met if known and passage.sure else unsure)[row, first : last + 1] = True
     return SignalColumns(about={"turns_in_way_of": met}, unknown={"turns_in_way_of": unsure & ~met})
 
 
-def _conflict(
-    context: DriveContext, own: Passage, row: int, towards: float
-) -> tuple[int, int, bool] | None:
-    """The states in which ego is in a participant's way, and whether that is known; or None.
+@dataclass(frozen=True, slots=True)
+class _Turn:
+    """Ego's turn from a column on, in the frame of the place and heading that it came from.
 
-    ``towards``: 1 if ego turns left, -1 if right.
+    ``towards``: 1 if it turns left, -1 if right. ``ours``: ego's outline where it came from.
     """
-    passages, shift = context.surroundings.passages, context.first_column
-    tracks, step_s = passages.tracks, context.recording.step_s
-    place, limits = context.tolerances.place_m, context.thresholds
-    begin = max(own.first, shift)
-    if not tracks.present[row, begin] or "pedestrian" in tracks.participants[row].object_types:
-        return None
+
+    own: Passage
+    begin: int
+    towards: float
+    origin: tuple[float, float]
+    heading: float
+    ours: Points
+
+
+def _conflicts(
+    context: DriveContext, own: Passage, towards: float
+) -> Iterator[tuple[int, tuple[int, int, bool]]]:
+    """The rows of those whose way ego is in, in which states, and whether that is known."""
+    passages, rows = context.surroundings.passages, context.tracks.rows
+    tracks, begin = passages.tracks, max(own.first, context.first_column)
     came = _came(context, own, begin)
     origin = float(tracks.x[own.row, came]), float(tracks.y[own.row, came])
-    heading = float(tracks.heading[own.row, came])
-    along, left = _in_frame(context, row, origin, heading)
-    angle = np.angle(np.exp(1j * (tracks.heading[row] - heading)))
-    # Clear of ego's way before it turned: a vehicle that follows ego is behind it
-    ours, theirs = tracks.outline(own.row, came), tracks.outline(row, begin)
-    if ours is None or theirs is None:
-        return None
-    clear = _clear((ours, theirs), towards, origin, heading)
-    behind = float(_in_frame(context, own.row, origin, heading)[0][begin] - along[begin])
+    ours = tracks.outline(own.row, came)
+    if ours is None:
+        return
+    turn = _Turn(own, begin, towards, origin, float(tracks.heading[own.row, came]), ours)
+    behind = (
+        _in_frame(context, turn, (own.row, begin))[0] - _in_frame(context, turn, (rows, begin))[0]
+    )
     half = float(passages.lengths[own.row]) / 2
-    beside = -max(place, LAPS_M) <= clear <= ASIDE_M and -half <= behind <= BEHIND_M
-    if not beside or abs(float(angle[begin])) > _STRAIGHT_RAD:
+    beside = tracks.present[rows, begin] & ~tracks.of_type("pedestrian")[rows]
+    beside &= (-half <= behind) & (behind <= BEHIND_M)
+    beside &= ~(np.abs(_angle(context, turn, (rows, begin))) > _STRAIGHT_RAD)
+    for number in beside.nonzero()[0].tolist():
+        found = _conflict(context, turn, int(rows[number]))
+        if found is not None:
+            yield number, found
+
+
+def _angle(context: DriveContext, turn: _Turn, at: _Cells) -> Floats:
+    """The directions (rad) of participants relative to the one that ego came from."""
+    heading = context.surroundings.passages.tracks.heading[at]
+    angles: Floats = np.angle(np.exp(1j * (heading - turn.heading)))
+    return angles
+
+
+def _conflict(context: DriveContext, turn: _Turn, row: int) -> tuple[int, int, bool] | None:
+    """The states in which ego is in a participant's way, and whether that is known; or None."""
+    passages, shift = context.surroundings.passages, context.first_column
+    tracks, step_s = passages.tracks, context.recording.step_s
+    place, limits, begin = context.tolerances.place_m, context.thresholds, turn.begin
+    # Clear of ego's way before it turned: a vehicle that follows ego is behind it
+    theirs = tracks.outline(row, begin)
+    if theirs is None:
         return None
-    crosses = _crossed(context, own, begin, (*origin, heading), float(left[begin]))
+    clear = _clear(turn, theirs)
+    if not -max(place, LAPS_M) <= clear <= ASIDE_M:
+        return None
+    along, left = _in_frame(context, turn, row)
+    angle = _angle(context, turn, row)
+    crosses = _crossed(context, turn, float(left[begin]))
     if crosses is None:
         return None
     enters, leaves, low, high = crosses
@@ -110,32 +149,25 @@ def _came(context: DriveContext, own: Passage, begin: int) -> int:
     return int(before[-1] if len(before) else there[0])
 
 
-def _clear(
-    outlines: tuple[Points, Points], towards: float, origin: tuple[float, float], heading: float
-) -> float:
-    """How far (m) a body is clear of ego, whose outline is the first, on the side it turns to."""
-    ours, theirs = (
-        towards * ((own - origin) @ (-np.sin(heading), np.cos(heading))) for own in outlines
-    )
+def _clear(turn: _Turn, theirs: Points) -> float:
+    """How far (m) a body is clear of ego's, where it came from, on the side it turns to."""
+    left = -np.sin(turn.heading), np.cos(turn.heading)
+    ours, theirs = (turn.towards * ((body - turn.origin) @ left) for body in (turn.ours, theirs))
     return float(theirs.min() - ours.max())
 
 
 def _crossed(
-    context: DriveContext, own: Passage, begin: int, frame: tuple[float, float, float], line: float
+    context: DriveContext, turn: _Turn, line: float
 ) -> tuple[int, int, float, float] | None:
-    """The columns from and to which ego's body is across a line along its old way, and where (m).
-
-    ``frame``: x and y of the place that it came from, and its heading there.
-    """
-    tracks = context.surroundings.passages.tracks
-    *origin, heading = frame
-    cos, sin = np.cos(heading), np.sin(heading)
+    """The columns in which ego's body is across a line along its old way: from, to, where (m)."""
+    tracks, row = context.surroundings.passages.tracks, turn.own.row
+    cos, sin = np.cos(turn.heading), np.sin(turn.heading)
     columns, lows, highs = [], [], []
-    for column in tracks.present[own.row, begin:].nonzero()[0] + begin:
-        corners = tracks.outline(own.row, int(column))
+    for column in tracks.present[row, turn.begin :].nonzero()[0] + turn.begin:
+        corners = tracks.outline(row, int(column))
         if corners is None:
             continue
-        x, y = corners[:, 0] - origin[0], corners[:, 1] - origin[1]
+        x, y = corners[:, 0] - turn.origin[0], corners[:, 1] - turn.origin[1]
         along, left = x * cos + y * sin, y * cos - x * sin
         if left.min() <= line <= left.max():
             columns.append(int(column))
@@ -148,13 +180,11 @@ def _crossed(
     return columns[0], columns[-1], min(lows), max(highs)
 
 
-def _in_frame(
-    context: DriveContext, row: int, origin: tuple[float, float], heading: float
-) -> tuple[Floats, Floats]:
-    """How far (m) a participant is along a direction from a place, and to its left, by column."""
+def _in_frame(context: DriveContext, turn: _Turn, at: _Cells) -> tuple[Floats, Floats]:
+    """How far (m) participants are along ego's old way from where it came, and to its left."""
     tracks = context.surroundings.passages.tracks
-    x, y = tracks.x[row] - origin[0], tracks.y[row] - origin[1]
-    cos, sin = np.cos(heading), np.sin(heading)
+    x, y = tracks.x[at] - turn.origin[0], tracks.y[at] - turn.origin[1]
+    cos, sin = np.cos(turn.heading), np.sin(turn.heading)
     return x * cos + y * sin, y * cos - x * sin
 
 

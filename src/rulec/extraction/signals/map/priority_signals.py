@@ -154,6 +154,7 @@ def passages_of(context: DriveContext, number: int) -> tuple[Passage, ...]:
     return tuple(x for x in passages if x.last >= columns[0] and x.first <= columns[-1])
 
 
+@once
 def approach(context: DriveContext, passage: Passage) -> slice:
     """The states from where ego nears the junction until it is through it.
 
@@ -170,6 +171,7 @@ def approach(context: DriveContext, passage: Passage) -> slice:
     return slice(max(first, 0, *entered), min(passage.last - shift + 1, _next(context, passage)))
 
 
+@once
 def _next(context: DriveContext, passage: Passage) -> int:
     """The last state before ego's front is in the next junction, or one past all states."""
     passages = context.surroundings.passages
@@ -177,7 +179,7 @@ def _next(context: DriveContext, passage: Passage) -> int:
     enters = [passages.front_enters[x] - context.first_column for x in later[:1]]
     # The middle of a long body may cut the next one's corner and never be in it
     first, last = (
-        int(np.clip(column - context.first_column, 0, context.states - 1))
+        min(max(column - context.first_column, 0), context.states - 1)
         for column in (passage.first, passage.last)
     )
     beyond = context.ego_extents.s[0, last]

@@ -342,13 +342,10 @@ def _passage(ways: Sequence[JunctionWay], tracks: Tracks, stay: Stay) -> Passage
     away = np.full(len(ways), np.inf)
     present = tracks.present[row]
     whole = first > 0 and last + 1 < len(present) and bool(present[first - 1] and present[last + 1])
-    fitting = [
-        number
-        for number, way in enumerate(ways)
-        if _may_use(way, tracks, row)
-        and abs(turn(way.headings[0], begins)) < _LARGEST_TURN
-        and (not whole or abs(turn(way.headings[1], ends)) < _LARGEST_TURN)
-    ]
+    headings = np.reshape([way.headings for way in ways], (-1, 2))
+    fits = np.abs(turn(headings, np.array([begins, ends]))) < _LARGEST_TURN
+    along = fits[:, 0] & (fits[:, 1] | (not whole))
+    fitting = [k for k in along.nonzero()[0].tolist() if _may_use(ways[k], tracks, row)]
     # Where a lane and a track are as near, a train is on the track
     rather = [_SURE_M * (_on_rails(tracks, row) and not way.on_rails) for way in ways]
     for longer in (not stay.seen, True):

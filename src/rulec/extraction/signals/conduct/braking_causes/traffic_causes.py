@@ -147,9 +147,11 @@ def _met_alone(context: DriveContext, reach: Floats) -> tuple[Flags, Flags]:
         near = travelled[own.first] - travelled[context.columns] <= reach
         start = int(near.argmax())
         for other in passages.through[own.junction]:
-            meeting = passages.junctions[own.junction].meeting(own.way, other.way)
             elsewhen = other.last - first < start or other.first - first - thinks_of > stop
-            if other.row == own.row or meeting is None or elsewhen:
+            if other.row == own.row or elsewhen:
+                continue
+            meeting = passages.junctions[own.junction].meeting(own.way, other.way)
+            if meeting is None:
                 continue
             enters, _ = passages.occupied(own, meeting[0])
             comes, leaves = passages.occupied(other, meeting[1])
